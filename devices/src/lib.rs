@@ -1,0 +1,7 @@
+//! Everything between a wire and a [`Sample`].
+
+pub mod clock;
+pub mod sample;
+
+pub use clock::Clock;
+pub use sample::{Body, DeviceId, Finger, Hand, Hands, Pad, Pen, Sample, Tool};

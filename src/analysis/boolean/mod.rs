@@ -1,0 +1,1 @@
+//! Union, intersection and both differences of polygon solids.

@@ -1,0 +1,5 @@
+//! Questions asked of a solid: thickness, measures, distance, projection, Booleans, remeshing.
+//! Everything here works on immutable data and is run on background threads.
+
+pub mod boolean;
+pub mod cancel;

@@ -1,0 +1,101 @@
+//! The command line: one file a subcommand. A subcommand reads its arguments, calls the library and prints; it decides
+//! nothing. Standard output carries the answer (with `--json` exactly one object), standard error everything else.
+
+use std::io::Write;
+use std::path::Path;
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+#[derive(Debug, Parser)]
+#[command(name = "sculptd", version, about = "Sculpt with pen tablets, serial pens and bare hands, in real time")]
+pub struct Cli {
+    /// Print one JSON object on standard output instead of text.
+    #[arg(long, global = true)]
+    pub json: bool,
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Print completions for a shell.
+    Completions { shell: clap_complete::Shell },
+    /// Print the manual page.
+    Man,
+}
+
+/// Why a command ended badly. The variant is the exit code; the text says what was expected and where.
+#[derive(Debug, thiserror::Error)]
+pub enum Fail {
+    /// 1: a check found something.
+    #[error("{0}")]
+    Check(String),
+    /// 2
+    #[error("{0}")]
+    Usage(String),
+    /// 3
+    #[error("{0}")]
+    Config(String),
+    /// 4
+    #[error("{0}")]
+    Permission(String),
+    /// 5: a device is absent.
+    #[error("{0}")]
+    Device(String),
+    /// 6: a file that can't be read or is not what it claims.
+    #[error("{0}")]
+    Input(String),
+}
+
+impl Fail {
+    pub fn code(&self) -> u8 {
+        match self {
+            Fail::Check(_) => 1,
+            Fail::Usage(_) => 2,
+            Fail::Config(_) => 3,
+            Fail::Permission(_) => 4,
+            Fail::Device(_) => 5,
+            Fail::Input(_) => 6,
+        }
+    }
+
+    /// An IO error on `path`: a refused permission is told apart from everything else.
+    pub fn io(path: &Path, e: &std::io::Error) -> Self {
+        let text = format!("{}: {e}", path.display());
+        if e.kind() == std::io::ErrorKind::PermissionDenied { Fail::Permission(text) } else { Fail::Input(text) }
+    }
+}
+
+pub type Outcome = Result<(), Fail>;
+
+/// Runs the command line; the process exits with the returned code.
+pub fn run() -> u8 {
+    let cli = Cli::parse();
+    let outcome = match cli.command {
+        Some(Command::Completions { shell }) => {
+            clap_complete::generate(shell, &mut Cli::command(), "sculptd", &mut std::io::stdout());
+            Ok(())
+        }
+        Some(Command::Man) => clap_mangen::Man::new(Cli::command())
+            .render(&mut std::io::stdout())
+            .map_err(|e| Fail::Input(e.to_string())),
+        None => Ok(()),
+    };
+    match outcome {
+        Ok(()) => 0,
+        Err(fail) => {
+            eprintln!("sculptd: {fail}");
+            fail.code()
+        }
+    }
+}
+
+/// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's choice, not an error.
+pub fn answer<T: serde::Serialize>(json: bool, value: &T, text: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) {
+    let mut out = std::io::stdout().lock();
+    let _ = if json {
+        serde_json::to_writer(&mut out, value).map_err(std::io::Error::from).and_then(|()| writeln!(out))
+    } else {
+        text(&mut out)
+    };
+}

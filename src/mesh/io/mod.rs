@@ -1,0 +1,1 @@
+//! Mesh files: OBJ, STL, PLY, glTF/GLB, 3MF, OFF, in and out.

@@ -1,0 +1,1 @@
+//! Primitive solids, for the start of a session and as tools.

@@ -1,0 +1,12 @@
+//! One binary for all integration tests: one link, one start.
+
+use std::path::PathBuf;
+
+/// The folder of real recordings and meshes, where the environment names one.
+pub fn corpus() -> Option<PathBuf> {
+    let found = std::env::var_os("SCULPTD_CORPUS").map(PathBuf::from).filter(|p| p.is_dir());
+    if found.is_none() {
+        println!("skipped: SCULPTD_CORPUS not set or not a folder");
+    }
+    found
+}
