@@ -1,6 +1,8 @@
 //! Everything between a wire and a [`Sample`].
 
 pub mod clock;
+pub mod leap;
+pub mod queue;
 pub mod sample;
 
 pub use clock::Clock;
