@@ -6,8 +6,14 @@ use std::path::Path;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+mod devices;
+
 #[derive(Debug, Parser)]
-#[command(name = "sculptd", version, about = "Sculpt with pen tablets, serial pens and bare hands, in real time")]
+#[command(
+    name = "sculptd",
+    version,
+    about = "Sculpt with pen tablets, serial pens and bare hands, in real time"
+)]
 pub struct Cli {
     /// Print one JSON object on standard output instead of text.
     #[arg(long, global = true)]
@@ -18,6 +24,11 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Pens and hands: decode a recording.
+    Devices {
+        #[command(subcommand)]
+        command: devices::DevicesCommand,
+    },
     /// Print completions for a shell.
     Completions { shell: clap_complete::Shell },
     /// Print the manual page.
@@ -62,7 +73,11 @@ impl Fail {
     /// An IO error on `path`: a refused permission is told apart from everything else.
     pub fn io(path: &Path, e: &std::io::Error) -> Self {
         let text = format!("{}: {e}", path.display());
-        if e.kind() == std::io::ErrorKind::PermissionDenied { Fail::Permission(text) } else { Fail::Input(text) }
+        if e.kind() == std::io::ErrorKind::PermissionDenied {
+            Fail::Permission(text)
+        } else {
+            Fail::Input(text)
+        }
     }
 }
 
@@ -76,6 +91,7 @@ pub fn run() -> u8 {
             clap_complete::generate(shell, &mut Cli::command(), "sculptd", &mut std::io::stdout());
             Ok(())
         }
+        Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Man) => clap_mangen::Man::new(Cli::command())
             .render(&mut std::io::stdout())
             .map_err(|e| Fail::Input(e.to_string())),
@@ -91,7 +107,11 @@ pub fn run() -> u8 {
 }
 
 /// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's choice, not an error.
-pub fn answer<T: serde::Serialize>(json: bool, value: &T, text: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) {
+pub fn answer<T: serde::Serialize>(
+    json: bool,
+    value: &T,
+    text: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) {
     let mut out = std::io::stdout().lock();
     let _ = if json {
         serde_json::to_writer(&mut out, value).map_err(std::io::Error::from).and_then(|()| writeln!(out))

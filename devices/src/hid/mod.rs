@@ -1,0 +1,14 @@
+//! HID pens: from report bytes to samples.
+//!
+//! ```text
+//! transport (hidapi, a recording, a simulator) -> bytes -> parser (pure, one file a family) -> Parsed -> PenState -> Sample
+//! ```
+//!
+//! A parser sees one report and a few bytes of memory; it never indexes by a declared size. A [`decoder::Decoder`] binds a
+//! parser to a model's facts and to a [`crate::pen_state::PenState`]; live reading, recordings and tests all use it.
+
+pub mod decoder;
+pub mod descriptor;
+pub mod digitiser;
+pub mod report;
+pub mod wacom_intuos;

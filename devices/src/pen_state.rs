@@ -1,0 +1,187 @@
+//! What a pen means, the same for every family: proximity, contact, tool, buttons.
+//!
+//! Laws:
+//! * Every visit ends: by the device's word, by silence (where the family never says it), by unplug.
+//! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen leaves.
+//! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins another.
+//! * Pressure is clamped to 0..1; nothing wraps.
+
+use glam::Vec2;
+
+use crate::hid::report::PenReport;
+use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
+
+/// Contact begins at this share of the pressure range where there is no tip switch (libinput's figures).
+const DOWN: f32 = 0.05;
+/// ... and ends below this one.
+const UP: f32 = 0.01;
+/// A rest pressure above this is a hand pressing, not a worn pen.
+const MOST_OFFSET: f32 = 0.5;
+
+/// What the model's description says of its pen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PenConfig {
+    pub device: DeviceId,
+    /// First and last count of the active area.
+    pub min: [i32; 2],
+    pub max: [i32; 2],
+    pub area_mm: Vec2,
+    /// 0: the device has no pressure.
+    pub max_pressure: u32,
+    /// 0: unknown or none.
+    pub max_distance: u32,
+    /// Microseconds of silence that mean "gone"; `None` where the family always says it.
+    pub silence_us: Option<u64>,
+}
+
+/// One pen on one device.
+#[derive(Debug, Clone)]
+pub struct PenState {
+    cfg: PenConfig,
+    pen: Pen,
+    last_us: u64,
+    /// The first report of a visit is held back from pressing: its pressure is often the last visit's.
+    fresh: bool,
+    /// The rest pressure of a worn pen, as a share.
+    offset: f32,
+    /// The last tip switch seen, where there is one.
+    switch: Option<bool>,
+}
+
+impl PenState {
+    pub fn new(cfg: PenConfig) -> Self {
+        let pressure = (cfg.max_pressure > 0).then_some(0.0);
+        let pen = Pen { area_mm: cfg.area_mm, pressure, ..Pen::default() };
+        PenState { cfg, pen, last_us: 0, fresh: true, offset: 0.0, switch: None }
+    }
+
+    pub fn in_range(&self) -> bool {
+        self.pen.in_range
+    }
+
+    /// When silence will end the visit.
+    pub fn due_us(&self) -> Option<u64> {
+        if self.pen.in_range { self.cfg.silence_us.map(|s| self.last_us.saturating_add(s)) } else { None }
+    }
+
+    /// Ends the visit if the pen has been silent for too long. The sample's time is when the silence was over.
+    pub fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {
+        if let Some(due) = self.due_us().filter(|&due| due <= now_us) {
+            self.leave(due, emit);
+        }
+    }
+
+    /// The pen left, or its device did.
+    pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.switch = None;
+        self.fresh = true;
+        if !self.pen.in_range {
+            return;
+        }
+        let p = &mut self.pen;
+        p.in_range = false;
+        p.tip = false;
+        p.buttons = 0;
+        p.distance = None;
+        p.pressure = p.pressure.map(|_| 0.0);
+        self.emit(t_us, emit);
+    }
+
+    /// A report of a pen in range.
+    pub fn report(&mut self, r: &PenReport, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.tick(t_us, emit);
+        if let Some(tool) = r.tool {
+            if self.pen.in_range && tool != self.pen.tool {
+                self.leave(t_us, emit);
+            }
+            self.pen.tool = tool;
+        }
+        let entering = !self.pen.in_range;
+        if entering && r.pos.is_none() {
+            return; // Nothing says where it is.
+        }
+        self.pen.in_range = true;
+        self.last_us = t_us;
+        self.place(r);
+        if let Some(d) = r.distance {
+            self.pen.distance = Some(d as f32);
+        }
+        if let Some(b) = r.buttons {
+            self.pen.buttons = b;
+        }
+        if r.tip.is_some() {
+            self.switch = r.tip;
+        }
+        self.press(r, entering);
+        self.fresh = false;
+        self.emit(t_us, emit);
+    }
+
+    fn place(&mut self, r: &PenReport) {
+        let p = &mut self.pen;
+        if let Some(pos) = r.pos {
+            p.raw = pos;
+            let axis = |i: usize| {
+                let span = (i64::from(self.cfg.max[i]) - i64::from(self.cfg.min[i])).max(1) as f64;
+                let share = (i64::from(pos[i]) - i64::from(self.cfg.min[i])) as f64 / span;
+                (share.clamp(0.0, 1.0) * f64::from(self.cfg.area_mm[i])) as f32
+            };
+            p.pos_mm = Vec2::new(axis(0), axis(1));
+        }
+        if let Some([x, y]) = r.tilt {
+            let rad = |d: f32| d.clamp(-90.0, 90.0).to_radians();
+            p.tilt = Some(Vec2::new(rad(x), rad(y)));
+        }
+        if let Some(t) = r.twist.filter(|t| t.is_finite()) {
+            p.twist = Some(wrapped(t));
+        }
+    }
+
+    fn press(&mut self, r: &PenReport, entering: bool) {
+        if let (Some(counts), true) = (r.pressure, self.cfg.max_pressure > 0) {
+            let share = (f64::from(counts) / f64::from(self.cfg.max_pressure)).min(1.0) as f32;
+            if entering {
+                self.learn_offset(r, share);
+            } else if share < self.offset {
+                self.offset = share;
+            }
+            // With the switch open, pressure is leakage.
+            let leaking = self.switch == Some(false) || self.pen.tool == Tool::Mouse;
+            self.pen.pressure = Some(if leaking { 0.0 } else { share });
+        }
+        let felt = self.pen.pressure.map(|p| ((p - self.offset) / (1.0 - self.offset)).max(0.0));
+        let spike = self.fresh && felt.is_some_and(|p| p >= 1.0);
+        if spike {
+            self.pen.pressure = Some(0.0);
+        }
+        self.pen.tip = match (self.pen.tool, self.switch, felt) {
+            (Tool::Mouse, ..) => false,
+            _ if spike => false,
+            (_, Some(switch), _) => switch,
+            (_, None, Some(p)) => p >= if self.pen.tip { UP } else { DOWN },
+            (_, None, None) => false,
+        };
+    }
+
+    /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip switch.
+    fn learn_offset(&mut self, r: &PenReport, share: f32) {
+        let high = match (r.distance, self.cfg.max_distance) {
+            (Some(d), max) if max > 0 => d * 2 >= max,
+            _ => false,
+        };
+        if high && self.switch.is_none() && share <= MOST_OFFSET {
+            self.offset = share;
+        }
+    }
+
+    fn emit(&self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        emit(Sample { device: self.cfg.device, t_us, device_t_us: None, body: Body::Pen(self.pen) });
+    }
+}
+
+/// Into `-π..π`.
+fn wrapped(t: f32) -> f32 {
+    use std::f32::consts::{PI, TAU};
+    let w = (t + PI).rem_euclid(TAU) - PI;
+    if w < PI { w } else { -PI }
+}

@@ -1,0 +1,36 @@
+//! Recordings: raw stamped bytes of real devices, and how they are fed again through the live path.
+
+pub mod hid_recorder;
+mod player;
+
+use std::path::PathBuf;
+
+pub use player::{DeviceInfo, DeviceKind, Player};
+
+/// A HID device as it was recorded: one [`crate::catalogue::Identity`] an interface, and every report in order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct HidRecording {
+    pub interfaces: Vec<crate::catalogue::Identity>,
+    pub reports: Vec<Stamped>,
+}
+
+/// One report.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stamped {
+    /// Microseconds since the first report; never less than the one before.
+    pub t_us: u64,
+    /// Index into [`HidRecording::interfaces`].
+    pub interface: usize,
+    pub bytes: Vec<u8>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    #[error("{}: {error}", path.display())]
+    Io { path: PathBuf, error: std::io::Error },
+    #[error("{}:{line}: {what}", path.display())]
+    Broken { path: PathBuf, line: usize, what: String },
+    /// No interface of the device is known: one reason each.
+    #[error("{}: no known device in this recording ({why})", path.display())]
+    Unknown { path: PathBuf, why: String },
+}

@@ -1,0 +1,185 @@
+//! `sculptd devices`: what is plugged in, what it says, and recordings of it.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::recording::{Player, RecordingError};
+use sculptd_devices::{Body, DeviceId, Pen, Sample, Tool};
+use serde::Serialize;
+
+use super::{Fail, Outcome, answer};
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum DevicesCommand {
+    /// Print what a recording's device said, one row a sample.
+    Decode {
+        /// A hid-recorder file.
+        recording: PathBuf,
+        /// Write rows as CSV to this file; with no name, to standard output.
+        #[arg(long, num_args = 0..=1, default_missing_value = "-")]
+        csv: Option<PathBuf>,
+        /// A folder of further tablet files.
+        #[arg(long)]
+        tablets: Option<PathBuf>,
+    },
+}
+
+pub(crate) fn run(command: &DevicesCommand, json: bool) -> Outcome {
+    match command {
+        DevicesCommand::Decode { recording, csv, tablets } => {
+            decode(recording, csv.as_deref(), &catalogue(tablets.as_deref())?, json)
+        }
+    }
+}
+
+/// The built-in models, and those of a folder of the user's.
+pub(crate) fn catalogue(dir: Option<&Path>) -> Result<Catalogue, Fail> {
+    let all = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
+    match dir {
+        Some(dir) => all.with_dir(dir).map_err(|e| Fail::Config(e.to_string())),
+        None => Ok(all),
+    }
+}
+
+/// A recording that cannot be played: an unknown device is 5, a file that is not what it claims is 6.
+pub(crate) fn recording_fail(e: RecordingError) -> Fail {
+    match e {
+        RecordingError::Io { path, error } => Fail::io(&path, &error),
+        RecordingError::Broken { .. } => Fail::Input(e.to_string()),
+        RecordingError::Unknown { .. } => Fail::Device(e.to_string()),
+    }
+}
+
+/// One sample as a row. Raw axes, tilt (degrees) and distance are the device's own counts.
+#[derive(Debug, Serialize)]
+struct Row {
+    t_us: u64,
+    device: u16,
+    tool: &'static str,
+    in_range: bool,
+    tip: bool,
+    pressure: Option<f32>,
+    x_mm: f32,
+    y_mm: f32,
+    x_raw: i32,
+    y_raw: i32,
+    tilt_x: Option<f64>,
+    tilt_y: Option<f64>,
+    distance: Option<f32>,
+    buttons: u32,
+}
+
+const HEADER: &str =
+    "t_us,device,tool,in_range,tip,pressure,x_mm,y_mm,x_raw,y_raw,tilt_x,tilt_y,distance,buttons";
+
+#[derive(Debug, Serialize)]
+struct Decoded {
+    device: String,
+    area_mm: [f32; 2],
+    notes: Vec<String>,
+    rows: Vec<Row>,
+}
+
+fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) -> Outcome {
+    let mut player = Player::open(path, DeviceId(0), catalogue).map_err(recording_fail)?;
+    let mut rows = Vec::new();
+    player.advance(u64::MAX / 4, &mut |sample| rows.extend(row(&sample)));
+    let info = player.device();
+    if let Some(out) = csv {
+        let mut text = String::from(HEADER);
+        text.push('\n');
+        rows.iter().for_each(|r| r.line(&mut text));
+        if out.as_os_str() == "-" {
+            let _ = std::io::stdout().lock().write_all(text.as_bytes());
+            return Ok(());
+        }
+        write_text(out, &text)?;
+    }
+    let area = info.area_mm;
+    let decoded =
+        Decoded { device: info.name.clone(), area_mm: [area.x, area.y], notes: info.notes.clone(), rows };
+    for note in &decoded.notes {
+        eprintln!("{note}");
+    }
+    if csv.is_some() && !json {
+        return Ok(());
+    }
+    answer(json, &decoded, |out| {
+        writeln!(out, "{HEADER}")?;
+        let mut text = String::new();
+        decoded.rows.iter().for_each(|r| r.line(&mut text));
+        out.write_all(text.as_bytes())
+    });
+    Ok(())
+}
+
+/// Whole or not at all: written beside, then renamed.
+fn write_text(path: &Path, text: &str) -> Outcome {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    std::fs::File::create(&beside)
+        .and_then(|mut f| f.write_all(text.as_bytes()).and_then(|()| f.sync_all()))
+        .and_then(|()| std::fs::rename(&beside, path))
+        .map_err(|e| Fail::io(path, &e))
+}
+
+fn row(s: &Sample) -> Option<Row> {
+    let Body::Pen(p) = &s.body else { return None };
+    // A thousandth of a degree: radians and back leaves dust that no device means.
+    let degrees = |r: f32| (f64::from(r).to_degrees() * 1000.0).round() / 1000.0;
+    Some(Row {
+        t_us: s.t_us,
+        device: s.device.0,
+        tool: tool(p),
+        in_range: p.in_range,
+        tip: p.tip,
+        pressure: p.pressure,
+        x_mm: p.pos_mm.x,
+        y_mm: p.pos_mm.y,
+        x_raw: p.raw[0],
+        y_raw: p.raw[1],
+        tilt_x: p.tilt.map(|t| degrees(t.x)),
+        tilt_y: p.tilt.map(|t| degrees(t.y)),
+        distance: p.distance,
+        buttons: p.buttons,
+    })
+}
+
+fn tool(p: &Pen) -> &'static str {
+    match p.tool {
+        Tool::Pen => "pen",
+        Tool::Eraser => "eraser",
+        Tool::Mouse => "mouse",
+        Tool::Touch => "touch",
+    }
+}
+
+impl Row {
+    fn line(&self, out: &mut String) {
+        use std::fmt::Write as _;
+        fn or_empty<T: std::fmt::Display>(v: Option<T>) -> String {
+            v.map_or(String::new(), |v| v.to_string())
+        }
+        let _ = writeln!(
+            out,
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            self.t_us,
+            self.device,
+            self.tool,
+            u8::from(self.in_range),
+            u8::from(self.tip),
+            or_empty(self.pressure),
+            self.x_mm,
+            self.y_mm,
+            self.x_raw,
+            self.y_raw,
+            or_empty(self.tilt_x),
+            or_empty(self.tilt_y),
+            or_empty(self.distance),
+            self.buttons
+        );
+    }
+}
