@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::{Fail, Outcome, answer};
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum DevicesCommand {
+pub enum DevicesCommand {
     /// Print what a recording's device said, one row a sample.
     Decode {
         /// A hid-recorder file.
