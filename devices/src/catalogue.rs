@@ -33,6 +33,13 @@ impl Found {
     pub fn id(&self) -> &Id {
         &self.tablet.id[self.at]
     }
+
+    /// Model, parser and reason, for people.
+    pub fn in_words(&self) -> String {
+        let parser = serde_json::to_string(&self.id().parser).unwrap_or_default();
+        let why = self.note.as_ref().map_or(String::new(), |n| format!(" ({n})"));
+        format!("{}, parser {}{why}", self.tablet.name, parser.trim_matches('"'))
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]

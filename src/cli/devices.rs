@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::{Player, RecordingError};
-use sculptd_devices::{Body, DeviceId, Pen, Sample, Tool};
+use sculptd_devices::{Body, DeviceId, Hand, Hands, Pen, Sample, Tool};
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
@@ -57,6 +57,7 @@ pub(crate) fn recording_fail(e: RecordingError) -> Fail {
 struct Row {
     t_us: u64,
     device: u16,
+    /// `pen`, `eraser`, `mouse`, `touch`; `hands` for a tracker's frame, whose position is its first palm's x and y and whose buttons count hands.
     tool: &'static str,
     in_range: bool,
     tip: bool,
@@ -69,6 +70,8 @@ struct Row {
     tilt_y: Option<f64>,
     distance: Option<f32>,
     buttons: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hands: Option<Vec<Hand>>,
 }
 
 const HEADER: &str =
@@ -127,7 +130,11 @@ fn write_text(path: &Path, text: &str) -> Outcome {
 }
 
 fn row(s: &Sample) -> Option<Row> {
-    let Body::Pen(p) = &s.body else { return None };
+    let p = match &s.body {
+        Body::Pen(p) => p,
+        Body::Hands(h) => return Some(hands_row(s, h)),
+        Body::Pad(_) => return None,
+    };
     // A thousandth of a degree: radians and back leaves dust that no device means.
     let degrees = |r: f32| (f64::from(r).to_degrees() * 1000.0).round() / 1000.0;
     Some(Row {
@@ -145,7 +152,29 @@ fn row(s: &Sample) -> Option<Row> {
         tilt_y: p.tilt.map(|t| degrees(t.y)),
         distance: p.distance,
         buttons: p.buttons,
+        hands: None,
     })
+}
+
+fn hands_row(s: &Sample, h: &Hands) -> Row {
+    let palm = h.as_slice().first().map_or(glam::Vec3::ZERO, |hand| hand.palm);
+    Row {
+        t_us: s.t_us,
+        device: s.device.0,
+        tool: "hands",
+        in_range: h.count > 0,
+        tip: false,
+        pressure: None,
+        x_mm: palm.x,
+        y_mm: palm.y,
+        x_raw: 0,
+        y_raw: 0,
+        tilt_x: None,
+        tilt_y: None,
+        distance: None,
+        buttons: u32::from(h.count),
+        hands: Some(h.as_slice().to_vec()),
+    }
 }
 
 fn tool(p: &Pen) -> &'static str {

@@ -1,6 +1,8 @@
 //! Recordings: raw stamped bytes of real devices, and how they are fed again through the live path.
 
+mod hands;
 pub mod hid_recorder;
+mod pens;
 mod player;
 
 use std::path::PathBuf;

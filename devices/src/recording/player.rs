@@ -1,10 +1,11 @@
-//! Feeds a recording through the same parser and pen state that a live device is read with.
+//! Feeds a recording through the same parser and state that a live device is read with.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::{HidRecording, RecordingError, hid_recorder};
-use crate::catalogue::{Catalogue, Identification};
-use crate::hid::decoder::Decoder;
+use super::hands::HandRecording;
+use super::pens::PenPlayer;
+use super::{HidRecording, RecordingError, hands, hid_recorder};
+use crate::catalogue::Catalogue;
 use crate::sample::{DeviceId, Sample};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,17 +22,21 @@ pub struct DeviceInfo {
     /// Size of the active area of a pen; zero for hands.
     pub area_mm: glam::Vec2,
     pub device: DeviceId,
-    /// Which parser and why, for people.
+    /// Which model and parser each interface got and why, for people.
     pub notes: Vec<String>,
+}
+
+#[derive(Debug)]
+enum Source {
+    Pen(PenPlayer),
+    Hands(HandRecording),
 }
 
 /// A recording being played.
 #[derive(Debug)]
 pub struct Player {
     info: DeviceInfo,
-    recording: HidRecording,
-    /// One for each interface that is read; the others are left alone.
-    decoders: Vec<Option<Decoder>>,
+    source: Source,
     next: usize,
     offset_us: u64,
     ended: bool,
@@ -40,14 +45,24 @@ pub struct Player {
 impl Player {
     /// Opens a recording of any kind that is known, and finds its device.
     pub fn open(path: &Path, device: DeviceId, catalogue: &Catalogue) -> Result<Player, RecordingError> {
-        let io = |error| RecordingError::Io { path: path.to_owned(), error };
-        let bytes = std::fs::read(path).map_err(io)?;
-        let text = String::from_utf8_lossy(&bytes);
-        let recording = hid_recorder::parse(&text).map_err(|bad| RecordingError::Broken {
-            path: path.to_owned(),
-            line: bad.line,
-            what: bad.what,
-        })?;
+        let bytes =
+            std::fs::read(path).map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
+        if hands::looks_like(&bytes) {
+            let info = DeviceInfo {
+                name: "hand tracker".to_owned(),
+                kind: DeviceKind::Hand,
+                area_mm: glam::Vec2::ZERO,
+                device,
+                notes: Vec::new(),
+            };
+            return Ok(Player::with(info, Source::Hands(hands::open(path)?)));
+        }
+        let broken = |line, what| RecordingError::Broken { path: path.to_owned(), line, what };
+        if bytes.contains(&0) {
+            return Err(broken(1, "binary data: not a recording".to_owned()));
+        }
+        let recording =
+            hid_recorder::parse(&String::from_utf8_lossy(&bytes)).map_err(|b| broken(b.line, b.what))?;
         Player::of(path, recording, device, catalogue)
     }
 
@@ -58,47 +73,12 @@ impl Player {
         device: DeviceId,
         catalogue: &Catalogue,
     ) -> Result<Player, RecordingError> {
-        let (mut info, mut notes, mut decoders) = (None, Vec::new(), Vec::new());
-        for (i, who) in recording.interfaces.iter().enumerate() {
-            let label = who.interface.map_or_else(|| format!("device {i}"), |n| format!("interface {n}"));
-            let found = match catalogue.identify(who) {
-                Identification::Identified(found) => found,
-                Identification::Declined(why) => {
-                    notes.push(format!("{label} left alone: {why}"));
-                    decoders.push(None);
-                    continue;
-                }
-                Identification::Ambiguous(many) => {
-                    let names: Vec<&str> = many.iter().map(|f| f.tablet.name.as_str()).collect();
-                    notes.push(format!("{label} may be {}", names.join(" or ")));
-                    decoders.push(None);
-                    continue;
-                }
-            };
-            notes.push(format!(
-                "{label}: {}, parser {}{}",
-                found.tablet.name,
-                serde_json::to_string(&found.id().parser).unwrap_or_default().trim_matches('"'),
-                found.note.as_ref().map_or(String::new(), |n| format!(" ({n})"))
-            ));
-            decoders.push(Some(Decoder::new(&found, &who.descriptor, device)));
-            let spoke = recording.reports.iter().any(|r| r.interface == i);
-            if info.is_none() || spoke {
-                let a = found.tablet.area;
-                info = Some(DeviceInfo {
-                    name: found.tablet.name.clone(),
-                    kind: DeviceKind::Pen,
-                    area_mm: glam::Vec2::new(a.width_mm as f32, a.height_mm as f32),
-                    device,
-                    notes: Vec::new(),
-                });
-            }
-        }
-        let Some(mut info) = info else {
-            return Err(RecordingError::Unknown { path: PathBuf::from(path), why: notes.join("; ") });
-        };
-        info.notes = notes;
-        Ok(Player { info, recording, decoders, next: 0, offset_us: 0, ended: false })
+        let (pen, info) = PenPlayer::of(path, recording, device, catalogue)?;
+        Ok(Player::with(info, Source::Pen(pen)))
+    }
+
+    fn with(info: DeviceInfo, source: Source) -> Player {
+        Player { info, source, next: 0, offset_us: 0, ended: false }
     }
 
     pub fn device(&self) -> &DeviceInfo {
@@ -112,7 +92,10 @@ impl Player {
 
     /// When the next report is due, relative to the first; `None` when all were played.
     pub fn next_due_us(&self) -> Option<u64> {
-        self.recording.reports.get(self.next).map(|r| r.t_us)
+        match &self.source {
+            Source::Pen(p) => p.recording.reports.get(self.next).map(|r| r.t_us),
+            Source::Hands(h) => h.frames.get(self.next).map(|f| f.0),
+        }
     }
 
     pub fn finished(&self) -> bool {
@@ -122,40 +105,24 @@ impl Player {
     /// Plays every report due up to `until_us`, relative to the first report, that one included. After the last, whatever
     /// is in range leaves.
     pub fn advance(&mut self, until_us: u64, emit: &mut dyn FnMut(Sample)) {
-        while let Some(report) = self.recording.reports.get(self.next).filter(|r| r.t_us <= until_us) {
-            let t = report.t_us.saturating_add(self.offset_us);
-            for decoder in self.decoders.iter_mut().flatten() {
-                decoder.tick(t, emit);
-            }
-            // Two interfaces of one tablet never hold its pen at once: the one that spoke last wins.
-            if let Some(Some(decoder)) = self.decoders.get_mut(report.interface) {
-                let before = decoder.in_range();
-                let mut first = None;
-                let mut rest = Vec::new();
-                decoder.feed(&report.bytes, t, &mut |s| {
-                    if first.is_none() { first = Some(s) } else { rest.push(s) }
-                });
-                if !before && decoder.in_range() {
-                    for (i, other) in self.decoders.iter_mut().enumerate() {
-                        if let Some(other) = other.as_mut().filter(|_| i != report.interface) {
-                            other.leave(t, emit);
-                        }
-                    }
-                }
-                first.into_iter().chain(rest).for_each(&mut *emit);
+        let mut last = 0;
+        while let Some(due) = self.next_due_us().filter(|&due| due <= until_us) {
+            last = due.saturating_add(self.offset_us);
+            match &mut self.source {
+                Source::Pen(p) => p.feed(self.next, last, emit),
+                Source::Hands(h) => emit(h.sample(self.next, self.info.device, self.offset_us)),
             }
             self.next += 1;
         }
-        let until = until_us.saturating_add(self.offset_us);
-        for decoder in self.decoders.iter_mut().flatten() {
-            decoder.tick(until, emit);
-        }
-        if self.next >= self.recording.reports.len() && !self.ended {
-            self.ended = true;
-            let last = self.recording.reports.last().map_or(0, |r| r.t_us).saturating_add(self.offset_us);
-            for decoder in self.decoders.iter_mut().flatten() {
-                decoder.leave(last, emit);
+        let done = self.next_due_us().is_none();
+        match &mut self.source {
+            Source::Pen(p) if !done => p.tick(until_us.saturating_add(self.offset_us), emit),
+            Source::Pen(p) if !self.ended => p.leave(last, emit),
+            Source::Hands(h) if done && !self.ended => {
+                h.farewell(self.info.device, self.offset_us).into_iter().for_each(&mut *emit);
             }
+            _ => {}
         }
+        self.ended = done;
     }
 }

@@ -1,0 +1,88 @@
+//! A HID device's recorded reports, through the decoders that read it live.
+
+use std::path::Path;
+
+use super::{HidRecording, RecordingError};
+use crate::catalogue::{Catalogue, Identification};
+use crate::hid::decoder::Decoder;
+use crate::sample::{DeviceId, Sample};
+
+use super::player::{DeviceInfo, DeviceKind};
+
+#[derive(Debug)]
+pub(super) struct PenPlayer {
+    pub recording: HidRecording,
+    /// One for each interface that is read; the others are left alone.
+    decoders: Vec<Option<Decoder>>,
+}
+
+impl PenPlayer {
+    /// Finds the device of each interface.
+    pub(super) fn of(
+        path: &Path,
+        recording: HidRecording,
+        device: DeviceId,
+        catalogue: &Catalogue,
+    ) -> Result<(PenPlayer, DeviceInfo), RecordingError> {
+        let (mut info, mut notes, mut decoders) = (None, Vec::new(), Vec::new());
+        for (i, who) in recording.interfaces.iter().enumerate() {
+            let label = who.interface.map_or_else(|| format!("device {i}"), |n| format!("interface {n}"));
+            let found = match catalogue.identify(who) {
+                Identification::Identified(found) => found,
+                Identification::Declined(why) => {
+                    notes.push(format!("{label} left alone: {why}"));
+                    decoders.push(None);
+                    continue;
+                }
+                Identification::Ambiguous(many) => {
+                    let names: Vec<&str> = many.iter().map(|f| f.tablet.name.as_str()).collect();
+                    notes.push(format!("{label} may be {}", names.join(" or ")));
+                    decoders.push(None);
+                    continue;
+                }
+            };
+            notes.push(format!("{label}: {}", found.in_words()));
+            decoders.push(Some(Decoder::new(&found, &who.descriptor, device)));
+            let spoke = recording.reports.iter().any(|r| r.interface == i);
+            if info.is_none() || spoke {
+                let a = found.tablet.area;
+                info = Some(DeviceInfo {
+                    name: found.tablet.name.clone(),
+                    kind: DeviceKind::Pen,
+                    area_mm: glam::Vec2::new(a.width_mm as f32, a.height_mm as f32),
+                    device,
+                    notes: Vec::new(),
+                });
+            }
+        }
+        let Some(mut info) = info else {
+            return Err(RecordingError::Unknown { path: path.to_owned(), why: notes.join("; ") });
+        };
+        info.notes = notes;
+        Ok((PenPlayer { recording, decoders }, info))
+    }
+
+    pub(super) fn feed(&mut self, i: usize, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.tick(t_us, emit);
+        let report = &self.recording.reports[i];
+        let at = report.interface;
+        let Some(Some(decoder)) = self.decoders.get_mut(at) else { return };
+        let before = decoder.in_range();
+        let mut said = Vec::new();
+        decoder.feed(&report.bytes, t_us, &mut |s| said.push(s));
+        // Two interfaces of one tablet never hold its pen at once: the one that spoke last wins.
+        if !before && decoder.in_range() {
+            let others = self.decoders.iter_mut().enumerate().filter(|(k, _)| *k != at);
+            others.filter_map(|(_, d)| d.as_mut()).for_each(|d| d.leave(t_us, emit));
+        }
+        said.into_iter().for_each(&mut *emit);
+    }
+
+    pub(super) fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.decoders.iter_mut().flatten().for_each(|d| d.tick(now_us, emit));
+    }
+
+    pub(super) fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.decoders.iter_mut().flatten().for_each(|d| d.leave(t_us, emit));
+    }
+}
