@@ -3,3 +3,4 @@
 
 pub mod boolean;
 pub mod cancel;
+pub mod tree;

@@ -2,6 +2,9 @@
 
 use std::path::PathBuf;
 
+mod thickness_shapes;
+mod tree;
+
 /// The folder of real recordings and meshes, where the environment names one.
 pub fn corpus() -> Option<PathBuf> {
     let found = std::env::var_os("SCULPTD_CORPUS").map(PathBuf::from).filter(|p| p.is_dir());

@@ -2,3 +2,5 @@
 //! processor that has it, and only a run-time check can know. Everything that is dispatched here has a portable twin that
 //! gives the same bits: no fused multiply-add, the same order of operations.
 #![allow(unsafe_code)]
+
+pub mod wide;

@@ -1,0 +1,154 @@
+//! From triangles to the wide tree.
+
+use glam::Vec3;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+use super::{LEAF, NO_TRIANGLE, Node, Pack, WideTree};
+use crate::analysis::cancel::{Cancelled, Job};
+use crate::mesh::TriMesh;
+
+/// Share of the nodes that each reinsertion pass looks at.
+const REINSERTION: f32 = 0.02;
+/// Cost of a box test in triangle tests, for the decision to merge leaves.
+const TRAVERSAL_COST: f32 = 1.0;
+/// Boxes grow by this share of the largest coordinate: the triangle test's shear rounds a corner by less.
+const PAD: f32 = 1e-6;
+
+pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
+    let corners = |t: u32| -> Option<[Vec3; 3]> {
+        let [a, b, c] = mesh.triangles[t as usize].map(|v| mesh.positions.get(v as usize).copied());
+        Some([a?, b?, c?]).filter(|c| c.iter().all(|p| p.is_finite()))
+    };
+    let mut used = Vec::with_capacity(mesh.triangles.len());
+    let mut boxes = Vec::with_capacity(mesh.triangles.len());
+    let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for t in 0..mesh.triangles.len() as u32 {
+        let Some([a, b, c]) = corners(t) else { continue };
+        let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+        bounds = (bounds.0.min(lo), bounds.1.max(hi));
+        boxes.push(Aabb::new(lo.into(), hi.into()));
+        used.push(t);
+    }
+    let mut tree = WideTree { nodes: Vec::new(), packs: Vec::new(), bounds, stack: 0, scalar: false };
+    if used.is_empty() {
+        return Ok(tree);
+    }
+    job.check()?;
+    let count = boxes.len();
+    // A search threshold above 0 ruins the tree of long thin triangles, the surface of most mechanical parts.
+    let mut binary = PlocBuilder::with_capacity(count).build(
+        PlocSearchDistance::Low,
+        &boxes,
+        (0..count as u32).collect(),
+        SortPrecision::U64,
+        0,
+    );
+    job.check()?;
+    ReinsertionOptimizer::default().run(&mut binary, REINSERTION, Some(vec![1.0, 0.5, 0.25]));
+    job.check()?;
+    collapse(&mut binary, 4, TRAVERSAL_COST);
+    job.check()?;
+
+    let (lo, hi) = bounds;
+    let pad = Vec3::splat(lo.abs().max(hi.abs()).max_element() * PAD);
+    let mut maker = Maker { binary: &binary, used: &used, pad, corners, tree: &mut tree, depth: 0 };
+    maker.tree.nodes.reserve(count / 6);
+    maker.tree.packs.reserve(count / 2);
+    maker.root();
+    tree.stack = maker_stack(maker.depth);
+    Ok(tree)
+}
+
+/// Seven wait on each level.
+fn maker_stack(depth: usize) -> usize {
+    depth * 7 + 8
+}
+
+struct Maker<'a, C> {
+    binary: &'a Bvh2,
+    used: &'a [u32],
+    pad: Vec3,
+    corners: C,
+    tree: &'a mut WideTree,
+    depth: usize,
+}
+
+impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
+    fn root(&mut self) {
+        // (binary node, wide node to fill, depth); a work list, for the binary tree may be deeper than the thread's stack.
+        let mut todo = vec![(0usize, 0usize, 1usize)];
+        self.tree.nodes.push(empty());
+        while let Some((from, to, depth)) = todo.pop() {
+            self.depth = self.depth.max(depth);
+            let (children, n) = self.open(from);
+            for (lane, &c) in children[..n].iter().enumerate() {
+                let b = self.binary.nodes[c];
+                let child = if b.is_leaf() {
+                    self.leaf(b.first_index as usize, b.prim_count as usize)
+                } else {
+                    let index = self.tree.nodes.len();
+                    self.tree.nodes.push(empty());
+                    todo.push((c, index, depth + 1));
+                    index as u32
+                };
+                let node = &mut self.tree.nodes[to];
+                node.child[lane] = child;
+                let (lo, hi) = (b.min - self.pad, b.max + self.pad);
+                for axis in 0..3 {
+                    node.planes[axis][lane] = lo[axis];
+                    node.planes[3 + axis][lane] = hi[axis];
+                }
+            }
+        }
+    }
+
+    /// The up to eight binary nodes that become one wide node's children: the largest inner one is opened while there is room.
+    fn open(&self, from: usize) -> ([usize; 8], usize) {
+        let nodes = &self.binary.nodes;
+        let mut out = [0usize; 8];
+        out[0] = from;
+        let mut n = 1;
+        while n < 8 {
+            let mut largest = None::<(usize, f32)>;
+            for (lane, &c) in out[..n].iter().enumerate() {
+                let area = nodes[c].aabb().half_area();
+                if !nodes[c].is_leaf() && largest.is_none_or(|(_, a)| area > a) {
+                    largest = Some((lane, area));
+                }
+            }
+            let Some((lane, _)) = largest else { break };
+            let first = nodes[out[lane]].first_index as usize;
+            out[lane] = first;
+            out[n] = first + 1;
+            n += 1;
+        }
+        (out, n)
+    }
+
+    fn leaf(&mut self, first: usize, count: usize) -> u32 {
+        let mut pack = Pack { v: [[[f32::NAN; 4]; 3]; 3], id: [NO_TRIANGLE; 4] };
+        let ids = &self.binary.primitive_indices[first..first + count.min(4)];
+        for (lane, &i) in ids.iter().enumerate() {
+            let t = self.used[i as usize];
+            let Some(corners) = (self.corners)(t) else { continue };
+            pack.id[lane] = t;
+            for (c, p) in corners.iter().enumerate() {
+                for axis in 0..3 {
+                    pack.v[c][axis][lane] = p[axis];
+                }
+            }
+        }
+        self.tree.packs.push(pack);
+        LEAF | (self.tree.packs.len() - 1) as u32
+    }
+}
+
+fn empty() -> Node {
+    let mut planes = [[f32::INFINITY; 8]; 6];
+    planes[3..].fill([f32::NEG_INFINITY; 8]);
+    Node { planes, child: [0; 8] }
+}

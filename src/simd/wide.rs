@@ -1,0 +1,266 @@
+//! The two inner tests of the eight-wide tree, each in AVX2 and in plain Rust with the same bits: one ray against eight
+//! boxes, one ray against four triangles. The order of operations is the same in both, there is no fused multiply-add,
+//! and `max`/`min` return their second argument on NaN in both (as the processor does).
+//!
+//! Boxes: slabs, the far side widened by two roundings (Ize, "Robust BVH ray traversal", 2013).
+//! Triangles: Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013. The vertices are sheared into a
+//! frame in which the ray is the z axis. The product terms of an edge function are rounded monotonically, so the sign of
+//! their difference is exact or the difference is zero; zero counts as inside on both sides. So a ray cannot slip through
+//! an edge or a vertex of a closed surface.
+
+/// One vertex coordinate of four triangles, and so on: `v[corner][axis][lane]`. Lanes without a triangle hold NaN, which
+/// fails every comparison, and the id [`NO_TRIANGLE`].
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub struct Pack {
+    pub v: [[[f32; 4]; 3]; 3],
+    /// The index of each triangle in the mesh that the tree was built from.
+    pub id: [u32; 4],
+}
+
+/// The id in an empty lane of a [`Pack`].
+pub const NO_TRIANGLE: u32 = u32::MAX;
+
+/// Eight boxes and what is in them.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub struct Node {
+    /// `planes[axis]` are the lower sides, `planes[3 + axis]` the upper ones. An unused child has +inf below and -inf above.
+    pub planes: [[f32; 8]; 6],
+    /// A node's index, or, with [`LEAF`] set, a pack's.
+    pub child: [u32; 8],
+}
+
+/// The bit of [`Node::child`] that tells a pack from a node.
+pub const LEAF: u32 = 1 << 31;
+
+/// A ray made ready for both tests.
+#[derive(Debug, Clone, Copy)]
+pub struct Prepared {
+    pub origin: [f32; 3],
+    pub inverse: [f32; 3],
+    /// Index into [`Node::planes`] of the side that the ray meets first, and last, per axis.
+    pub near: [usize; 3],
+    pub far: [usize; 3],
+    /// The axes in the order in which the triangle test reads them: the last is the one along which the ray is longest.
+    pub k: [usize; 3],
+    pub shear: [f32; 3],
+    pub t_min: f32,
+}
+
+impl Prepared {
+    #[inline(always)]
+    pub fn new(origin: [f32; 3], dir: [f32; 3], t_min: f32) -> Self {
+        let a = dir.map(f32::abs);
+        let kz = if a[0] >= a[1] && a[0] >= a[2] { 0 } else if a[1] >= a[2] { 1 } else { 2 };
+        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+        // A zero component would make 0 * inf = NaN on a slab's own plane; 1e36 cannot, and no t is so large.
+        let inverse = dir.map(|d| if d.abs() < 1e-36 { 1e36f32.copysign(d) } else { 1.0 / d });
+        let s = dir.map(|d| d.is_sign_negative() as usize * 3);
+        Prepared {
+            origin,
+            inverse,
+            near: [s[0], 1 + s[1], 2 + s[2]],
+            far: [3 - s[0], 4 - s[1], 5 - s[2]],
+            k: [kx, ky, kz],
+            shear: [dir[kx] / dir[kz], dir[ky] / dir[kz], 1.0 / dir[kz]],
+            t_min,
+        }
+    }
+}
+
+/// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3).
+const WIDEN: f32 = 1.000_000_5;
+
+/// A set of hits in a pack: which lanes, and where.
+#[derive(Debug, Clone, Copy)]
+pub struct PackHits {
+    pub mask: u32,
+    pub t: [f32; 4],
+    /// Weights of the second and the third corner.
+    pub u: [f32; 4],
+    pub v: [f32; 4],
+}
+
+/// The two tests. Both implementations give the same bits.
+pub trait Wide: Copy {
+    /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it enters each.
+    fn boxes(self, ray: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32;
+    /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included.
+    fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
+}
+
+/// Plain Rust.
+#[derive(Debug, Clone, Copy)]
+pub struct Scalar;
+
+#[inline(always)]
+fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+impl Wide for Scalar {
+    #[inline(always)]
+    fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
+        let mut mask = 0;
+        for i in 0..8 {
+            let at = |plane: usize, axis: usize| (node.planes[plane][i] - r.origin[axis]) * r.inverse[axis];
+            let n = max(max(at(r.near[0], 0), at(r.near[1], 1)), max(at(r.near[2], 2), r.t_min));
+            let f = min(min(at(r.far[0], 0), at(r.far[1], 1)) * WIDEN, min(at(r.far[2], 2) * WIDEN, t_max));
+            near[i] = n;
+            mask |= ((n <= f) as u32) << i;
+        }
+        mask
+    }
+
+    #[inline(always)]
+    fn triangles(self, r: &Prepared, p: &Pack, t_max: f32) -> PackHits {
+        let mut out = PackHits { mask: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
+        for i in 0..4 {
+            let corner = |c: usize| {
+                let z = p.v[c][r.k[2]][i] - r.origin[r.k[2]];
+                let x = (p.v[c][r.k[0]][i] - r.origin[r.k[0]]) - r.shear[0] * z;
+                let y = (p.v[c][r.k[1]][i] - r.origin[r.k[1]]) - r.shear[1] * z;
+                (x, y, z * r.shear[2])
+            };
+            let ((ax, ay, az), (bx, by, bz), (cx, cy, cz)) = (corner(0), corner(1), corner(2));
+            let u = cx * by - cy * bx;
+            let v = ax * cy - ay * cx;
+            let w = bx * ay - by * ax;
+            let same = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+            let det = (u + v) + w;
+            let t = ((u * az + v * bz) + w * cz) / det;
+            if same && det != 0.0 && t >= r.t_min && t <= t_max {
+                out.mask |= 1 << i;
+                out.t[i] = t;
+                out.u[i] = v / det;
+                out.v[i] = w / det;
+            }
+        }
+        out
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use super::{Node, Pack, PackHits, Prepared, WIDEN, Wide};
+    use std::arch::x86_64::*;
+
+    /// Proof that the processor has AVX2: only [`super::avx2`] makes one.
+    #[derive(Debug, Clone, Copy)]
+    pub(super) struct Avx2(pub(super) ());
+
+    impl Wide for Avx2 {
+        #[inline(always)]
+        fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
+            // SAFETY: the token proves AVX2; all loads and stores are within the arrays they take their address from.
+            unsafe {
+                let at = |plane: usize, axis: usize| {
+                    let p = _mm256_load_ps(node.planes[plane].as_ptr());
+                    _mm256_mul_ps(_mm256_sub_ps(p, _mm256_set1_ps(r.origin[axis])), _mm256_set1_ps(r.inverse[axis]))
+                };
+                let widen = _mm256_set1_ps(WIDEN);
+                let n = _mm256_max_ps(
+                    _mm256_max_ps(at(r.near[0], 0), at(r.near[1], 1)),
+                    _mm256_max_ps(at(r.near[2], 2), _mm256_set1_ps(r.t_min)),
+                );
+                let f = _mm256_min_ps(
+                    _mm256_mul_ps(_mm256_min_ps(at(r.far[0], 0), at(r.far[1], 1)), widen),
+                    _mm256_min_ps(_mm256_mul_ps(at(r.far[2], 2), widen), _mm256_set1_ps(t_max)),
+                );
+                _mm256_storeu_ps(near.as_mut_ptr(), n);
+                _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(n, f)) as u32
+            }
+        }
+
+        #[inline(always)]
+        fn triangles(self, r: &Prepared, p: &Pack, t_max: f32) -> PackHits {
+            let mut out = PackHits { mask: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
+            // SAFETY: the token proves AVX2 (and so SSE); all loads and stores are within their arrays.
+            unsafe {
+                let o = r.k.map(|k| _mm_set1_ps(r.origin[k]));
+                let s = r.shear.map(|s| _mm_set1_ps(s));
+                let corner = |c: usize| {
+                    let get = |a: usize| _mm_sub_ps(_mm_load_ps(p.v[c][r.k[a]].as_ptr()), o[a]);
+                    let z = get(2);
+                    let x = _mm_sub_ps(get(0), _mm_mul_ps(s[0], z));
+                    let y = _mm_sub_ps(get(1), _mm_mul_ps(s[1], z));
+                    (x, y, _mm_mul_ps(z, s[2]))
+                };
+                let ((ax, ay, az), (bx, by, bz), (cx, cy, cz)) = (corner(0), corner(1), corner(2));
+                let edge = |a, b, c, d| _mm_sub_ps(_mm_mul_ps(a, b), _mm_mul_ps(c, d));
+                let (u, v, w) = (edge(cx, by, cy, bx), edge(ax, cy, ay, cx), edge(bx, ay, by, ax));
+                let zero = _mm_setzero_ps();
+                let up = |x| _mm_cmp_ps::<_CMP_GE_OQ>(x, zero);
+                let down = |x| _mm_cmp_ps::<_CMP_LE_OQ>(x, zero);
+                let same = _mm_or_ps(
+                    _mm_and_ps(_mm_and_ps(up(u), up(v)), up(w)),
+                    _mm_and_ps(_mm_and_ps(down(u), down(v)), down(w)),
+                );
+                if _mm_movemask_ps(same) == 0 {
+                    return out;
+                }
+                let det = _mm_add_ps(_mm_add_ps(u, v), w);
+                let sum = _mm_add_ps(_mm_add_ps(_mm_mul_ps(u, az), _mm_mul_ps(v, bz)), _mm_mul_ps(w, cz));
+                let t = _mm_div_ps(sum, det);
+                let within = _mm_and_ps(
+                    _mm_cmp_ps::<_CMP_GE_OQ>(t, _mm_set1_ps(r.t_min)),
+                    _mm_cmp_ps::<_CMP_LE_OQ>(t, _mm_set1_ps(t_max)),
+                );
+                let hit = _mm_and_ps(_mm_and_ps(same, within), _mm_cmp_ps::<_CMP_NEQ_OQ>(det, zero));
+                out.mask = _mm_movemask_ps(hit) as u32;
+                if out.mask != 0 {
+                    _mm_storeu_ps(out.t.as_mut_ptr(), t);
+                    _mm_storeu_ps(out.u.as_mut_ptr(), _mm_div_ps(v, det));
+                    _mm_storeu_ps(out.v.as_mut_ptr(), _mm_div_ps(w, det));
+                }
+            }
+            out
+        }
+    }
+}
+
+/// Work that is written once and compiled for each kind of processor. `run` must be `#[inline(always)]`, or it is not
+/// compiled for AVX2.
+pub trait WideWork {
+    type Out;
+    fn run<W: Wide>(self, w: W) -> Self::Out;
+}
+
+/// Whether this processor has AVX2.
+pub fn has_avx2() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::arch::is_x86_feature_detected!("avx2");
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+fn with_avx2<J: WideWork>(work: J) -> J::Out {
+    work.run(avx2::Avx2(()))
+}
+
+/// Runs `work` compiled for AVX2 where the processor has it (and `scalar` is not asked for), else in plain Rust.
+#[inline(always)]
+pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Out {
+    #[cfg(target_arch = "x86_64")]
+    if !scalar && has_fast() {
+        // SAFETY: the features were found on this processor.
+        return unsafe { with_avx2(work) };
+    }
+    work.run(Scalar)
+}
+
+/// AVX2 came together with BMI in every processor that has it (Haswell, Excavator); both are checked all the same.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn has_fast() -> bool {
+    use std::arch::is_x86_feature_detected as has;
+    has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt")
+}

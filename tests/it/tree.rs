@@ -1,0 +1,97 @@
+//! The eight-wide tree against brute force, against itself without AVX2, and against the light that must not leak.
+
+use glam::Vec3;
+use sculptd::analysis::cancel::{Cancelled, Job};
+use sculptd::analysis::tree::{Ray, TreeHit, WideTree};
+use sculptd::mesh::TriMesh;
+
+use crate::thickness_shapes::{Random, sphere};
+
+fn rays(random: &mut Random, n: usize) -> Vec<Ray> {
+    (0..n).map(|_| Ray::new(random.direction() * 2.0 * random.unit(), random.direction())).collect()
+}
+
+fn hits(tree: &WideTree, rays: &[Ray]) -> Vec<Option<TreeHit>> {
+    rays.iter().map(|&r| tree.closest_hit(r, |t| t % 7 != 3)).collect()
+}
+
+#[test]
+fn equals_brute_force_and_its_own_scalar_twin_bit_for_bit() {
+    let mesh = sphere(1.0, 40, 60);
+    let tree = WideTree::build(&mesh, &Job::default()).unwrap();
+    let scalar = tree.clone().without_simd();
+    let mut random = Random(7);
+    let rays = rays(&mut random, 4000);
+    let (fast, slow) = (hits(&tree, &rays), hits(&scalar, &rays));
+    assert_eq!(fast, slow);
+    // Each triangle alone in a tree of its own: no walk, no culling, only the triangle test.
+    let single: Vec<WideTree> = (0..mesh.triangles.len())
+        .map(|t| {
+            let one = TriMesh { triangles: vec![mesh.triangles[t]], ..mesh.clone() };
+            WideTree::build(&one, &Job::default()).unwrap()
+        })
+        .collect();
+    let mut found = 0;
+    for (ray, hit) in rays.iter().zip(&fast).take(400) {
+        let brute = (0..single.len() as u32)
+            .filter(|t| t % 7 != 3)
+            .filter_map(|t| single[t as usize].closest_hit(*ray, |_| true).map(|h| TreeHit { triangle: t, ..h }))
+            .min_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        assert_eq!(*hit, brute);
+        found += hit.is_some() as usize;
+    }
+    assert!((100..400).contains(&found), "{found} of 400");
+}
+
+#[test]
+fn no_ray_leaks_out_of_a_closed_sphere() {
+    let mesh = sphere(1.0, 64, 128);
+    let tree = WideTree::build(&mesh, &Job::default()).unwrap();
+    let mut random = Random(11);
+    let n = if std::env::var_os("SCULPTD_LONG").is_some() { 10_000_000 } else { 300_000 };
+    let mut leaks = 0;
+    for i in 0..n {
+        let origin = random.direction() * 0.5;
+        // A third each: anywhere, exactly at a vertex, exactly at the middle of an edge.
+        let [a, b, _] = mesh.corners(random.below(mesh.triangles.len()));
+        let at = [random.direction(), a, (a + b) * 0.5][i % 3];
+        let forward = tree.closest_hit(Ray::new(origin, at - origin), |_| true).is_some();
+        leaks += !forward as usize;
+    }
+    println!("{leaks} leaks in {n} rays");
+    assert_eq!(leaks, 0);
+}
+
+#[test]
+fn a_line_through_a_solid_enters_as_often_as_it_leaves() {
+    let tree = WideTree::build(&sphere(1.0, 64, 128), &Job::default()).unwrap();
+    let mut random = Random(3);
+    for _ in 0..20_000 {
+        let dir = random.direction();
+        let ray = Ray::new(random.direction() * 0.9 - dir * 3.0, dir);
+        let hits = tree.all_hits(ray);
+        assert!(hits.len() >= 2, "{ray:?} {hits:?}");
+        assert!(hits.windows(2).all(|w| w[0].t <= w[1].t));
+        assert_eq!(tree.any_hit(ray, |_| true), !hits.is_empty());
+        assert_eq!(tree.closest_hit(ray, |_| true).map(|h| h.triangle), hits.first().map(|h| h.triangle));
+        assert!(!tree.any_hit(Ray { t_max: hits[0].t * 0.999, ..ray }, |_| true));
+    }
+}
+
+#[test]
+fn broken_triangles_are_left_out_and_an_empty_mesh_has_a_tree() {
+    let mut mesh = sphere(1.0, 8, 8);
+    mesh.positions.push(Vec3::NAN);
+    let nan = mesh.positions.len() as u32 - 1;
+    mesh.triangles.insert(0, [0, 1, nan]);
+    mesh.triangles.insert(0, [0, 1, nan + 1]);
+    mesh.triangles.insert(0, [4, 4, 4]);
+    let tree = WideTree::build(&mesh, &Job::default()).unwrap();
+    let hit = tree.closest_hit(Ray::new(Vec3::ZERO, Vec3::new(0.3, 0.4, 0.5)), |_| true).unwrap();
+    assert!(hit.triangle >= 3);
+    let nothing = WideTree::build(&TriMesh::default(), &Job::default()).unwrap();
+    assert!(nothing.is_empty() && nothing.closest_hit(Ray::new(Vec3::ZERO, Vec3::X), |_| true).is_none());
+    let job = Job::default();
+    job.cancel();
+    assert_eq!(WideTree::build(&mesh, &job).err(), Some(Cancelled));
+}
