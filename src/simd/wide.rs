@@ -52,7 +52,13 @@ impl Prepared {
     #[inline(always)]
     pub fn new(origin: [f32; 3], dir: [f32; 3], t_min: f32) -> Self {
         let a = dir.map(f32::abs);
-        let kz = if a[0] >= a[1] && a[0] >= a[2] { 0 } else if a[1] >= a[2] { 1 } else { 2 };
+        let kz = if a[0] >= a[1] && a[0] >= a[2] {
+            0
+        } else if a[1] >= a[2] {
+            1
+        } else {
+            2
+        };
         let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
         // A zero component would make 0 * inf = NaN on a slab's own plane; 1e36 cannot, and no t is so large.
         let inverse = dir.map(|d| if d.abs() < 1e-36 { 1e36f32.copysign(d) } else { 1.0 / d });
@@ -162,7 +168,10 @@ mod avx2 {
             unsafe {
                 let at = |plane: usize, axis: usize| {
                     let p = _mm256_load_ps(node.planes[plane].as_ptr());
-                    _mm256_mul_ps(_mm256_sub_ps(p, _mm256_set1_ps(r.origin[axis])), _mm256_set1_ps(r.inverse[axis]))
+                    _mm256_mul_ps(
+                        _mm256_sub_ps(p, _mm256_set1_ps(r.origin[axis])),
+                        _mm256_set1_ps(r.inverse[axis]),
+                    )
                 };
                 let widen = _mm256_set1_ps(WIDEN);
                 let n = _mm256_max_ps(

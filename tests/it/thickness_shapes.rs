@@ -4,10 +4,10 @@ use glam::Vec3;
 use sculptd::mesh::TriMesh;
 
 /// SplitMix64.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -16,16 +16,16 @@ impl Random {
     }
 
     /// From 0 to 1, 1 excluded.
-    pub fn unit(&mut self) -> f32 {
+    pub(crate) fn unit(&mut self) -> f32 {
         (self.next() >> 40) as f32 / (1u64 << 24) as f32
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
     /// Of unit length, all directions alike.
-    pub fn direction(&mut self) -> Vec3 {
+    pub(crate) fn direction(&mut self) -> Vec3 {
         let z = self.unit() * 2.0 - 1.0;
         let (s, c) = (self.unit() * std::f32::consts::TAU).sin_cos();
         let r = (1.0 - z * z).max(0.0).sqrt();
@@ -34,7 +34,7 @@ impl Random {
 }
 
 /// A globe of `rings` by `sectors`, closed.
-pub fn sphere(radius: f32, rings: usize, sectors: usize) -> TriMesh {
+pub(crate) fn sphere(radius: f32, rings: usize, sectors: usize) -> TriMesh {
     let mut mesh = TriMesh::default();
     mesh.positions.push(Vec3::Z * radius);
     for r in 1..rings {

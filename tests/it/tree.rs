@@ -35,7 +35,9 @@ fn equals_brute_force_and_its_own_scalar_twin_bit_for_bit() {
     for (ray, hit) in rays.iter().zip(&fast).take(400) {
         let brute = (0..single.len() as u32)
             .filter(|t| t % 7 != 3)
-            .filter_map(|t| single[t as usize].closest_hit(*ray, |_| true).map(|h| TreeHit { triangle: t, ..h }))
+            .filter_map(|t| {
+                single[t as usize].closest_hit(*ray, |_| true).map(|h| TreeHit { triangle: t, ..h })
+            })
             .min_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         assert_eq!(*hit, brute);
         found += hit.is_some() as usize;

@@ -102,7 +102,10 @@ impl WideTree {
     /// The nearest hit on a triangle that `accept` takes.
     #[inline]
     pub fn closest_hit(&self, ray: Ray, accept: impl Fn(u32) -> bool) -> Option<TreeHit> {
-        wide::dispatch(self.scalar, traverse::Closest { tree: self, ray, accept, stack: &mut traverse::Stack::new(self) })
+        wide::dispatch(
+            self.scalar,
+            traverse::Closest { tree: self, ray, accept, stack: &mut traverse::Stack::new(self) },
+        )
     }
 
     /// Any hit on a triangle that `accept` takes: is the way between `t_min` and `t_max` blocked?
@@ -119,7 +122,10 @@ impl WideTree {
     /// Every hit, each triangle once, in no order; `visit` returns whether to go on.
     #[inline]
     pub fn each_hit(&self, ray: Ray, visit: impl FnMut(TreeHit) -> bool) {
-        wide::dispatch(self.scalar, traverse::Each { tree: self, ray, visit, stack: &mut traverse::Stack::new(self) });
+        wide::dispatch(
+            self.scalar,
+            traverse::Each { tree: self, ray, visit, stack: &mut traverse::Stack::new(self) },
+        );
     }
 
     /// Every hit, nearest first; equal distances by triangle.
