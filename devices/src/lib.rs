@@ -19,10 +19,12 @@ pub mod catalogue;
 pub mod clock;
 pub mod hid;
 pub mod leap;
+mod lifeline;
 pub mod pen_state;
 pub mod queue;
 pub mod recording;
 pub mod sample;
+pub mod sim;
 pub mod tablet;
 
 pub use clock::Clock;

@@ -7,9 +7,13 @@
 //!
 //! Sources: the leapjs client 1.1.1 (field names and handshake) and recordings of real services (what is missing when).
 
+pub mod client;
+pub mod clock_map;
 pub mod file;
 pub mod frame;
 mod loose;
 
+pub use client::{Config, Handle, Status, start};
+pub use clock_map::ClockMap;
 pub use file::FrameFile;
 pub use frame::{Frame, FrameError, Message, parse_frame, parse_message};

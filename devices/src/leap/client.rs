@@ -1,0 +1,390 @@
+//! The live tracker: connects, greets, reads frames, and comes back when the server does.
+
+use std::net::{IpAddr, SocketAddr, TcpStream, ToSocketAddrs};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{Error as WsError, Message as WsMessage, WebSocket};
+
+use super::clock_map::ClockMap;
+use super::frame::{Frame, MAX_MESSAGE, Message, parse_message};
+use crate::Clock;
+use crate::lifeline::{self, Leash, Lifeline};
+use crate::queue::Sender;
+use crate::sample::{Body, DeviceId, Hands, Sample};
+
+/// How long one read waits. Short: between reads, samples that are kept back go out and the stop flag is looked at.
+const READ_SLICE: Duration = Duration::from_millis(10);
+/// For the connection, and for each read of the handshake.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Silence, on our clock, after which hands that were there are held to be gone. A tracker that works sends a frame at
+/// least each 52 ms (the longest gap in real recordings).
+const SILENCE_US: u64 = 300_000;
+/// Silence after which the server is asked whether it lives; after twice as much it is given up.
+const PING_US: u64 = 3_000_000;
+/// First and longest wait before another attempt to connect; it doubles in between.
+const BACK_OFF: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(8));
+/// Frames that may come at once, before the rate is held to its cap.
+const BURST: f64 = 100.0;
+
+/// Where the tracker's service is, and what it is asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// The service; the path names the protocol's version, `/v6.json` or `/v7.json`.
+    pub url: String,
+    /// Whether a service on another machine may be used. Frames are neither encrypted nor signed.
+    pub allow_remote: bool,
+    /// Frames wanted while another program has the focus. A sculptor's hands are wanted always.
+    pub background: bool,
+    /// The tracker is worn on the head and looks down the fingers.
+    pub optimize_hmd: bool,
+    /// Frames a second beyond which motion is dropped and counted; transitions never are. The fastest tracker known
+    /// gives 200.
+    pub max_rate: f32,
+    /// Under which id its samples go out.
+    #[serde(skip)]
+    pub device: DeviceId,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Config {
+            url: "ws://127.0.0.1:6437/v6.json".into(),
+            allow_remote: false,
+            background: true,
+            optimize_hmd: false,
+            max_rate: 400.0,
+            device: DeviceId(0),
+        }
+    }
+}
+
+/// How the connection stands.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Status {
+    pub connected: bool,
+    /// The protocol's version as the server stated it.
+    pub version: Option<i64>,
+    /// What the tracker's service last said of the tracker itself.
+    pub attached: Option<bool>,
+    pub streaming: Option<bool>,
+    /// Frames decoded and sent on.
+    pub frames: u64,
+    /// Messages that gave nothing: not JSON, too large, too deep.
+    pub errors: u64,
+    /// Frames with `nan` or `inf` in them, used all the same.
+    pub mended: u64,
+    /// Frames that repeated or preceded one that was already here.
+    pub stale: u64,
+    /// Frames over the rate cap.
+    pub over_rate: u64,
+    /// Hands left out of frames.
+    pub dropped_hands: u64,
+    pub connections: u64,
+    /// Frames a second, smoothed over about a second.
+    pub rate: f32,
+    /// How late the last frame was over the quickest one.
+    pub delay_us: u64,
+    /// Why there is no connection, or what was wrong last.
+    pub last_error: Option<String>,
+}
+
+/// A running client; dropping it ends its thread.
+#[derive(Debug)]
+pub struct Handle {
+    status: Arc<Mutex<Status>>,
+    _thread: Lifeline,
+}
+
+impl Handle {
+    pub fn status(&self) -> Status {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Starts the client's thread. It goes on trying to connect for as long as the handle lives.
+///
+/// # Errors
+/// Only if no thread can be started.
+pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
+    let status = Arc::new(Mutex::new(Status::default()));
+    let shared = status.clone();
+    let thread = lifeline::spawn("leap", move |leash| {
+        let mut sender = sender;
+        sender.stop_when(leash.flag());
+        Client::new(config, clock, sender, shared).run(&leash);
+    })?;
+    Ok(Handle { status, _thread: thread })
+}
+
+struct Client {
+    config: Config,
+    clock: Clock,
+    sender: Sender,
+    status: Arc<Mutex<Status>>,
+    map: ClockMap,
+    /// The newest sample of this connection.
+    last: Option<Sample>,
+    tokens: f64,
+    tokens_at_us: u64,
+}
+
+impl Client {
+    fn new(config: Config, clock: Clock, sender: Sender, status: Arc<Mutex<Status>>) -> Self {
+        let tokens_at_us = clock.now_us();
+        Client {
+            config,
+            clock,
+            sender,
+            status,
+            map: ClockMap::default(),
+            last: None,
+            tokens: BURST,
+            tokens_at_us,
+        }
+    }
+
+    fn note(&self, change: impl FnOnce(&mut Status)) {
+        change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    fn run(&mut self, leash: &Leash) {
+        let mut wait = BACK_OFF.0;
+        while !leash.stopped() {
+            let why = match connect(&self.config) {
+                Ok(socket) => {
+                    self.note(|s| {
+                        s.connected = true;
+                        s.connections += 1;
+                        s.last_error = None;
+                    });
+                    let before = self.frames();
+                    let why = self.serve(socket, leash);
+                    if self.frames() > before {
+                        wait = BACK_OFF.0;
+                    }
+                    why
+                }
+                Err(why) => why,
+            };
+            self.hands_gone();
+            tracing::debug!(url = %self.config.url, %why, "no tracker");
+            self.note(|s| {
+                s.connected = false;
+                s.rate = 0.0;
+                s.last_error = Some(why);
+            });
+            // What is kept back goes out while there is nothing to read.
+            let slices = (wait.as_millis() / READ_SLICE.as_millis()) as u32;
+            for _ in 0..slices {
+                self.sender.flush();
+                if leash.wait(READ_SLICE) {
+                    return;
+                }
+            }
+            wait = (wait * 2).min(BACK_OFF.1);
+        }
+        self.hands_gone();
+    }
+
+    fn frames(&self) -> u64 {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner).frames
+    }
+
+    /// Greets, then reads until something ends the connection; returns what did.
+    fn serve(&mut self, mut socket: WebSocket<TcpStream>, leash: &Leash) -> String {
+        self.map = ClockMap::default();
+        let (mut heard, mut pinged, mut greeted) = (self.clock.now_us(), false, false);
+        while !leash.stopped() {
+            match socket.read() {
+                Ok(WsMessage::Text(text)) => {
+                    (heard, pinged) = (self.clock.now_us(), false);
+                    if let Err(why) = self.message(&text) {
+                        return why;
+                    }
+                }
+                Ok(WsMessage::Close(_)) => return "the server closed the connection".into(),
+                // A binary message is none of this protocol's; pings are answered by the library.
+                Ok(WsMessage::Binary(_)) => self.note(|s| s.errors += 1),
+                Ok(_) => (heard, pinged) = (self.clock.now_us(), false),
+                Err(WsError::Io(e)) if waited(&e) => {
+                    self.sender.flush();
+                    let silence = self.clock.now_us().saturating_sub(heard);
+                    if silence >= SILENCE_US {
+                        self.hands_gone();
+                    }
+                    if silence >= 2 * PING_US {
+                        return "the server fell silent".into();
+                    }
+                    if silence >= PING_US && !std::mem::replace(&mut pinged, true) {
+                        // A failure shows in the next read.
+                        let _ = socket.send(WsMessage::Ping(Vec::new().into()));
+                    }
+                }
+                Err(e) => return e.to_string(),
+            }
+            if !greeted && (self.last.is_some() || self.version().is_some()) {
+                greeted = true;
+                // A server that does not listen may yet have something to say.
+                if let Err(why) = self.greet(&mut socket) {
+                    tracing::debug!(%why, "greeting not taken");
+                }
+            }
+        }
+        let _ = socket.close(None);
+        "stopped".into()
+    }
+
+    fn version(&self) -> Option<i64> {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner).version
+    }
+
+    /// One wish a message, each under 32 bytes: one known server copies them into a buffer of that size.
+    fn greet(&self, socket: &mut WebSocket<TcpStream>) -> Result<(), WsError> {
+        let (background, hmd) = (self.config.background, self.config.optimize_hmd);
+        for wish in [
+            format!(r#"{{"background":{background}}}"#),
+            format!(r#"{{"optimizeHMD":{hmd}}}"#),
+            r#"{"focused":true}"#.into(),
+        ] {
+            socket.send(WsMessage::text(wish))?;
+        }
+        Ok(())
+    }
+
+    fn message(&mut self, text: &str) -> Result<(), String> {
+        match parse_message(text) {
+            Ok(Message::Frame(frame)) => self.frame(&frame),
+            Ok(Message::Version(version)) => {
+                if version.is_some_and(|v| v != 6 && v != 7) {
+                    return Err(format!("the server speaks version {}, not 6 or 7", version.unwrap_or(0)));
+                }
+                self.note(|s| s.version = version);
+            }
+            Ok(Message::Device { attached, streaming }) => {
+                self.note(|s| {
+                    s.attached = attached.or(s.attached);
+                    s.streaming = streaming.or(s.streaming);
+                });
+                if attached == Some(false) || streaming == Some(false) {
+                    self.hands_gone();
+                }
+            }
+            Ok(Message::Other) => {}
+            Err(why) => self.note(|s| {
+                s.errors += 1;
+                s.last_error = Some(why.to_string());
+            }),
+        }
+        Ok(())
+    }
+
+    fn frame(&mut self, frame: &Frame) {
+        let now = self.clock.now_us();
+        if self.is_stale(frame) {
+            return self.note(|s| s.stale += 1);
+        }
+        let t_us = self.map.map(frame.device_t_us, now);
+        let sample = Sample {
+            device: self.config.device,
+            t_us,
+            device_t_us: frame.device_t_us,
+            body: Body::Hands(frame.hands),
+        };
+        if !self.within_rate(now) && self.last.is_some_and(|l| sample.only_moved_since(&l)) {
+            return self.note(|s| s.over_rate += 1);
+        }
+        let since = self.last.map(|l| t_us.saturating_sub(l.t_us));
+        self.last = Some(sample);
+        self.sender.push(sample);
+        let delay = self.map.delay_us(now);
+        self.note(|s| {
+            s.frames += 1;
+            s.mended += u64::from(frame.mended);
+            s.dropped_hands += u64::from(frame.dropped_hands);
+            s.delay_us = delay;
+            if let Some(us) = since.filter(|us| *us > 0) {
+                // One hundredth a frame: about a second at the usual rate.
+                s.rate += (1e6 / us as f32 - s.rate) * if s.rate == 0.0 { 1.0 } else { 0.01 };
+            }
+        });
+    }
+
+    /// A frame that came twice or out of order adds nothing: each holds the whole state, and the newer one is here. A
+    /// number far back is a tracker that started again.
+    fn is_stale(&self, frame: &Frame) -> bool {
+        let Some(Sample { body: Body::Hands(last), device_t_us, .. }) = self.last else { return false };
+        let back = last.frame.saturating_sub(frame.hands.frame);
+        let older = frame.device_t_us.zip(device_t_us).is_none_or(|(new, old)| new <= old);
+        (0..100).contains(&back) && frame.hands.frame != 0 && older
+    }
+
+    /// A bucket of tokens: filled at the capped rate, emptied by frames.
+    fn within_rate(&mut self, now: u64) -> bool {
+        let passed = now.saturating_sub(self.tokens_at_us) as f64 / 1e6;
+        self.tokens_at_us = now;
+        self.tokens = (self.tokens + passed * f64::from(self.config.max_rate.max(1.0))).min(BURST);
+        let within = self.tokens >= 1.0;
+        if within {
+            self.tokens -= 1.0;
+        }
+        within
+    }
+
+    /// Says that no hand is there, if the last word was that one is.
+    fn hands_gone(&mut self) {
+        let Some(Sample { body: Body::Hands(last), .. }) = self.last else { return };
+        self.last = None;
+        if last.count > 0 {
+            self.sender.push(Sample {
+                device: self.config.device,
+                t_us: self.clock.now_us(),
+                device_t_us: None,
+                body: Body::Hands(Hands { frame: last.frame, ..Hands::default() }),
+            });
+        }
+    }
+}
+
+fn waited(e: &std::io::Error) -> bool {
+    matches!(
+        e.kind(),
+        std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut | std::io::ErrorKind::Interrupted
+    )
+}
+
+/// Connects and shakes hands, every step with a time-out.
+fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
+    let request = config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
+    if request.uri().scheme_str() != Some("ws") {
+        return Err(format!("{}: only ws:// is spoken", config.url));
+    }
+    let host = request.uri().host().unwrap_or_default().trim_matches(['[', ']']);
+    let port = request.uri().port_u16().unwrap_or(80);
+    let places = (host, port).to_socket_addrs().map_err(|e| format!("{host}:{port}: {e}"))?;
+    let allowed = |a: &SocketAddr| config.allow_remote || IpAddr::is_loopback(&a.ip());
+    let place = places
+        .into_iter()
+        .find(allowed)
+        .ok_or_else(|| format!("{host} is another machine; set allow_remote to use it"))?;
+    let stream = TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
+    let prepare = |wait| stream.set_nodelay(true).and_then(|()| stream.set_read_timeout(Some(wait)));
+    prepare(PATIENCE).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).map_err(|e| e.to_string())?;
+    let limits = WebSocketConfig::default()
+        .max_message_size(Some(MAX_MESSAGE))
+        .max_frame_size(Some(MAX_MESSAGE))
+        .read_buffer_size(32 * 1024);
+    let reader = stream.try_clone().map_err(|e| e.to_string())?;
+    let (socket, _) = tungstenite::client::client_with_config(request, reader, Some(limits))
+        .map_err(|e| format!("{place}: {e}"))?;
+    prepare(READ_SLICE).map_err(|e| e.to_string())?;
+    Ok(socket)
+}
+
+#[cfg(test)]
+#[path = "client_tests.rs"]
+mod tests;
