@@ -24,6 +24,7 @@ pub mod pen_state;
 pub mod queue;
 pub mod recording;
 pub mod sample;
+pub mod serial;
 pub mod sim;
 pub mod tablet;
 

@@ -33,7 +33,6 @@ pub(crate) fn spawn(name: &str, body: impl FnOnce(Leash) + Send + 'static) -> io
 }
 
 /// A leash with nothing at its other end but what the caller holds.
-#[cfg(test)]
 pub(crate) fn pair() -> (cc::Sender<()>, Leash) {
     let (hold, released) = cc::bounded(0);
     (hold, Leash { flag: Arc::new(AtomicBool::new(false)), released })

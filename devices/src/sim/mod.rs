@@ -8,10 +8,12 @@ pub mod faults;
 pub mod hand;
 pub mod journal;
 pub mod pen;
+pub mod serial;
 pub mod tracker;
 
 pub use faults::Faults;
 pub use hand::{HandKey, HandScript};
 pub use journal::{Journal, journal};
 pub use pen::{PenPose, PenScript, Shape, Stroke};
+pub use serial::{SerialPen, SerialPenConfig};
 pub use tracker::{Tracker, TrackerConfig};

@@ -1,0 +1,223 @@
+//! The live port: finds the tablet, reads it, and looks for it again when it goes.
+
+use std::io::ErrorKind;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::session::{self, PROBE_ORDER, Wire};
+use super::{Counts, Decoder, Facts, Protocol};
+use crate::Clock;
+use crate::lifeline::{self, Leash, Lifeline};
+use crate::queue::Sender;
+use crate::sample::{DeviceId, Sample};
+
+/// A line that is silent for so long has ended its packet: four bytes at 19200, three at 9600 take less or about it.
+const QUIET: Duration = Duration::from_millis(2);
+/// How long a read waits while nothing is held back.
+const READ_SLICE: Duration = Duration::from_millis(20);
+/// First and longest wait before the ports are tried again.
+const BACK_OFF: (Duration, Duration) = (Duration::from_millis(500), Duration::from_secs(4));
+
+/// Which ports may be opened, and what to expect there.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// The port that a tablet is on, such as `/dev/ttyS0` or `COM3`.
+    pub port: Option<String>,
+    /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking writes to the port, and what
+    /// is there may not like it.
+    pub probe: Vec<String>,
+    /// What it speaks; `None`: found by asking, which takes up to five seconds a port.
+    pub protocol: Option<Protocol>,
+    /// Fingers on an ISDV4 screen become samples too.
+    pub touch: bool,
+    /// Under which id its samples go out.
+    #[serde(skip)]
+    pub device: DeviceId,
+}
+
+/// How the line stands.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Status {
+    pub connected: bool,
+    pub port: Option<String>,
+    pub protocol: Option<Protocol>,
+    pub model: Option<String>,
+    /// Width and height of the active area.
+    pub area_mm: Option<[f32; 2]>,
+    pub counts: Counts,
+    pub samples: u64,
+    pub connections: u64,
+    pub last_error: Option<String>,
+}
+
+/// A running reader; dropping it ends its thread.
+#[derive(Debug)]
+pub struct Handle {
+    status: Arc<Mutex<Status>>,
+    _thread: Lifeline,
+}
+
+impl Handle {
+    pub fn status(&self) -> Status {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Starts the reader's thread. It goes on looking for the tablet for as long as the handle lives.
+///
+/// # Errors
+/// Only if no thread can be started.
+pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
+    let status = Arc::new(Mutex::new(Status::default()));
+    let shared = status.clone();
+    let thread = lifeline::spawn("serial-pen", move |leash| {
+        let mut sender = sender;
+        sender.stop_when(leash.flag());
+        Reader { config, clock, sender, status: shared }.run(&leash);
+    })?;
+    Ok(Handle { status, _thread: thread })
+}
+
+struct Reader {
+    config: Config,
+    clock: Clock,
+    sender: Sender,
+    status: Arc<Mutex<Status>>,
+}
+
+impl Reader {
+    fn note(&self, change: impl FnOnce(&mut Status)) {
+        change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    fn run(&mut self, leash: &Leash) {
+        let mut wait = BACK_OFF.0;
+        while !leash.stopped() {
+            let mut why = "no port is named, and none that may be asked is there".to_owned();
+            for name in self.ports() {
+                why = match self.find(&name, leash) {
+                    Ok((mut wire, facts)) => {
+                        wait = BACK_OFF.0;
+                        self.found(&name, &facts);
+                        let why = self.read(wire.as_mut(), &facts, leash);
+                        self.note(|s| s.connected = false);
+                        why
+                    }
+                    Err(why) => why,
+                };
+                tracing::debug!(port = name, %why, "no serial tablet");
+                if leash.stopped() {
+                    return;
+                }
+            }
+            self.note(|s| s.last_error = Some(why));
+            self.sender.flush();
+            if leash.wait(wait) {
+                return;
+            }
+            wait = (wait * 2).min(BACK_OFF.1);
+        }
+    }
+
+    fn found(&self, name: &str, facts: &Facts) {
+        self.note(|s| {
+            s.connected = true;
+            s.connections += 1;
+            s.port = Some(name.to_owned());
+            s.protocol = Some(facts.layout.protocol());
+            s.model = Some(facts.model.clone());
+            s.area_mm = Some(facts.area_mm.to_array());
+            s.last_error = None;
+        });
+    }
+
+    /// The port that is named, else those that may be asked and are there.
+    fn ports(&self) -> Vec<String> {
+        if let Some(name) = &self.config.port {
+            return vec![name.clone()];
+        }
+        let allowed = |name: &str| {
+            self.config.probe.iter().any(|p| match p.strip_suffix('*') {
+                Some(start) => !start.is_empty() && name.starts_with(start),
+                None => name == p,
+            })
+        };
+        if self.config.probe.is_empty() {
+            return Vec::new();
+        }
+        let mut names: Vec<String> =
+            serialport::available_ports().unwrap_or_default().into_iter().map(|p| p.port_name).collect();
+        // A pseudo-terminal or a link that is named in full is no "available port", but allowed is allowed.
+        names.extend(self.config.probe.iter().filter(|p| !p.ends_with('*')).cloned());
+        names.sort();
+        names.dedup();
+        names.retain(|n| allowed(n));
+        names
+    }
+
+    fn find(&self, name: &str, leash: &Leash) -> Result<(Box<dyn Wire>, Facts), String> {
+        let port =
+            serialport::new(name, 9600).timeout(READ_SLICE).open().map_err(|e| format!("{name}: {e}"))?;
+        let mut wire: Box<dyn Wire> = Box::new(port);
+        let asked = match &self.config.protocol {
+            Some(one) => std::slice::from_ref(one),
+            None => &PROBE_ORDER[..],
+        };
+        for &protocol in asked {
+            let found = session::open(wire.as_mut(), protocol, self.config.touch, leash);
+            if let Some(facts) = found.map_err(|e| format!("{name}: {e}"))? {
+                return Ok((wire, facts));
+            }
+        }
+        Err(format!("{name}: nothing that answers {asked:?}"))
+    }
+
+    /// Reads until the line breaks; returns why it did.
+    fn read(&mut self, wire: &mut dyn Wire, facts: &Facts, leash: &Leash) -> String {
+        let mut decoder = Decoder::new(facts, self.config.device);
+        let (mut buffer, mut out) = ([0; 512], Vec::with_capacity(64));
+        let mut patience = Duration::ZERO;
+        let why = loop {
+            if leash.stopped() {
+                break "stopped".to_owned();
+            }
+            let wanted = if decoder.holds() { QUIET } else { READ_SLICE };
+            if wanted != patience {
+                if let Err(e) = wire.set_patience(wanted) {
+                    break e.to_string();
+                }
+                patience = wanted;
+            }
+            let mut emit = |s| out.push(s);
+            match wire.read(&mut buffer) {
+                Ok(0) => break "the port closed".to_owned(),
+                Ok(n) => decoder.feed(&buffer[..n], self.clock.now_us(), &mut emit),
+                Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => {
+                    decoder.quiet(&mut emit);
+                    decoder.tick(self.clock.now_us(), &mut emit);
+                    self.sender.flush();
+                }
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(e) => break e.to_string(),
+            }
+            self.send(&mut out, &decoder);
+        };
+        decoder.leave(self.clock.now_us(), &mut |s| out.push(s));
+        self.send(&mut out, &decoder);
+        why
+    }
+
+    fn send(&mut self, out: &mut Vec<Sample>, decoder: &Decoder) {
+        let n = out.len() as u64;
+        for sample in out.drain(..) {
+            self.sender.push(sample);
+        }
+        self.note(|s| {
+            s.samples += n;
+            s.counts = decoder.counts;
+        });
+    }
+}
