@@ -1,1 +1,46 @@
-//! See the map in `lib.rs`.
+//! Every way to change the world that is not a [`crate::devices::Sample`]: a panel's click, a control-socket call, a finished
+//! Boolean, an undo. Plain data, serialisable; [`crate::world::World::step`] is the only reader.
+
+use std::sync::{Arc, Mutex};
+
+use serde::{Deserialize, Serialize};
+
+use crate::brush::BrushSettings;
+use crate::mesh::{Mesh, TriMesh};
+use crate::stroke::Camera;
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum Command {
+    Brush(BrushSettings),
+    Camera(Camera),
+    /// Ends every open stroke as a lifted pen does, then takes back the last step.
+    Undo,
+    Redo,
+    /// Ends every open stroke as a lifted pen does.
+    LiftAll,
+    /// Another work takes the place of this one: a file was loaded, a Boolean finished, the kiosk was reset.
+    Replace(NewClay),
+}
+
+/// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its own; a replay, which has
+/// only the plain triangles, builds them again.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct NewClay {
+    pub plain: Arc<TriMesh>,
+    /// Keep the camera where it is (a Boolean's result), or frame the new work (a file).
+    pub keep_camera: bool,
+    /// Taken by the first `step` that sees it.
+    #[serde(skip)]
+    built: Arc<Mutex<Option<Mesh>>>,
+}
+
+impl NewClay {
+    pub fn new(plain: Arc<TriMesh>, built: Mesh, keep_camera: bool) -> Self {
+        NewClay { plain, keep_camera, built: Arc::new(Mutex::new(Some(built))) }
+    }
+
+    /// The pages, if they were built and not yet taken. Never waits: nobody else holds the lock once the command is sent.
+    pub fn take(&self) -> Option<Mesh> {
+        self.built.try_lock().ok().and_then(|mut slot| slot.take())
+    }
+}

@@ -1,1 +1,282 @@
-//! See the map in `lib.rs`.
+//! What was written -> what it means, resolved once, with the origin of every value.
+//!
+//! Layers, weakest first: the embedded defaults, the system's file, the user's file, `--config`, the command line. A layer is
+//! checked alone and strictly (an unknown key, a value out of range and a wrong type each name file and line) before it
+//! is laid over the others.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::brush::BrushSettings;
+use crate::stroke::Camera;
+
+/// The embedded defaults, which are also the documentation of every key.
+pub const DEFAULTS: &str = include_str!("../config/sculptd.toml");
+
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    pub r#loop: LoopConfig,
+    pub channel: ChannelConfig,
+    pub brush: BrushSettings,
+    pub camera: CameraConfig,
+    pub undo: UndoConfig,
+    pub devices: DevicesConfig,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LoopConfig {
+    pub rate_hz: u32,
+    pub workers: usize,
+    pub dab_budget: u64,
+}
+
+impl Default for LoopConfig {
+    fn default() -> Self {
+        LoopConfig { rate_hz: 120, workers: 0, dab_budget: 400_000 }
+    }
+}
+
+impl LoopConfig {
+    /// Helping threads, the tick thread counted in.
+    pub fn worker_count(&self) -> usize {
+        match self.workers {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get()).min(16),
+            n => n.min(16),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ChannelConfig {
+    pub capacity: usize,
+    pub drain_per_tick: usize,
+}
+
+impl Default for ChannelConfig {
+    fn default() -> Self {
+        ChannelConfig { capacity: 4096, drain_per_tick: 4096 }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CameraConfig {
+    pub fov_degrees: f32,
+    pub aspect: f32,
+    pub orthographic: bool,
+    pub yaw_degrees: f32,
+    pub pitch_degrees: f32,
+}
+
+impl Default for CameraConfig {
+    fn default() -> Self {
+        CameraConfig { fov_degrees: 40.0, aspect: 1.6, orthographic: false, yaw_degrees: 28.0, pitch_degrees: 20.0 }
+    }
+}
+
+impl CameraConfig {
+    pub fn camera(&self) -> Camera {
+        Camera {
+            fov_y: self.fov_degrees.to_radians(),
+            aspect: self.aspect,
+            orthographic: self.orthographic,
+            yaw: self.yaw_degrees.to_radians(),
+            pitch: self.pitch_degrees.to_radians(),
+            ..Camera::default()
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct UndoConfig {
+    pub bytes: u64,
+}
+
+impl Default for UndoConfig {
+    fn default() -> Self {
+        UndoConfig { bytes: 1 << 30 }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DevicesConfig {
+    pub hid: bool,
+    pub serial: Vec<PathBuf>,
+    pub leap: String,
+    pub tablets: Vec<PathBuf>,
+}
+
+impl Default for DevicesConfig {
+    fn default() -> Self {
+        DevicesConfig { hid: true, serial: vec![], leap: String::new(), tablets: vec![] }
+    }
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    #[error("{}: {source}", path.display())]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    /// The text names line, column, key and what was expected.
+    #[error("{origin}: {text}")]
+    Invalid { origin: String, text: String },
+}
+
+/// A configuration and where each of its values was written.
+#[derive(Debug, Clone)]
+pub struct Resolved {
+    pub config: Config,
+    /// `section.key` -> the layer that had the last word.
+    pub origins: BTreeMap<String, String>,
+}
+
+impl Resolved {
+    pub fn defaults() -> Self {
+        Resolver::new().finish()
+    }
+
+    /// The usual layers, where their files exist, then `extra` (which must exist).
+    pub fn load(extra: Option<&Path>) -> Result<Self, ConfigError> {
+        let mut resolver = Resolver::new();
+        for path in usual_files().into_iter().filter(|p| p.is_file()) {
+            resolver.file(&path)?;
+        }
+        if let Some(path) = extra {
+            resolver.file(path)?;
+        }
+        Ok(resolver.finish())
+    }
+}
+
+/// The system's file and the user's, in that order.
+pub fn usual_files() -> Vec<PathBuf> {
+    let mut files = vec![PathBuf::from("/etc/sculptd/sculptd.toml")];
+    files.extend(directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("sculptd.toml")));
+    files
+}
+
+struct Resolver {
+    table: toml::Table,
+    origins: BTreeMap<String, String>,
+}
+
+impl Resolver {
+    fn new() -> Self {
+        let mut resolver = Resolver { table: toml::Table::new(), origins: BTreeMap::new() };
+        // The embedded file is checked by a test; a build with a broken one falls back to the same values in code.
+        if let Ok(table) = DEFAULTS.parse() {
+            resolver.lay(table, "default");
+        }
+        resolver
+    }
+
+    fn file(&mut self, path: &Path) -> Result<(), ConfigError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ConfigError::Unreadable { path: path.into(), source })?;
+        self.text(&text, &path.display().to_string())
+    }
+
+    fn text(&mut self, text: &str, origin: &str) -> Result<(), ConfigError> {
+        let invalid = |text: String| ConfigError::Invalid { origin: origin.into(), text };
+        let alone: Config = toml::from_str(text).map_err(|e| invalid(e.to_string()))?;
+        alone.check().map_err(invalid)?;
+        let table = text.parse().map_err(|e: toml::de::Error| invalid(e.to_string()))?;
+        self.lay(table, origin);
+        Ok(())
+    }
+
+    fn lay(&mut self, over: toml::Table, origin: &str) {
+        for (section, value) in over {
+            let toml::Value::Table(keys) = value else { continue };
+            let under = self.table.entry(section.clone()).or_insert_with(|| toml::Table::new().into());
+            for (key, value) in keys {
+                self.origins.insert(format!("{section}.{key}"), origin.into());
+                if let toml::Value::Table(under) = under {
+                    under.insert(key, value);
+                }
+            }
+        }
+    }
+
+    fn finish(self) -> Resolved {
+        // Every layer was read alone before it was laid; keys do not depend on each other.
+        Resolved { config: self.table.try_into().unwrap_or_default(), origins: self.origins }
+    }
+}
+
+impl Config {
+    /// Every number within its stated range; the message names the key, the value and the range.
+    fn check(&self) -> Result<(), String> {
+        fn within<T: PartialOrd + std::fmt::Display + Copy>(key: &str, v: T, lo: T, hi: T) -> Result<(), String> {
+            if v >= lo && v <= hi {
+                return Ok(());
+            }
+            Err(format!("{key} = {v}: expected a number from {lo} to {hi}"))
+        }
+        within("loop.rate_hz", self.r#loop.rate_hz, 30, 1000)?;
+        within("loop.workers", self.r#loop.workers, 0, 16)?;
+        within("loop.dab_budget", self.r#loop.dab_budget, 1000, 1_000_000_000)?;
+        within("channel.capacity", self.channel.capacity, 16, 1 << 20)?;
+        within("channel.drain_per_tick", self.channel.drain_per_tick, 1, 1 << 20)?;
+        within("brush.radius", self.brush.radius, 0.001, 1.0)?;
+        within("brush.strength", self.brush.strength, 0.0, 1.0)?;
+        within("brush.spacing", self.brush.spacing, 0.02, 1.0)?;
+        for (key, curve) in [
+            ("brush.pressure_strength", self.brush.pressure_strength),
+            ("brush.pressure_radius", self.brush.pressure_radius),
+        ] {
+            within(&format!("{key}.at_zero"), curve.at_zero, 0.0, 1.0)?;
+            within(&format!("{key}.gamma"), curve.gamma, 0.1, 10.0)?;
+        }
+        within("camera.fov_degrees", self.camera.fov_degrees, 5.0, 120.0)?;
+        within("camera.aspect", self.camera.aspect, 0.1, 10.0)?;
+        within("camera.yaw_degrees", self.camera.yaw_degrees, -360.0, 360.0)?;
+        within("camera.pitch_degrees", self.camera.pitch_degrees, -89.0, 89.0)?;
+        within("undo.bytes", self.undo.bytes, 1 << 20, 1 << 40)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_embedded_file_is_the_code_s_own_defaults_and_names_every_key() {
+        let written: Config = toml::from_str(DEFAULTS).expect("the embedded defaults parse");
+        assert_eq!(written, Config::default());
+        let keys = |v: &toml::Value| -> Vec<String> {
+            let table = v.as_table().expect("a table");
+            table.iter().flat_map(|(s, t)| t.as_table().expect("sections").keys().map(move |k| format!("{s}.{k}"))).collect()
+        };
+        let in_code = toml::Value::try_from(Config::default()).expect("serialises");
+        assert_eq!(keys(&DEFAULTS.parse::<toml::Table>().expect("parses").into()), keys(&in_code));
+    }
+
+    #[test]
+    fn an_unknown_key_names_its_line_and_a_value_out_of_range_its_range() {
+        let mut resolver = Resolver::new();
+        let e = resolver.text("[loop]\nrate_hz = 60\nrate = 3\n", "mine.toml").expect_err("unknown").to_string();
+        assert!(e.contains("mine.toml") && e.contains("line 3") && e.contains("`rate`"), "{e}");
+        let e = resolver.text("[loop]\nrate_hz = 7\n", "mine.toml").expect_err("range").to_string();
+        assert!(e.contains("loop.rate_hz = 7") && e.contains("30 to 1000"), "{e}");
+    }
+
+    #[test]
+    fn the_last_layer_wins_and_its_name_is_kept() {
+        let mut resolver = Resolver::new();
+        resolver.text("[loop]\nrate_hz = 60\n", "system").expect("fine");
+        resolver.text("[loop]\nworkers = 2\n[brush]\nstrength = 0.5\n", "user").expect("fine");
+        let r = resolver.finish();
+        assert_eq!((r.config.r#loop.rate_hz, r.config.r#loop.workers, r.config.brush.strength), (60, 2, 0.5));
+        assert_eq!(r.origins["loop.rate_hz"], "system");
+        assert_eq!(r.origins["brush.strength"], "user");
+        assert_eq!(r.origins["camera.aspect"], "default");
+    }
+}

@@ -1,1 +1,357 @@
-//! See the map in `lib.rs`.
+//! The world: clay, camera, brush, strokes. [`World::step`] is the only writer.
+//!
+//! Laws kept here:
+//! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
+//! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same samples and commands, same
+//!   bits, with any number of workers.
+//! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
+
+use glam::{Vec2, Vec3};
+
+use crate::brush::{BrushKind, BrushSettings, Gaussian, Smooth};
+use crate::command::Command;
+use crate::devices::{Body, DeviceId, Hands, Sample};
+use crate::hand::{HandTools, Volume};
+use crate::mesh::{Hit, Mesh, Ray, Reach, Workers};
+use crate::stroke::{Camera, Flow, PenPoint, PenTrack, Surface};
+
+/// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
+pub const MAX_PENS: usize = 16;
+
+/// What one step did. Reused from step to step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StepReport {
+    pub samples: u64,
+    pub dabs: u64,
+    /// Summed over dabs: a vertex moved by two dabs counts twice.
+    pub vertices_moved: u64,
+    /// Path points still waiting because the budget was spent.
+    pub paused: bool,
+    /// Samples of devices beyond [`MAX_PENS`].
+    pub ignored: u64,
+}
+
+/// Fixed for the life of a world.
+#[derive(Debug, Clone, Copy)]
+pub struct WorldOptions {
+    /// Vertices that the dabs of one step may visit.
+    pub dab_budget: u64,
+    pub undo_bytes: u64,
+}
+
+#[derive(Debug)]
+pub struct World {
+    tick: u64,
+    mesh: Mesh,
+    workers: Workers,
+    options: WorldOptions,
+    brush: BrushSettings,
+    camera: Camera,
+    /// Middle and bounding radius of the work when it was put in place: the measure of brushes, mirrors and hands.
+    middle: Vec3,
+    extent: f32,
+    pens: Vec<(DeviceId, PenTrack)>,
+    hands: HandTools,
+    last_hands: Option<Hands>,
+    report: StepReport,
+    /// Works that were replaced, for somebody else to drop.
+    retired: Vec<Mesh>,
+}
+
+impl World {
+    pub fn new(mut mesh: Mesh, camera: Camera, brush: BrushSettings, workers: Workers, options: WorldOptions) -> Self {
+        mesh.set_undo_bytes(options.undo_bytes);
+        let mut world = World {
+            tick: 0,
+            mesh,
+            workers,
+            options,
+            brush: brush.clamped(),
+            camera,
+            middle: Vec3::ZERO,
+            extent: 1.0,
+            pens: Vec::with_capacity(MAX_PENS),
+            hands: HandTools::default(),
+            last_hands: None,
+            report: StepReport::default(),
+            retired: Vec::with_capacity(4),
+        };
+        world.measure();
+        world.frame();
+        world
+    }
+
+    fn measure(&mut self) {
+        let (lo, hi) = self.mesh.bounds();
+        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::splat(-1.0), Vec3::ONE) };
+        self.middle = (lo + hi) * 0.5;
+        self.extent = ((hi - lo).length() * 0.5).max(1e-12);
+    }
+
+    fn frame(&mut self) {
+        let (lo, hi) = self.mesh.bounds();
+        if lo.cmple(hi).all() {
+            self.camera.frame(lo, hi);
+        }
+    }
+
+    /// One tick: commands first, in order, then samples in order of time (ties by device), then what waited from before.
+    pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
+        self.tick = tick;
+        self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
+        for command in commands {
+            self.obey(command);
+        }
+        for sample in samples {
+            self.hear(sample);
+        }
+        self.sculpt();
+        &self.report
+    }
+
+    fn obey(&mut self, command: &Command) {
+        match command {
+            Command::Brush(brush) => self.brush = brush.clamped(),
+            Command::Camera(camera) => {
+                if camera.is_sane() {
+                    self.camera = *camera;
+                }
+            }
+            Command::Undo => {
+                self.lift_all();
+                self.mesh.undo();
+            }
+            Command::Redo => {
+                self.lift_all();
+                self.mesh.redo();
+            }
+            Command::LiftAll => self.lift_all(),
+            Command::Replace(new) => {
+                self.lift_all();
+                let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());
+                if let Some(mut mesh) = built {
+                    mesh.set_undo_bytes(self.options.undo_bytes);
+                    self.retired.push(std::mem::replace(&mut self.mesh, mesh));
+                    if !new.keep_camera {
+                        self.measure();
+                        self.frame();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must see the strokes ended.
+    fn lift_all(&mut self) {
+        for (_, pen) in &mut self.pens {
+            pen.lift();
+        }
+        self.hands.lift();
+        self.walk(u64::MAX);
+        self.mesh.end_step();
+    }
+
+    fn hear(&mut self, sample: &Sample) {
+        match &sample.body {
+            Body::Pen(pen) => {
+                let index = self.pens.iter().position(|(id, _)| *id == sample.device).or_else(|| {
+                    (self.pens.len() < MAX_PENS).then(|| {
+                        self.pens.push((sample.device, PenTrack::default()));
+                        self.pens.len() - 1
+                    })
+                });
+                match index {
+                    Some(i) => self.pens[i].1.take(pen),
+                    None => self.report.ignored += 1,
+                }
+            }
+            Body::Hands(hands) => {
+                let volume = Volume { middle: self.middle, extent: self.extent, yaw: self.camera.yaw };
+                self.hands.take(sample.device, sample.t_us, hands, &volume);
+                self.last_hands = Some(*hands);
+            }
+            Body::Pad(_) => {}
+        }
+    }
+
+    fn sculpt(&mut self) {
+        self.walk(self.options.dab_budget);
+        let active = self.pens.iter().any(|(_, p)| p.is_open() || !p.is_idle()) || self.hands.is_touching();
+        if !active {
+            self.mesh.end_step();
+        }
+    }
+
+    /// Walks what waits on every pen in turn, then the hands, until `budget` vertices were visited.
+    fn walk(&mut self, budget: u64) {
+        let mut clay = Clay {
+            mesh: &mut self.mesh,
+            workers: &self.workers,
+            camera: &self.camera,
+            brush: &self.brush,
+            middle: self.middle,
+            extent: self.extent,
+            report: &mut self.report,
+            left: budget,
+        };
+        for (_, pen) in &mut self.pens {
+            while let Some(walked) = pen.walk_one(clay.camera.aspect, &mut clay) {
+                if walked.paused {
+                    clay.report.paused = true;
+                    break;
+                }
+            }
+        }
+        while let Some(push) = self.hands.next_push() {
+            if clay.push(&push) == Flow::Pause {
+                clay.report.paused = true;
+                break;
+            }
+        }
+    }
+
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// For publishing only: nothing of the clay changes.
+    pub fn snapshot(&mut self) -> crate::mesh::Snapshot {
+        self.mesh.snapshot()
+    }
+
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    pub fn brush(&self) -> &BrushSettings {
+        &self.brush
+    }
+
+    /// The brush's radius in mesh units at full pressure.
+    pub fn brush_radius(&self) -> f32 {
+        self.brush.radius * self.extent
+    }
+
+    /// Bounding radius of the work when it was put in place.
+    pub fn extent(&self) -> f32 {
+        self.extent
+    }
+
+    /// Where each pen is, over the view, while in range.
+    pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
+        self.pens.iter().filter_map(|(id, p)| p.seen.map(|s| (*id, s)))
+    }
+
+    pub fn hands(&self) -> Option<&Hands> {
+        self.last_hands.as_ref()
+    }
+
+    /// Works that were replaced since the last call, for another thread to drop.
+    pub fn take_retired(&mut self) -> Option<Mesh> {
+        self.retired.pop()
+    }
+
+    /// One number for the whole state of the clay; costs as much as the clay is large.
+    pub fn hash(&self) -> u64 {
+        self.mesh.hash()
+    }
+
+    pub fn verify_invariants(&self) -> Result<(), String> {
+        if !self.camera.is_sane() {
+            return Err(format!("the camera is not sane: {:?}", self.camera));
+        }
+        self.mesh.verify_invariants()
+    }
+}
+
+/// The clay as a stroke sees it.
+struct Clay<'a> {
+    mesh: &'a mut Mesh,
+    workers: &'a Workers,
+    camera: &'a Camera,
+    brush: &'a BrushSettings,
+    middle: Vec3,
+    extent: f32,
+    report: &'a mut StepReport,
+    left: u64,
+}
+
+impl Clay<'_> {
+    fn radius(&self, pressure: f32) -> f32 {
+        self.brush.radius * self.extent * self.brush.pressure_radius.factor(pressure)
+    }
+
+    /// The mirror images of a dab, itself first: every combination of the chosen planes.
+    fn mirrors(&self) -> impl Iterator<Item = Vec3> + use<> {
+        let on = self.brush.symmetry;
+        (0..8u32).filter(move |m| (0..3).all(|axis| m >> axis & 1 == 0 || on[axis])).map(|m| {
+            let sign = |axis: u32| if m >> axis & 1 == 1 { -1.0 } else { 1.0 };
+            Vec3::new(sign(0), sign(1), sign(2))
+        })
+    }
+
+    fn one_dab(&mut self, hit: &Hit, radius: f32, strength: f32) {
+        self.mesh.begin_step();
+        let reach = Reach::Sphere { centre: hit.position, radius };
+        let moved = match self.brush.kind {
+            BrushKind::Gaussian => {
+                let height = strength * radius * if self.brush.negative { -1.0 } else { 1.0 };
+                let kernel = Gaussian::new(hit.position, radius, hit.normal, height);
+                self.mesh.dab(&reach, &kernel, self.workers)
+            }
+            BrushKind::Smooth => {
+                let kernel = Smooth::new(hit.position, radius, strength);
+                self.mesh.dab(&reach, &kernel, self.workers)
+            }
+        };
+        self.report.dabs += 1;
+        self.report.vertices_moved += moved.moved as u64;
+        self.left = self.left.saturating_sub(moved.affected as u64 + 1);
+    }
+
+    fn push(&mut self, push: &crate::hand::Push) -> Flow {
+        self.mesh.begin_step();
+        let report = self.mesh.dab(&push.reach(), &push.kernel(), self.workers);
+        self.report.dabs += u64::from(report.moved > 0);
+        self.report.vertices_moved += report.moved as u64;
+        self.left = self.left.saturating_sub(report.affected as u64 + 1);
+        if self.left == 0 { Flow::Pause } else { Flow::Go }
+    }
+}
+
+impl Surface for Clay<'_> {
+    fn pick(&mut self, view: Vec2) -> Option<Hit> {
+        self.mesh.pick(self.camera.ray(view))
+    }
+
+    fn spacing(&self, at: &PenPoint) -> f32 {
+        self.radius(at.pressure) * self.brush.spacing
+    }
+
+    fn world_per_view(&self, hit: &Hit) -> f32 {
+        let depth = (self.camera.eye() - hit.position).dot(self.camera.backward());
+        self.camera.world_per_view(depth.max(1e-6))
+    }
+
+    fn dab(&mut self, at: &PenPoint, hit: &Hit, _along: Option<Vec3>) -> Flow {
+        let radius = self.radius(at.pressure);
+        let strength = self.brush.strength * self.brush.pressure_strength.factor(at.pressure);
+        let ray = self.camera.ray(at.view);
+        for mirror in self.mirrors() {
+            if mirror == Vec3::ONE {
+                self.one_dab(hit, radius, strength);
+                continue;
+            }
+            // The same view from the mirrored eye: on a symmetric work it lands on the mirrored point exactly.
+            let origin = self.middle + (ray.origin - self.middle) * mirror;
+            if let Some(image) = self.mesh.pick(Ray { origin, dir: ray.dir * mirror }) {
+                self.one_dab(&image, radius, strength);
+            }
+        }
+        if self.left == 0 { Flow::Pause } else { Flow::Go }
+    }
+}

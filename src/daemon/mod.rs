@@ -1,1 +1,11 @@
-//! See the map in `lib.rs`.
+//! Wiring: the tick loop, its clock, what it publishes, and where input comes from.
+
+pub mod figures;
+pub mod live;
+pub mod pacer;
+pub mod published;
+pub mod rig;
+pub mod stepped;
+
+pub use figures::{Figures, Summary};
+pub use published::{Publisher, Published};

@@ -2,6 +2,7 @@
 //! The clay itself is paged ([`super::Mesh`]); these are the shapes in which it comes and goes.
 
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// A polygon mesh in double precision. Corners run counter-clockwise seen from outside.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -43,7 +44,7 @@ impl PolyMesh {
 }
 
 /// A triangle mesh in single precision, the clay's own.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TriMesh {
     pub positions: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,

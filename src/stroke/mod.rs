@@ -1,1 +1,9 @@
-//! See the map in `lib.rs`.
+//! From a pen's path over the view to dabs on the surface.
+
+pub mod camera;
+pub mod spacer;
+pub mod track;
+
+pub use camera::Camera;
+pub use spacer::{Flow, PenPoint, Spacer, Surface};
+pub use track::{PenEvent, PenTrack};

@@ -1,0 +1,214 @@
+//! `sculptd run`: the daemon. With a display a window, without one headless; with recordings to play and nothing else, a
+//! stepped run that gives the same bits every time.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use super::{Fail, Outcome, answer};
+use crate::analysis::cancel::Job;
+use crate::config::{Config, ConfigError, Resolved};
+use crate::daemon::rig::{self, Loaded, RecordingFeed, RigError};
+use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
+use crate::daemon::{Summary, live::Live};
+use crate::devices::recording::{Player, RecordingError};
+use crate::devices::{Catalogue, Clock, DeviceId, queue};
+use crate::mesh::io::{WriteError, write_beside, write_mesh};
+use crate::world::World;
+
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct RunArgs {
+    /// The mesh to sculpt (OBJ, STL, PLY, OFF, glTF, 3MF). Without it, a ball.
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// More settings, laid over the system's and the user's.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// No window, even where there is a display.
+    #[arg(long)]
+    pub headless: bool,
+    /// End after this many seconds of the loop's time.
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    pub limit_s: Option<f64>,
+    /// Play a recording (hid-recorder text, Leap frames, or our own) as if its device were here. May be repeated.
+    #[arg(long, value_name = "RECORDING")]
+    pub play_device: Vec<PathBuf>,
+    /// Write the mesh here at the end; the name's ending says the format.
+    #[arg(long, value_name = "FILE")]
+    pub export: Option<PathBuf>,
+    /// Write the summary here at the end, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// How fast recordings are played. Headless, the default is as fast as the machine can; in a window, as it was.
+    #[arg(long, value_enum)]
+    pub pace: Option<Pace>,
+}
+
+/// A positive, finite number of seconds, at most ten years.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(s) if s > 0.0 && s <= 3.2e8 => Ok(s),
+        _ => Err(format!("expected a number of seconds above 0, found '{text}'")),
+    }
+}
+
+pub fn run(args: &RunArgs, json: bool) -> Outcome {
+    let config = load_config(args.config.as_deref())?;
+    if let Some(path) = &args.export {
+        crate::mesh::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
+    }
+    let loaded = load_work(args.mesh.as_deref())?;
+    let mut catalogue = Catalogue::builtin();
+    for dir in &config.devices.tablets {
+        catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
+    }
+    let players = open_players(&args.play_device, &catalogue)?;
+    let windowed = !args.headless && super::display::available();
+    let summary = if windowed {
+        super::display::run_window(args, &config, loaded, players, None)?
+    } else if players.is_empty() {
+        run_live(args, &config, loaded)?
+    } else {
+        run_stepped(args, &config, loaded, players)?
+    };
+    report(&summary, args.stats.as_deref(), json)
+}
+
+pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
+    match Resolved::load(extra) {
+        Ok(resolved) => Ok(resolved.config),
+        Err(ConfigError::Unreadable { path, source })
+            if source.kind() == std::io::ErrorKind::PermissionDenied =>
+        {
+            Err(Fail::io(&path, &source))
+        }
+        Err(e) => Err(Fail::Config(e.to_string())),
+    }
+}
+
+pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
+    let loaded = rig::load(path, &Job::default()).map_err(|e| match e {
+        RigError::Read(e) => Fail::from(e),
+        RigError::Build { .. } => Fail::Input(e.to_string()),
+    })?;
+    for warning in &loaded.warnings {
+        eprintln!("sculptd: warning: {warning}");
+    }
+    Ok(loaded)
+}
+
+fn open_players(paths: &[PathBuf], catalogue: &Catalogue) -> Result<Vec<Player>, Fail> {
+    paths
+        .iter()
+        .enumerate()
+        .map(|(i, path)| {
+            Player::open(path, DeviceId(i as u16), catalogue).map_err(|e| match e {
+                RecordingError::Unknown { .. } => Fail::Device(e.to_string()),
+                e => Fail::Input(e.to_string()),
+            })
+        })
+        .collect()
+}
+
+fn run_stepped(
+    args: &RunArgs,
+    config: &Config,
+    loaded: Loaded,
+    players: Vec<Player>,
+) -> Result<Summary, Fail> {
+    let (factory, mut receiver) = queue::channel(config.channel.capacity);
+    let mut feeds: Vec<Box<dyn Feed>> = players
+        .into_iter()
+        .map(|p| Box::new(RecordingFeed::new(p, factory.sender())) as Box<dyn Feed>)
+        .collect();
+    let clock = Clock::manual();
+    let mut world = rig::world(loaded.mesh, config);
+    let options = SteppedOptions {
+        rate_hz: config.r#loop.rate_hz,
+        pace: args.pace.unwrap_or(Pace::Fast),
+        max_ticks: args.limit_s.map(|s| (s * f64::from(config.r#loop.rate_hz)).ceil() as u64),
+        drain_per_tick: config.channel.drain_per_tick,
+        verify: false,
+    };
+    let stepped = Stepped {
+        world: &mut world,
+        feeds: &mut feeds,
+        receiver: &mut receiver,
+        clock: &clock,
+        observer: &mut |_, _, _| {},
+        script: &[],
+    };
+    let figures = stepped.run(&options).map_err(|e| Fail::Check(e.to_string()))?;
+    let export = export(args.export.as_deref(), &world)?;
+    Ok(summary(&figures, &world, &receiver, export))
+}
+
+/// Waits for devices, until a signal or the time limit.
+fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, Fail> {
+    let clock = Clock::monotonic();
+    let (factory, receiver) = queue::channel(config.channel.capacity);
+    let adaptors = crate::daemon::adaptors::start(&config.devices, &clock, &factory);
+    for line in adaptors.describe() {
+        eprintln!("sculptd: {line}");
+    }
+    let world = rig::world(loaded.mesh, config);
+    let live = Live::start(world, receiver, clock.clone(), config.r#loop, config.channel.drain_per_tick, None)
+        .map_err(|e| Fail::Permission(e.to_string()))?;
+    let stop = stop_signal();
+    let until = args.limit_s.map(|s| (s * 1e6) as u64);
+    let (_keep, tick) = crossbeam_channel::bounded::<()>(1);
+    while live.is_running() && !stop.load(Relaxed) && until.is_none_or(|u| clock.now_us() < u) {
+        // Nothing is ever sent: this is a wait that a test can shorten, not a poll of a resource.
+        let _ = tick.recv_timeout(std::time::Duration::from_millis(20));
+    }
+    drop(adaptors);
+    finish_live(live, args.export.as_deref())
+}
+
+/// Ends the loop, writes the export and sums up.
+pub fn finish_live(live: Live, path: Option<&Path>) -> Result<Summary, Fail> {
+    let ended = live.stop().map_err(|e| Fail::Check(e.to_string()))?;
+    let export = export(path, &ended.world)?;
+    Ok(summary(&ended.figures, &ended.world, &ended.receiver, export))
+}
+
+/// Set once by SIGINT or SIGTERM.
+pub fn stop_signal() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // A second signal ends the process at once, as a person who presses twice expects.
+        let _ = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone());
+        let _ = signal_hook::flag::register(signal, stop.clone());
+    }
+    stop
+}
+
+pub fn export(path: Option<&Path>, world: &World) -> Result<Option<String>, Fail> {
+    let Some(path) = path else { return Ok(None) };
+    write_mesh(path, &world.mesh().to_tri().to_poly()).map_err(|e: WriteError| Fail::from(e))?;
+    Ok(Some(path.display().to_string()))
+}
+
+pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {
+    if let Some(path) = stats {
+        write_beside(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, summary)?;
+            writeln!(out)
+        })
+        .map_err(|e| Fail::io(path, &e))?;
+    }
+    answer(json, summary, |out| {
+        let s = summary;
+        writeln!(out, "ticks           {:>12}   {} late", s.ticks, s.overruns)?;
+        writeln!(out, "samples         {:>12}   {} coalesced, {} motion lost, {} transitions lost", s.samples, s.samples_coalesced, s.losses.motion, s.losses.transition)?;
+        writeln!(out, "dabs            {:>12}", s.dabs)?;
+        writeln!(out, "vertices moved  {:>12}   of {} (a vertex counts once a dab)", s.vertices_moved, s.vertices)?;
+        writeln!(out, "tick time       p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms", s.tick_ms.p50, s.tick_ms.p99, s.tick_ms.max)?;
+        writeln!(out, "hash            {}", s.hash)?;
+        if let Some(path) = &s.export {
+            writeln!(out, "mesh            {path}")?;
+        }
+        Ok(())
+    });
+    Ok(())
+}

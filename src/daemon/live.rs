@@ -1,0 +1,167 @@
+//! The loop on the wall's clock: a thread of its own, fed by the adaptors' threads, read by the viewer.
+//!
+//! Law kept here: the tick thread never waits for anybody. It takes what the channel holds, steps, publishes, sleeps.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+
+use arc_swap::ArcSwap;
+use crossbeam_channel as cc;
+
+use super::figures::Figures;
+use super::pacer::Pacer;
+use super::published::{Published, PublishedFigures, Publisher};
+use super::stepped::{in_order_of_time, published_figures};
+use crate::command::Command;
+use crate::config::LoopConfig;
+use crate::devices::queue::Receiver;
+use crate::devices::{Clock, Sample};
+use crate::mesh::Mesh;
+use crate::world::World;
+
+/// Commands waiting for the loop; a sender beyond it is told so and tries again.
+pub const COMMANDS: usize = 1024;
+/// Commands taken a tick.
+const COMMANDS_PER_TICK: usize = 64;
+
+/// What a tick gave, for the journal: everything that changed the world.
+pub trait Journal: Send {
+    /// Called on the tick thread after every tick that had input; must not wait.
+    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &World);
+}
+
+/// A running loop.
+#[derive(Debug)]
+pub struct Live {
+    pub commands: cc::Sender<Command>,
+    pub published: Arc<ArcSwap<Published>>,
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<Ended>,
+}
+
+/// A loop that has ended, with all that it held.
+#[derive(Debug)]
+pub struct Ended {
+    pub world: World,
+    pub figures: Figures,
+    pub receiver: Receiver,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum LiveError {
+    #[error("the tick thread could not be started: {0}")]
+    Start(std::io::Error),
+    /// A bug: the world cannot fail.
+    #[error("the tick thread ended by a panic")]
+    Panicked,
+}
+
+impl Live {
+    pub fn start(
+        mut world: World,
+        receiver: Receiver,
+        clock: Clock,
+        config: LoopConfig,
+        drain_per_tick: usize,
+        journal: Option<Box<dyn Journal>>,
+    ) -> Result<Self, LiveError> {
+        let (commands, inbox) = cc::bounded(COMMANDS);
+        let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
+        let published = publisher.reader();
+        let stop = Arc::new(AtomicBool::new(false));
+        let ticking = Ticking {
+            world,
+            receiver,
+            clock,
+            inbox,
+            publisher,
+            stop: stop.clone(),
+            rate_hz: config.rate_hz,
+            drain_per_tick,
+            journal,
+        };
+        let thread = std::thread::Builder::new()
+            .name("sculptd-tick".into())
+            .spawn(move || ticking.run())
+            .map_err(LiveError::Start)?;
+        Ok(Live { commands, published, stop, thread })
+    }
+
+    pub fn is_running(&self) -> bool {
+        !self.thread.is_finished()
+    }
+
+    /// Stops after the tick under way and gives everything back.
+    pub fn stop(self) -> Result<Ended, LiveError> {
+        self.stop.store(true, Relaxed);
+        self.thread.join().map_err(|_| LiveError::Panicked)
+    }
+}
+
+struct Ticking {
+    world: World,
+    receiver: Receiver,
+    clock: Clock,
+    inbox: cc::Receiver<Command>,
+    publisher: Publisher,
+    stop: Arc<AtomicBool>,
+    rate_hz: u32,
+    drain_per_tick: usize,
+    journal: Option<Box<dyn Journal>>,
+}
+
+impl Ticking {
+    fn run(mut self) -> Ended {
+        raise_priority();
+        // Replaced works are dropped here, off the tick thread.
+        let (garbage, dump) = cc::bounded::<Mesh>(8);
+        let _ = std::thread::Builder::new().name("sculptd-drop".into()).spawn(move || dump.iter().for_each(drop));
+        let mut pacer = Pacer::new(self.rate_hz, self.clock.now_us());
+        let sleeper = spin_sleep::SpinSleeper::default();
+        let mut figures = Figures::default();
+        let mut samples: Vec<Sample> = Vec::with_capacity(self.drain_per_tick);
+        let mut commands: Vec<Command> = Vec::with_capacity(COMMANDS_PER_TICK);
+        let mut tick = self.world.tick();
+        while !self.stop.load(Relaxed) {
+            pacer.wait(&self.clock, &sleeper);
+            tick += 1;
+            samples.clear();
+            self.receiver.drain(self.drain_per_tick, &mut samples);
+            in_order_of_time(&mut samples);
+            commands.clear();
+            commands.extend(self.inbox.try_iter().take(COMMANDS_PER_TICK));
+            let begun = self.clock.now_ns();
+            let report = *self.world.step(tick, &samples, &commands);
+            if let Some(journal) = self.journal.as_deref_mut() {
+                journal.tick(tick, &samples, &commands, &self.world);
+            }
+            while let Some(mesh) = self.world.take_retired() {
+                let _ = garbage.try_send(mesh);
+            }
+            let stepped = self.clock.now_ns() - begun;
+            figures.tick(&report, stepped);
+            let shown = published_figures(&figures, &self.receiver, stepped);
+            self.publisher.publish(Published::of(&mut self.world, shown));
+            pacer.done(self.clock.now_us());
+            figures.overruns = pacer.overruns;
+        }
+        Ended { world: self.world, figures, receiver: self.receiver }
+    }
+}
+
+/// Real-time scheduling where it is allowed, else a nicer place in the queue, else as it is: `sculptd doctor` says which.
+pub fn raise_priority() -> &'static str {
+    use thread_priority as tp;
+    let fifo = tp::ThreadSchedulePolicy::Realtime(tp::RealtimeThreadSchedulePolicy::Fifo);
+    let middle = tp::ThreadPriorityValue::try_from(20u8).map(tp::ThreadPriority::Crossplatform);
+    let Ok(middle) = middle else { return "normal" };
+    #[cfg(unix)]
+    {
+        let id = tp::thread_native_id();
+        if tp::unix::set_thread_priority_and_policy(id, middle, fifo).is_ok() {
+            return "real-time (SCHED_FIFO)";
+        }
+    }
+    if tp::set_current_thread_priority(tp::ThreadPriority::Max).is_ok() { "raised" } else { "normal" }
+}

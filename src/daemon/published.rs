@@ -1,0 +1,111 @@
+//! Door 2: what the loop shows to everybody else, once a tick.
+//!
+//! Readers never block the loop and the loop never frees for them: published states come from a small pool and go back to
+//! it; a state that a reader still holds is left to that reader.
+
+use std::sync::Arc;
+
+use arc_swap::ArcSwap;
+
+use super::figures::{Losses, Percentiles};
+use crate::brush::BrushSettings;
+use crate::devices::{DeviceId, Hands};
+use crate::mesh::Snapshot;
+use crate::stroke::{Camera, PenPoint};
+use crate::world::World;
+
+/// Pens shown to a viewer.
+pub const SHOWN_PENS: usize = 4;
+
+/// The state of the world at the end of a tick, immutable.
+#[derive(Debug, Clone)]
+pub struct Published {
+    pub tick: u64,
+    pub mesh: Snapshot,
+    pub camera: Camera,
+    pub brush: BrushSettings,
+    /// Brush radius in mesh units at full pressure.
+    pub brush_radius: f32,
+    /// Bounding radius of the work when it was put in place.
+    pub extent: f32,
+    pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
+    pub hands: Option<Hands>,
+    pub undo_steps: usize,
+    pub redo_steps: usize,
+    pub figures: PublishedFigures,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PublishedFigures {
+    pub ticks: u64,
+    pub samples: u64,
+    pub dabs: u64,
+    pub vertices_moved: u64,
+    pub overruns: u64,
+    pub tick_ms: Percentiles,
+    pub losses: Losses,
+    /// Duration of the newest tick, ms.
+    pub last_tick_ms: f64,
+}
+
+impl Published {
+    pub fn of(world: &mut World, figures: PublishedFigures) -> Self {
+        let mut pens = [None; SHOWN_PENS];
+        for (slot, pen) in pens.iter_mut().zip(world.pens()) {
+            *slot = Some(pen);
+        }
+        Published {
+            tick: world.tick(),
+            mesh: world.snapshot(),
+            camera: *world.camera(),
+            brush: *world.brush(),
+            brush_radius: world.brush_radius(),
+            extent: world.extent(),
+            pens,
+            hands: world.hands().copied(),
+            undo_steps: world.mesh().undo_steps(),
+            redo_steps: world.mesh().redo_steps(),
+            figures,
+        }
+    }
+}
+
+/// The loop's end of door 2.
+#[derive(Debug)]
+pub struct Publisher {
+    shown: Arc<ArcSwap<Published>>,
+    /// States that were shown before; reused once no reader holds them.
+    pool: Vec<Arc<Published>>,
+}
+
+/// States kept for reuse: the one shown, one in a reader's hands a viewer and a worker each, and two to spare.
+const POOL: usize = 6;
+
+impl Publisher {
+    pub fn new(first: Published) -> Self {
+        Publisher { shown: Arc::new(ArcSwap::from_pointee(first)), pool: Vec::with_capacity(POOL) }
+    }
+
+    /// The reader's end: `load_full` gives the newest state.
+    pub fn reader(&self) -> Arc<ArcSwap<Published>> {
+        self.shown.clone()
+    }
+
+    pub fn publish(&mut self, state: Published) {
+        let free = self.pool.iter_mut().position(|old| Arc::get_mut(old).is_some());
+        let next = match free {
+            Some(i) => {
+                let mut next = self.pool.swap_remove(i);
+                if let Some(slot) = Arc::get_mut(&mut next) {
+                    *slot = state;
+                }
+                next
+            }
+            None => Arc::new(state),
+        };
+        let old = self.shown.swap(next);
+        if self.pool.len() < POOL {
+            self.pool.push(old);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! One pen's visit to the surface, as a bounded queue of path points that the world walks within its budget.
+
+use std::collections::VecDeque;
+
+use glam::Vec2;
+
+use super::spacer::{Flow, PenPoint, Spacer, Surface};
+use crate::devices::Pen;
+
+/// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears; beyond that the newest
+/// motion replaces the one before it (the path is cut short between two points, never broken).
+const MAX_WAITING: usize = 2048;
+
+/// What a pen sample means for a stroke.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PenEvent {
+    Down(PenPoint),
+    Move(PenPoint),
+    Up,
+}
+
+/// A pen's stroke between its samples and its dabs.
+#[derive(Debug)]
+pub struct PenTrack {
+    waiting: VecDeque<PenEvent>,
+    spacer: Spacer,
+    /// Where the walk stands: the point reached, and the share of the segment to the first waiting point.
+    from: PenPoint,
+    share: f32,
+    /// The pen is down as its samples tell.
+    down: bool,
+    /// A stroke is open as its dabs tell: it lags behind `down` by what is waiting.
+    open: bool,
+    /// The last hover or contact, for the cursor.
+    pub seen: Option<PenPoint>,
+    /// Motion merged because the queue was full.
+    pub merged: u64,
+}
+
+impl Default for PenTrack {
+    fn default() -> Self {
+        PenTrack {
+            waiting: VecDeque::with_capacity(MAX_WAITING),
+            spacer: Spacer::default(),
+            from: PenPoint::default(),
+            share: 0.0,
+            down: false,
+            open: false,
+            seen: None,
+            merged: 0,
+        }
+    }
+}
+
+/// What walking changed about the stroke itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Walked {
+    pub began: bool,
+    pub ended: bool,
+    pub paused: bool,
+}
+
+impl PenTrack {
+    /// Takes one pen sample.
+    pub fn take(&mut self, pen: &Pen) {
+        let area = pen.area_mm.max(Vec2::splat(1e-3));
+        let at = PenPoint {
+            view: (pen.pos_mm / area).clamp(Vec2::ZERO, Vec2::ONE),
+            pressure: pen.pressure.unwrap_or(1.0),
+            tilt: pen.tilt,
+        };
+        self.seen = pen.in_range.then_some(at);
+        match (self.down, pen.tip && pen.in_range) {
+            (false, true) => self.push(PenEvent::Down(at)),
+            (true, true) => self.push(PenEvent::Move(at)),
+            (true, false) => self.push(PenEvent::Up),
+            (false, false) => {}
+        }
+        self.down = pen.tip && pen.in_range;
+    }
+
+    /// The pen is gone, without a word: the stroke ends as a lifted pen.
+    pub fn lift(&mut self) {
+        if self.down {
+            self.push(PenEvent::Up);
+            self.down = false;
+        }
+        self.seen = None;
+    }
+
+    fn push(&mut self, event: PenEvent) {
+        if self.waiting.len() >= MAX_WAITING {
+            if let (Some(PenEvent::Move(last)), PenEvent::Move(at)) = (self.waiting.back_mut(), event) {
+                *last = at;
+                self.merged += 1;
+                return;
+            }
+            // A full queue that ends in a transition: room is made by dropping the oldest motion.
+            if let Some(i) = self.waiting.iter().position(|e| matches!(e, PenEvent::Move(_))) {
+                self.waiting.remove(i);
+                self.merged += 1;
+            }
+        }
+        self.waiting.push_back(event);
+    }
+
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    pub fn is_idle(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// Walks one waiting event over the surface; `None` when nothing waits.
+    pub fn walk_one(&mut self, aspect: f32, on: &mut dyn Surface) -> Option<Walked> {
+        let event = *self.waiting.front()?;
+        let mut walked = Walked::default();
+        match event {
+            PenEvent::Down(at) => {
+                walked.began = !self.open;
+                self.open = true;
+                self.spacer = Spacer::new(aspect);
+                self.from = at;
+                walked.paused = self.spacer.begin(&at, on) == Flow::Pause;
+            }
+            PenEvent::Move(to) => {
+                self.share = self.spacer.walk(&self.from, &to, self.share, on);
+                if self.share < 1.0 {
+                    walked.paused = true;
+                    return Some(walked);
+                }
+                self.from = to;
+            }
+            PenEvent::Up => {
+                walked.ended = self.open;
+                self.open = false;
+            }
+        }
+        self.share = 0.0;
+        self.waiting.pop_front();
+        Some(walked)
+    }
+}
