@@ -1,5 +1,6 @@
 //! Wiring: the tick loop, its clock, what it publishes, and where input comes from.
 
+pub mod adaptors;
 pub mod figures;
 pub mod live;
 pub mod pacer;

@@ -1,5 +1,7 @@
 //! One binary for all integration tests: one link, one start.
 
+mod tidy;
+
 use std::path::PathBuf;
 
 mod thickness_shapes;

@@ -1,0 +1,1 @@
+//! Starting what the configuration asks for.
