@@ -6,6 +6,7 @@ pub mod live;
 pub mod pacer;
 pub mod published;
 pub mod rig;
+pub mod session;
 pub mod stepped;
 
 pub use figures::{Figures, Summary};

@@ -1,0 +1,23 @@
+//! The session file `NAME.sculpt`: one SQLite database that holds the start mesh, the settings in force, and every `Sample`
+//! and `Command` by tick. Opening it is replaying it: the same start and the same input give the same bits.
+//!
+//! Laws kept here:
+//! * The tick thread only hands over data and never waits ([`writer`]).
+//! * Input is on its way to the disk at most [`GROUP_MS`] after its tick, and on it (synced) with that group.
+//! * What was written is never rewritten: a group is a row, a row carries its checksum, a torn tail is dropped and said.
+
+pub mod format;
+pub mod reader;
+pub mod writer;
+
+pub use reader::{OpenError, Opened, open};
+pub use writer::{Fault, SessionWriter, create, resume};
+
+/// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms that a crash may cost.
+pub const GROUP_MS: u64 = 100;
+
+/// The version of the file's layout. A newer file is refused by name, an older one is read.
+pub const VERSION: u32 = 1;
+
+/// "SCLP": tells a session from any other SQLite file (`PRAGMA application_id`).
+pub const APPLICATION_ID: i32 = 0x53_43_4c_50;

@@ -1,0 +1,241 @@
+//! Writing a session: the tick thread fills recycled buffers, a thread of its own turns them into rows.
+//!
+//! A full disk does not stop the sculpting: groups are kept in memory up to [`KEPT_BYTES`], the fault is shown, and they are
+//! written as soon as there is room.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam_channel as cc;
+use rusqlite::Connection;
+
+use super::format::{META_SETTINGS, META_START, Settings, TABLES, append};
+use super::{APPLICATION_ID, GROUP_MS, VERSION};
+use crate::command::Command;
+use crate::daemon::live::Journal;
+use crate::devices::{Clock, Sample};
+use crate::mesh::TriMesh;
+use crate::world::World;
+
+/// Buffers between the tick thread and the writer: at 1,000 ticks a second a quarter of a second of arrears.
+const BUFFERS: usize = 256;
+/// First size of a buffer; a tick of a few pens fits.
+const BUFFER_BYTES: usize = 4096;
+/// Groups kept in memory while the disk takes nothing: more than an hour of a pen at 250 Hz.
+const KEPT_BYTES: usize = 64 << 20;
+/// How often a disk that was full is tried again.
+const RETRY: Duration = Duration::from_millis(1000);
+
+#[derive(Debug, thiserror::Error)]
+pub enum CreateError {
+    #[error("{path}: exists already; a session is never overwritten")]
+    Exists { path: String },
+    #[error("{path}: {source}")]
+    Store { path: String, source: rusqlite::Error },
+    #[error("{path}: {source}")]
+    Io { path: String, source: std::io::Error },
+}
+
+/// What stands in the way of the journal, for a person; `None` while it is well.
+pub type Fault = Arc<Mutex<Option<String>>>;
+
+/// The tick thread's end.
+#[derive(Debug)]
+pub struct SessionWriter {
+    full: cc::Sender<Message>,
+    empty: cc::Receiver<Vec<u8>>,
+    /// Ticks that found no free buffer. Their input is not in the file: the session says so when it is opened.
+    lost: Arc<AtomicU64>,
+}
+
+/// The writing thread, to be waited for at the end.
+#[derive(Debug)]
+pub struct WriterThread {
+    thread: JoinHandle<()>,
+    pub fault: Fault,
+    pub lost: Arc<AtomicU64>,
+    /// The last tick that is on the disk.
+    pub written: Arc<AtomicU64>,
+}
+
+impl WriterThread {
+    /// Waits until all that was handed over is written. Call it after the loop, and with it the [`SessionWriter`], has ended.
+    pub fn finish(self) -> Option<String> {
+        let _ = self.thread.join();
+        self.fault.lock().ok().and_then(|f| f.clone())
+    }
+}
+
+enum Message {
+    Tick(u64, Vec<u8>),
+}
+
+/// Makes a new session file. The mesh is written before this returns.
+pub fn create(path: &Path, start: &TriMesh, settings: &Settings) -> Result<(SessionWriter, WriterThread), CreateError> {
+    let name = || path.display().to_string();
+    let store = |source| CreateError::Store { path: name(), source };
+    // Exclusive: a second daemon on the same name must not come second in a race.
+    std::fs::OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::AlreadyExists => CreateError::Exists { path: name() },
+        _ => CreateError::Io { path: name(), source },
+    })?;
+    let db = Connection::open(path).map_err(store)?;
+    tune(&db).map_err(store)?;
+    db.pragma_update(None, "application_id", APPLICATION_ID).map_err(store)?;
+    db.pragma_update(None, "user_version", VERSION).map_err(store)?;
+    let blob = |value: Result<Vec<u8>, postcard::Error>| {
+        value.map_err(|e| store(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
+    };
+    let mesh = blob(postcard::to_stdvec(start))?;
+    let settings = blob(postcard::to_stdvec(settings))?;
+    let all = || -> rusqlite::Result<()> {
+        db.execute_batch("BEGIN")?;
+        db.execute_batch(TABLES)?;
+        let mut put = db.prepare("INSERT INTO meta (key, value) VALUES (?1, ?2)")?;
+        put.execute((META_START, &mesh))?;
+        put.execute((META_SETTINGS, &settings))?;
+        db.execute_batch("COMMIT")
+    };
+    all().map_err(store)?;
+    Ok(start_thread(db))
+}
+
+/// Goes on writing a session that was opened.
+pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError> {
+    let store = |source| CreateError::Store { path: path.display().to_string(), source };
+    let db = Connection::open(path).map_err(store)?;
+    tune(&db).map_err(store)?;
+    Ok(start_thread(db))
+}
+
+/// Write-ahead log, every group synced: a power cut costs the last group at most.
+fn tune(db: &Connection) -> rusqlite::Result<()> {
+    db.busy_timeout(Duration::from_secs(2))?;
+    db.pragma_update(None, "journal_mode", "wal")?;
+    db.pragma_update(None, "synchronous", "full")
+}
+
+fn start_thread(db: Connection) -> (SessionWriter, WriterThread) {
+    let (full, inbox) = cc::bounded(BUFFERS);
+    let (recycle, empty) = cc::bounded(BUFFERS);
+    for _ in 0..BUFFERS {
+        let _ = recycle.try_send(Vec::with_capacity(BUFFER_BYTES));
+    }
+    let fault = Fault::default();
+    let (lost, written) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+    let mut writing =
+        Writing { db, recycle, fault: fault.clone(), written: written.clone(), groups: Vec::new(), clock: Clock::monotonic() };
+    let thread = std::thread::Builder::new()
+        .name("sculptd-journal".into())
+        .spawn(move || writing.run(&inbox))
+        // Without a thread there is no process left to speak of: the machine has no memory for a stack.
+        .unwrap_or_else(|e| panic!("the journal thread could not be started: {e}"));
+    let thread = WriterThread { thread, fault, lost: lost.clone(), written };
+    (SessionWriter { full, empty, lost }, thread)
+}
+
+impl Journal for SessionWriter {
+    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], _: &World) {
+        if samples.is_empty() && commands.is_empty() {
+            return;
+        }
+        let Ok(mut buffer) = self.empty.try_recv() else {
+            self.lost.fetch_add(1, Relaxed);
+            return;
+        };
+        buffer.clear();
+        append(&mut buffer, tick, samples, commands);
+        let _ = self.full.try_send(Message::Tick(tick, buffer));
+    }
+}
+
+struct Group {
+    first: u64,
+    last: u64,
+    data: Vec<u8>,
+}
+
+struct Writing {
+    db: Connection,
+    recycle: cc::Sender<Vec<u8>>,
+    fault: Fault,
+    written: Arc<AtomicU64>,
+    /// Closed groups that are not on the disk yet, oldest first.
+    groups: Vec<Group>,
+    clock: Clock,
+}
+
+impl Writing {
+    fn run(&mut self, inbox: &cc::Receiver<Message>) {
+        let mut open: Option<Group> = None;
+        let mut due_us = u64::MAX;
+        loop {
+            let now = self.clock.now_us();
+            let patience = if open.is_some() {
+                Duration::from_micros(due_us.saturating_sub(now))
+            } else if self.groups.is_empty() {
+                Duration::from_secs(3600)
+            } else {
+                RETRY
+            };
+            let message = inbox.recv_timeout(patience);
+            let ended = matches!(message, Err(cc::RecvTimeoutError::Disconnected));
+            if let Ok(Message::Tick(tick, bytes)) = message {
+                let group = open.get_or_insert_with(|| {
+                    due_us = self.clock.now_us() + GROUP_MS * 1000;
+                    Group { first: tick, last: tick, data: Vec::new() }
+                });
+                group.data.extend_from_slice(&bytes);
+                group.last = tick;
+                let _ = self.recycle.try_send(bytes);
+            }
+            if ended || self.clock.now_us() >= due_us || (open.is_none() && !self.groups.is_empty()) {
+                self.groups.extend(open.take());
+                due_us = u64::MAX;
+                self.flush();
+            }
+            if ended {
+                return;
+            }
+        }
+    }
+
+    fn flush(&mut self) {
+        let kept: usize = self.groups.iter().map(|g| g.data.len()).sum();
+        let result = self.write();
+        let text = match result {
+            Ok(last) => {
+                self.groups.clear();
+                if let Some(last) = last {
+                    self.written.store(last, Relaxed);
+                }
+                None
+            }
+            Err(e) if kept > KEPT_BYTES => {
+                // The newest are given up first: a log with a hole cannot be replayed beyond it.
+                self.groups.pop();
+                Some(format!("the session file takes nothing and {kept} bytes wait: input is being lost ({e})"))
+            }
+            Err(e) => Some(format!("the session file takes nothing, input is kept in memory: {e}")),
+        };
+        if let Ok(mut fault) = self.fault.lock() {
+            *fault = text;
+        }
+    }
+
+    fn write(&mut self) -> rusqlite::Result<Option<u64>> {
+        let all = self.db.transaction()?;
+        {
+            let mut put =
+                all.prepare_cached("INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)")?;
+            for g in &self.groups {
+                put.execute((g.first as i64, g.last as i64, crc32fast::hash(&g.data), &g.data))?;
+            }
+        }
+        all.commit()?;
+        Ok(self.groups.last().map(|g| g.last))
+    }
+}
