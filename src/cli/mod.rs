@@ -6,7 +6,14 @@ use std::path::Path;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+mod config;
+#[cfg(unix)]
+mod ctl;
+mod demo;
 mod devices;
+mod display;
+mod replay;
+mod run;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -24,10 +31,24 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// The main job with no hardware: simulated devices, through the real parsers, sculpt a form.
+    Demo(demo::DemoArgs),
+    /// Sculpt: the daemon, with a window where there is a display.
+    Run(run::RunArgs),
+    /// Run a session's input once more and print the clay's hash.
+    Replay(replay::ReplayArgs),
     /// Pens and hands: decode a recording.
     Devices {
         #[command(subcommand)]
         command: devices::DevicesCommand,
+    },
+    /// Ask the running daemon.
+    #[cfg(unix)]
+    Ctl(ctl::CtlArgs),
+    /// Look at the settings.
+    Config {
+        #[command(subcommand)]
+        command: config::ConfigCommand,
     },
     /// Print completions for a shell.
     Completions { shell: clap_complete::Shell },
@@ -91,11 +112,17 @@ pub fn run() -> u8 {
             clap_complete::generate(shell, &mut Cli::command(), "sculptd", &mut std::io::stdout());
             Ok(())
         }
+        Some(Command::Demo(args)) => demo::run(&args, cli.json),
+        Some(Command::Run(args)) => run::run(&args, cli.json),
+        Some(Command::Replay(args)) => replay::run(&args, cli.json),
+        None => run::run(&run::RunArgs::default(), cli.json),
+        #[cfg(unix)]
+        Some(Command::Ctl(args)) => ctl::run(&args, cli.json),
+        Some(Command::Config { command }) => config::run(&command, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Man) => clap_mangen::Man::new(Cli::command())
             .render(&mut std::io::stdout())
             .map_err(|e| Fail::Input(e.to_string())),
-        None => Ok(()),
     };
     match outcome {
         Ok(()) => 0,

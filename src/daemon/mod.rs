@@ -1,6 +1,8 @@
 //! Wiring: the tick loop, its clock, what it publishes, and where input comes from.
 
 pub mod adaptors;
+#[cfg(unix)]
+pub mod control;
 pub mod figures;
 pub mod live;
 pub mod pacer;

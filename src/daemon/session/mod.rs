@@ -8,6 +8,7 @@
 
 pub mod format;
 pub mod reader;
+pub mod replay;
 pub mod writer;
 
 pub use reader::{OpenError, Opened, open};

@@ -1,0 +1,62 @@
+//! `sculptd config check|show|schema`.
+
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::{Fail, Outcome, answer};
+use crate::config::{ConfigError, DEFAULTS, Resolved, usual_files};
+
+#[derive(Debug, clap::Subcommand)]
+pub enum ConfigCommand {
+    /// Say whether a file, or the usual ones, can be used.
+    Check { file: Option<PathBuf> },
+    /// Every value in force and where it was written.
+    Show {
+        /// Lay this file over the usual ones.
+        #[arg(long, value_name = "FILE")]
+        config: Option<PathBuf>,
+    },
+    /// Every key with its default and its meaning.
+    Schema,
+}
+
+fn load(file: Option<&PathBuf>) -> Result<Resolved, Fail> {
+    Resolved::load(file.map(|f| f.as_path())).map_err(|e: ConfigError| Fail::Config(e.to_string()))
+}
+
+pub fn run(command: &ConfigCommand, as_json: bool) -> Outcome {
+    match command {
+        ConfigCommand::Check { file } => {
+            load(file.as_ref())?;
+            let files: Vec<PathBuf> = usual_files().into_iter().filter(|p| p.is_file()).chain(file.clone()).collect();
+            answer(as_json, &json!({ "good": true, "files": files }), |out| {
+                writeln!(out, "good: {} file(s) read", files.len())?;
+                files.iter().try_for_each(|f| writeln!(out, "  {}", f.display()))
+            });
+        }
+        ConfigCommand::Show { config } => {
+            let resolved = load(config.as_ref())?;
+            let all = serde_json::to_value(&resolved.config).map_err(|e| Fail::Config(e.to_string()))?;
+            let mut rows = Vec::new();
+            if let Value::Object(sections) = &all {
+                for (section, keys) in sections {
+                    for (key, value) in keys.as_object().into_iter().flatten() {
+                        let name = format!("{section}.{key}");
+                        let origin = resolved.origins.get(&name).cloned().unwrap_or_else(|| "default".into());
+                        rows.push((name, value.clone(), origin));
+                    }
+                }
+            }
+            let object: serde_json::Map<String, Value> =
+                rows.iter().map(|(n, v, o)| (n.clone(), json!({ "value": v, "origin": o }))).collect();
+            answer(as_json, &object, |out| {
+                rows.iter().try_for_each(|(n, v, o)| writeln!(out, "{n:<28} {v:<40} {o}", v = v.to_string()))
+            });
+        }
+        ConfigCommand::Schema => {
+            answer(as_json, &json!({ "toml": DEFAULTS }), |out| out.write_all(DEFAULTS.as_bytes()));
+        }
+    }
+    Ok(())
+}

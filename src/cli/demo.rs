@@ -1,0 +1,1 @@
+//! `sculptd demo`: the main job with no hardware.

@@ -1,0 +1,151 @@
+//! What can be asked. The names and parameters here are the schema; `methods` lists them to any client.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use super::PROTOCOL;
+use super::protocol::{Code, RpcError};
+use super::server::Host;
+use crate::analysis::cancel::Job;
+use crate::command::{Command, NewClay};
+use crate::daemon::rig;
+use crate::mesh::io::write_mesh;
+
+/// Every method with its parameters, for `methods` and for the schema test.
+pub const METHODS: &[(&str, &str)] = &[
+    ("methods", "{}: this list"),
+    ("status", "{version?}: the loop's figures, the work, the brush"),
+    ("brush", "{kind?, radius?, strength?, negative?, spacing?, pressure_strength?, pressure_radius?, symmetry?}: changes what is named, answers with all"),
+    ("camera", "{target?, yaw?, pitch?, distance?, fov_y?, aspect?, orthographic?}: likewise"),
+    ("undo", "{}: takes back one step"),
+    ("redo", "{}: does it again"),
+    ("load", "{path}: another work from a file"),
+    ("export", "{path}: writes the work; the name's ending says the format"),
+    ("hash", "{}: one number for the whole clay"),
+    ("shutdown", "{}: ends the daemon as a signal would"),
+];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PathParam {
+    path: PathBuf,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+struct StatusParam {
+    version: Option<u32>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+struct Nothing {}
+
+fn read<T: DeserializeOwned>(params: Value) -> Result<T, RpcError> {
+    let params = if params.is_null() { json!({}) } else { params };
+    serde_json::from_value(params).map_err(|e| RpcError::new(Code::BadParams, e.to_string()))
+}
+
+/// Lays the named fields over what is in force; an unknown field or a wrong type is refused by name.
+fn merge<T: serde::Serialize + DeserializeOwned>(now: &T, params: Value) -> Result<T, RpcError> {
+    let bad = |e: serde_json::Error| RpcError::new(Code::BadParams, e.to_string());
+    let mut all = serde_json::to_value(now).map_err(bad)?;
+    match params {
+        Value::Null => {}
+        Value::Object(named) => {
+            for (key, value) in named {
+                all[key] = value;
+            }
+        }
+        _ => return Err(RpcError::new(Code::BadParams, "expected an object")),
+    }
+    serde_json::from_value(all).map_err(bad)
+}
+
+/// A path from outside: absolute, and no link at its end.
+fn safe(path: &Path) -> Result<(), RpcError> {
+    if !path.is_absolute() || path.components().any(|c| c == std::path::Component::ParentDir) {
+        return Err(RpcError::new(Code::BadParams, "expected an absolute path without '..'"));
+    }
+    if path.symlink_metadata().is_ok_and(|m| m.file_type().is_symlink()) {
+        return Err(RpcError::new(Code::BadParams, "the path is a symbolic link"));
+    }
+    Ok(())
+}
+
+/// Answers one request. Runs on the client's thread: slow work here delays that client only.
+pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError> {
+    let send = |command: Command| {
+        host.commands
+            .try_send(command)
+            .map_err(|_| RpcError::new(Code::Failed, "the loop has more commands waiting than it can take; try again"))
+    };
+    let failed = |e: String| RpcError::new(Code::Failed, e);
+    let state = host.published.load_full();
+    match method {
+        "methods" => {
+            read::<Nothing>(params)?;
+            Ok(METHODS.iter().map(|(name, what)| (name.to_string(), json!(what))).collect::<serde_json::Map<_, _>>().into())
+        }
+        "status" => {
+            if let Some(v) = read::<StatusParam>(params)?.version.filter(|v| *v != PROTOCOL) {
+                return Err(RpcError::new(Code::Version, format!("this daemon speaks version {PROTOCOL}, the client {v}")));
+            }
+            let f = &state.figures;
+            Ok(json!({
+                "protocol": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "tick": state.tick,
+                "samples": f.samples, "dabs": f.dabs, "vertices_moved": f.vertices_moved, "overruns": f.overruns,
+                "losses": f.losses, "tick_ms": f.tick_ms,
+                "vertices": state.mesh.vertex_count(), "triangles": state.mesh.triangle_count(),
+                "undo_steps": state.undo_steps, "redo_steps": state.redo_steps, "brush": state.brush,
+            }))
+        }
+        "brush" => {
+            let brush = merge(&state.brush, params)?.clamped();
+            send(Command::Brush(brush))?;
+            Ok(json!(brush))
+        }
+        "camera" => {
+            let camera = merge(&state.camera, params)?;
+            if !camera.is_sane() {
+                return Err(RpcError::new(Code::BadParams, "no view can be made of this camera"));
+            }
+            send(Command::Camera(camera))?;
+            Ok(json!(camera))
+        }
+        "undo" | "redo" => {
+            read::<Nothing>(params)?;
+            send(if method == "undo" { Command::Undo } else { Command::Redo })?;
+            Ok(json!({ "sent": true }))
+        }
+        "load" => {
+            let p: PathParam = read(params)?;
+            safe(&p.path)?;
+            let loaded = rig::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
+            let vertices = loaded.mesh.vertex_count();
+            send(Command::Replace(NewClay::new(Arc::new(loaded.plain), loaded.mesh, false)))?;
+            Ok(json!({ "vertices": vertices, "warnings": loaded.warnings }))
+        }
+        "export" => {
+            let p: PathParam = read(params)?;
+            safe(&p.path)?;
+            let mesh = state.mesh.to_tri().to_poly();
+            write_mesh(&p.path, &mesh).map_err(|e| failed(e.to_string()))?;
+            Ok(json!({ "path": p.path, "tick": state.tick, "vertices": mesh.positions.len() }))
+        }
+        "hash" => {
+            read::<Nothing>(params)?;
+            Ok(json!({ "tick": state.tick, "hash": format!("{:016x}", state.mesh.hash()) }))
+        }
+        "shutdown" => {
+            read::<Nothing>(params)?;
+            host.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+            Ok(json!({ "stopping": true }))
+        }
+        _ => Err(RpcError::new(Code::NoMethod, format!("no method '{method}'; 'methods' lists them"))),
+    }
+}

@@ -1,0 +1,45 @@
+//! Replaying a session: the same world, the same input, tick by tick.
+
+use super::reader::Opened;
+use crate::analysis::cancel::Job;
+use crate::mesh::{BuildError, Mesh, Workers};
+use crate::world::{World, WorldOptions};
+
+/// A session that was replayed to its end, or to the tick asked for.
+#[derive(Debug)]
+pub struct Replayed {
+    pub world: World,
+    /// The last tick that was stepped.
+    pub ticks: u64,
+}
+
+/// Steps every tick from the first to the last with input (at most `until`), and on until nothing of a stroke waits. Ticks
+/// without input matter only while a stroke waits for its budget; over the others the world is at rest.
+pub fn replay(opened: &Opened, until: Option<u64>, workers: Workers, job: &Job) -> Result<Replayed, BuildError> {
+    let mesh = Mesh::build(&opened.start, job)?;
+    let s = &opened.settings;
+    let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes };
+    let mut world = World::new(mesh, s.camera, s.brush, workers, options);
+    let until = until.unwrap_or(u64::MAX);
+    let mut tick = 0;
+    let mut busy = false;
+    let total = opened.input.len().max(1) as f32;
+    for (i, input) in opened.input.iter().enumerate() {
+        if input.tick > until || job.cancelled() {
+            break;
+        }
+        // The ticks between two inputs: stepped while the last one left work, or while a hand may let go by time.
+        while busy && tick + 1 < input.tick {
+            tick += 1;
+            busy = world.step(tick, &[], &[]).paused;
+        }
+        tick = input.tick;
+        busy = world.step(tick, &input.samples, &input.commands).paused;
+        job.progress(i as f32 / total);
+    }
+    while busy && tick < until {
+        tick += 1;
+        busy = world.step(tick, &[], &[]).paused;
+    }
+    Ok(Replayed { world, ticks: tick })
+}
