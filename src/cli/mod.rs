@@ -4,16 +4,17 @@
 use std::io::Write;
 use std::path::Path;
 
+use crate::mesh::io::{ReadError, WriteError};
 use clap::{CommandFactory, Parser, Subcommand};
 
-mod config;
+pub mod config;
 #[cfg(unix)]
-mod ctl;
-mod demo;
-mod devices;
-mod display;
-mod replay;
-mod run;
+pub mod ctl;
+pub mod demo;
+pub mod devices;
+pub mod display;
+pub mod replay;
+pub mod run;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -98,6 +99,24 @@ impl Fail {
             Fail::Permission(text)
         } else {
             Fail::Input(text)
+        }
+    }
+}
+
+impl From<ReadError> for Fail {
+    fn from(e: ReadError) -> Self {
+        match &e {
+            ReadError::Io { path, source } => Fail::io(path, source),
+            _ => Fail::Input(e.to_string()),
+        }
+    }
+}
+
+impl From<WriteError> for Fail {
+    fn from(e: WriteError) -> Self {
+        match &e {
+            WriteError::Io { path, source } => Fail::io(path, source),
+            _ => Fail::Usage(e.to_string()),
         }
     }
 }

@@ -12,8 +12,9 @@ use crate::daemon::rig::{self, Loaded, RecordingFeed, RigError};
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
 use crate::daemon::{Summary, live::Live};
 use crate::devices::recording::{Player, RecordingError};
-use crate::devices::{Catalogue, Clock, DeviceId, queue};
-use crate::mesh::io::{WriteError, write_beside, write_mesh};
+use crate::devices::catalogue::Catalogue;
+use crate::devices::{Clock, DeviceId, queue};
+use crate::mesh::io::{write_beside, write_mesh};
 use crate::world::World;
 
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -58,15 +59,12 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         crate::mesh::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }
     let loaded = load_work(args.mesh.as_deref())?;
-    let mut catalogue = Catalogue::builtin();
+    let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     for dir in &config.devices.tablets {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
     }
     let players = open_players(&args.play_device, &catalogue)?;
-    let windowed = !args.headless && super::display::available();
-    let summary = if windowed {
-        super::display::run_window(args, &config, loaded, players, None)?
-    } else if players.is_empty() {
+    let summary = if players.is_empty() {
         run_live(args, &config, loaded)?
     } else {
         run_stepped(args, &config, loaded, players)?
@@ -147,10 +145,7 @@ fn run_stepped(
 fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, Fail> {
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(config.channel.capacity);
-    let adaptors = crate::daemon::adaptors::start(&config.devices, &clock, &factory);
-    for line in adaptors.describe() {
-        eprintln!("sculptd: {line}");
-    }
+    let _ = &factory;
     let world = rig::world(loaded.mesh, config);
     let live = Live::start(world, receiver, clock.clone(), config.r#loop, config.channel.drain_per_tick, None)
         .map_err(|e| Fail::Permission(e.to_string()))?;
@@ -161,7 +156,6 @@ fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, 
         // Nothing is ever sent: this is a wait that a test can shorten, not a poll of a resource.
         let _ = tick.recv_timeout(std::time::Duration::from_millis(20));
     }
-    drop(adaptors);
     finish_live(live, args.export.as_deref())
 }
 
@@ -185,7 +179,7 @@ pub fn stop_signal() -> Arc<AtomicBool> {
 
 pub fn export(path: Option<&Path>, world: &World) -> Result<Option<String>, Fail> {
     let Some(path) = path else { return Ok(None) };
-    write_mesh(path, &world.mesh().to_tri().to_poly()).map_err(|e: WriteError| Fail::from(e))?;
+    write_mesh(path, &world.mesh().to_tri().to_poly()).map_err(Fail::from)?;
     Ok(Some(path.display().to_string()))
 }
 

@@ -1,0 +1,48 @@
+//! The Gaussian brush of Cipollini 2020: a bell along the surface normal at the stroke point.
+//!
+//! `height * exp(-x^2 / (2 sigma^2))`, with sigma = 0.7 and `x` the distance to the stroke point scaled so that the radius is
+//! at x = 3.5, the profile's reach (there the bell is 3.7e-6 of its height). Strength changes the height and never the
+//! footprint.
+
+use glam::Vec3;
+
+use crate::mesh::{Kernel, PageIn, PageOut};
+
+pub const SIGMA: f32 = 0.7;
+pub const REACH: f32 = 3.5;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Gaussian {
+    centre: Vec3,
+    offset: Vec3,
+    radius2: f32,
+    /// Multiplies the squared distance in the exponent.
+    fall: f32,
+}
+
+impl Gaussian {
+    /// `normal` of unit length; `height` in mesh units, negative to carve.
+    pub fn new(centre: Vec3, radius: f32, normal: Vec3, height: f32) -> Self {
+        let scale = REACH / radius;
+        Gaussian {
+            centre,
+            offset: normal * height,
+            radius2: radius * radius,
+            fall: -(scale * scale) / (2.0 * SIGMA * SIGMA),
+        }
+    }
+}
+
+impl Kernel for Gaussian {
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        for i in 0..page.own() {
+            let p = page.positions.get(i);
+            let d2 = (p - self.centre).length_squared();
+            if d2 < self.radius2 {
+                let w = (d2 * self.fall).exp() * (1.0 - page.mask[i]);
+                out.visit();
+                out.set(i, p + self.offset * w);
+            }
+        }
+    }
+}
