@@ -75,7 +75,13 @@ pub struct CameraConfig {
 
 impl Default for CameraConfig {
     fn default() -> Self {
-        CameraConfig { fov_degrees: 40.0, aspect: 1.6, orthographic: false, yaw_degrees: 28.0, pitch_degrees: 20.0 }
+        CameraConfig {
+            fov_degrees: 40.0,
+            aspect: 1.6,
+            orthographic: false,
+            yaw_degrees: 28.0,
+            pitch_degrees: 20.0,
+        }
     }
 }
 
@@ -157,7 +163,9 @@ impl Resolved {
 /// The system's file and the user's, in that order.
 pub fn usual_files() -> Vec<PathBuf> {
     let mut files = vec![PathBuf::from("/etc/sculptd/sculptd.toml")];
-    files.extend(directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("sculptd.toml")));
+    files.extend(
+        directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("sculptd.toml")),
+    );
     files
 }
 
@@ -213,7 +221,12 @@ impl Resolver {
 impl Config {
     /// Every number within its stated range; the message names the key, the value and the range.
     fn check(&self) -> Result<(), String> {
-        fn within<T: PartialOrd + std::fmt::Display + Copy>(key: &str, v: T, lo: T, hi: T) -> Result<(), String> {
+        fn within<T: PartialOrd + std::fmt::Display + Copy>(
+            key: &str,
+            v: T,
+            lo: T,
+            hi: T,
+        ) -> Result<(), String> {
             if v >= lo && v <= hi {
                 return Ok(());
             }
@@ -253,7 +266,10 @@ mod tests {
         assert_eq!(written, Config::default());
         let keys = |v: &toml::Value| -> Vec<String> {
             let table = v.as_table().expect("a table");
-            table.iter().flat_map(|(s, t)| t.as_table().expect("sections").keys().map(move |k| format!("{s}.{k}"))).collect()
+            table
+                .iter()
+                .flat_map(|(s, t)| t.as_table().expect("sections").keys().map(move |k| format!("{s}.{k}")))
+                .collect()
         };
         let in_code = toml::Value::try_from(Config::default()).expect("serialises");
         assert_eq!(keys(&DEFAULTS.parse::<toml::Table>().expect("parses").into()), keys(&in_code));
@@ -262,7 +278,8 @@ mod tests {
     #[test]
     fn an_unknown_key_names_its_line_and_a_value_out_of_range_its_range() {
         let mut resolver = Resolver::new();
-        let e = resolver.text("[loop]\nrate_hz = 60\nrate = 3\n", "mine.toml").expect_err("unknown").to_string();
+        let e =
+            resolver.text("[loop]\nrate_hz = 60\nrate = 3\n", "mine.toml").expect_err("unknown").to_string();
         assert!(e.contains("mine.toml") && e.contains("line 3") && e.contains("`rate`"), "{e}");
         let e = resolver.text("[loop]\nrate_hz = 7\n", "mine.toml").expect_err("range").to_string();
         assert!(e.contains("loop.rate_hz = 7") && e.contains("30 to 1000"), "{e}");

@@ -59,7 +59,13 @@ pub struct World {
 }
 
 impl World {
-    pub fn new(mut mesh: Mesh, camera: Camera, brush: BrushSettings, workers: Workers, options: WorldOptions) -> Self {
+    pub fn new(
+        mut mesh: Mesh,
+        camera: Camera,
+        brush: BrushSettings,
+        workers: Workers,
+        options: WorldOptions,
+    ) -> Self {
         mesh.set_undo_bytes(options.undo_bytes);
         let mut world = World {
             tick: 0,

@@ -77,13 +77,15 @@ impl BrushSettings {
     #[must_use]
     pub fn clamped(mut self) -> Self {
         let d = BrushSettings::default();
-        let keep = |v: f32, lo: f32, hi: f32, default: f32| if v.is_finite() { v.clamp(lo, hi) } else { default };
+        let keep =
+            |v: f32, lo: f32, hi: f32, default: f32| if v.is_finite() { v.clamp(lo, hi) } else { default };
         self.radius = keep(self.radius, 0.001, 1.0, d.radius);
         self.strength = keep(self.strength, 0.0, 1.0, d.strength);
         self.spacing = keep(self.spacing, 0.02, 1.0, d.spacing);
-        for (curve, default) in
-            [(&mut self.pressure_strength, d.pressure_strength), (&mut self.pressure_radius, d.pressure_radius)]
-        {
+        for (curve, default) in [
+            (&mut self.pressure_strength, d.pressure_strength),
+            (&mut self.pressure_radius, d.pressure_radius),
+        ] {
             curve.at_zero = keep(curve.at_zero, 0.0, 1.0, default.at_zero);
             curve.gamma = keep(curve.gamma, 0.1, 10.0, default.gamma);
         }

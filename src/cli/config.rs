@@ -29,7 +29,8 @@ pub fn run(command: &ConfigCommand, as_json: bool) -> Outcome {
     match command {
         ConfigCommand::Check { file } => {
             load(file.as_ref())?;
-            let files: Vec<PathBuf> = usual_files().into_iter().filter(|p| p.is_file()).chain(file.clone()).collect();
+            let files: Vec<PathBuf> =
+                usual_files().into_iter().filter(|p| p.is_file()).chain(file.clone()).collect();
             answer(as_json, &json!({ "good": true, "files": files }), |out| {
                 writeln!(out, "good: {} file(s) read", files.len())?;
                 files.iter().try_for_each(|f| writeln!(out, "  {}", f.display()))

@@ -26,7 +26,8 @@ const PATIENCE: Duration = Duration::from_secs(120);
 pub fn run(args: &CtlArgs, json: bool) -> Outcome {
     let params: Value = match args.params.as_deref() {
         None => Value::Null,
-        Some(text) => serde_json::from_str(text).map_err(|e| Fail::Usage(format!("the parameters are not JSON: {e}")))?,
+        Some(text) => serde_json::from_str(text)
+            .map_err(|e| Fail::Usage(format!("the parameters are not JSON: {e}")))?,
     };
     let path = args.socket.clone().unwrap_or_else(default_path);
     let value = call(&path, &args.method, &params, PATIENCE).map_err(|e| match e {

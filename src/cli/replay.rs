@@ -54,8 +54,6 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         export: export(args.export.as_deref(), &replayed.world)?,
         loss: opened.loss,
     };
-    answer(json, &answer_, |out| {
-        writeln!(out, "ticks  {}\nhash   {}", answer_.ticks, answer_.hash)
-    });
+    answer(json, &answer_, |out| writeln!(out, "ticks  {}\nhash   {}", answer_.ticks, answer_.hash));
     Ok(())
 }

@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::{Config, ConfigError, Resolved};
-use crate::daemon::rig::{self, Loaded, RecordingFeed, RigError};
+use crate::daemon::rig::{self, Area, Loaded, RecordingFeed, RigError};
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
 use crate::daemon::{Summary, live::Live};
-use crate::devices::recording::{Player, RecordingError};
 use crate::devices::catalogue::Catalogue;
+use crate::devices::recording::{Player, RecordingError};
 use crate::devices::{Clock, DeviceId, queue};
 use crate::mesh::io::{write_beside, write_mesh};
 use crate::world::World;
@@ -34,6 +34,9 @@ pub struct RunArgs {
     /// Play a recording (hid-recorder text, Leap frames, or our own) as if its device were here. May be repeated.
     #[arg(long, value_name = "RECORDING")]
     pub play_device: Vec<PathBuf>,
+    /// Which part of the tablet a played recording covers the view with: the part that it uses, or all of it.
+    #[arg(long, value_enum, default_value_t)]
+    pub play_area: PlayArea,
     /// Write the mesh here at the end; the name's ending says the format.
     #[arg(long, value_name = "FILE")]
     pub export: Option<PathBuf>,
@@ -43,6 +46,15 @@ pub struct RunArgs {
     /// How fast recordings are played. Headless, the default is as fast as the machine can; in a window, as it was.
     #[arg(long, value_enum)]
     pub pace: Option<Pace>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum PlayArea {
+    /// Where the recording's contacts are.
+    #[default]
+    Used,
+    /// The whole active area.
+    Full,
 }
 
 /// A positive, finite number of seconds, at most ten years.
@@ -63,7 +75,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     for dir in &config.devices.tablets {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
     }
-    let players = open_players(&args.play_device, &catalogue)?;
+    let players = open_players(args, &config, &catalogue)?;
     let summary = if players.is_empty() {
         run_live(args, &config, loaded)?
     } else {
@@ -95,15 +107,26 @@ pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
     Ok(loaded)
 }
 
-fn open_players(paths: &[PathBuf], catalogue: &Catalogue) -> Result<Vec<Player>, Fail> {
-    paths
-        .iter()
-        .enumerate()
+/// Opens every recording, and finds the part of the tablet that each one uses.
+fn open_players(
+    args: &RunArgs,
+    config: &Config,
+    catalogue: &Catalogue,
+) -> Result<Vec<(Player, Option<Area>)>, Fail> {
+    let open = |i: usize, path: &Path| {
+        Player::open(path, DeviceId(i as u16), catalogue).map_err(|e| match e {
+            RecordingError::Unknown { .. } => Fail::Device(e.to_string()),
+            e => Fail::Input(e.to_string()),
+        })
+    };
+    let players = args.play_device.iter().enumerate();
+    players
         .map(|(i, path)| {
-            Player::open(path, DeviceId(i as u16), catalogue).map_err(|e| match e {
-                RecordingError::Unknown { .. } => Fail::Device(e.to_string()),
-                e => Fail::Input(e.to_string()),
-            })
+            let area = match args.play_area {
+                PlayArea::Full => None,
+                PlayArea::Used => rig::used_area(open(i, path)?, config.camera.aspect),
+            };
+            Ok((open(i, path)?, area))
         })
         .collect()
 }
@@ -112,12 +135,12 @@ fn run_stepped(
     args: &RunArgs,
     config: &Config,
     loaded: Loaded,
-    players: Vec<Player>,
+    players: Vec<(Player, Option<Area>)>,
 ) -> Result<Summary, Fail> {
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
     let mut feeds: Vec<Box<dyn Feed>> = players
         .into_iter()
-        .map(|p| Box::new(RecordingFeed::new(p, factory.sender())) as Box<dyn Feed>)
+        .map(|(p, area)| Box::new(RecordingFeed::new(p, factory.sender(), area)) as Box<dyn Feed>)
         .collect();
     let clock = Clock::manual();
     let mut world = rig::world(loaded.mesh, config);
@@ -147,8 +170,9 @@ fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, 
     let (factory, receiver) = queue::channel(config.channel.capacity);
     let _ = &factory;
     let world = rig::world(loaded.mesh, config);
-    let live = Live::start(world, receiver, clock.clone(), config.r#loop, config.channel.drain_per_tick, None)
-        .map_err(|e| Fail::Permission(e.to_string()))?;
+    let live =
+        Live::start(world, receiver, clock.clone(), config.r#loop, config.channel.drain_per_tick, None)
+            .map_err(|e| Fail::Permission(e.to_string()))?;
     let stop = stop_signal();
     let until = args.limit_s.map(|s| (s * 1e6) as u64);
     let (_keep, tick) = crossbeam_channel::bounded::<()>(1);
@@ -194,10 +218,22 @@ pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {
     answer(json, summary, |out| {
         let s = summary;
         writeln!(out, "ticks           {:>12}   {} late", s.ticks, s.overruns)?;
-        writeln!(out, "samples         {:>12}   {} coalesced, {} motion lost, {} transitions lost", s.samples, s.samples_coalesced, s.losses.motion, s.losses.transition)?;
+        writeln!(
+            out,
+            "samples         {:>12}   {} coalesced, {} motion lost, {} transitions lost",
+            s.samples, s.samples_coalesced, s.losses.motion, s.losses.transition
+        )?;
         writeln!(out, "dabs            {:>12}", s.dabs)?;
-        writeln!(out, "vertices moved  {:>12}   of {} (a vertex counts once a dab)", s.vertices_moved, s.vertices)?;
-        writeln!(out, "tick time       p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms", s.tick_ms.p50, s.tick_ms.p99, s.tick_ms.max)?;
+        writeln!(
+            out,
+            "vertices moved  {:>12}   of {} (a vertex counts once a dab)",
+            s.vertices_moved, s.vertices
+        )?;
+        writeln!(
+            out,
+            "tick time       p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms",
+            s.tick_ms.p50, s.tick_ms.p99, s.tick_ms.max
+        )?;
         writeln!(out, "hash            {}", s.hash)?;
         if let Some(path) = &s.export {
             writeln!(out, "mesh            {path}")?;

@@ -116,7 +116,8 @@ impl Ticking {
         raise_priority();
         // Replaced works are dropped here, off the tick thread.
         let (garbage, dump) = cc::bounded::<Mesh>(8);
-        let _ = std::thread::Builder::new().name("sculptd-drop".into()).spawn(move || dump.iter().for_each(drop));
+        let _ =
+            std::thread::Builder::new().name("sculptd-drop".into()).spawn(move || dump.iter().for_each(drop));
         let mut pacer = Pacer::new(self.rate_hz, self.clock.now_us());
         let sleeper = spin_sleep::SpinSleeper::default();
         let mut figures = Figures::default();

@@ -12,4 +12,4 @@ pub mod session;
 pub mod stepped;
 
 pub use figures::{Figures, Summary};
-pub use published::{Publisher, Published};
+pub use published::{Published, Publisher};

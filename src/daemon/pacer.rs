@@ -37,7 +37,11 @@ impl Pacer {
 
     pub fn due(&self, now_us: u64) -> Due {
         let due = self.due_us();
-        if now_us >= due { Due::Now { late_us: now_us - due } } else { Due::In(Duration::from_micros(due - now_us)) }
+        if now_us >= due {
+            Due::Now { late_us: now_us - due }
+        } else {
+            Due::In(Duration::from_micros(due - now_us))
+        }
     }
 
     /// The tick that was due is done: sets the next slot, leaving out those already missed. Returns how many were missed.

@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use glam::Vec2;
+
 use crate::analysis::cancel::Job;
 use crate::config::Config;
+use crate::devices::Body;
 use crate::devices::queue::Sender;
 use crate::devices::recording::Player;
 use crate::mesh::io::{ReadError, read_mesh};
@@ -53,24 +56,65 @@ pub fn world(mesh: Mesh, config: &Config) -> World {
     World::new(mesh, config.camera.camera(), config.brush, workers, options)
 }
 
+/// Part of a tablet, in mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Area {
+    pub min: Vec2,
+    pub size: Vec2,
+}
+
+/// The part of the tablet that a recording mostly touches: the median of its contacts in the middle, half of them within the
+/// middle half, as wide as the view. A recording made in a corner then lies over the work and not beside it. `None` where
+/// nothing ever touches.
+pub fn used_area(mut player: Player, aspect: f32) -> Option<Area> {
+    let mut touched: Vec<Vec2> = Vec::new();
+    player.advance(u64::MAX, &mut |sample| {
+        if let Body::Pen(pen) = sample.body
+            && pen.tip
+        {
+            touched.push(pen.pos_mm);
+        }
+    });
+    if touched.is_empty() {
+        return None;
+    }
+    let median = |value: &dyn Fn(&Vec2) -> f32| {
+        let mut all: Vec<f32> = touched.iter().map(value).collect();
+        all.sort_unstable_by(f32::total_cmp);
+        all[all.len() / 2]
+    };
+    let middle = Vec2::new(median(&|p| p.x), median(&|p| p.y));
+    let spread = Vec2::new(median(&|p| (p.x - middle.x).abs()), median(&|p| (p.y - middle.y).abs()));
+    // At least 10 mm: a recording of one dot is a dot in the middle.
+    let size = (spread * 4.0).max(Vec2::splat(10.0));
+    let size = Vec2::new(size.x.max(size.y * aspect), size.y.max(size.x / aspect));
+    Some(Area { min: middle - size * 0.5, size })
+}
+
 /// A recording, fed through its parser into the channel.
 #[derive(Debug)]
 pub struct RecordingFeed {
     player: Player,
     sender: Sender,
     sent: u64,
+    /// The part of the tablet that is laid over the view; `None`: all of it.
+    area: Option<Area>,
 }
 
 impl RecordingFeed {
-    pub fn new(player: Player, sender: Sender) -> Self {
-        RecordingFeed { player, sender, sent: 0 }
+    pub fn new(player: Player, sender: Sender, area: Option<Area>) -> Self {
+        RecordingFeed { player, sender, sent: 0, area }
     }
 }
 
 impl Feed for RecordingFeed {
     fn advance(&mut self, until_us: u64) -> u64 {
-        let (sender, sent) = (&mut self.sender, &mut self.sent);
-        self.player.advance(until_us, &mut |sample| {
+        let (sender, sent, area) = (&mut self.sender, &mut self.sent, self.area);
+        self.player.advance(until_us, &mut |mut sample| {
+            if let (Body::Pen(pen), Some(area)) = (&mut sample.body, area) {
+                pen.pos_mm -= area.min;
+                pen.area_mm = area.size;
+            }
             sender.push(sample);
             *sent += 1;
         });

@@ -61,7 +61,11 @@ pub struct HandTools {
 
 impl Default for HandTools {
     fn default() -> Self {
-        HandTools { tracks: Vec::with_capacity(16), waiting: VecDeque::with_capacity(MAX_WAITING), touching: false }
+        HandTools {
+            tracks: Vec::with_capacity(16),
+            waiting: VecDeque::with_capacity(MAX_WAITING),
+            touching: false,
+        }
     }
 }
 
@@ -83,7 +87,8 @@ impl HandTools {
                 continue;
             };
             let ramp = (t_us.saturating_sub(track.since_us) as f32 / RAMP_US as f32).min(1.0);
-            let strength = ramp * hand.confidence.unwrap_or(1.0).clamp(0.0, 1.0) * volume.edge_fade(index.tip);
+            let strength =
+                ramp * hand.confidence.unwrap_or(1.0).clamp(0.0, 1.0) * volume.edge_fade(index.tip);
             let push = Push { from: track.tip, to: tip, radius: TIP_RADIUS_MM * volume.scale(), strength };
             (track.tip, track.seen_us) = (tip, t_us);
             if strength > 0.0 {

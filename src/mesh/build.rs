@@ -123,11 +123,8 @@ fn one_page(
     place: &dyn Fn(u32) -> (u32, u16),
 ) -> Page {
     let own = ids.len();
-    let mut halo: Vec<u32> = touching
-        .iter()
-        .flat_map(|&t| tri.triangles[t as usize])
-        .filter(|&v| place(v).0 != page)
-        .collect();
+    let mut halo: Vec<u32> =
+        touching.iter().flat_map(|&t| tri.triangles[t as usize]).filter(|&v| place(v).0 != page).collect();
     halo.sort_unstable_by_key(|&v| place(v));
     halo.dedup();
     let local = |v: u32| {

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::TriMesh;
 use super::build::{BuildError, build};
 use super::page::{Page, Points};
 use super::ray::{Hit, PreparedRay, Ray};
 use super::snapshot::Snapshot;
 use super::undo::History;
-use super::TriMesh;
 use crate::analysis::cancel::Job;
 
 /// What part of space a dab may change.

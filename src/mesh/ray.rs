@@ -37,7 +37,13 @@ impl PreparedRay {
     pub fn new(ray: Ray) -> Self {
         let d = ray.dir.to_array();
         let a = ray.dir.abs();
-        let kz = if a.x > a.y && a.x > a.z { 0 } else if a.y > a.z { 1 } else { 2 };
+        let kz = if a.x > a.y && a.x > a.z {
+            0
+        } else if a.y > a.z {
+            1
+        } else {
+            2
+        };
         let (mut kx, mut ky) = ((kz + 1) % 3, (kz + 2) % 3);
         if d[kz] < 0.0 {
             std::mem::swap(&mut kx, &mut ky);
@@ -55,7 +61,9 @@ impl PreparedRay {
         let ((ax, ay), (bx, by), (cx, cy)) = (flat(a), flat(b), flat(c));
         let (mut u, mut v, mut w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
         if u == 0.0 || v == 0.0 || w == 0.0 {
-            let wide = |p: f32, q: f32, r: f32, t: f32| (f64::from(p) * f64::from(q) - f64::from(r) * f64::from(t)) as f32;
+            let wide = |p: f32, q: f32, r: f32, t: f32| {
+                (f64::from(p) * f64::from(q) - f64::from(r) * f64::from(t)) as f32
+            };
             (u, v, w) = (wide(cx, by, cy, bx), wide(ax, cy, ay, cx), wide(bx, ay, by, ax));
         }
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {

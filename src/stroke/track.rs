@@ -65,7 +65,8 @@ impl PenTrack {
     pub fn take(&mut self, pen: &Pen) {
         let area = pen.area_mm.max(Vec2::splat(1e-3));
         let at = PenPoint {
-            view: (pen.pos_mm / area).clamp(Vec2::ZERO, Vec2::ONE),
+            // Beyond the view by at most its own size: there is nothing to hit, and nothing to overflow.
+            view: (pen.pos_mm / area).clamp(Vec2::splat(-1.0), Vec2::splat(2.0)),
             pressure: pen.pressure.unwrap_or(1.0),
             tilt: pen.tilt,
         };

@@ -42,7 +42,22 @@ fn no_file_is_longer_than_600_lines() {
 #[test]
 fn dependencies_point_one_way() {
     let forbidden = [
-        ("src/mesh", &["brush", "stroke", "hand", "analysis::boolean", "world", "daemon", "panels", "viewer", "cli", "command", "devices"][..]),
+        (
+            "src/mesh",
+            &[
+                "brush",
+                "stroke",
+                "hand",
+                "analysis::boolean",
+                "world",
+                "daemon",
+                "panels",
+                "viewer",
+                "cli",
+                "command",
+                "devices",
+            ][..],
+        ),
         ("src/stroke", &["world", "daemon", "panels", "viewer", "cli", "analysis"]),
         ("src/brush", &["stroke", "world", "daemon", "panels", "viewer", "cli", "analysis", "devices"]),
         ("src/hand", &["world", "daemon", "panels", "viewer", "cli", "analysis"]),
@@ -59,7 +74,8 @@ fn dependencies_point_one_way() {
             for (n, line) in text.lines().enumerate() {
                 let code = line.split("//").next().unwrap_or("");
                 for name in names {
-                    if code.contains(&format!("crate::{name}::")) || code.contains(&format!("crate::{name};")) {
+                    if code.contains(&format!("crate::{name}::")) || code.contains(&format!("crate::{name};"))
+                    {
                         broken.push(format!("{}:{}: {room} must not know {name}", path.display(), n + 1));
                     }
                 }
@@ -73,7 +89,8 @@ fn dependencies_point_one_way() {
 fn egui_stays_in_panels_and_viewer_and_wgpu_in_viewer() {
     for (path, text) in sources("src") {
         let name = path.display().to_string();
-        let code: String = text.lines().map(|l| l.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+        let code: String =
+            text.lines().map(|l| l.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
         if !name.contains("/viewer/") {
             assert!(!code.contains("wgpu::"), "{name} names wgpu");
             if !name.contains("/panels/") {
@@ -96,7 +113,8 @@ fn unsafe_lives_in_one_module() {
 #[test]
 fn nothing_is_left_undone() {
     // Spelt apart, so that this file does not find itself.
-    let marks = [["TO", "DO"], ["FIX", "ME"], ["todo", "!("], ["unimple", "mented!("], ["X", "XX "]].map(|m| m.concat());
+    let marks = [["TO", "DO"], ["FIX", "ME"], ["todo", "!("], ["unimple", "mented!("], ["X", "XX "]]
+        .map(|m| m.concat());
     for dir in ["src", "devices/src", "tests"] {
         for (path, text) in sources(dir) {
             for mark in &marks {

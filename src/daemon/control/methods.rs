@@ -19,7 +19,10 @@ use crate::mesh::io::write_mesh;
 pub const METHODS: &[(&str, &str)] = &[
     ("methods", "{}: this list"),
     ("status", "{version?}: the loop's figures, the work, the brush"),
-    ("brush", "{kind?, radius?, strength?, negative?, spacing?, pressure_strength?, pressure_radius?, symmetry?}: changes what is named, answers with all"),
+    (
+        "brush",
+        "{kind?, radius?, strength?, negative?, spacing?, pressure_strength?, pressure_radius?, symmetry?}: changes what is named, answers with all",
+    ),
     ("camera", "{target?, yaw?, pitch?, distance?, fov_y?, aspect?, orthographic?}: likewise"),
     ("undo", "{}: takes back one step"),
     ("redo", "{}: does it again"),
@@ -80,20 +83,27 @@ fn safe(path: &Path) -> Result<(), RpcError> {
 /// Answers one request. Runs on the client's thread: slow work here delays that client only.
 pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError> {
     let send = |command: Command| {
-        host.commands
-            .try_send(command)
-            .map_err(|_| RpcError::new(Code::Failed, "the loop has more commands waiting than it can take; try again"))
+        host.commands.try_send(command).map_err(|_| {
+            RpcError::new(Code::Failed, "the loop has more commands waiting than it can take; try again")
+        })
     };
     let failed = |e: String| RpcError::new(Code::Failed, e);
     let state = host.published.load_full();
     match method {
         "methods" => {
             read::<Nothing>(params)?;
-            Ok(METHODS.iter().map(|(name, what)| (name.to_string(), json!(what))).collect::<serde_json::Map<_, _>>().into())
+            Ok(METHODS
+                .iter()
+                .map(|(name, what)| (name.to_string(), json!(what)))
+                .collect::<serde_json::Map<_, _>>()
+                .into())
         }
         "status" => {
             if let Some(v) = read::<StatusParam>(params)?.version.filter(|v| *v != PROTOCOL) {
-                return Err(RpcError::new(Code::Version, format!("this daemon speaks version {PROTOCOL}, the client {v}")));
+                return Err(RpcError::new(
+                    Code::Version,
+                    format!("this daemon speaks version {PROTOCOL}, the client {v}"),
+                ));
             }
             let f = &state.figures;
             Ok(json!({

@@ -71,8 +71,8 @@ pub fn parse(line: &[u8]) -> Result<Request, RpcError> {
     if depth(line) > MAX_DEPTH {
         return Err(RpcError::new(Code::Invalid, format!("a message may nest {MAX_DEPTH} deep")));
     }
-    let request: Request =
-        serde_json::from_slice(line).map_err(|e| RpcError::new(Code::Parse, format!("not a request: {e}")))?;
+    let request: Request = serde_json::from_slice(line)
+        .map_err(|e| RpcError::new(Code::Parse, format!("not a request: {e}")))?;
     if request.jsonrpc != "2.0" {
         return Err(RpcError::new(Code::Invalid, "expected \"jsonrpc\": \"2.0\""));
     }

@@ -59,7 +59,10 @@ impl Server {
         std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600)).map_err(io)?;
         let closing = Arc::new(AtomicBool::new(false));
         let closed = closing.clone();
-        std::thread::Builder::new().name("sculptd-control".into()).spawn(move || accept(&listener, &host, &closed)).map_err(io)?;
+        std::thread::Builder::new()
+            .name("sculptd-control".into())
+            .spawn(move || accept(&listener, &host, &closed))
+            .map_err(io)?;
         Ok(Server { path: path.into(), closing })
     }
 
@@ -135,7 +138,10 @@ fn serve(stream: UnixStream, host: &Host) {
         let now = clock.now_us() / 1_000_000;
         (second, asked) = if now == second { (second, asked + 1) } else { (now, 1) };
         let response = if asked > MAX_RATE {
-            Some(Response::of(Value::Null, Err(RpcError::new(Code::Slow, format!("at most {MAX_RATE} requests a second")))))
+            Some(Response::of(
+                Value::Null,
+                Err(RpcError::new(Code::Slow, format!("at most {MAX_RATE} requests a second"))),
+            ))
         } else {
             answer(host, line.trim_ascii())
         };

@@ -88,7 +88,8 @@ mod tests {
 
     #[test]
     fn ticks_come_back_as_they_went_in_and_a_torn_tail_is_an_error_not_a_panic() {
-        let pen = Sample { device: DeviceId(3), t_us: 77, device_t_us: None, body: Body::Pen(Pen::default()) };
+        let pen =
+            Sample { device: DeviceId(3), t_us: 77, device_t_us: None, body: Body::Pen(Pen::default()) };
         let hands = Sample { body: Body::Hands(Hands::default()), ..pen };
         let mut bytes = Vec::new();
         append(&mut bytes, 1, &[pen, hands], &[Command::Undo]);

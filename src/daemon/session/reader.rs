@@ -13,7 +13,9 @@ const MAX_START_BYTES: i64 = 8 << 30;
 
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    #[error("{path}: not a session file (expected an SQLite database with application id {APPLICATION_ID:#x})")]
+    #[error(
+        "{path}: not a session file (expected an SQLite database with application id {APPLICATION_ID:#x})"
+    )]
     NotASession { path: String },
     #[error("{path}: written by a newer sculptd (layout {found}, this one reads up to {VERSION})")]
     TooNew { path: String, found: u32 },
@@ -54,23 +56,27 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
             source,
         };
         let row: Option<Vec<u8>> = db
-            .query_row("SELECT value FROM meta WHERE key = ?1 AND length(value) < ?2", (key, MAX_START_BYTES), |r| {
-                r.get(0)
-            })
+            .query_row(
+                "SELECT value FROM meta WHERE key = ?1 AND length(value) < ?2",
+                (key, MAX_START_BYTES),
+                |r| r.get(0),
+            )
             .optional()
             .map_err(|e| damaged(e.into()))?;
         row.ok_or_else(|| damaged("it is missing".into()))
     };
     let decode_error =
         |what, e: postcard::Error| OpenError::Damaged { path: name.clone(), what, source: e.into() };
-    let start: TriMesh =
-        postcard::from_bytes(&meta(META_START)?).map_err(|e| decode_error(META_START, e))?;
+    let start: TriMesh = postcard::from_bytes(&meta(META_START)?).map_err(|e| decode_error(META_START, e))?;
     let count = start.positions.len();
     if start.triangles.iter().flatten().any(|&v| v as usize >= count) {
-        return Err(OpenError::Damaged { path: name, what: META_START, source: "an index is out of range".into() });
+        return Err(OpenError::Damaged {
+            path: name,
+            what: META_START,
+            source: "an index is out of range".into(),
+        });
     }
-    let settings =
-        postcard::from_bytes(&meta(META_SETTINGS)?).map_err(|e| decode_error(META_SETTINGS, e))?;
+    let settings = postcard::from_bytes(&meta(META_SETTINGS)?).map_err(|e| decode_error(META_SETTINGS, e))?;
     let (input, loss) = read_log(&db);
     Ok(Opened { start, settings, input, loss })
 }
@@ -83,7 +89,11 @@ fn read_log(db: &Connection) -> (Vec<TickInput>, Option<String>) {
         while let Some(row) = rows.next()? {
             let (first, last): (i64, i64) = (row.get(0)?, row.get(1)?);
             let (crc, data): (u32, Vec<u8>) = (row.get(2)?, row.get(3)?);
-            let broken = || Some(format!("the input from tick {first} on is damaged (the group of ticks {first} to {last})"));
+            let broken = || {
+                Some(format!(
+                    "the input from tick {first} on is damaged (the group of ticks {first} to {last})"
+                ))
+            };
             if crc32fast::hash(&data) != crc {
                 return Ok(broken());
             }

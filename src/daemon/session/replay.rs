@@ -15,7 +15,12 @@ pub struct Replayed {
 
 /// Steps every tick from the first to the last with input (at most `until`), and on until nothing of a stroke waits. Ticks
 /// without input matter only while a stroke waits for its budget; over the others the world is at rest.
-pub fn replay(opened: &Opened, until: Option<u64>, workers: Workers, job: &Job) -> Result<Replayed, BuildError> {
+pub fn replay(
+    opened: &Opened,
+    until: Option<u64>,
+    workers: Workers,
+    job: &Job,
+) -> Result<Replayed, BuildError> {
     let mesh = Mesh::build(&opened.start, job)?;
     let s = &opened.settings;
     let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes };

@@ -74,13 +74,19 @@ enum Message {
 }
 
 /// Makes a new session file. The mesh is written before this returns.
-pub fn create(path: &Path, start: &TriMesh, settings: &Settings) -> Result<(SessionWriter, WriterThread), CreateError> {
+pub fn create(
+    path: &Path,
+    start: &TriMesh,
+    settings: &Settings,
+) -> Result<(SessionWriter, WriterThread), CreateError> {
     let name = || path.display().to_string();
     let store = |source| CreateError::Store { path: name(), source };
     // Exclusive: a second daemon on the same name must not come second in a race.
-    std::fs::OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| match source.kind() {
-        std::io::ErrorKind::AlreadyExists => CreateError::Exists { path: name() },
-        _ => CreateError::Io { path: name(), source },
+    std::fs::OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| {
+        match source.kind() {
+            std::io::ErrorKind::AlreadyExists => CreateError::Exists { path: name() },
+            _ => CreateError::Io { path: name(), source },
+        }
     })?;
     let db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
@@ -126,8 +132,14 @@ fn start_thread(db: Connection) -> (SessionWriter, WriterThread) {
     }
     let fault = Fault::default();
     let (lost, written) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
-    let mut writing =
-        Writing { db, recycle, fault: fault.clone(), written: written.clone(), groups: Vec::new(), clock: Clock::monotonic() };
+    let mut writing = Writing {
+        db,
+        recycle,
+        fault: fault.clone(),
+        written: written.clone(),
+        groups: Vec::new(),
+        clock: Clock::monotonic(),
+    };
     let thread = std::thread::Builder::new()
         .name("sculptd-journal".into())
         .spawn(move || writing.run(&inbox))
@@ -217,7 +229,9 @@ impl Writing {
             Err(e) if kept > KEPT_BYTES => {
                 // The newest are given up first: a log with a hole cannot be replayed beyond it.
                 self.groups.pop();
-                Some(format!("the session file takes nothing and {kept} bytes wait: input is being lost ({e})"))
+                Some(format!(
+                    "the session file takes nothing and {kept} bytes wait: input is being lost ({e})"
+                ))
             }
             Err(e) => Some(format!("the session file takes nothing, input is kept in memory: {e}")),
         };
@@ -229,8 +243,9 @@ impl Writing {
     fn write(&mut self) -> rusqlite::Result<Option<u64>> {
         let all = self.db.transaction()?;
         {
-            let mut put =
-                all.prepare_cached("INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)")?;
+            let mut put = all.prepare_cached(
+                "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
+            )?;
             for g in &self.groups {
                 put.execute((g.first as i64, g.last as i64, crc32fast::hash(&g.data), &g.data))?;
             }

@@ -104,7 +104,10 @@ pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
 }
 
 /// Writes a file beside its place, syncs it and renames it: whole or not at all.
-pub fn write_beside(path: &Path, fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> std::io::Result<()> {
+pub fn write_beside(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
     let dir = path.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());

@@ -18,24 +18,31 @@ pub fn parse(bytes: &[u8], warnings: &mut Vec<String>) -> Result<PolyMesh, BadMe
             Some("v") => {
                 let values: Vec<f64> = words.map(|w| number(w, n)).collect::<Result<_, _>>()?;
                 let [x, y, z, rest @ ..] = values.as_slice() else {
-                    return Err(BadMesh::line(n, format!("expected three coordinates after 'v', found {}", values.len())));
+                    return Err(BadMesh::line(
+                        n,
+                        format!("expected three coordinates after 'v', found {}", values.len()),
+                    ));
                 };
                 mesh.positions.push(DVec3::new(*x, *y, *z));
                 if let [r, g, b] = rest {
-                    colours.push([*r, *g, *b].map(|c| (c * 255.0).round().clamp(0.0, 255.0) as u8).into_rgba());
+                    colours
+                        .push([*r, *g, *b].map(|c| (c * 255.0).round().clamp(0.0, 255.0) as u8).into_rgba());
                 }
             }
             Some("f") => {
                 face.clear();
                 for w in words {
                     let first = w.split('/').next().unwrap_or("");
-                    let index: i64 = first
-                        .parse()
-                        .map_err(|_| BadMesh::line(n, format!("expected a vertex number, found '{}'", shorten(w))))?;
+                    let index: i64 = first.parse().map_err(|_| {
+                        BadMesh::line(n, format!("expected a vertex number, found '{}'", shorten(w)))
+                    })?;
                     let count = mesh.positions.len() as i64;
                     let at = if index < 0 { count + index } else { index - 1 };
                     if index == 0 || at < 0 || at >= count {
-                        return Err(BadMesh::line(n, format!("vertex {index} is out of range, {count} are defined so far")));
+                        return Err(BadMesh::line(
+                            n,
+                            format!("vertex {index} is out of range, {count} are defined so far"),
+                        ));
                     }
                     face.push(at as u32);
                 }

@@ -56,7 +56,10 @@ fn binary(bytes: &[u8], count: usize, weld: &mut Weld) -> Result<(), BadMesh> {
             };
             let p = DVec3::new(at(0), at(1), at(2));
             if !p.is_finite() {
-                return Err(BadMesh::byte(84 + t * 50 + 12 + k * 12, format!("expected a finite point, found {p}")));
+                return Err(BadMesh::byte(
+                    84 + t * 50 + 12 + k * 12,
+                    format!("expected a finite point, found {p}"),
+                ));
             }
             *corner = weld.vertex(p);
         }
@@ -77,13 +80,19 @@ fn ascii(bytes: &[u8], weld: &mut Weld) -> Result<(), BadMesh> {
             Some("vertex") => {
                 let v: Vec<f64> = words.map(|w| number(w, n)).collect::<Result<_, _>>()?;
                 let [x, y, z] = v[..] else {
-                    return Err(BadMesh::line(n, format!("expected three coordinates after 'vertex', found {}", v.len())));
+                    return Err(BadMesh::line(
+                        n,
+                        format!("expected three coordinates after 'vertex', found {}", v.len()),
+                    ));
                 };
                 face.push(weld.vertex(DVec3::new(x, y, z)));
             }
             Some("endfacet") => {
                 if face.len() != 3 {
-                    return Err(BadMesh::line(n, format!("expected three vertices in a facet, found {}", face.len())));
+                    return Err(BadMesh::line(
+                        n,
+                        format!("expected three vertices in a facet, found {}", face.len()),
+                    ));
                 }
                 weld.mesh.push_face(&face);
                 face.clear();

@@ -71,7 +71,11 @@ fn stl(out: &mut dyn Write, mesh: &PolyMesh) -> io::Result<()> {
 }
 
 fn ply(out: &mut dyn Write, mesh: &PolyMesh) -> io::Result<()> {
-    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment sculptd\nelement vertex {}", mesh.positions.len())?;
+    writeln!(
+        out,
+        "ply\nformat binary_little_endian 1.0\ncomment sculptd\nelement vertex {}",
+        mesh.positions.len()
+    )?;
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
     writeln!(out, "element face {}\nproperty list uchar int vertex_indices\nend_header", mesh.face_count())?;
     for p in &mesh.positions {
