@@ -22,6 +22,16 @@ const MOST_OFFSET: f32 = 0.5;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenConfig {
     pub device: DeviceId,
+    pub scale: PenScale,
+    /// Microseconds of silence that mean "gone"; `None` where the family always says it.
+    pub silence_us: Option<u64>,
+    /// Tilt is always told: upright until it is.
+    pub tilts: bool,
+}
+
+/// What counts mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PenScale {
     /// First and last count of the active area.
     pub min: [i32; 2],
     pub max: [i32; 2],
@@ -30,8 +40,6 @@ pub struct PenConfig {
     pub max_pressure: u32,
     /// 0: unknown or none.
     pub max_distance: u32,
-    /// Microseconds of silence that mean "gone"; `None` where the family always says it.
-    pub silence_us: Option<u64>,
 }
 
 /// One pen on one device.
@@ -50,13 +58,29 @@ pub struct PenState {
 
 impl PenState {
     pub fn new(cfg: PenConfig) -> Self {
-        let pressure = (cfg.max_pressure > 0).then_some(0.0);
-        let pen = Pen { area_mm: cfg.area_mm, pressure, ..Pen::default() };
+        let pressure = (cfg.scale.max_pressure > 0).then_some(0.0);
+        let tilt = cfg.tilts.then_some(Vec2::ZERO);
+        let pen = Pen { area_mm: cfg.scale.area_mm, pressure, tilt, ..Pen::default() };
         PenState { cfg, pen, last_us: 0, fresh: true, offset: 0.0, switch: None }
     }
 
     pub fn in_range(&self) -> bool {
         self.pen.in_range
+    }
+
+    /// A firmware shows only as it speaks whether it says when the pen leaves.
+    pub fn set_silence(&mut self, silence_us: Option<u64>) {
+        self.cfg.silence_us = silence_us;
+    }
+
+    /// Another report of the same device has other ranges; a visit does not go from one to the other.
+    pub fn set_scale(&mut self, scale: PenScale, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        if scale != self.cfg.scale {
+            self.leave(t_us, emit);
+            self.cfg.scale = scale;
+            self.pen.area_mm = scale.area_mm;
+            self.pen.pressure = (scale.max_pressure > 0).then_some(0.0);
+        }
     }
 
     /// When silence will end the visit.
@@ -85,6 +109,10 @@ impl PenState {
         p.distance = None;
         p.pressure = p.pressure.map(|_| 0.0);
         self.emit(t_us, emit);
+        // The next visit may be another pen's.
+        self.pen.tilt = self.pen.tilt.map(|_| Vec2::ZERO);
+        self.pen.twist = self.pen.twist.map(|_| 0.0);
+        self.offset = 0.0;
     }
 
     /// A report of a pen in range.
@@ -122,9 +150,10 @@ impl PenState {
         if let Some(pos) = r.pos {
             p.raw = pos;
             let axis = |i: usize| {
-                let span = (i64::from(self.cfg.max[i]) - i64::from(self.cfg.min[i])).max(1) as f64;
-                let share = (i64::from(pos[i]) - i64::from(self.cfg.min[i])) as f64 / span;
-                (share.clamp(0.0, 1.0) * f64::from(self.cfg.area_mm[i])) as f32
+                let span =
+                    (i64::from(self.cfg.scale.max[i]) - i64::from(self.cfg.scale.min[i])).max(1) as f64;
+                let share = (i64::from(pos[i]) - i64::from(self.cfg.scale.min[i])) as f64 / span;
+                (share.clamp(0.0, 1.0) * f64::from(self.cfg.scale.area_mm[i])) as f32
             };
             p.pos_mm = Vec2::new(axis(0), axis(1));
         }
@@ -138,16 +167,15 @@ impl PenState {
     }
 
     fn press(&mut self, r: &PenReport, entering: bool) {
-        if let (Some(counts), true) = (r.pressure, self.cfg.max_pressure > 0) {
-            let share = (f64::from(counts) / f64::from(self.cfg.max_pressure)).min(1.0) as f32;
+        if let (Some(counts), true) = (r.pressure, self.cfg.scale.max_pressure > 0) {
+            let share = (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
             if entering {
                 self.learn_offset(r, share);
             } else if share < self.offset {
                 self.offset = share;
             }
-            // With the switch open, pressure is leakage.
-            let leaking = self.switch == Some(false) || self.pen.tool == Tool::Mouse;
-            self.pen.pressure = Some(if leaking { 0.0 } else { share });
+            // Pressure is told as it is sensed, also in the air: whether it counts is `tip`'s to say.
+            self.pen.pressure = Some(if self.pen.tool == Tool::Mouse { 0.0 } else { share });
         }
         let felt = self.pen.pressure.map(|p| ((p - self.offset) / (1.0 - self.offset)).max(0.0));
         let spike = self.fresh && felt.is_some_and(|p| p >= 1.0);
@@ -165,7 +193,7 @@ impl PenState {
 
     /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip switch.
     fn learn_offset(&mut self, r: &PenReport, share: f32) {
-        let high = match (r.distance, self.cfg.max_distance) {
+        let high = match (r.distance, self.cfg.scale.max_distance) {
             (Some(d), max) if max > 0 => d * 2 >= max,
             _ => false,
         };

@@ -55,9 +55,9 @@ pub struct Pad {
     pub keys: u8,
     #[serde(default)]
     pub wheels: u8,
-    /// Places on a touch ring; 0 where there is none.
-    #[serde(default)]
-    pub ring: u16,
+    /// Where the pad's report keeps them, for families with several layouts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<PadLayout>,
 }
 
 /// One way in which a model shows itself on the bus.
@@ -66,7 +66,7 @@ pub struct Pad {
 pub struct Id {
     pub vid: u16,
     pub pid: u16,
-    /// Longest input report of the pen's interface in bytes, its id included.
+    /// Longest input report of the pen's interface in bytes, its id included; 0 where the product id alone decides.
     pub length: u16,
     pub parser: Family,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -74,9 +74,9 @@ pub struct Id {
     /// Bytes put before each report by the maker's Windows driver.
     #[serde(default, skip_serializing_if = "is_zero_u8")]
     pub skip: u8,
-    /// USB strings by index that tell models of one id apart: `#` stands for a digit; one of them must match the start.
+    /// USB strings that tell models of one id apart, `INDEX=PATTERN`; one of them must match. See [`StringIs`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub strings: Vec<StringIs>,
+    pub strings: Vec<String>,
     /// Bytes to send before the pen speaks its own protocol, hexadecimal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_feature: Vec<String>,
@@ -89,18 +89,70 @@ pub struct Id {
     pub quirks: Vec<Quirk>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StringIs {
+/// A pattern on one USB string: found anywhere, unless `^` holds it to the start or `$` to the end; `#` is any digit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StringIs<'a> {
     pub index: u8,
-    pub like: String,
+    pub pattern: &'a str,
 }
 
-/// The parsers: a closed set, one file each in `hid/`.
+impl<'a> StringIs<'a> {
+    /// Of `INDEX=PATTERN`.
+    pub fn parse(text: &'a str) -> Option<Self> {
+        let (index, pattern) = text.split_once('=')?;
+        Some(StringIs { index: index.parse().ok()?, pattern })
+    }
+
+    pub fn matches(&self, text: &str) -> bool {
+        let (pattern, start) = self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
+        let (pattern, end) = pattern.strip_suffix('$').map_or((pattern, false), |p| (p, true));
+        let (pattern, text): (Vec<char>, Vec<char>) = (pattern.chars().collect(), text.chars().collect());
+        let fits = |i: usize| {
+            let alike = |(p, t): (&char, &char)| p == t || *p == '#' && t.is_ascii_digit();
+            i + pattern.len() <= text.len()
+                && pattern.iter().zip(&text[i..]).all(alike)
+                && (!start || i == 0)
+                && (!end || i + pattern.len() == text.len())
+        };
+        (0..=text.len()).any(fits)
+    }
+}
+
+/// The parsers: a closed set. What each reads stands in the file of `hid/` that names the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
     WacomIntuosV1,
+    WacomSimple,
+    WacomBambooPad,
+    WacomGraphire,
+    WacomGraphire4,
+    WacomBamboo,
+    WacomGraphireBluetooth,
+    WacomPenPartner,
+    WacomPl,
+    WacomPtu,
+    WacomDtu,
+    WacomDtus,
+    WacomTabletPc,
+    WacomIntuosV2,
+    WacomIntuosV3,
+    WacomOne,
+    UcLogic,
+    XpPenOffset,
+    XpPenGen2,
+    Huion,
+    Floogoo,
+    Veikk,
+    VeikkA15,
+    Acepen,
+    Kye,
+    KyePlain,
+    TenMoons,
+    Plain,
+    Xenx,
+    RobotPen,
+    WoodPad,
     /// From the report descriptor alone.
     Digitiser,
 }
@@ -113,8 +165,25 @@ pub enum Quirk {
     Halved,
     /// Positions count only with the ready bit (first Cintiqs).
     NeedsReady,
+    /// Pens of the first Intuos 4 are noise here (Cintiq 21UX 2).
+    NeedsNewPen,
     /// Height counts up toward the surface.
     HeightInverted,
+    /// Where the family has tilt, this model sends something else.
+    NoTilt,
+}
+
+/// Where Wacom's pads keep their keys, rings and strips.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PadLayout {
+    Intuos3,
+    Intuos4,
+    Intuos5,
+    Cintiq13,
+    Cintiq22,
+    Cintiq24,
+    Dtk,
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -150,6 +219,9 @@ impl Tablet {
             return Err("no [[id]]: the model could never be found".to_owned());
         }
         for id in &self.id {
+            if let Some(bad) = id.strings.iter().find(|s| StringIs::parse(s).is_none()) {
+                return Err(format!("strings: `{bad}`: expected INDEX=PATTERN"));
+            }
             for hex in id.init_feature.iter().chain(&id.init_output) {
                 if hex_bytes(hex).is_none_or(|b| b.is_empty()) {
                     return Err(format!("init report `{hex}`: expected pairs of hexadecimal digits"));
@@ -161,7 +233,18 @@ impl Tablet {
 
     /// The one way this file is written; a test holds every file of the catalogue to it.
     pub fn canonical(&self) -> String {
-        toml::to_string(self).unwrap_or_default()
+        let plain = toml::to_string(self).unwrap_or_default();
+        let mut out = String::with_capacity(plain.len());
+        for line in plain.lines() {
+            // Bus ids are known to everybody in hexadecimal.
+            let id = line.split_once(" = ").filter(|(key, _)| matches!(*key, "vid" | "pid"));
+            match id.and_then(|(key, v)| Some((key, v.parse::<u16>().ok()?))) {
+                Some((key, v)) => out.push_str(&format!("{key} = {v:#06x}")),
+                None => out.push_str(line),
+            }
+            out.push('\n');
+        }
+        out
     }
 }
 
@@ -192,4 +275,38 @@ fn is_zero_u32(v: &u32) -> bool {
 }
 fn is_zero_u8(v: &u8) -> bool {
     *v == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_match_as_written() {
+        let like =
+            |pattern: &str, text: &str| StringIs::parse(&format!("201={pattern}")).unwrap().matches(text);
+        assert!(like("HUION_T173_######$", "HUION_T173_190124"));
+        assert!(!like("HUION_T173_######$", "HUION_T173_19012x"));
+        assert!(like("M508", "xM508y") && like("^$", "") && !like("^$", "a") && like("^420$", "420"));
+        assert!(!like("^420$", "H420") && like("", "anything"));
+        assert_eq!(StringIs::parse("no index"), None);
+    }
+
+    #[test]
+    fn unknown_keys_and_absurd_numbers_are_named() {
+        let good = "name = \"A\"\nsource = \"B\"\n[area]\nwidth_mm = 100.0\nheight_mm = 60.0\nmax_x = 10\nmax_y = 6\n\
+                    [pen]\nmax_pressure = 1023\nbuttons = 2\n[[id]]\nvid = 1\npid = 2\nlength = 8\nparser = \"uc-logic\"\n";
+        assert!(Tablet::parse("t", good).is_ok());
+        for (from, to, expect) in [
+            ("buttons = 2", "buttons = 2\ncolour = 3", "colour"),
+            ("width_mm = 100.0", "width_mm = nan", "width_mm"),
+            ("max_x = 10", "max_x = 0", "max_x"),
+            ("uc-logic", "no-such", "no-such"),
+            ("length = 8", "length = 8\nstrings = [\"x\"]", "INDEX=PATTERN"),
+            ("length = 8", "length = 8\ninit_output = [\"0g\"]", "0g"),
+        ] {
+            let e = Tablet::parse("t.toml", &good.replace(from, to)).unwrap_err().to_string();
+            assert!(e.starts_with("t.toml: ") && e.contains(expect), "{e}");
+        }
+    }
 }

@@ -90,6 +90,9 @@ fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) ->
     let mut rows = Vec::new();
     player.advance(u64::MAX / 4, &mut |sample| rows.extend(row(&sample)));
     let info = player.device();
+    for note in &info.notes {
+        eprintln!("{note}");
+    }
     if let Some(out) = csv {
         let mut text = String::from(HEADER);
         text.push('\n');
@@ -103,9 +106,6 @@ fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) ->
     let area = info.area_mm;
     let decoded =
         Decoded { device: info.name.clone(), area_mm: [area.x, area.y], notes: info.notes.clone(), rows };
-    for note in &decoded.notes {
-        eprintln!("{note}");
-    }
     if csv.is_some() && !json {
         return Ok(());
     }

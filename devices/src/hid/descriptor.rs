@@ -329,7 +329,7 @@ impl PenLayout {
     }
 }
 
-/// Old tablets describe their pen as a mouse with absolute axes and a pressure: button 1 is the tip.
+/// Old tablets describe their pen as a mouse with absolute axes and a pressure or an in-range bit: button 1 is the tip.
 #[derive(Debug, Default)]
 struct Placed(PenLayout);
 
@@ -347,6 +347,6 @@ impl Placed {
     }
 
     fn is_pen(&self) -> bool {
-        self.0.x.is_some() && self.0.pressure.is_some()
+        self.0.x.is_some() && (self.0.pressure.is_some() || self.0.in_range.is_some())
     }
 }

@@ -10,5 +10,14 @@
 pub mod decoder;
 pub mod descriptor;
 pub mod digitiser;
+pub mod family;
+pub mod makers;
+pub mod pad_state;
 pub mod report;
+pub mod uclogic;
+pub mod wacom_bamboo;
+pub mod wacom_display;
+pub mod wacom_graphire;
 pub mod wacom_intuos;
+pub mod wacom_pad;
+pub mod wacom_pro;

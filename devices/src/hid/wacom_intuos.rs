@@ -1,7 +1,7 @@
 //! Wacom's 10-byte reports, ids 02 and 10: Intuos 1 to 5, Intuos Pro, most Cintiqs. Layout and tool numbers from Linux
 //! `wacom_wac.c` (`wacom_intuos_general`, `wacom_intuos_inout`); agrees with its decode of real recordings.
 
-use super::report::{Parsed, PenReport, be16_at, byte};
+use super::report::{Parsed, PenReport, be16_at};
 use crate::Tool;
 
 /// What one tablet of the family does differently.
@@ -15,6 +15,8 @@ pub struct Traits {
     pub needs_ready: bool,
     /// Intuos HT2: height counts up toward the surface, no tilt.
     pub height_inverted: bool,
+    /// Cintiq 21UX 2: pens of the first Intuos 4 do not work on it, and their reports are noise.
+    pub needs_new_pen: bool,
     /// Largest height.
     pub max_distance: u32,
 }
@@ -25,18 +27,22 @@ pub struct Memory {
     /// A first-generation Intuos follows two tools at once (bit 0 of byte 1 tells them apart); one is enough for a hand.
     tool: Option<Tool>,
     reporting: bool,
+    noise: bool,
 }
 
 pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
     if b.len() < 10 {
         return if matches!(b.first(), Some(0x02 | 0x10)) { Parsed::Broken } else { Parsed::Nothing };
     }
-    if !matches!(b[0], 0x02 | 0x10) {
+    // 05 and 06 answer the question which tool is near.
+    if !matches!(b[0], 0x02 | 0x10 | 0x05 | 0x06) {
         return Parsed::Nothing;
     }
     let flags = b[1];
     if flags & 0xfc == 0xc0 {
-        memory.tool = Some(tool_named(tool_id(b)));
+        let id = tool_id(b);
+        memory.tool = Some(tool_named(id));
+        memory.noise = traits.needs_new_pen && id & 0x10000 == 0;
         return Parsed::Nothing;
     }
     if flags & 0xfe == 0x20 {
@@ -56,11 +62,12 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
         memory.reporting = false;
         return if known.is_some() { Parsed::Away } else { Parsed::Nothing };
     }
-    let Some(tool) = memory.tool else {
-        // Without its name an eraser would draw; the name comes with the next entry, or from the reader's query.
-        return Parsed::Nothing;
-    };
-    if traits.needs_ready && flags & 0x40 == 0 {
+    // A puck's packets are its own. A pen's are an eraser's too: without its name an eraser would draw, so the name is
+    // waited for; it comes with the next entry, or answers the reader's query.
+    let puck = matches!(flags >> 1 & 0x0f, 4 | 6 | 8).then_some(Tool::Mouse);
+    let Some(tool) = memory.tool.or(puck) else { return Parsed::Nothing };
+    memory.tool = Some(tool);
+    if matches!(b[0], 0x05 | 0x06) || memory.noise || traits.needs_ready && flags & 0x40 == 0 {
         return Parsed::Nothing;
     }
     memory.reporting = true;
@@ -88,17 +95,23 @@ fn placed(b: &[u8], tool: Tool, traits: &Traits) -> PenReport {
             let p = u32::from(b[6]) << 3 | u32::from(b[7] & 0xc0) >> 5 | u32::from(b[1] & 1);
             pen.pressure = Some(if traits.halved_pressure { p >> 1 } else { p });
             if !traits.height_inverted {
-                let tx = (u32::from(b[7]) << 1 & 0x7e) | u32::from(b[8]) >> 7;
-                pen.tilt = Some([tx as f32 - 64.0, f32::from(b[8] & 0x7f) - 64.0]);
+                pen.tilt = Some(tilt(b));
             }
             pen.buttons = Some(u32::from(b[1] >> 1 & 3));
         }
         5 if !traits.halved && tool != Tool::Mouse => pen.twist = Some(twist(b)),
         6 => pen.buttons = Some(u32::from(b[6] & 0x1f)),
-        8 => pen.buttons = Some(u32::from(b[8] & 0x1c) >> 2 | u32::from(byte(b, 8) & 0x03) << 3),
+        8 => pen.buttons = Some(u32::from(b[8] >> 2 & 7)),
+        // Second packet of an airbrush.
+        10 => pen.tilt = Some(tilt(b)),
         _ => {}
     }
     pen
+}
+
+fn tilt(b: &[u8]) -> [f32; 2] {
+    let x = (u32::from(b[7]) << 1 & 0x7e) | u32::from(b[8]) >> 7;
+    [x as f32 - 64.0, f32::from(b[8] & 0x7f) - 64.0]
 }
 
 /// Marker-pen rotation, 1800 steps a turn.

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::{HidRecording, RecordingError};
-use crate::catalogue::{Catalogue, Identification};
+use crate::catalogue::{Catalogue, Found, Identification};
 use crate::hid::decoder::Decoder;
-use crate::sample::{DeviceId, Sample};
+use crate::sample::{Body, DeviceId, Sample};
 
 use super::player::{DeviceInfo, DeviceKind};
 
@@ -35,10 +35,8 @@ impl PenPlayer {
                     continue;
                 }
                 Identification::Ambiguous(many) => {
-                    let names: Vec<&str> = many.iter().map(|f| f.tablet.name.as_str()).collect();
-                    notes.push(format!("{label} may be {}", names.join(" or ")));
-                    decoders.push(None);
-                    continue;
+                    let reports = recording.reports.iter().filter(|r| r.interface == i);
+                    choose(many, reports.map(|r| r.bytes.as_slice()), &who.descriptor)
                 }
             };
             notes.push(format!("{label}: {}", found.in_words()));
@@ -85,4 +83,28 @@ impl PenPlayer {
     pub(super) fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.decoders.iter_mut().flatten().for_each(|d| d.leave(t_us, emit));
     }
+}
+
+/// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note: it is a choice, not knowledge.
+fn choose<'a>(mut many: Vec<Found>, reports: impl Iterator<Item = &'a [u8]>, descriptor: &[u8]) -> Found {
+    let count = many.len();
+    many.sort_by(|a, b| area(a).cmp(&area(b)).then_with(|| a.tablet.name.cmp(&b.tablet.name)));
+    let mut reach = [0i32; 2];
+    let mut decoder = Decoder::new(&many[count - 1], descriptor, DeviceId(0));
+    for (i, report) in reports.enumerate() {
+        decoder.feed(report, i as u64, &mut |s| {
+            if let Body::Pen(p) = s.body {
+                reach = [reach[0].max(p.raw[0]), reach[1].max(p.raw[1])];
+            }
+        });
+    }
+    let holds = |f: &Found| f.tablet.area.max_x >= reach[0] && f.tablet.area.max_y >= reach[1];
+    let at = many.iter().position(holds).unwrap_or(count - 1);
+    let mut chosen = many.swap_remove(at);
+    chosen.note = Some(format!("one of {count} models alike, chosen by the range of what was sent"));
+    chosen
+}
+
+fn area(f: &Found) -> i64 {
+    i64::from(f.tablet.area.max_x) * i64::from(f.tablet.area.max_y)
 }

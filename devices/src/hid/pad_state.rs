@@ -1,0 +1,47 @@
+//! The pad's complete state, from reports that say a part of it.
+
+use super::report::PadReport;
+use crate::sample::{Body, DeviceId, Pad, Sample};
+
+/// One pad on one device. A sample is made only when something changed: most reports repeat the last.
+#[derive(Debug, Clone)]
+pub struct PadState {
+    device: DeviceId,
+    pad: Pad,
+}
+
+impl PadState {
+    pub fn new(device: DeviceId) -> Self {
+        PadState { device, pad: Pad::default() }
+    }
+
+    pub fn report(&mut self, r: &PadReport, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        let mut next = self.pad;
+        if let Some(keys) = r.keys {
+            next.keys = keys;
+        }
+        if let Some((wheel, steps)) = r.turned
+            && let Some(count) = next.wheels.get_mut(usize::from(wheel))
+        {
+            *count = count.saturating_add(steps);
+        }
+        if let Some((strip, place)) = r.strip
+            && let Some(slot) = next.strips.get_mut(usize::from(strip))
+        {
+            *slot = place.filter(|p| p.is_finite()).map(|p| p.clamp(0.0, 1.0));
+        }
+        self.set(next, t_us, emit);
+    }
+
+    /// The device went: every key is let go.
+    pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.set(Pad { wheels: self.pad.wheels, ..Pad::default() }, t_us, emit);
+    }
+
+    fn set(&mut self, next: Pad, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        if next != self.pad {
+            self.pad = next;
+            emit(Sample { device: self.device, t_us, device_t_us: None, body: Body::Pad(next) });
+        }
+    }
+}
