@@ -3,4 +3,5 @@
 
 pub mod boolean;
 pub mod cancel;
+pub mod thickness;
 pub mod tree;

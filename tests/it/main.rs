@@ -4,6 +4,7 @@ mod tidy;
 
 use std::path::PathBuf;
 
+mod thickness;
 mod thickness_shapes;
 mod tree;
 
