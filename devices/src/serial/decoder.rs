@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{Facts, Layout};
 use crate::hid::report::Parsed;
-use crate::pen_state::{PenConfig, PenState};
+use crate::pen_state::{PenConfig, PenScale, PenState};
 use crate::sample::{DeviceId, Sample};
 
 /// Longest packet of any protocol (two fingers over ISDV4).
@@ -45,12 +45,15 @@ impl Decoder {
     pub fn new(facts: &Facts, device: DeviceId) -> Self {
         let pen = PenState::new(PenConfig {
             device,
-            min: [0; 2],
-            max: facts.max,
-            area_mm: facts.area_mm,
-            max_pressure: facts.max_pressure,
-            max_distance: 0,
+            scale: PenScale {
+                min: [0; 2],
+                max: facts.max,
+                area_mm: facts.area_mm,
+                max_pressure: facts.max_pressure,
+                max_distance: 0,
+            },
             silence_us: Some(SILENCE_US),
+            tilts: false,
         });
         Decoder {
             layout: facts.layout.clone(),
