@@ -300,12 +300,12 @@ impl Clay<'_> {
         })
     }
 
-    fn one_dab(&mut self, hit: &Hit, radius: f32, strength: f32) {
+    fn one_dab(&mut self, hit: &Hit, radius: f32, strength: f32, inverted: bool) {
         self.mesh.begin_step();
         let reach = Reach::Sphere { centre: hit.position, radius };
         let moved = match self.brush.kind {
             BrushKind::Gaussian => {
-                let height = strength * radius * if self.brush.negative { -1.0 } else { 1.0 };
+                let height = strength * radius * if self.brush.negative != inverted { -1.0 } else { 1.0 };
                 let kernel = Gaussian::new(hit.position, radius, hit.normal, height);
                 self.mesh.dab(&reach, &kernel, self.workers)
             }
@@ -349,13 +349,13 @@ impl Surface for Clay<'_> {
         let ray = self.camera.ray(at.view);
         for mirror in self.mirrors() {
             if mirror == Vec3::ONE {
-                self.one_dab(hit, radius, strength);
+                self.one_dab(hit, radius, strength, at.inverted);
                 continue;
             }
             // The same view from the mirrored eye: on a symmetric work it lands on the mirrored point exactly.
             let origin = self.middle + (ray.origin - self.middle) * mirror;
             if let Some(image) = self.mesh.pick(Ray { origin, dir: ray.dir * mirror }) {
-                self.one_dab(&image, radius, strength);
+                self.one_dab(&image, radius, strength, at.inverted);
             }
         }
         if self.left == 0 { Flow::Pause } else { Flow::Go }

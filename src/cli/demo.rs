@@ -1,10 +1,102 @@
-//! `sculptd demo`: the main job with no hardware.
+//! `sculptd demo`: the main job with no hardware. Simulated devices perform a journal; their bytes go through the real
+//! parsers, the real channel and the real loop. Headless, it ends by itself with a summary and an exported mesh.
 
-use super::Outcome;
+use std::path::PathBuf;
 
-#[derive(Debug, clap::Args)]
-pub struct DemoArgs {}
+use super::run::{self, seconds};
+use super::{Fail, Outcome};
+use crate::config::Config;
+use crate::daemon::stepped::{Pace, Stepped, SteppedOptions, summary};
+use crate::daemon::{ghost, rig};
+use crate::devices::{Clock, queue};
+use crate::world::World;
 
-pub fn run(_: &DemoArgs, _: bool) -> Outcome {
-    Ok(())
+#[derive(Debug, Clone, clap::Args)]
+pub struct DemoArgs {
+    /// No window, even where there is a display.
+    #[arg(long)]
+    pub headless: bool,
+    /// End after this many seconds of the loop's time.
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    pub limit_s: Option<f64>,
+    /// Where the finished mesh goes; the name's ending says the format.
+    #[arg(long, value_name = "FILE", default_value = "demo.stl")]
+    pub export: PathBuf,
+    /// Sculpt this mesh instead of the ball.
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// How fast the headless demo runs; the hash is the same.
+    #[arg(long, value_enum, default_value_t)]
+    pub pace: Pace,
+}
+
+pub fn run(args: &DemoArgs, json: bool) -> Outcome {
+    crate::mesh::io::writable_format(&args.export).map_err(|e| Fail::Usage(e.to_string()))?;
+    headless(args, json)
+}
+
+fn headless(args: &DemoArgs, json: bool) -> Outcome {
+    let config = Config::default();
+    let loaded = run::load_work(args.mesh.as_deref())?;
+    let mut world = rig::world(loaded.mesh, &config);
+    let clock = Clock::manual();
+    let (factory, mut receiver) = queue::channel(config.channel.capacity);
+    let (mut feeds, adaptors) = ghost::stepped(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
+    let rate_hz = config.r#loop.rate_hz;
+    let options = SteppedOptions {
+        rate_hz,
+        pace: args.pace,
+        max_ticks: args.limit_s.map(|s| (s * f64::from(rate_hz)).ceil() as u64),
+        drain_per_tick: config.channel.drain_per_tick,
+        verify: false,
+    };
+    let total = options.max_ticks.unwrap_or(u64::from(rate_hz) * 20);
+    let mut progress = Progress::new(total, json);
+    let stepped = Stepped {
+        world: &mut world,
+        feeds: &mut feeds,
+        receiver: &mut receiver,
+        clock: &clock,
+        observer: &mut |tick, _, world| progress.tick(tick, world),
+        script: &[],
+    };
+    let figures = stepped.run(&options).map_err(|e| Fail::Check(e.to_string()))?;
+    progress.bar.finish_and_clear();
+    drop(adaptors);
+    let export = run::export(Some(&args.export), &world)?;
+    run::report(&summary(&figures, &world, &receiver, export), None, json)
+}
+
+/// The live line: on a terminal a bar, else a line every five seconds; with `--json` nothing.
+struct Progress {
+    bar: indicatif::ProgressBar,
+    plain: bool,
+}
+
+impl Progress {
+    fn new(total: u64, json: bool) -> Self {
+        let bar = if json { indicatif::ProgressBar::hidden() } else { indicatif::ProgressBar::new(total) };
+        let style = indicatif::ProgressStyle::with_template("{bar:30} {pos:>5}/{len} ticks  {msg}");
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        Progress { plain: bar.is_hidden() && !json, bar }
+    }
+
+    fn tick(&mut self, tick: u64, world: &World) {
+        if tick % 12 != 0 {
+            return;
+        }
+        let who: Vec<&str> =
+            [(world.pens().next().is_some(), "pen"), (world.hands().is_some_and(|h| h.count > 0), "hand")]
+                .iter()
+                .filter_map(|(on, name)| on.then_some(*name))
+                .collect();
+        let message = format!("{}  {} steps to undo", who.join(" and "), world.mesh().undo_steps());
+        self.bar.set_position(tick);
+        self.bar.set_message(message.clone());
+        if self.plain && tick % 600 == 0 {
+            eprintln!("tick {tick}: {message}");
+        }
+    }
 }

@@ -8,9 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::{Config, ConfigError, Resolved};
+use crate::daemon::control::{Host, Server, default_path};
 use crate::daemon::rig::{self, Area, Loaded, RecordingFeed, RigError};
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
-use crate::daemon::{Summary, live::Live};
+use crate::daemon::{Summary, adaptors, live::Live};
 use crate::devices::catalogue::Catalogue;
 use crate::devices::recording::{Player, RecordingError};
 use crate::devices::{Clock, DeviceId, queue};
@@ -168,7 +169,11 @@ fn run_stepped(
 fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, Fail> {
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(config.channel.capacity);
-    let _ = &factory;
+    let adaptors = adaptors::start(&config.devices, &clock, &factory);
+    for line in adaptors.describe() {
+        eprintln!("sculptd: {line}");
+    }
+    eprintln!("sculptd: sculpting; control socket {}; end with Ctrl-C", default_path().display());
     let world = rig::world(loaded.mesh, config);
     let live =
         Live::start(world, receiver, clock.clone(), config.r#loop, config.channel.drain_per_tick, None)
@@ -176,10 +181,14 @@ fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, 
     let stop = stop_signal();
     let until = args.limit_s.map(|s| (s * 1e6) as u64);
     let (_keep, tick) = crossbeam_channel::bounded::<()>(1);
+    let host =
+        Host { commands: live.commands.clone(), published: live.published.clone(), stop: stop.clone() };
+    let _server = Server::start(&default_path(), host).map_err(|e| Fail::Permission(e.to_string()))?;
     while live.is_running() && !stop.load(Relaxed) && until.is_none_or(|u| clock.now_us() < u) {
         // Nothing is ever sent: this is a wait that a test can shorten, not a poll of a resource.
         let _ = tick.recv_timeout(std::time::Duration::from_millis(20));
     }
+    drop(adaptors);
     finish_live(live, args.export.as_deref())
 }
 

@@ -1,1 +1,71 @@
-//! Starting what the configuration asks for.
+//! Starting what the configuration asks for: one thread a device, each with its own sender.
+
+use crate::config::DevicesConfig;
+use crate::devices::queue::SenderFactory;
+use crate::devices::{Clock, DeviceId, leap, serial};
+
+/// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial ports from 100, the
+/// tracker 200, recordings from 300, the window's own pointer 400.
+pub const SERIAL_IDS: u16 = 100;
+pub const TRACKER_ID: DeviceId = DeviceId(200);
+pub const RECORDING_IDS: u16 = 300;
+pub const POINTER_ID: DeviceId = DeviceId(400);
+
+/// Running adaptors; they stop when this is dropped.
+#[derive(Debug, Default)]
+pub struct Adaptors {
+    serial: Vec<(String, serial::Handle)>,
+    leap: Option<leap::Handle>,
+    failed: Vec<String>,
+}
+
+/// Starts the adaptors. One that cannot be started does not hold up the others: it is told by [`Adaptors::describe`].
+pub fn start(config: &DevicesConfig, clock: &Clock, factory: &SenderFactory) -> Adaptors {
+    let mut all = Adaptors::default();
+    for (i, port) in config.serial.iter().enumerate() {
+        let port = port.display().to_string();
+        let settings = serial::Config {
+            port: Some(port.clone()),
+            device: DeviceId(SERIAL_IDS + i as u16),
+            ..Default::default()
+        };
+        match serial::start(settings, clock.clone(), factory.sender()) {
+            Ok(handle) => all.serial.push((port, handle)),
+            Err(e) => all.failed.push(format!("serial pen on {port}: {e}")),
+        }
+    }
+    if !config.leap.is_empty() {
+        let settings = leap::Config { url: config.leap.clone(), device: TRACKER_ID, ..Default::default() };
+        match leap::start(settings, clock.clone(), factory.sender()) {
+            Ok(handle) => all.leap = Some(handle),
+            Err(e) => all.failed.push(format!("hand tracking at {}: {e}", config.leap)),
+        }
+    }
+    all
+}
+
+impl Adaptors {
+    /// One line a device: what it is, how it stands, what is wrong.
+    pub fn describe(&self) -> Vec<String> {
+        let mut lines = self.failed.clone();
+        for (port, handle) in &self.serial {
+            let s = handle.status();
+            let state = match (&s.model, s.connected) {
+                (Some(model), true) => model.clone(),
+                (None, true) => "connected".into(),
+                _ => s.last_error.unwrap_or_else(|| "looking for it".into()),
+            };
+            lines.push(format!("serial pen on {port}: {state}"));
+        }
+        if let Some(handle) = &self.leap {
+            let s = handle.status();
+            let state = if s.connected {
+                format!("connected, {:.0} frames a second", s.rate)
+            } else {
+                s.last_error.unwrap_or_else(|| "looking for it".into())
+            };
+            lines.push(format!("hand tracking: {state}"));
+        }
+        lines
+    }
+}

@@ -4,6 +4,7 @@ pub mod adaptors;
 #[cfg(unix)]
 pub mod control;
 pub mod figures;
+pub mod ghost;
 pub mod live;
 pub mod pacer;
 pub mod published;

@@ -22,6 +22,8 @@ pub struct PenPoint {
     pub pressure: f32,
     /// Radians, as in [`crate::devices::Pen`].
     pub tilt: Option<Vec2>,
+    /// The other end of the pen: what the brush does, the other way round.
+    pub inverted: bool,
 }
 
 impl PenPoint {
@@ -33,6 +35,7 @@ impl PenPoint {
                 (Some(a), Some(b)) => Some(a.lerp(b, t)),
                 (a, b) => b.or(a),
             },
+            inverted: to.inverted,
         }
     }
 }
@@ -270,7 +273,7 @@ mod tests {
     }
 
     fn point(x: f32) -> PenPoint {
-        PenPoint { view: Vec2::new(x, 0.5), pressure: 1.0, tilt: None }
+        PenPoint { view: Vec2::new(x, 0.5), pressure: 1.0, tilt: None, inverted: false }
     }
 
     fn widest(dabs: &[Vec3]) -> f32 {

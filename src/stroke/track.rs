@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use glam::Vec2;
 
 use super::spacer::{Flow, PenPoint, Spacer, Surface};
-use crate::devices::Pen;
+use crate::devices::{Pen, Tool};
 
 /// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears; beyond that the newest
 /// motion replaces the one before it (the path is cut short between two points, never broken).
@@ -69,6 +69,7 @@ impl PenTrack {
             view: (pen.pos_mm / area).clamp(Vec2::splat(-1.0), Vec2::splat(2.0)),
             pressure: pen.pressure.unwrap_or(1.0),
             tilt: pen.tilt,
+            inverted: pen.tool == Tool::Eraser,
         };
         self.seen = pen.in_range.then_some(at);
         match (self.down, pen.tip && pen.in_range) {
