@@ -53,7 +53,7 @@ impl Decoder {
                 max_distance: 0,
             },
             silence_us: Some(SILENCE_US),
-            tilts: false,
+            tilts: facts.layout.tilts(),
         });
         Decoder {
             layout: facts.layout.clone(),

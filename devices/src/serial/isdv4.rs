@@ -99,6 +99,11 @@ impl Layout {
         Layout { query, touch, fingers, visit: Visit::Nothing }
     }
 
+    /// Both maxima must be stated.
+    pub fn tilts(&self) -> bool {
+        self.query.max_tilt.iter().all(|t| *t > 0)
+    }
+
     pub fn length(&self, first: u8) -> usize {
         match (first & 0x40 != 0, first & 0x10 != 0) {
             (_, true) => self.touch.map_or(PEN_LENGTH, |t| t.length()),
@@ -152,7 +157,7 @@ impl Layout {
     /// sensor leans further than 64 degrees from end to end; a greater one is the whole span.
     fn tilt(&self, b: &[u8]) -> Option<[f32; 2]> {
         let [x, y] = self.query.max_tilt;
-        if x == 0 || y == 0 {
+        if !self.tilts() {
             return None;
         }
         let one = |i: usize, max: u32| {

@@ -69,6 +69,15 @@ impl Layout {
         }
     }
 
+    fn tilts(&self) -> bool {
+        match self {
+            Layout::Isdv4(l) => l.tilts(),
+            Layout::WacomIv(l) => l.tilt,
+            Layout::WacomV(_) => true,
+            Layout::SummaMm => false,
+        }
+    }
+
     /// Bytes of a packet that begins with `first`.
     fn length(&self, first: u8) -> usize {
         match self {

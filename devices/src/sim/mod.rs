@@ -9,6 +9,7 @@ pub mod hand;
 pub mod journal;
 pub mod pen;
 pub mod serial;
+pub mod tablet;
 pub mod tracker;
 
 pub use faults::Faults;
@@ -16,4 +17,5 @@ pub use hand::{HandKey, HandScript};
 pub use journal::{Journal, journal};
 pub use pen::{PenPose, PenScript, Shape, Stroke};
 pub use serial::{SerialPen, SerialPenConfig};
+pub use tablet::{Tablet, TabletConfig, TabletEnd};
 pub use tracker::{Tracker, TrackerConfig};

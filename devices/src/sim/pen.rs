@@ -96,6 +96,25 @@ impl PenScript {
         PenScript { strokes: kept }
     }
 
+    /// The same on a surface of another size: as large as fits, in its middle.
+    pub fn fitted(&self, from_mm: Vec2, to_mm: Vec2) -> Self {
+        let k = (to_mm / from_mm).min_element();
+        let at = |p: Vec2| to_mm * 0.5 + (p - from_mm * 0.5) * k;
+        let mut out = self.clone();
+        for s in &mut out.strokes {
+            s.shape = match s.shape {
+                Shape::Line(a, b) => Shape::Line(at(a), at(b)),
+                Shape::Turn { centre, radius, angle } => {
+                    Shape::Turn { centre: at(centre), radius: radius.map(|r| r * k), angle }
+                }
+                Shape::Wave { from, to, swing, times } => {
+                    Shape::Wave { from: at(from), to: at(to), swing: swing * k, times }
+                }
+            };
+        }
+        out
+    }
+
     pub fn strokes(&self) -> &[Stroke] {
         &self.strokes
     }

@@ -1,0 +1,109 @@
+//! A dedicated thread that reads one interface. The kernel keeps the oldest 63 reports of a stalled reader and drops the
+//! newest, a pen-up among them: so nothing else is done here, ever.
+
+use std::io;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde::Serialize;
+
+use super::decoder::Decoder;
+use super::transport::Transport;
+use crate::Clock;
+use crate::catalogue::Found;
+use crate::lifeline::{self, Leash, Lifeline};
+use crate::queue::Sender;
+use crate::sample::{DeviceId, Sample};
+
+/// How long one read waits: so often is silence looked at, and what the channel did not take offered again.
+const READ_MS: i32 = 10;
+/// Longest report; hidraw's own limit is 4096.
+const MAX_REPORT: usize = 4096;
+
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Status {
+    pub connected: bool,
+    pub reports: u64,
+    pub broken: u64,
+    pub ignored: u64,
+    pub samples: u64,
+    pub last_error: Option<String>,
+}
+
+/// A running reader; dropping it ends its thread.
+#[derive(Debug)]
+pub struct Handle {
+    status: Arc<Mutex<Status>>,
+    _thread: Lifeline,
+}
+
+impl Handle {
+    pub fn status(&self) -> Status {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Reads an interface that was opened and identified, until it goes or the handle is dropped.
+///
+/// # Errors
+/// Only if no thread can be started.
+pub fn start(
+    transport: Box<dyn Transport>,
+    found: &Found,
+    descriptor: &[u8],
+    device: DeviceId,
+    clock: Clock,
+    sender: Sender,
+) -> io::Result<Handle> {
+    let status = Arc::new(Mutex::new(Status { connected: true, ..Status::default() }));
+    let shared = status.clone();
+    let decoder = Decoder::new(found, descriptor, device);
+    let thread = lifeline::spawn("hid-pen", move |leash| {
+        let mut sender = sender;
+        sender.stop_when(leash.flag());
+        Reader { transport, decoder, clock, sender, status: shared }.run(&leash);
+    })?;
+    Ok(Handle { status, _thread: thread })
+}
+
+struct Reader {
+    transport: Box<dyn Transport>,
+    decoder: Decoder,
+    clock: Clock,
+    sender: Sender,
+    status: Arc<Mutex<Status>>,
+}
+
+impl Reader {
+    fn run(&mut self, leash: &Leash) {
+        let (mut buffer, mut out) = (vec![0; MAX_REPORT], Vec::with_capacity(16));
+        let mut error = None;
+        while !leash.stopped() && error.is_none() {
+            match self.transport.read(&mut buffer, READ_MS) {
+                Ok(0) => {
+                    self.decoder.tick(self.clock.now_us(), &mut |s| out.push(s));
+                    self.sender.flush();
+                }
+                Ok(n) => self.decoder.feed(&buffer[..n], self.clock.now_us(), &mut |s| out.push(s)),
+                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+                Err(e) => error = Some(e.to_string()),
+            }
+            self.send(&mut out);
+        }
+        self.decoder.leave(self.clock.now_us(), &mut |s| out.push(s));
+        self.send(&mut out);
+        let mut status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
+        status.connected = false;
+        status.last_error = error;
+    }
+
+    fn send(&mut self, out: &mut Vec<Sample>) {
+        let n = out.len() as u64;
+        for sample in out.drain(..) {
+            self.sender.push(sample);
+        }
+        let counts = self.decoder.counts;
+        let mut status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
+        (status.reports, status.broken, status.ignored) = (counts.reports, counts.broken, counts.ignored);
+        status.samples += n;
+    }
+}

@@ -1,0 +1,112 @@
+use std::time::Duration;
+
+use crate::Clock;
+use crate::catalogue::{Catalogue, Found, Identification};
+use crate::hid::reader;
+use crate::queue::{Receiver, channel};
+use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
+use crate::sim::{Faults, PenScript, Tablet, TabletConfig, journal};
+
+const SOON: Duration = Duration::from_secs(5);
+
+struct Rig {
+    tablet: Tablet,
+    handle: reader::Handle,
+    rx: Receiver,
+    clock: Clock,
+    got: Vec<Sample>,
+}
+
+fn rig(found: &Found, config: TabletConfig) -> Rig {
+    let (tablet, end) = Tablet::new(found, script(found), config).unwrap();
+    let (factory, rx) = channel(4096);
+    let clock = Clock::manual();
+    let handle =
+        reader::start(Box::new(end), found, &[], DeviceId(1), clock.clone(), factory.sender()).unwrap();
+    Rig { tablet, handle, rx, clock, got: Vec::new() }
+}
+
+fn script(found: &Found) -> PenScript {
+    let (journal, a) = (journal(), found.tablet.area);
+    journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32))
+}
+
+impl Rig {
+    fn step(&mut self, us: u64) {
+        self.clock.set_us(us);
+        for _ in 0..self.tablet.advance(us) {
+            self.got.push(self.rx.next_within(SOON).expect("the promised sample"));
+        }
+    }
+}
+
+fn pen(s: &Sample) -> Pen {
+    let Body::Pen(p) = s.body else { panic!("{s:?}") };
+    p
+}
+
+fn found(name: &str) -> Found {
+    let catalogue = Catalogue::builtin().unwrap();
+    let who = super::identity(&catalogue, name).unwrap();
+    match catalogue.identify(&who) {
+        Identification::Identified(found) => found,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+#[test]
+fn the_journal_comes_out_as_it_went_in_and_twice_the_same() {
+    let run = || {
+        let mut rig = rig(&found("Wacom PTK-440"), TabletConfig::default());
+        (0..1200).for_each(|i| rig.step(i * 8_000));
+        assert_eq!(rig.rx.waiting(), 0);
+        let status = rig.handle.status();
+        assert_eq!((status.broken, status.samples), (0, rig.got.len() as u64), "{status:?}");
+        rig.got
+    };
+    let got = run();
+    assert_eq!(got, run(), "the same bits");
+    let script = script(&found("Wacom PTK-440"));
+    let (mut worst, mut contacts, mut erased) = (0.0f32, 0, 0);
+    for s in &got {
+        let p = pen(s);
+        if !p.in_range {
+            continue;
+        }
+        contacts += usize::from(p.tip);
+        erased += usize::from(p.tip && p.tool == Tool::Eraser);
+        let near = (0..=8).map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
+        worst = worst.max(near.fold(f32::INFINITY, f32::min));
+    }
+    assert!(worst < 0.5 && contacts > 700 && erased > 50, "{worst} {contacts} {erased}");
+    let drawn = got.iter().map(pen).find(|p| p.tip && p.pressure > Some(0.6)).unwrap();
+    assert!(drawn.tilt.unwrap().distance(glam::vec2(0.3, 0.2)) < 0.02, "{drawn:?}");
+}
+
+#[test]
+fn an_unplug_ends_the_visit_and_a_bad_line_no_more_than_that() {
+    let faults = Faults {
+        seed: 2,
+        drop: 0.05,
+        duplicate: 0.05,
+        reorder: 0.05,
+        tear: 0.05,
+        stall: 0.005,
+        ..Faults::default()
+    };
+    let mut rig =
+        rig(&found("Wacom PTK-440"), TabletConfig { faults, keeps: 4096, ..TabletConfig::default() });
+    (0..110).for_each(|i| rig.step(i * 10_000));
+    let status = rig.handle.status();
+    assert!(status.broken > 0, "{status:?}");
+    assert!(rig.got.iter().map(pen).all(|p| p.in_range || !p.tip));
+    assert!(pen(rig.got.last().unwrap()).tip);
+    assert_eq!(rig.tablet.unplug(), 1);
+    let gone = pen(&rig.rx.next_within(SOON).unwrap());
+    assert!(!gone.tip && !gone.in_range);
+    assert!(
+        rig.rx.next_within(Duration::from_secs(1)).is_none(),
+        "the reader has ended, and its sender with it"
+    );
+    assert!(!rig.handle.status().connected);
+}
