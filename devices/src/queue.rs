@@ -20,7 +20,7 @@ use serde::Serialize;
 use crate::{DeviceId, Sample};
 
 /// Devices that have counters of their own; ids from here up share the last slot, so that counting never allocates.
-pub const COUNTED_DEVICES: usize = 64;
+pub const COUNTED_DEVICES: usize = 512;
 
 /// Most samples that one sender keeps back while the channel is full. Half of it can be motion (one between two
 /// transitions); 256 transitions are more than ten seconds of a pen tapping as fast as a hand can.

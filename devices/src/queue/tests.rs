@@ -86,9 +86,9 @@ fn a_consumer_that_has_gone_is_counted_apart() {
     drop(rx);
     let mut tx = factory.sender();
     for t in 0..10 {
-        tx.push(pen(70, t, true));
+        tx.push(pen(7000, t, true));
     }
-    let count = stats.of(DeviceId(70));
+    let count = stats.of(DeviceId(7000));
     assert_eq!((count.sent, count.closed, count.on_the_way()), (10, 10, 0));
     assert_eq!(stats.total(), count, "ids beyond the table share its last slot");
 }
