@@ -57,6 +57,7 @@ fn headless(args: &DemoArgs, json: bool) -> Outcome {
         feeds: &mut feeds,
         receiver: &mut receiver,
         clock: &clock,
+        journal: None,
         observer: &mut |tick, _, world| progress.tick(tick, world),
         script: &[],
     };

@@ -9,7 +9,9 @@ use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::{Config, ConfigError, Resolved};
 use crate::daemon::control::{Host, Server, default_path};
-use crate::daemon::rig::{self, Area, Loaded, RecordingFeed, RigError};
+use crate::daemon::live::Journal;
+use crate::daemon::rig::{self, Area, BeginError, Begun, Loaded, RecordingFeed, RigError};
+use crate::daemon::session::writer::WriterThread;
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
 use crate::daemon::{Summary, adaptors, live::Live};
 use crate::devices::catalogue::Catalogue;
@@ -23,6 +25,9 @@ pub struct RunArgs {
     /// The mesh to sculpt (OBJ, STL, PLY, OFF, glTF, 3MF). Without it, a ball.
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
+    /// Record everything into this session file, or go on with it if it exists.
+    #[arg(long, value_name = "FILE")]
+    pub session: Option<PathBuf>,
     /// More settings, laid over the system's and the user's.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -71,16 +76,20 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(path) = &args.export {
         crate::mesh::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }
-    let loaded = load_work(args.mesh.as_deref())?;
+    if args.mesh.is_some() && args.session.as_ref().is_some_and(|s| s.exists()) {
+        let text = "a session that exists brings its own mesh: leave out --mesh, or name another session";
+        return Err(Fail::Usage(text.into()));
+    }
     let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     for dir in &config.devices.tablets {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
     }
     let players = open_players(args, &config, &catalogue)?;
+    let begun = begin(args, &config)?;
     let summary = if players.is_empty() {
-        run_live(args, &config, loaded)?
+        run_live(args, &config, begun)?
     } else {
-        run_stepped(args, &config, loaded, players)?
+        run_stepped(args, &config, begun, players)?
     };
     report(&summary, args.stats.as_deref(), json)
 }
@@ -106,6 +115,25 @@ pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
         eprintln!("sculptd: warning: {warning}");
     }
     Ok(loaded)
+}
+
+fn begin(args: &RunArgs, config: &Config) -> Result<Begun, Fail> {
+    let begun = rig::begin(args.mesh.as_deref(), args.session.as_deref(), config, &Job::default());
+    let begun = begun.map_err(|e| match e {
+        BeginError::Rig(RigError::Read(e)) => Fail::from(e),
+        e => Fail::Input(e.to_string()),
+    })?;
+    for warning in &begun.warnings {
+        eprintln!("sculptd: warning: {warning}");
+    }
+    Ok(begun)
+}
+
+/// Waits for the journal's last group, and says so if the disk did not take it.
+fn close_journal(thread: Option<WriterThread>) {
+    if let Some(fault) = thread.and_then(WriterThread::finish) {
+        eprintln!("sculptd: warning: {fault}");
+    }
 }
 
 /// Opens every recording, and finds the part of the tablet that each one uses.
@@ -135,7 +163,7 @@ fn open_players(
 fn run_stepped(
     args: &RunArgs,
     config: &Config,
-    loaded: Loaded,
+    begun: Begun,
     players: Vec<(Player, Option<Area>)>,
 ) -> Result<Summary, Fail> {
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
@@ -144,7 +172,8 @@ fn run_stepped(
         .map(|(p, area)| Box::new(RecordingFeed::new(p, factory.sender(), area)) as Box<dyn Feed>)
         .collect();
     let clock = Clock::manual();
-    let mut world = rig::world(loaded.mesh, config);
+    let mut world = begun.world;
+    let (mut writer, thread) = begun.journal.unzip();
     let options = SteppedOptions {
         rate_hz: config.r#loop.rate_hz,
         pace: args.pace.unwrap_or(Pace::Fast),
@@ -157,16 +186,19 @@ fn run_stepped(
         feeds: &mut feeds,
         receiver: &mut receiver,
         clock: &clock,
+        journal: writer.as_mut().map(|w| w as &mut dyn Journal),
         observer: &mut |_, _, _| {},
         script: &[],
     };
     let figures = stepped.run(&options).map_err(|e| Fail::Check(e.to_string()))?;
+    drop(writer);
+    close_journal(thread);
     let export = export(args.export.as_deref(), &world)?;
     Ok(summary(&figures, &world, &receiver, export))
 }
 
 /// Waits for devices, until a signal or the time limit.
-fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, Fail> {
+fn run_live(args: &RunArgs, config: &Config, begun: Begun) -> Result<Summary, Fail> {
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(config.channel.capacity);
     let adaptors = adaptors::start(&config.devices, &clock, &factory);
@@ -174,9 +206,10 @@ fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, 
         eprintln!("sculptd: {line}");
     }
     eprintln!("sculptd: sculpting; control socket {}; end with Ctrl-C", default_path().display());
-    let world = rig::world(loaded.mesh, config);
-    let live =
-        Live::start(world, receiver, clock.clone(), config.r#loop, config.channel.drain_per_tick, None)
+    let (writer, thread) = begun.journal.unzip();
+    let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
+    let drain = config.channel.drain_per_tick;
+    let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)
             .map_err(|e| Fail::Permission(e.to_string()))?;
     let stop = stop_signal();
     let until = args.limit_s.map(|s| (s * 1e6) as u64);
@@ -189,7 +222,9 @@ fn run_live(args: &RunArgs, config: &Config, loaded: Loaded) -> Result<Summary, 
         let _ = tick.recv_timeout(std::time::Duration::from_millis(20));
     }
     drop(adaptors);
-    finish_live(live, args.export.as_deref())
+    let summary = finish_live(live, args.export.as_deref());
+    close_journal(thread);
+    summary
 }
 
 /// Ends the loop, writes the export and sums up.

@@ -13,6 +13,9 @@ use crate::mesh::io::{ReadError, read_mesh};
 use crate::mesh::{BuildError, Mesh, TriMesh, Workers, shapes};
 use crate::world::{World, WorldOptions};
 
+use super::session::format::Settings;
+use super::session::writer::{CreateError, WriterThread};
+use super::session::{self, OpenError, SessionWriter};
 use super::stepped::Feed;
 
 /// The work that one starts with: a ball of this many vertices, fine enough for detail, light on any machine.
@@ -54,6 +57,58 @@ pub fn world(mesh: Mesh, config: &Config) -> World {
     let options = WorldOptions { dab_budget: config.r#loop.dab_budget, undo_bytes: config.undo.bytes };
     let workers = Workers::new(config.r#loop.worker_count());
     World::new(mesh, config.camera.camera(), config.brush, workers, options)
+}
+
+/// A world, and the session that records it, if one was asked for.
+#[derive(Debug)]
+pub struct Begun {
+    pub world: World,
+    pub journal: Option<(SessionWriter, WriterThread)>,
+    pub warnings: Vec<String>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum BeginError {
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error(transparent)]
+    Create(#[from] CreateError),
+}
+
+/// Begins with a mesh and, where `session` names a file, records into it. A session that exists is replayed to its end and
+/// goes on from there; it brings its own start, so `mesh` must not be given beside it.
+pub fn begin(
+    mesh: Option<&Path>,
+    session: Option<&Path>,
+    config: &Config,
+    job: &Job,
+) -> Result<Begun, BeginError> {
+    if let Some(path) = session.filter(|p| p.exists()) {
+        let opened = session::open(path)?;
+        let workers = Workers::new(config.r#loop.worker_count());
+        let replayed = session::replay::replay(&opened, None, workers, job)
+            .map_err(|source| RigError::Build { path: path.display().to_string(), source })?;
+        let warnings = opened.loss.map(|l| format!("{}: {l}", path.display())).into_iter().collect();
+        let journal = session::resume(path)?;
+        return Ok(Begun { world: replayed.world, journal: Some(journal), warnings });
+    }
+    let loaded = load(mesh, job)?;
+    let journal = match session {
+        None => None,
+        Some(path) => {
+            let settings = Settings {
+                rate_hz: config.r#loop.rate_hz,
+                dab_budget: config.r#loop.dab_budget,
+                undo_bytes: config.undo.bytes,
+                camera: config.camera.camera(),
+                brush: config.brush,
+            };
+            Some(session::create(path, &loaded.plain, &settings)?)
+        }
+    };
+    Ok(Begun { world: world(loaded.mesh, config), journal, warnings: loaded.warnings })
 }
 
 /// Part of a tablet, in mm.

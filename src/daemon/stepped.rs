@@ -9,6 +9,7 @@ use std::time::Duration;
 use super::figures::{Figures, Losses, Summary};
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
+use super::live::Journal;
 use crate::command::Command;
 use crate::devices::queue::Receiver;
 use crate::devices::{Clock, Sample};
@@ -63,6 +64,7 @@ pub struct Stepped<'a> {
     pub receiver: &'a mut Receiver,
     /// A manual clock, shared with the adaptors.
     pub clock: &'a Clock,
+    pub journal: Option<&'a mut dyn Journal>,
     /// Called after every tick with the tick, its samples, its commands and the world.
     pub observer: &'a mut dyn FnMut(u64, &[Sample], &World),
     /// Commands by tick, in order of ticks.
@@ -77,7 +79,7 @@ impl std::fmt::Debug for Stepped<'_> {
 
 impl Stepped<'_> {
     /// Runs until the feeds and the script have ended and the world is at rest, or `max_ticks`.
-    pub fn run(self, options: &SteppedOptions) -> Result<Figures, SteppedError> {
+    pub fn run(mut self, options: &SteppedOptions) -> Result<Figures, SteppedError> {
         let wall = Clock::monotonic();
         let sleeper = spin_sleep::SpinSleeper::default();
         let mut pacer = Pacer::new(options.rate_hz, 0);
@@ -85,14 +87,15 @@ impl Stepped<'_> {
         let mut samples: Vec<Sample> = Vec::with_capacity(options.drain_per_tick);
         let mut commands = Vec::new();
         let mut script = self.script.iter().peekable();
-        let mut tick = 0;
+        let first = self.world.tick();
+        let mut tick = first;
         let mut quiet = 0;
-        while options.max_ticks.is_none_or(|max| tick < max) {
+        while options.max_ticks.is_none_or(|max| tick - first < max) {
             tick += 1;
             if options.pace == Pace::Real {
                 pacer.wait(&wall, &sleeper);
             }
-            let t_us = (tick as f64 * 1e6 / f64::from(options.rate_hz)) as u64;
+            let t_us = ((tick - first) as f64 * 1e6 / f64::from(options.rate_hz)) as u64;
             self.clock.set_us(t_us);
             let expected: u64 = self.feeds.iter_mut().map(|f| f.advance(t_us)).sum();
             samples.clear();
@@ -106,6 +109,9 @@ impl Stepped<'_> {
             let report = *self.world.step(tick, &samples, &commands);
             let took = wall.now_ns() - begun;
             figures.tick(&report, took);
+            if let Some(journal) = self.journal.as_deref_mut() {
+                journal.tick(tick, &samples, &commands, self.world);
+            }
             if options.verify {
                 self.world.verify_invariants().map_err(|text| SteppedError::Broken { tick, text })?;
             }
