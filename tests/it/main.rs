@@ -1,5 +1,6 @@
 //! One binary for all integration tests: one link, one start.
 
+mod recovery;
 mod tidy;
 
 use std::path::PathBuf;
