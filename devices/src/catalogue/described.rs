@@ -22,18 +22,19 @@ pub(super) fn described(who: &Identity, d: &Descriptor) -> Identification {
     let Some(scale) = Scale::of(pen) else {
         return Identification::Declined("the pen's axes have no range".to_owned());
     };
-    let note = if x.span_mm().is_some() && y.span_mm().is_some() {
-        "by its report descriptor"
-    } else {
-        "by its report descriptor; size guessed from 5080 lines an inch"
-    };
+    let (mut area, mut note) = (scale.area, "by its report descriptor");
+    if let Some(params) = Params::of(who).filter(|_| uc_logic) {
+        (area.width_mm, area.height_mm) = params.size_mm();
+    } else if stated_size(x, y).is_none() {
+        note = "by its report descriptor; size guessed from 5080 lines an inch";
+    }
     let family = if uc_logic { Family::UcLogic } else { Family::Digitiser };
     let pen = PenFacts {
         max_pressure: scale.max_pressure,
         buttons: pen.barrel.iter().flatten().count() as u8,
         max_distance: scale.max_distance,
     };
-    Identification::Identified(found(who, d, scale.area, pen, family, note))
+    Identification::Identified(found(who, d, area, pen, family, note))
 }
 
 fn by_params(who: &Identity, d: &Descriptor, params: Params) -> Found {
@@ -92,14 +93,17 @@ impl Scale {
         }
         // Without a physical size, 5080 lines an inch is the commonest resolution by far.
         let guess = |b: &Bits| ((f64::from(b.max) - f64::from(b.min)) * 25.4 / 5080.0).clamp(5.0, 5000.0);
-        let (width_mm, height_mm) = match (x.span_mm(), y.span_mm()) {
-            (Some(w), Some(h)) => (w, h),
-            _ => (guess(x), guess(y)),
-        };
+        let (width_mm, height_mm) = stated_size(x, y).unwrap_or_else(|| (guess(x), guess(y)));
         let span = |b: &Option<Bits>| b.as_ref().map_or(0, |b| b.max.saturating_sub(b.min).max(0) as u32);
         let area = Area { width_mm, height_mm, min_x: x.min, min_y: y.min, max_x: x.max, max_y: y.max };
         Some(Scale { area, max_pressure: span(&pen.pressure), max_distance: span(&pen.distance) })
     }
+}
+
+/// The physical size that the descriptor states. Huion's default form states 2.048 inches square for every tablet: not believed.
+fn stated_size(x: &Bits, y: &Bits) -> Option<(f64, f64)> {
+    let size = x.span_mm().zip(y.span_mm())?;
+    (x.physical != Some((0, 0x800)) || y.physical != x.physical).then_some(size)
 }
 
 fn kinds_in_words(kinds: &[Kind]) -> String {

@@ -66,6 +66,14 @@ impl Found {
         &self.tablet.id[self.at]
     }
 
+    /// A described interface of a device whose model is known by another of its interfaces: that model's size and name.
+    pub fn sized_like(&mut self, known: &Found) {
+        let tablet = Arc::make_mut(&mut self.tablet);
+        tablet.name.clone_from(&known.tablet.name);
+        tablet.area.width_mm = known.tablet.area.width_mm;
+        tablet.area.height_mm = known.tablet.area.height_mm;
+    }
+
     /// Model, parser and reason, for people.
     pub fn in_words(&self) -> String {
         let parser = serde_json::to_string(&self.id().parser).unwrap_or_default();

@@ -53,11 +53,14 @@ impl Decoder {
             tilts: engine.has_tilt(),
         });
         let (mut scales, mut plain) = (Vec::new(), None);
-        if found.described {
+        if found.described || engine.follows_descriptor() {
             let d = Descriptor::parse(descriptor).unwrap_or_default();
-            scales = d.pens.iter().filter_map(|p| Some((p.report_id, scale_of(p)?))).collect();
-        } else if let Some(found) = by_descriptor(id.vid, id.pid, descriptor) {
-            plain = Some(Box::new(Decoder::new(&found, descriptor, device)));
+            // Counts are the report's own; the size is the model's, where the model is known.
+            let size = Vec2::new(area.width_mm as f32, area.height_mm as f32);
+            scales = d.pens.iter().filter_map(|p| Some((p.report_id, scale_of(p, size)?))).collect();
+        } else if let Some(mut other) = by_descriptor(id.vid, id.pid, descriptor) {
+            other.sized_like(found);
+            plain = Some(Box::new(Decoder::new(&other, descriptor, device)));
         }
         let pad = PadState::new(device);
         Decoder { engine, pen, pad, skip: usize::from(id.skip), scales, plain, counts: Counts::default() }
@@ -116,13 +119,13 @@ impl Decoder {
     }
 }
 
-fn scale_of(pen: &PenLayout) -> Option<PenScale> {
+fn scale_of(pen: &PenLayout, area_mm: Vec2) -> Option<PenScale> {
     let scale = Scale::of(pen)?;
     let a = scale.area;
     Some(PenScale {
         min: [a.min_x, a.min_y],
         max: [a.max_x, a.max_y],
-        area_mm: Vec2::new(a.width_mm as f32, a.height_mm as f32),
+        area_mm,
         max_pressure: scale.max_pressure,
         max_distance: scale.max_distance,
     })

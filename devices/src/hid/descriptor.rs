@@ -95,8 +95,8 @@ impl Descriptor {
         if bytes.len() > MAX_DESCRIPTOR {
             return Err(DescriptorError::TooLong(bytes.len()));
         }
-        screen(bytes)?;
-        let read = ReportDescriptor::try_from(bytes).or_else(|first| {
+        let bytes = mended(bytes)?;
+        let read = ReportDescriptor::try_from(&bytes).or_else(|first| {
             let kept = bytes.iter().rposition(|&b| b != 0).map_or(0, |i| i + 1);
             ReportDescriptor::try_from(&bytes[..kept]).map_err(|_| first)
         });
@@ -149,36 +149,55 @@ impl Descriptor {
     }
 }
 
-/// Refuses sizes that would make a reader allocate without bound. Items: HID 1.11 section 6.2.2.
-fn screen(bytes: &[u8]) -> Result<(), DescriptorError> {
-    let (mut i, mut size, mut count) = (0usize, 0u64, 0u64);
+/// Refuses sizes that would make a reader allocate without bound, and rewrites maxima that were written in too few bytes: after a
+/// minimum that is not negative a maximum is unsigned, whatever its top bit (Linux reads it so). Items: HID 1.11 section 6.2.2.
+fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
+    let mut out = Vec::with_capacity(bytes.len() + 16);
+    let mut globals = Globals::default();
     let (mut stack, mut total) = (Vec::new(), 0u64);
     let (mut low, mut high) = (0u64, 0u64);
+    let mut i = 0;
     while i < bytes.len() {
         let at = i;
         let prefix = bytes[i];
         if prefix == 0xfe {
-            i += 3 + usize::from(bytes.get(i + 1).copied().unwrap_or(0));
+            let end = (i + 3 + usize::from(bytes.get(i + 1).copied().unwrap_or(0))).min(bytes.len());
+            out.extend_from_slice(&bytes[i..end]);
+            i = end;
             continue;
         }
         let n = [0, 1, 2, 4][usize::from(prefix & 3)];
         let value =
             (0..n).fold(0u64, |v, k| v | u64::from(bytes.get(i + 1 + k).copied().unwrap_or(0)) << (8 * k));
-        i += 1 + n;
+        let negative = n > 0 && value >> (8 * n - 1) & 1 == 1;
+        i = (i + 1 + n).min(bytes.len());
+        let maximum = match prefix & 0xfc {
+            0x24 => globals.logical_min_negative,
+            0x44 => globals.physical_min_negative,
+            _ => true,
+        };
+        if negative && !maximum && n < 4 {
+            out.push(prefix & 0xfc | 3);
+            out.extend_from_slice(&(value as u32).to_le_bytes());
+        } else {
+            out.extend_from_slice(&bytes[at..i]);
+        }
         match prefix & 0xfc {
-            0x74 => size = value,
-            0x94 => count = value,
+            0x14 => globals.logical_min_negative = negative,
+            0x34 => globals.physical_min_negative = negative,
+            0x74 => globals.size = value,
+            0x94 => globals.count = value,
             0x18 => low = value,
             0x28 => high = value,
-            0xa4 => stack.push((size, count)),
-            0xb4 => (size, count) = stack.pop().unwrap_or((size, count)),
+            0xa4 if stack.len() < 64 => stack.push(globals),
+            0xa4 => return Err(DescriptorError::Absurd(at)),
+            0xb4 => globals = stack.pop().unwrap_or(globals),
             0x80 | 0x90 | 0xb0 => {
-                total = total.saturating_add(size.saturating_mul(count));
-                if size > 4096 * 8 || count > MAX_REPORT_BITS || total > 8 * MAX_REPORT_BITS {
-                    return Err(DescriptorError::Absurd(at));
-                }
-                let span = (high & 0xffff).saturating_sub(low & 0xffff);
-                if high & 0xffff_0000 != low & 0xffff_0000 && high > 0xffff && low > 0xffff || span > 0xffff {
+                total = total.saturating_add(globals.size.saturating_mul(globals.count));
+                let wide =
+                    globals.size > 4096 * 8 || globals.count > MAX_REPORT_BITS || total > 8 * MAX_REPORT_BITS;
+                // A range of usages over several pages would be listed one by one.
+                if wide || high > 0xffff && low > 0xffff && high >> 16 != low >> 16 {
                     return Err(DescriptorError::Absurd(at));
                 }
                 (low, high) = (0, 0);
@@ -186,7 +205,16 @@ fn screen(bytes: &[u8]) -> Result<(), DescriptorError> {
             _ => {}
         }
     }
-    Ok(())
+    Ok(out)
+}
+
+/// The global items that matter to [`mended`].
+#[derive(Debug, Clone, Copy, Default)]
+struct Globals {
+    size: u64,
+    count: u64,
+    logical_min_negative: bool,
+    physical_min_negative: bool,
 }
 
 fn page_id(usage: u32) -> (u32, u32) {
@@ -227,7 +255,7 @@ impl Bits {
             (Some(lo), Some(hi)) => Some((i32::from(lo), i32::from(hi))).filter(|(lo, hi)| hi > lo),
             _ => None,
         };
-        // A maximum written in too few bytes reads as negative: what was meant is the field's own width.
+        // A maximum below its minimum says nothing: the field's own width does.
         let (min, mut max) = (i32::from(f.logical_minimum), i32::from(f.logical_maximum));
         if max <= min && min >= 0 {
             max = if f.bits.len() >= 31 { i32::MAX } else { (1 << f.bits.len()) - 1 };

@@ -44,7 +44,9 @@ impl Engine {
         let uclogic = |packing| {
             let range = described.pens.iter().find_map(|p| p.in_range.as_ref());
             let range_bit = range.and_then(|b| b.start.checked_sub(8)).filter(|b| *b < 8).map(|b| b as u8);
-            let traits = uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt) };
+            let untilted = described.pens.iter().filter(|p| p.tilt[0].is_none()).filter_map(|p| p.report_id);
+            let untilted = untilted.filter(|id| *id < 32).fold(0, |bits, id| bits | 1 << id);
+            let traits = uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt), untilted };
             Engine::UcLogic(traits, uclogic::Memory::default())
         };
         let maker = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Maker { parse, leaves };
@@ -126,6 +128,11 @@ impl Engine {
             Engine::Maker { parse, .. } => (parse(b), None, None),
             Engine::Digitiser(d) => (digitiser::parse(b, d), None, None),
         }
+    }
+
+    /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says, in the same layout.
+    pub fn follows_descriptor(&self) -> bool {
+        matches!(self, Engine::UcLogic(..))
     }
 
     /// The family always tells tilt, if not in every report.

@@ -40,6 +40,8 @@ pub struct Traits {
     pub range_bit: Option<u8>,
     /// Tilt is not sent, and the bytes are something else's.
     pub no_tilt: bool,
+    /// Report ids, one a bit, that the descriptor describes without tilt.
+    pub untilted: u32,
 }
 
 /// What reports so far have proved.
@@ -157,7 +159,7 @@ fn pen(b: &[u8], traits: &Traits) -> PenReport {
         Packing::XpPenGen2 => p = p & 0xbfff | u32::from(byte(b, 13) & 1) << 13,
         _ => {}
     }
-    if traits.no_tilt {
+    if traits.no_tilt || traits.untilted >> (b[0] & 31) & 1 == 1 {
         tilt = None;
     }
     PenReport {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{HidRecording, RecordingError};
-use crate::catalogue::{Catalogue, Found, Identification};
+use crate::catalogue::{Catalogue, Found, Identification, Identity};
 use crate::hid::decoder::Decoder;
 use crate::sample::{Body, DeviceId, Sample};
 
@@ -24,22 +24,32 @@ impl PenPlayer {
         device: DeviceId,
         catalogue: &Catalogue,
     ) -> Result<(PenPlayer, DeviceInfo), RecordingError> {
-        let (mut info, mut notes, mut decoders) = (None, Vec::new(), Vec::new());
+        let mut notes = Vec::new();
+        let mut found: Vec<Option<Found>> = Vec::new();
         for (i, who) in recording.interfaces.iter().enumerate() {
-            let label = who.interface.map_or_else(|| format!("device {i}"), |n| format!("interface {n}"));
-            let found = match catalogue.identify(who) {
-                Identification::Identified(found) => found,
+            found.push(match catalogue.identify(who) {
+                Identification::Identified(found) => Some(found),
                 Identification::Declined(why) => {
-                    notes.push(format!("{label} left alone: {why}"));
-                    decoders.push(None);
-                    continue;
+                    notes.push(format!("{} left alone: {why}", label(who, i)));
+                    None
                 }
                 Identification::Ambiguous(many) => {
                     let reports = recording.reports.iter().filter(|r| r.interface == i);
-                    choose(many, reports.map(|r| r.bytes.as_slice()), &who.descriptor)
+                    Some(choose(many, reports.map(|r| r.bytes.as_slice()), &who.descriptor))
                 }
+            });
+        }
+        let known = found.iter().flatten().find(|f| !f.described).cloned();
+        let (mut info, mut decoders) = (None, Vec::new());
+        for ((i, who), found) in recording.interfaces.iter().enumerate().zip(found) {
+            let Some(mut found) = found else {
+                decoders.push(None);
+                continue;
             };
-            notes.push(format!("{label}: {}", found.in_words()));
+            if let Some(known) = known.as_ref().filter(|k| found.described && same_device(k, who)) {
+                found.sized_like(known);
+            }
+            notes.push(format!("{}: {}", label(who, i), found.in_words()));
             decoders.push(Some(Decoder::new(&found, &who.descriptor, device)));
             let spoke = recording.reports.iter().any(|r| r.interface == i);
             if info.is_none() || spoke {
@@ -83,6 +93,14 @@ impl PenPlayer {
     pub(super) fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.decoders.iter_mut().flatten().for_each(|d| d.leave(t_us, emit));
     }
+}
+
+fn label(who: &Identity, i: usize) -> String {
+    who.interface.map_or_else(|| format!("device {i}"), |n| format!("interface {n}"))
+}
+
+fn same_device(known: &Found, who: &Identity) -> bool {
+    known.id().vid == who.vid && known.id().pid == who.pid
 }
 
 /// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note: it is a choice, not knowledge.
