@@ -1,51 +1,48 @@
-//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read.
+//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read. Facts and sources stand there.
 
 use glam::Vec2;
 
+use super::reports::{self, Counts};
 use crate::catalogue::Found;
 use crate::sim::pen::PenPose;
-use crate::tablet::{Area, Family};
+use crate::tablet::{Area, Family, Quirk};
 
 /// Most that any family's tilt fields carry, in degrees.
 const TILT_LIMIT: f32 = 60.0;
 
 #[derive(Debug, Clone)]
 pub(super) struct Encoder {
-    family: Family,
+    pub(super) family: Family,
     area: Area,
     max_pressure: u32,
     max_distance: u32,
+    quirks: Vec<Quirk>,
+    /// Longest report as the model's file has it.
+    length: usize,
     /// Bytes before each report, as the maker's Windows driver puts them.
     skip: usize,
     /// `Some(eraser)` while the pen is in range.
     inside: Option<bool>,
 }
 
-/// A pose in counts.
-struct Counts {
-    x: u32,
-    y: u32,
-    p: u32,
-    tilt: [i32; 2],
-    height: u32,
-    buttons: u32,
-}
-
 impl Encoder {
-    pub(super) fn new(found: &Found) -> Option<Self> {
+    pub(super) fn new(found: &Found) -> Self {
         let (tablet, id) = (&found.tablet, found.id());
-        Self::writes(id.parser).then_some(Encoder {
+        Encoder {
             family: id.parser,
             area: tablet.area,
             max_pressure: tablet.pen.max_pressure,
             max_distance: tablet.pen.max_distance,
+            quirks: id.quirks.clone(),
+            length: usize::from(id.length).saturating_sub(usize::from(id.skip)),
             skip: usize::from(id.skip),
             inside: None,
-        })
+        }
     }
 
-    pub(super) fn writes(family: Family) -> bool {
-        family != Family::Digitiser
+    /// Whether this model's reports say when the pen leaves; else only silence does.
+    pub(super) fn says_away(&self) -> bool {
+        reports::away(self.family).is_some()
     }
 
     /// The reports for one instant; none while the pen is away and that has been said.
@@ -53,21 +50,57 @@ impl Encoder {
         let mut out = Vec::new();
         if self.inside.is_some_and(|e| !pose.in_range || e != pose.eraser) {
             self.inside = None;
-            out.push(self.away());
+            out.extend(reports::away(self.family));
         }
         if pose.in_range {
             if self.inside.is_none() {
                 self.inside = Some(pose.eraser);
                 out.extend(self.enter(pose.eraser));
             }
-            out.push(self.report(&self.counts(pose)));
+            out.push(self.report(pose));
         }
         if self.skip > 0 {
-            out.iter_mut().for_each(|r| {
-                r.splice(0..0, std::iter::repeat_n(0, self.skip));
-            });
+            for report in &mut out {
+                report.splice(0..0, std::iter::repeat_n(0, self.skip));
+            }
         }
         out
+    }
+
+    /// What a family says as a pen enters, before its first place.
+    fn enter(&self, eraser: bool) -> Option<Vec<u8>> {
+        (self.family == Family::WacomIntuosV1).then(|| {
+            // Numbers of an Intuos 4 pen and of its other end.
+            let id: u32 = if eraser { 0x1080a } else { 0x10802 };
+            let bytes = [0x02, 0xc2, id >> 4, id << 4, 0, 0, 0, id >> 16, 0, 0];
+            bytes.map(|b| b as u8).to_vec()
+        })
+    }
+
+    fn report(&self, pose: &PenPose) -> Vec<u8> {
+        let counts = self.counts(pose);
+        let quirk = |q| self.quirks.contains(&q);
+        match self.family {
+            Family::WacomIntuosV1 => reports::intuos(&Counts {
+                p: if self.max_pressure < 2047 { counts.p << 1 } else { counts.p },
+                height: match () {
+                    () if quirk(Quirk::HeightInverted) => self.max_distance - counts.height,
+                    () if quirk(Quirk::Halved) => counts.height << 1,
+                    () => counts.height,
+                },
+                x: if quirk(Quirk::Halved) { counts.x << 1 } else { counts.x },
+                y: if quirk(Quirk::Halved) { counts.y << 1 } else { counts.y },
+                ..counts
+            }),
+            Family::WacomSimple => reports::simple(&counts, self.max_distance),
+            Family::WacomPl => reports::pl(&counts, self.max_pressure),
+            Family::UcLogic | Family::XpPenOffset => {
+                // The short forms cannot carry the coordinates of a large tablet.
+                let least = if self.area.max_x.max(self.area.max_y) > 0xffff { 12 } else { 8 };
+                reports::uclogic(&counts, self.length.clamp(least, 12), self.family == Family::XpPenOffset)
+            }
+            family => reports::other(family, &counts),
+        }
     }
 
     fn counts(&self, pose: &PenPose) -> Counts {
@@ -82,43 +115,9 @@ impl Encoder {
             p: (pose.pressure.clamp(0.0, 1.0) * self.max_pressure as f32).round() as u32,
             tilt: [degrees(pose.tilt.x), degrees(pose.tilt.y)],
             height: (pose.height.clamp(0.0, 1.0) * self.max_distance as f32).round() as u32,
-            buttons: pose.buttons,
+            tip: pose.tip,
+            eraser: pose.eraser,
+            buttons: pose.buttons & 3,
         }
-    }
-
-    /// What a family says as a pen enters, before its first place.
-    fn enter(&self, eraser: bool) -> Option<Vec<u8>> {
-        match self.family {
-            Family::WacomIntuosV1 => {
-                let id: u32 = if eraser { 0x80a } else { 0x802 };
-                Some(vec![0x02, 0xc2, (id >> 4) as u8, ((id & 0xf) << 4) as u8, 0, 0, 0, 0, 0, 0])
-            }
-            _ => None,
-        }
-    }
-
-    fn away(&self) -> Vec<u8> {
-        vec![0x02, 0x80, 0, 0, 0, 0, 0, 0, 0, 0]
-    }
-
-    fn report(&self, c: &Counts) -> Vec<u8> {
-        let p = if self.max_pressure < 2047 { c.p << 1 } else { c.p };
-        let (x, y) = (c.x >> 1, c.y >> 1);
-        let tilt = c.tilt.map(|t| (t + 64) as u32);
-        let b1 = 0xe0 | c.buttons << 1 & 6 | p & 1;
-        let b9 = c.height << 2 | (c.x & 1) << 1 | c.y & 1;
-        let bytes = [
-            0x02,
-            b1,
-            x >> 8,
-            x,
-            y >> 8,
-            y,
-            p >> 3,
-            p << 5 & 0xc0 | tilt[0] >> 1,
-            tilt[0] << 7 | tilt[1],
-            b9,
-        ];
-        bytes.map(|b| b as u8).to_vec()
     }
 }

@@ -1,6 +1,7 @@
 //! A virtual pen tablet: report bytes of its family behind the transport that a real one is read through.
 
 mod encode;
+mod reports;
 
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -39,11 +40,10 @@ impl Default for TabletConfig {
     }
 }
 
-/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`: no model of this name,
-/// or none of its firmwares is written by this simulator.
+/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`: no model of this name.
 pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
     let tablet = catalogue.tablets().iter().find(|t| t.name == name)?;
-    let id = tablet.id.iter().find(|id| Encoder::writes(id.parser))?;
+    let id = tablet.id.first()?;
     Some(Identity {
         vid: id.vid,
         pid: id.pid,
@@ -52,6 +52,18 @@ pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
         seen_lengths: vec![usize::from(id.length)],
         ..Identity::default()
     })
+}
+
+/// A tablet that no file describes: it is read by its report descriptor alone. A5, tilt, 8192 levels of pressure.
+pub fn generic_identity() -> Identity {
+    Identity {
+        vid: 0x1209, // The id that is lent to projects without their own.
+        pid: 0x0001,
+        name: "simulated digitiser".to_owned(),
+        descriptor: reports::GENERIC_DESCRIPTOR.to_vec(),
+        seen_lengths: vec![10],
+        ..Identity::default()
+    }
 }
 
 /// The device, stepped by its owner.
@@ -72,6 +84,11 @@ pub struct Tablet {
     asked: Arc<Mutex<Vec<Vec<u8>>>>,
 }
 
+/// The report descriptor that a reader of a simulated tablet is given: empty but for the generic one, which is read by it.
+pub fn descriptor(found: &Found) -> &'static [u8] {
+    if found.id().parser == Family::Digitiser { reports::GENERIC_DESCRIPTOR } else { &[] }
+}
+
 /// The reader's end.
 #[derive(Debug)]
 pub struct TabletEnd {
@@ -80,13 +97,12 @@ pub struct TabletEnd {
 }
 
 impl Tablet {
-    /// A tablet as its file describes it, and the end that a reader is given. `None`: reports of this family cannot be
-    /// written (a plain digitiser's layout is its descriptor).
-    pub fn new(found: &Found, script: PenScript, config: TabletConfig) -> Option<(Self, TabletEnd)> {
+    /// A tablet as its file describes it, and the end that a reader is given.
+    pub fn new(found: &Found, script: PenScript, config: TabletConfig) -> (Self, TabletEnd) {
         let (tx, rx) = cc::bounded(config.keeps.max(1));
         let asked = Arc::new(Mutex::new(Vec::new()));
         let tablet = Tablet {
-            encoder: Encoder::new(found)?,
+            encoder: Encoder::new(found),
             line: Line::new(config.faults),
             config,
             script,
@@ -94,16 +110,17 @@ impl Tablet {
             next_us: 0,
             stalled_until_us: 0,
             backlog: Vec::new(),
-            reader: Decoder::new(found, &[], DeviceId(0)),
+            reader: Decoder::new(found, descriptor(found), DeviceId(0)),
             dropped: 0,
             asked: asked.clone(),
         };
-        Some((tablet, TabletEnd { rx, asked }))
+        (tablet, TabletEnd { rx, asked })
     }
 
-    /// Families whose reports can be written.
-    pub fn writes(family: Family) -> bool {
-        Encoder::writes(family)
+    /// Whether its reports say when the pen leaves; else only silence does, and [`Tablet::advance`] counts on a reader
+    /// that looks at its clock.
+    pub fn says_away(&self) -> bool {
+        self.encoder.says_away()
     }
 
     /// Output and feature reports that came, in order.

@@ -6,6 +6,7 @@ use crate::hid::reader;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 use crate::sim::{Faults, PenScript, Tablet, TabletConfig, journal};
+use crate::tablet::Family;
 
 const SOON: Duration = Duration::from_secs(5);
 
@@ -18,11 +19,18 @@ struct Rig {
 }
 
 fn rig(found: &Found, config: TabletConfig) -> Rig {
-    let (tablet, end) = Tablet::new(found, script(found), config).unwrap();
+    let (tablet, end) = Tablet::new(found, script(found), config);
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
-    let handle =
-        reader::start(Box::new(end), found, &[], DeviceId(1), clock.clone(), factory.sender()).unwrap();
+    let handle = reader::start(
+        Box::new(end),
+        found,
+        super::descriptor(found),
+        DeviceId(1),
+        clock.clone(),
+        factory.sender(),
+    )
+    .unwrap();
     Rig { tablet, handle, rx, clock, got: Vec::new() }
 }
 
@@ -109,4 +117,89 @@ fn an_unplug_ends_the_visit_and_a_bad_line_no_more_than_that() {
         "the reader has ended, and its sender with it"
     );
     assert!(!rig.handle.status().connected);
+}
+
+/// Every model that is known, in every way it shows itself: what its simulator writes, its parser reads.
+#[test]
+fn every_model_reads_what_it_writes() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let mut generic = match catalogue.identify(&super::generic_identity()) {
+        Identification::Identified(found) => vec![found],
+        other => panic!("{other:?}"),
+    };
+    for tablet in catalogue.tablets() {
+        for at in 0..tablet.id.len() {
+            generic.push(Found { tablet: tablet.clone(), at, note: None, described: false });
+        }
+    }
+    let (mut families, mut bad) = (std::collections::BTreeMap::<_, u32>::new(), Vec::new());
+    for found in &generic {
+        let family = found.id().parser;
+        *families.entry(family).or_default() += 1;
+        if let Err(why) = reads_what_it_writes(found) {
+            bad.push(format!("{} ({family:?}): {why}", found.tablet.name));
+        }
+    }
+    println!("{} ways of {} families: {families:?}", generic.len(), families.len());
+    assert!(bad.is_empty(), "{} of {}:\n{}", bad.len(), generic.len(), bad.join("\n"));
+    assert!(families.len() >= 28);
+}
+
+fn reads_what_it_writes(found: &Found) -> Result<(), String> {
+    let (script, tablet) = (script(found), &found.tablet);
+    let mut encoder = super::Encoder::new(found);
+    let mut decoder = super::Decoder::new(found, super::descriptor(found), DeviceId(0));
+    let a = tablet.area;
+    let count_mm =
+        (a.width_mm / f64::from(a.max_x - a.min_x)).max(a.height_mm / f64::from(a.max_y - a.min_y)) as f32;
+    let (mut last, mut contacts, mut erased, mut visits) = (None, 0, 0, 0);
+    for t in (0..9_500_000).step_by(5_000) {
+        let pose = script.at(t);
+        let mut got = Vec::new();
+        decoder.tick(t, &mut |s| got.push(s));
+        for report in encoder.reports(&pose) {
+            decoder.feed(&report, t, &mut |s| got.push(s));
+        }
+        visits += got.iter().filter(|s| !pen(s).in_range).count();
+        let Some(s) = got.last() else { continue };
+        let p = pen(s);
+        last = Some(p);
+        if !p.in_range || !pose.in_range {
+            continue;
+        }
+        if p.pos_mm.distance(pose.pos_mm) > 2.0 * count_mm {
+            return Err(format!("at {t}: {} for {}", p.pos_mm, pose.pos_mm));
+        }
+        let felt = p.pressure.unwrap_or(pose.pressure);
+        let entering = t < 400_000 || p.tip != pose.tip;
+        if !entering && (felt - pose.pressure).abs() > 0.02 && pose.pressure < 0.99 {
+            return Err(format!("at {t}: pressure {felt} for {}", pose.pressure));
+        }
+        contacts += usize::from(p.tip && pose.tip);
+        erased += usize::from(p.tip && p.tool == Tool::Eraser && pose.eraser);
+        if p.tip && !pose.tip && !got.iter().any(|s| !pen(s).tip) {
+            return Err(format!("at {t}: hover presses"));
+        }
+    }
+    let ended = last.is_some_and(|p| !p.in_range && !p.tip);
+    let one_ended = matches!(
+        found.id().parser,
+        Family::Veikk
+            | Family::VeikkA15
+            | Family::Acepen
+            | Family::Kye
+            | Family::KyePlain
+            | Family::TenMoons
+            | Family::Plain
+            | Family::RobotPen
+            | Family::WoodPad
+    );
+    // A change of ends begins another visit.
+    if contacts < 1000 || visits < if one_ended { 2 } else { 3 } || !ended {
+        return Err(format!("{contacts} contacts, {visits} visits, ended {ended}"));
+    }
+    if erased < 100 && !one_ended {
+        return Err(format!("{erased} erasures"));
+    }
+    Ok(())
 }
