@@ -157,6 +157,13 @@ pub enum Family {
     Digitiser,
 }
 
+impl Family {
+    /// As it is written in tablet files.
+    pub fn name(self) -> String {
+        serde_json::to_string(&self).unwrap_or_default().trim_matches('"').to_owned()
+    }
+}
+
 /// What one model does differently from its family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

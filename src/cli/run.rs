@@ -210,7 +210,7 @@ fn run_live(args: &RunArgs, config: &Config, begun: Begun) -> Result<Summary, Fa
     let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
     let drain = config.channel.drain_per_tick;
     let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)
-            .map_err(|e| Fail::Permission(e.to_string()))?;
+        .map_err(|e| Fail::Permission(e.to_string()))?;
     let stop = stop_signal();
     let until = args.limit_s.map(|s| (s * 1e6) as u64);
     let (_keep, tick) = crossbeam_channel::bounded::<()>(1);

@@ -7,9 +7,9 @@
 use std::time::Duration;
 
 use super::figures::{Figures, Losses, Summary};
+use super::live::Journal;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
-use super::live::Journal;
 use crate::command::Command;
 use crate::devices::queue::Receiver;
 use crate::devices::{Clock, Sample};

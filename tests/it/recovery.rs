@@ -87,7 +87,8 @@ fn one_kill(ms: u64) {
     daemon.child.wait().expect("gone");
     let tick = known["tick"].as_u64().expect("a tick");
     let whole = replay(&session, None);
-    let (recovered, last) = (whole["ticks"].as_u64().expect("ticks"), status["tick"].as_u64().expect("a tick"));
+    let (recovered, last) =
+        (whole["ticks"].as_u64().expect("ticks"), status["tick"].as_u64().expect("a tick"));
     assert_eq!(whole["loss"], Value::Null);
     // 250 ms at 120 Hz are 30 ticks; the pen speaks at 133 Hz, so every tick has input.
     assert!(recovered + 30 >= last, "recovered up to tick {recovered}, acknowledged {last}");

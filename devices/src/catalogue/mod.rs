@@ -76,9 +76,8 @@ impl Found {
 
     /// Model, parser and reason, for people.
     pub fn in_words(&self) -> String {
-        let parser = serde_json::to_string(&self.id().parser).unwrap_or_default();
         let why = self.note.as_ref().map_or(String::new(), |n| format!(" ({n})"));
-        format!("{}, parser {}{why}", self.tablet.name, parser.trim_matches('"'))
+        format!("{}, parser {}{why}", self.tablet.name, self.id().parser.name())
     }
 }
 
@@ -124,6 +123,18 @@ impl Catalogue {
         self.added += tablets.len();
         tablets.append(&mut self.tablets);
         Ok(Catalogue { tablets, added: self.added })
+    }
+
+    /// The model of this name, as the user told it, if it has an entry for these ids.
+    pub fn named(&self, name: &str, who: &Identity) -> Option<Found> {
+        let tablet = self.tablets.iter().find(|t| t.name == name)?;
+        let at = tablet.id.iter().position(|id| id.vid == who.vid && id.pid == who.pid)?;
+        Some(Found {
+            tablet: tablet.clone(),
+            at,
+            note: Some("as the user said".to_owned()),
+            described: false,
+        })
     }
 
     pub fn tablets(&self) -> &[Arc<Tablet>] {

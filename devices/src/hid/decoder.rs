@@ -92,6 +92,11 @@ impl Decoder {
         }
     }
 
+    /// The feature report that names the pen that is near, in families whose reports name it only as it enters.
+    pub fn names_tool(&self) -> Option<u8> {
+        self.engine.names_tool()
+    }
+
     pub fn in_range(&self) -> bool {
         self.pen.in_range() || self.plain.as_ref().is_some_and(|p| p.in_range())
     }

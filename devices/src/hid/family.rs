@@ -130,6 +130,14 @@ impl Engine {
         }
     }
 
+    /// Linux `wacom_intuos_schedule_prox_event` asks for the same report.
+    pub fn names_tool(&self) -> Option<u8> {
+        match self {
+            Engine::Intuos(traits, ..) => Some(if traits.height_inverted { 8 } else { 5 }),
+            _ => None,
+        }
+    }
+
     /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says, in the same layout.
     pub fn follows_descriptor(&self) -> bool {
         matches!(self, Engine::UcLogic(..))

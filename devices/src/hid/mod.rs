@@ -7,6 +7,7 @@
 //! A parser sees one report and a few bytes of memory; it never indexes by a declared size. A [`decoder::Decoder`] binds a
 //! parser to a model's facts and to a [`crate::pen_state::PenState`]; live reading, recordings and tests all use it.
 
+pub mod bus;
 pub mod decoder;
 pub mod descriptor;
 pub mod digitiser;
@@ -23,3 +24,6 @@ pub mod wacom_graphire;
 pub mod wacom_intuos;
 pub mod wacom_pad;
 pub mod wacom_pro;
+pub mod watch;
+
+pub use watch::{HidConfig, HidHandle, NodeStatus, start};

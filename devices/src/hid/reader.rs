@@ -77,6 +77,7 @@ impl Reader {
     fn run(&mut self, leash: &Leash) {
         let (mut buffer, mut out) = (vec![0; MAX_REPORT], Vec::with_capacity(16));
         let mut error = None;
+        self.ask_tool(&mut buffer, &mut out);
         while !leash.stopped() && error.is_none() {
             match self.transport.read(&mut buffer, READ_MS) {
                 Ok(0) => {
@@ -94,6 +95,17 @@ impl Reader {
         let mut status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
         status.connected = false;
         status.last_error = error;
+    }
+
+    /// A pen that is near when its tablet is opened was named before anyone listened.
+    fn ask_tool(&mut self, buffer: &mut [u8], out: &mut Vec<Sample>) {
+        if let Some(id) = self.decoder.names_tool() {
+            buffer[0] = id;
+            if let Ok(n) = self.transport.get_feature(buffer) {
+                let n = n.min(buffer.len());
+                self.decoder.feed(&buffer[..n], self.clock.now_us(), &mut |s| out.push(s));
+            }
+        }
     }
 
     fn send(&mut self, out: &mut Vec<Sample>) {

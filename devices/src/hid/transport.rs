@@ -11,4 +11,18 @@ pub trait Transport: Send {
     fn write(&mut self, report: &[u8]) -> io::Result<()>;
     /// A feature report, its id first.
     fn send_feature(&mut self, report: &[u8]) -> io::Result<()>;
+    /// Asks for a feature report: its id is in `buf[0]`. Gives how many bytes came.
+    fn get_feature(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+        let _ = buf;
+        Err(io::ErrorKind::Unsupported.into())
+    }
+    /// The report descriptor, where the platform tells it.
+    fn descriptor(&mut self) -> Option<Vec<u8>> {
+        None
+    }
+    /// A USB string by index, where the platform can ask for it. On some tablets the asking switches the protocol.
+    fn string(&mut self, index: u8) -> Option<String> {
+        let _ = index;
+        None
+    }
 }

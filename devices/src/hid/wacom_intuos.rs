@@ -34,8 +34,8 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
     if b.len() < 10 {
         return if matches!(b.first(), Some(0x02 | 0x10)) { Parsed::Broken } else { Parsed::Nothing };
     }
-    // 05 and 06 answer the question which tool is near.
-    if !matches!(b[0], 0x02 | 0x10 | 0x05 | 0x06) {
+    // 05, 06 and 08 answer the question which tool is near.
+    if !matches!(b[0], 0x02 | 0x10 | 0x05 | 0x06 | 0x08) {
         return Parsed::Nothing;
     }
     let flags = b[1];
@@ -67,7 +67,7 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
     let puck = matches!(flags >> 1 & 0x0f, 4 | 6 | 8).then_some(Tool::Mouse);
     let Some(tool) = memory.tool.or(puck) else { return Parsed::Nothing };
     memory.tool = Some(tool);
-    if matches!(b[0], 0x05 | 0x06) || memory.noise || traits.needs_ready && flags & 0x40 == 0 {
+    if matches!(b[0], 0x05 | 0x06 | 0x08) || memory.noise || traits.needs_ready && flags & 0x40 == 0 {
         return Parsed::Nothing;
     }
     memory.reporting = true;

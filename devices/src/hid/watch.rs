@@ -1,0 +1,415 @@
+//! Finds tablets, sets them up, reads each on its own thread, and finds them again after a replug.
+//!
+//! There is no hot-plug call in hidapi: what is plugged in is looked at again when the device folder changed or a reader
+//! ended, every 200 ms at first and less often while nothing happens, two seconds at most.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::bus::{Bus, HidApiBus, Node, read_more};
+use super::reader;
+use crate::Clock;
+use crate::catalogue::{Catalogue, Found, Identification, Identity};
+use crate::lifeline::{self, Leash, Lifeline};
+use crate::queue::SenderFactory;
+use crate::sample::DeviceId;
+use crate::tablet::hex_bytes;
+
+/// First and longest wait between two looks. A replug is seen well within two seconds.
+const LOOK: (Duration, Duration) = (Duration::from_millis(200), Duration::from_millis(1600));
+/// A tablet that was only just plugged in may refuse its first messages.
+const TRIES: u32 = 20;
+
+/// What the user says of tablets.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct HidConfig {
+    /// The answer to "which model is this?", by `vid:pid` or `vid:pid:serial` (hexadecimal ids).
+    pub models: BTreeMap<String, String>,
+    /// Devices left alone, by `vid:pid` or `vid:pid:serial`.
+    pub ignore: Vec<String>,
+    /// The first id given to a tablet's interface.
+    #[serde(skip)]
+    pub first_device: DeviceId,
+}
+
+/// One interface, as it stands.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NodeStatus {
+    pub path: String,
+    pub vid: u16,
+    pub pid: u16,
+    pub serial: String,
+    pub interface: Option<u8>,
+    pub name: String,
+    /// A reader thread reads it.
+    pub usable: bool,
+    pub device: Option<u16>,
+    pub model: Option<String>,
+    pub parser: Option<String>,
+    pub area_mm: Option<[f32; 2]>,
+    /// Why it is not read, or what is uncertain about it.
+    pub reason: Option<String>,
+    /// More than one model answers to this: the question for the user.
+    pub candidates: Vec<String>,
+    pub reports: u64,
+    pub broken: u64,
+    pub samples: u64,
+    /// Times that it was opened.
+    pub connections: u32,
+}
+
+/// Running readers; dropping it ends all their threads.
+#[derive(Debug)]
+pub struct HidHandle {
+    shared: Arc<Mutex<Shared>>,
+    _thread: Lifeline,
+}
+
+impl HidHandle {
+    /// Every interface that is plugged in, usable or not.
+    pub fn status(&self) -> Vec<NodeStatus> {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).now()
+    }
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    open: Vec<Open>,
+    closed: Vec<NodeStatus>,
+}
+
+impl Shared {
+    fn now(&self) -> Vec<NodeStatus> {
+        let read = self.open.iter().map(|o| {
+            let s = o.handle.status();
+            NodeStatus {
+                usable: s.connected,
+                reports: s.reports,
+                broken: s.broken,
+                samples: s.samples,
+                ..o.status.clone()
+            }
+        });
+        let mut all: Vec<NodeStatus> = read.chain(self.closed.iter().cloned()).collect();
+        all.sort_by(|a, b| a.path.cmp(&b.path));
+        all
+    }
+}
+
+#[derive(Debug)]
+struct Open {
+    path: String,
+    handle: reader::Handle,
+    status: NodeStatus,
+}
+
+/// Starts watching and reading the machine's tablets.
+///
+/// # Errors
+/// The platform's HID service is not there, or no thread can be started.
+pub fn start(
+    config: HidConfig,
+    catalogue: Catalogue,
+    clock: Clock,
+    factory: SenderFactory,
+) -> io::Result<HidHandle> {
+    start_on(Box::new(HidApiBus::new()?), config, catalogue, clock, factory)
+}
+
+/// The same on any bus.
+///
+/// # Errors
+/// Only if no thread can be started.
+pub fn start_on(
+    bus: Box<dyn Bus>,
+    config: HidConfig,
+    catalogue: Catalogue,
+    clock: Clock,
+    factory: SenderFactory,
+) -> io::Result<HidHandle> {
+    let shared = Arc::new(Mutex::new(Shared::default()));
+    let mut watcher = Watcher {
+        bus,
+        config,
+        catalogue,
+        clock,
+        factory,
+        shared: shared.clone(),
+        ids: Vec::new(),
+        failures: BTreeMap::new(),
+        connections: BTreeMap::new(),
+    };
+    let thread = lifeline::spawn("hid-watch", move |leash| watcher.run(&leash))?;
+    Ok(HidHandle { shared, _thread: thread })
+}
+
+/// What is plugged in, and what would be read: nothing is set up and no thread started.
+///
+/// # Errors
+/// The bus cannot be looked at.
+pub fn list(bus: &mut dyn Bus, config: &HidConfig, catalogue: &Catalogue) -> io::Result<Vec<NodeStatus>> {
+    let nodes = bus.nodes()?;
+    let one = |node: &Node| {
+        let mut status = NodeStatus::of(node);
+        match choose(node, &node.who, config, catalogue) {
+            Ok(found) => {
+                status.found(&found.0, found.1);
+                match bus.open(node) {
+                    Ok(_) => status.usable = true,
+                    Err(e) => status.reason = Some(in_words(&e)),
+                }
+            }
+            Err(why) => status.reason = Some(why),
+        }
+        status
+    };
+    Ok(nodes.iter().map(one).collect())
+}
+
+struct Watcher {
+    bus: Box<dyn Bus>,
+    config: HidConfig,
+    catalogue: Catalogue,
+    clock: Clock,
+    factory: SenderFactory,
+    shared: Arc<Mutex<Shared>>,
+    /// Which id an interface had: the same one gets it again. Position is the id.
+    ids: Vec<(String, Option<String>)>,
+    /// How often a node could not be opened or set up.
+    failures: BTreeMap<String, u32>,
+    connections: BTreeMap<u16, u32>,
+}
+
+impl Watcher {
+    fn run(&mut self, leash: &Leash) {
+        let (mut wait, mut seen) = (LOOK.0, None);
+        loop {
+            let ended = self.collect_ended();
+            let stamp = self.bus.stamp();
+            let changed = stamp.is_none() || stamp != seen;
+            let retry = self.failures.values().any(|n| *n < TRIES);
+            if changed || ended || retry {
+                seen = stamp;
+                let news = self.look();
+                wait = if news || ended { LOOK.0 } else { (wait * 2).min(LOOK.1) };
+            }
+            // Looking at the stamp costs microseconds; looking at the bus does not.
+            let pause = if stamp.is_some() { LOOK.0 } else { wait };
+            if leash.wait(pause) {
+                break;
+            }
+        }
+    }
+
+    /// Lets go of readers whose device went.
+    fn collect_ended(&mut self) -> bool {
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = shared.open.len();
+        shared.open.retain(|o| o.handle.status().connected);
+        before != shared.open.len()
+    }
+
+    /// Opens what is new. True when something changed.
+    fn look(&mut self) -> bool {
+        let nodes = match self.bus.nodes() {
+            Ok(nodes) => nodes,
+            Err(e) => {
+                tracing::warn!("tablets cannot be listed: {e}");
+                return false;
+            }
+        };
+        let open: Vec<String> = self.with(|s| s.open.iter().map(|o| o.path.clone()).collect());
+        self.failures.retain(|path, _| nodes.iter().any(|n| &n.path == path));
+        let mut closed = Vec::new();
+        let mut news = false;
+        for node in nodes.iter().filter(|n| !open.contains(&n.path)) {
+            let tried = self.failures.get(&node.path).copied().unwrap_or(0);
+            if tried >= TRIES {
+                // Given up on until it is plugged in again; what was wrong stays on show.
+                let old = self.with(|s| s.closed.iter().find(|c| c.path == node.path).cloned());
+                closed.extend(old);
+                continue;
+            }
+            match self.take_up(node) {
+                Ok(open) => {
+                    self.failures.remove(&node.path);
+                    self.with(|s| s.open.push(open));
+                    news = true;
+                }
+                Err(refusal) => {
+                    let mut status = NodeStatus::of(node);
+                    status.reason = Some(match refusal {
+                        Refusal::Final(why) => why,
+                        Refusal::Later(why) => {
+                            self.failures.insert(node.path.clone(), tried + 1);
+                            why
+                        }
+                    });
+                    closed.push(status);
+                }
+            }
+        }
+        self.with(|s| {
+            news |= s.closed != closed;
+            s.closed = closed;
+        });
+        news
+    }
+
+    fn with<T>(&self, f: impl FnOnce(&mut Shared) -> T) -> T {
+        f(&mut self.shared.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Identifies, opens, sets up and reads one interface.
+    fn take_up(&mut self, node: &Node) -> Result<Open, Refusal> {
+        choose(node, &node.who, &self.config, &self.catalogue).map_err(Refusal::Final)?;
+        let mut device = self.bus.open(node).map_err(|e| Refusal::Later(in_words(&e)))?;
+        let mut who = node.who.clone();
+        read_more(&mut who, device.as_mut());
+        let (found, candidates) =
+            choose(node, &who, &self.config, &self.catalogue).map_err(Refusal::Final)?;
+        let id = found.id();
+        for report in id.init_feature.iter().filter_map(|h| hex_bytes(h)) {
+            note_failure(node, device.send_feature(&report));
+        }
+        for index in &id.init_strings {
+            device.string(*index);
+        }
+        for report in id.init_output.iter().filter_map(|h| hex_bytes(h)) {
+            note_failure(node, device.write(&report));
+        }
+        let number = self.number(node);
+        let connections = self.connections.entry(number.0).or_insert(0);
+        *connections += 1;
+        let mut status = NodeStatus { connections: *connections, ..NodeStatus::of(node) };
+        status.found(&found, candidates);
+        (status.usable, status.device) = (true, Some(number.0));
+        let handle =
+            reader::start(device, &found, &who.descriptor, number, self.clock.clone(), self.factory.sender())
+                .map_err(|e| Refusal::Later(e.to_string()))?;
+        tracing::info!("{}: {}", node.path, found.in_words());
+        Ok(Open { path: node.path.clone(), handle, status })
+    }
+
+    /// The id of an interface: the one it had, while nothing else holds it. Two tablets alike get one each.
+    fn number(&mut self, node: &Node) -> DeviceId {
+        let key = format!("{}:{:?}", key(node, true), node.who.interface);
+        let held: Vec<u16> = self.with(|s| s.open.iter().filter_map(|o| o.status.device).collect());
+        let first = self.config.first_device.0;
+        let free = |i: &usize| !held.contains(&(first + *i as u16));
+        let mut own = (0..self.ids.len()).filter(|i| self.ids[*i].0 == key).filter(free);
+        let same_place = own.clone().find(|i| self.ids[*i].1.as_deref() == Some(&node.path));
+        let at = same_place.or_else(|| own.next()).unwrap_or_else(|| {
+            self.ids.push((key, None));
+            self.ids.len() - 1
+        });
+        self.ids[at].1 = Some(node.path.clone());
+        DeviceId(first + at as u16)
+    }
+}
+
+enum Refusal {
+    /// Nothing that time could mend.
+    Final(String),
+    /// Tried again at the next look.
+    Later(String),
+}
+
+/// Which model a node is read as, and the names of all that it may be when that is uncertain.
+fn choose(
+    node: &Node,
+    who: &Identity,
+    config: &HidConfig,
+    catalogue: &Catalogue,
+) -> Result<(Found, Vec<String>), String> {
+    let keys = [key(node, true), key(node, false)];
+    if keys.iter().any(|k| config.ignore.contains(k)) {
+        return Err("ignored by the configuration".to_owned());
+    }
+    if !node.may_be_pen {
+        return Err("not a tablet".to_owned());
+    }
+    let told = keys.iter().find_map(|k| config.models.get(k));
+    match (catalogue.identify(who), told) {
+        (Identification::Declined(why), _) => Err(why),
+        (Identification::Identified(found), None) => Ok((found, Vec::new())),
+        (Identification::Identified(found), Some(name)) if &found.tablet.name == name => {
+            Ok((found, Vec::new()))
+        }
+        (_, Some(name)) => match catalogue.named(name, who) {
+            Some(found) => Ok((found, Vec::new())),
+            None => Err(format!("the configuration names it `{name}`, and no such model has these ids")),
+        },
+        (Identification::Ambiguous(mut many), None) => {
+            let mut names: Vec<String> = many.iter().map(|f| f.tablet.name.clone()).collect();
+            names.sort();
+            let mut found = many.swap_remove(0);
+            found.note = Some(format!("one of {} models alike: say which in the configuration", names.len()));
+            Ok((found, names))
+        }
+    }
+}
+
+/// `vid:pid`, with the serial number where asked and known.
+fn key(node: &Node, serial: bool) -> String {
+    let ids = format!("{:04x}:{:04x}", node.who.vid, node.who.pid);
+    if serial && !node.serial.is_empty() { format!("{ids}:{}", node.serial) } else { ids }
+}
+
+fn in_words(e: &io::Error) -> String {
+    match e.kind() {
+        io::ErrorKind::PermissionDenied => {
+            "permission denied: install the udev rule (config/70-sculptd.rules) and plug it in again"
+                .to_owned()
+        }
+        _ => e.to_string(),
+    }
+}
+
+/// A tablet that refuses its init report may still speak.
+fn note_failure(node: &Node, sent: io::Result<()>) {
+    if let Err(e) = sent {
+        tracing::warn!("{}: an init report was refused: {e}", node.path);
+    }
+}
+
+impl NodeStatus {
+    fn of(node: &Node) -> Self {
+        NodeStatus {
+            path: node.path.clone(),
+            vid: node.who.vid,
+            pid: node.who.pid,
+            serial: node.serial.clone(),
+            interface: node.who.interface,
+            name: node.who.name.clone(),
+            usable: false,
+            device: None,
+            model: None,
+            parser: None,
+            area_mm: None,
+            reason: None,
+            candidates: Vec::new(),
+            reports: 0,
+            broken: 0,
+            samples: 0,
+            connections: 0,
+        }
+    }
+
+    fn found(&mut self, found: &Found, candidates: Vec<String>) {
+        let a = found.tablet.area;
+        self.model = Some(found.tablet.name.clone());
+        self.parser = Some(found.id().parser.name());
+        self.area_mm = Some([a.width_mm as f32, a.height_mm as f32]);
+        self.reason.clone_from(&found.note);
+        self.candidates = candidates;
+    }
+}
+
+#[cfg(test)]
+mod tests;
