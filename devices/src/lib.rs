@@ -15,8 +15,10 @@
 //! ```
 
 mod builtin;
+pub mod calibration;
 pub mod catalogue;
 pub mod clock;
+pub mod filter;
 pub mod hid;
 pub mod leap;
 mod lifeline;

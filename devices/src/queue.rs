@@ -17,6 +17,7 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 use serde::Serialize;
 
+use crate::calibration::Calibration;
 use crate::{DeviceId, Sample};
 
 /// Devices that have counters of their own; ids from here up share the last slot, so that counting never allocates.
@@ -153,6 +154,7 @@ impl SenderFactory {
             last: Vec::new(),
             pending: VecDeque::new(),
             stop: None,
+            calibrations: Vec::new(),
         }
     }
 
@@ -170,6 +172,8 @@ pub struct Sender {
     last: Vec<Sample>,
     pending: VecDeque<Kept>,
     stop: Option<Arc<AtomicBool>>,
+    /// What the person set, for the few devices of this adaptor that it was set for.
+    calibrations: Vec<(DeviceId, Calibration)>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -184,6 +188,14 @@ impl Sender {
         self.stop = Some(flag);
     }
 
+    /// Samples of this device go out as the person set it up, from here on.
+    pub fn calibrate(&mut self, device: DeviceId, calibration: Calibration) {
+        self.calibrations.retain(|(d, _)| *d != device);
+        if !calibration.is_plain() {
+            self.calibrations.push((device, calibration));
+        }
+    }
+
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }
@@ -195,7 +207,10 @@ impl Sender {
 
     /// Hands one sample over. Never waits for motion. For a transition it waits only when the channel *and* the list of
     /// kept samples are full, and then it is the caller, a reader thread, that waits.
-    pub fn push(&mut self, sample: Sample) {
+    pub fn push(&mut self, mut sample: Sample) {
+        if let Some((_, calibration)) = self.calibrations.iter().find(|(d, _)| *d == sample.device) {
+            calibration.apply(&mut sample);
+        }
         self.stats.device(sample.device).sent.fetch_add(1, Relaxed);
         let motion = self.remember(sample);
         self.flush();

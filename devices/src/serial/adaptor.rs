@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::session::{self, PROBE_ORDER, Wire};
 use super::{Counts, Decoder, Facts, Protocol};
 use crate::Clock;
+use crate::calibration::Calibration;
 use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
@@ -33,6 +34,8 @@ pub struct Config {
     pub protocol: Option<Protocol>,
     /// Fingers on an ISDV4 screen become samples too.
     pub touch: bool,
+    /// What the person set for the tablet there.
+    pub calibration: Calibration,
     /// Under which id its samples go out.
     #[serde(skip)]
     pub device: DeviceId,
@@ -76,6 +79,7 @@ pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Ha
     let thread = lifeline::spawn("serial-pen", move |leash| {
         let mut sender = sender;
         sender.stop_when(leash.flag());
+        sender.calibrate(config.device, config.calibration);
         Reader { config, clock, sender, status: shared }.run(&leash);
     })?;
     Ok(Handle { status, _thread: thread })
