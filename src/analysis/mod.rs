@@ -3,5 +3,7 @@
 
 pub mod boolean;
 pub mod cancel;
+pub mod measure;
+pub mod picture;
 pub mod thickness;
 pub mod tree;

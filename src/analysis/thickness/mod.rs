@@ -13,8 +13,12 @@
 pub mod ball;
 pub mod cone;
 mod edges;
+pub mod preset;
 pub mod ray;
+pub mod summary;
 pub mod surface;
+pub mod warnings;
+pub mod worst;
 
 use std::borrow::Cow;
 

@@ -1,0 +1,225 @@
+//! What a map of thickness comes to: statistics, the histogram, the share of the area below a limit, the error bound.
+
+use glam::Vec3;
+
+use super::{Correction, Method, Reason, Thickness};
+
+/// Classes of the histogram: the first counts missing values, the other hundred run from 0 to the maximum.
+pub const CLASSES: usize = 101;
+
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Summary {
+    /// Over the vertices with a value; `null` where none has one.
+    pub min: Option<f32>,
+    pub max: Option<f32>,
+    pub mean: Option<f32>,
+    pub median: Option<f32>,
+    /// Share of the vertices that belong to a face and have a value, 0 to 1.
+    pub valid: f32,
+    pub histogram: Vec<u64>,
+    /// Where the smallest value is.
+    pub thinnest: Option<[f32; 3]>,
+    pub thickest: Option<[f32; 3]>,
+    /// Vertices without a value, by the reason.
+    pub missing: Missing,
+    /// Vertices on sharp edges, whose value follows the edge policy.
+    pub edge_vertices: u64,
+    /// See [`error_bound`].
+    pub error_bound: f32,
+}
+
+#[derive(Debug, Clone, Copy, Default, serde::Serialize)]
+pub struct Missing {
+    pub nothing_ahead: u64,
+    pub no_normal: u64,
+    pub no_face: u64,
+    pub edge: u64,
+}
+
+impl Thickness {
+    /// Values of the welded vertices, each once, with their position.
+    fn each(&self) -> impl Iterator<Item = (f32, Reason, Vec3)> + '_ {
+        let mut seen = 0;
+        self.surface.weld.iter().enumerate().filter_map(move |(i, &w)| {
+            // Welded vertices are numbered by first appearance.
+            (w == seen).then(|| {
+                seen += 1;
+                (self.values[i], self.reasons[i], self.surface.positions[w as usize])
+            })
+        })
+    }
+
+    pub fn summary(&self) -> Summary {
+        let mut missing = Missing::default();
+        let mut edge_vertices = 0;
+        let mut known: Vec<(f32, Vec3)> = Vec::with_capacity(self.values.len());
+        for (value, reason, at) in self.each() {
+            edge_vertices += (reason == Reason::Edge) as u64;
+            if value.is_finite() {
+                known.push((value, at));
+                continue;
+            }
+            match reason {
+                Reason::NoNormal => missing.no_normal += 1,
+                Reason::NoFace => missing.no_face += 1,
+                Reason::Edge => missing.edge += 1,
+                Reason::NothingAhead | Reason::Measured => missing.nothing_ahead += 1,
+            }
+        }
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let n = known.len();
+        let absent = missing.nothing_ahead + missing.no_normal + missing.edge;
+        let max = known.last().map(|v| v.0);
+        let mut histogram = vec![0u64; CLASSES];
+        histogram[0] = absent;
+        for &(v, _) in &known {
+            let share = v / max.filter(|&m| m > 0.0).unwrap_or(1.0);
+            histogram[1 + ((share * 100.0) as usize).min(99)] += 1;
+        }
+        Summary {
+            min: known.first().map(|v| v.0),
+            max,
+            mean: (n > 0).then(|| (known.iter().map(|v| v.0 as f64).sum::<f64>() / n as f64) as f32),
+            median: (n > 0).then(|| {
+                if n % 2 == 1 { known[n / 2].0 } else { (known[n / 2 - 1].0 + known[n / 2].0) * 0.5 }
+            }),
+            valid: n as f32 / (n as f32 + absent as f32).max(1.0),
+            histogram,
+            thinnest: known.first().map(|v| v.1.to_array()),
+            thickest: known.last().map(|v| v.1.to_array()),
+            missing,
+            edge_vertices,
+            error_bound: self.error_bound(),
+        }
+    }
+
+    /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three parts are added:
+    /// single precision (1e-6 of the largest coordinate, four times over for the origin, the hit and two shears); the
+    /// normal, uncertain by half of how the faces at the vertex spread, which lengthens a ray by 1/cos of it; and, for a
+    /// cone, twice the standard error of the kept rays' mean. A cone that is not corrected also carries the bias of its
+    /// geometry, up to 32 % at 120 degrees, which is included.
+    pub fn error_bound(&self) -> f32 {
+        let s = &self.surface;
+        let half = (self.settings.opening * 0.5).to_radians();
+        // The mean length of the cone's rays through a slab, over its thickness: (int dz / z) / (int dz).
+        let long = if self.settings.rays > 1 && half > 0.0 { -half.cos().ln() / (1.0 - half.cos()) } else { 1.0 };
+        let biased = self.settings.method == Method::Ray && self.settings.correction == Correction::None;
+        let mut bounds: Vec<f32> = Vec::with_capacity(self.values.len());
+        for (i, &w) in s.weld.iter().enumerate() {
+            let (value, v) = (self.values[i], w as usize);
+            if !value.is_finite() || s.sharp[v] {
+                continue;
+            }
+            let least =
+                s.around(v).iter().map(|&t| s.face_normals[t as usize].dot(s.normals[v])).fold(1.0f32, f32::min);
+            let tilt = (least.clamp(-1.0, 1.0).acos() * 0.5).min(1.2);
+            let mut bound = 4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + 2.0 * self.errors[i];
+            if biased {
+                bound += value * (1.0 - 1.0 / long);
+            }
+            bounds.push(bound);
+        }
+        let at = bounds.len() * 95 / 100;
+        if bounds.is_empty() {
+            return 4.0 * self.rounding;
+        }
+        *bounds.select_nth_unstable_by(at, f32::total_cmp).1
+    }
+
+    /// Welded vertex values, for walks over the surface.
+    pub fn welded_values(&self) -> Vec<f32> {
+        let mut out = vec![f32::NAN; self.surface.positions.len()];
+        for (i, &w) in self.surface.weld.iter().enumerate() {
+            out[w as usize] = self.values[i];
+        }
+        out
+    }
+
+    /// Area of the surface where the value, linear over each triangle, is strictly below `limit` (or, with `above`,
+    /// strictly over it), and the area that has values at all.
+    pub fn area_beyond(&self, limit: f32, above: bool) -> (f64, f64) {
+        let values = self.welded_values();
+        let (mut out, mut all) = (0.0f64, 0.0f64);
+        let sign = if above { -1.0 } else { 1.0 };
+        for t in 0..self.surface.triangles.len() {
+            let Some(p) = self.surface.corners(t) else { continue };
+            let v = self.surface.triangles[t].map(|c| (values[c as usize] - limit) * sign);
+            if v.iter().any(|x| !x.is_finite()) {
+                continue;
+            }
+            let area = triangle_area(p);
+            all += area;
+            out += area * negative_share(v) as f64;
+        }
+        (out, all)
+    }
+
+    /// The largest ratio, either way, between the value at a vertex and those of the vertices within `reach` times its
+    /// value along the edges (moulding: walls should change gently). 1 where nothing differs, NaN without a value.
+    pub fn neighbour_ratio(&self, reach: f32) -> Vec<f32> {
+        use rayon::prelude::*;
+        /// Vertices looked at around each: keeps the cost linear on dense meshes, whose neighbours differ little.
+        const MOST: usize = 64;
+        let (s, values) = (&self.surface, self.welded_values());
+        let ratio = |v: usize| {
+            let own = values[v];
+            if !own.is_finite() || own <= 0.0 {
+                return f32::NAN;
+            }
+            let (mut seen, mut next, mut beside) = (vec![v as u32], 0, Vec::new());
+            let mut worst = 1.0f32;
+            while next < seen.len() && seen.len() < MOST {
+                s.neighbours(seen[next] as usize, &mut beside);
+                next += 1;
+                for &u in &beside {
+                    let near = s.positions[u as usize].distance(s.positions[v]) <= reach * own;
+                    if near && !seen.contains(&u) {
+                        seen.push(u);
+                        let other = values[u as usize];
+                        if other.is_finite() && other > 0.0 {
+                            worst = worst.max(other / own).max(own / other);
+                        }
+                    }
+                }
+            }
+            worst
+        };
+        let welded: Vec<f32> = (0..s.positions.len()).into_par_iter().map(ratio).collect();
+        s.weld.iter().map(|&w| welded[w as usize]).collect()
+    }
+}
+
+pub(super) fn triangle_area([a, b, c]: [Vec3; 3]) -> f64 {
+    (b - a).as_dvec3().cross((c - a).as_dvec3()).length() * 0.5
+}
+
+/// Share of a triangle's area where the linear function with these corner values is negative.
+fn negative_share(mut v: [f32; 3]) -> f32 {
+    v.sort_by(f32::total_cmp);
+    let [a, b, c] = v;
+    if c <= 0.0 {
+        // Strictly below: a triangle that only touches the limit has no area below it.
+        return if a < 0.0 { 1.0 } else { 0.0 };
+    }
+    if a >= 0.0 {
+        0.0
+    } else if b >= 0.0 {
+        a * a / ((a - b) * (a - c))
+    } else {
+        1.0 - c * c / ((c - a) * (c - b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::negative_share;
+
+    #[test]
+    fn the_share_below_is_exact() {
+        assert_eq!(negative_share([1.0, 2.0, 3.0]), 0.0);
+        assert_eq!(negative_share([0.0, 0.0, 0.0]), 0.0);
+        assert_eq!(negative_share([-1.0, -2.0, 0.0]), 1.0);
+        assert!((negative_share([-1.0, 1.0, 1.0]) - 0.25).abs() < 1e-6);
+        assert!((negative_share([1.0, -1.0, -1.0]) - 0.75).abs() < 1e-6);
+    }
+}

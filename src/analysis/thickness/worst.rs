@@ -1,0 +1,83 @@
+//! The worst spots: connected regions beyond a limit, the thinnest first.
+
+use super::Thickness;
+use super::summary::triangle_area;
+
+/// A connected region below the limit.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Spot {
+    /// Of its thinnest vertex.
+    pub position: [f32; 3],
+    /// The outward normal there.
+    pub normal: [f32; 3],
+    /// At its thinnest vertex.
+    pub thickness: f32,
+    /// A third of each triangle for each of its corners in the region.
+    pub area: f64,
+    pub vertices: u32,
+}
+
+impl Thickness {
+    /// At most `count` regions of values strictly below `limit` and of at least `minimum_area`, the thinnest first.
+    pub fn worst(&self, limit: f32, minimum_area: f64, count: usize) -> Vec<Spot> {
+        let (s, values) = (&self.surface, self.welded_values());
+        let mut area = vec![0.0f64; s.positions.len()];
+        for t in 0..s.triangles.len() {
+            if let Some(p) = s.corners(t) {
+                s.triangles[t].iter().for_each(|&v| area[v as usize] += triangle_area(p) / 3.0);
+            }
+        }
+        let mut seen = vec![false; values.len()];
+        let mut beside = Vec::new();
+        let mut spots = Vec::new();
+        for start in 0..values.len() {
+            if seen[start] || !below(values[start], limit) {
+                continue;
+            }
+            seen[start] = true;
+            let mut todo = vec![start as u32];
+            let (mut thinnest, mut sum, mut n) = (start, 0.0, 0);
+            while let Some(v) = todo.pop() {
+                let v = v as usize;
+                sum += area[v];
+                n += 1;
+                if values[v].total_cmp(&values[thinnest]).then(v.cmp(&thinnest)).is_lt() {
+                    thinnest = v;
+                }
+                s.neighbours(v, &mut beside);
+                for &u in &beside {
+                    if !seen[u as usize] && below(values[u as usize], limit) {
+                        seen[u as usize] = true;
+                        todo.push(u);
+                    }
+                }
+            }
+            if sum >= minimum_area {
+                spots.push(Spot {
+                    position: s.positions[thinnest].to_array(),
+                    normal: (s.normals[thinnest] * if s.faults.inside_out { -1.0 } else { 1.0 }).to_array(),
+                    thickness: values[thinnest],
+                    area: sum,
+                    vertices: n,
+                });
+            }
+        }
+        spots.sort_by(|a, b| a.thickness.total_cmp(&b.thickness).then(b.area.total_cmp(&a.area)));
+        spots.truncate(count);
+        spots
+    }
+
+    /// The limit below which the thinnest `share` of the vertices lies: for the worst spots where no limit was given.
+    pub fn quantile(&self, share: f32) -> Option<f32> {
+        let mut known: Vec<f32> = self.values.iter().copied().filter(|v| v.is_finite()).collect();
+        if known.is_empty() {
+            return None;
+        }
+        let at = ((known.len() - 1) as f32 * share) as usize;
+        Some(*known.select_nth_unstable_by(at, f32::total_cmp).1)
+    }
+}
+
+fn below(value: f32, limit: f32) -> bool {
+    value.is_finite() && value < limit
+}
