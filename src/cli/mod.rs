@@ -13,8 +13,10 @@ pub mod ctl;
 pub mod demo;
 pub mod devices;
 pub mod display;
+pub mod measure;
 pub mod replay;
 pub mod run;
+pub mod thickness;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -51,6 +53,10 @@ pub enum Command {
         #[command(subcommand)]
         command: config::ConfigCommand,
     },
+    /// Wall thickness: of every vertex, against limits, as numbers, map and report.
+    Thickness(thickness::ThicknessArgs),
+    /// Volume, area, dimensions, projected areas and thickness of a part.
+    Measure(measure::MeasureArgs),
     /// Print completions for a shell.
     Completions { shell: clap_complete::Shell },
     /// Print the manual page.
@@ -138,6 +144,8 @@ pub fn run() -> u8 {
         #[cfg(unix)]
         Some(Command::Ctl(args)) => ctl::run(&args, cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),
+        Some(Command::Thickness(args)) => thickness::run(&args, cli.json),
+        Some(Command::Measure(args)) => measure::run(&args, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Man) => clap_mangen::Man::new(Cli::command())
             .render(&mut std::io::stdout())

@@ -11,6 +11,8 @@
 //! stand for. The stated error is against the triangles' own surface, smoothed where it bends by less than the crease.
 
 pub mod ball;
+pub mod check;
+pub mod colour;
 pub mod cone;
 mod edges;
 pub mod preset;

@@ -35,9 +35,9 @@ pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
     say(faults.crowded_edges, &|n| {
         format!("{n} edges have more than two faces: the solid is not defined there, and values beside them may be wrong")
     });
-    if faults.inside_out {
-        out.push("the mesh is inside out (its volume is negative): measured as if every face were turned round".into());
-    }
+    say(faults.inside_out as usize, &|_| {
+        "the mesh is inside out (its volume is negative): measured as if every face were turned round".into()
+    });
     say(faults.shells.saturating_sub(1), &|n| {
         format!(
             "{} separate shells: a cavity is measured rightly, but where shells overlap, each counts as a wall of its own",

@@ -1,0 +1,132 @@
+//! `sculptd measure`: volume, area, dimensions, projected areas and thickness, as a cost estimate needs them.
+
+use std::path::PathBuf;
+
+use glam::Vec3;
+use sculptd_devices::Clock;
+use serde::Serialize;
+
+use super::thickness::{How, load};
+use super::{Fail, Outcome, answer};
+use crate::analysis::cancel::Job;
+use crate::analysis::measure::{measures, projected_area};
+use crate::analysis::thickness::check::{Limits, check};
+
+#[derive(Debug, clap::Args)]
+pub struct MeasureArgs {
+    /// The mesh file.
+    pub mesh: PathBuf,
+    /// More directions to project along.
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub direction: Vec<Vec3>,
+    #[command(flatten)]
+    pub how: How,
+}
+
+#[derive(Debug, Serialize)]
+struct Projected {
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Along {
+    direction: [f32; 3],
+    area: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Statistics {
+    min: Option<f32>,
+    max: Option<f32>,
+    mean: Option<f32>,
+    median: Option<f32>,
+    valid: f32,
+    error_bound: f32,
+}
+
+/// Millimetres.
+#[derive(Debug, Serialize)]
+struct Answer {
+    volume: f64,
+    area: f64,
+    dimensions: [f64; 3],
+    centroid: Option<[f64; 3]>,
+    projected_area: Projected,
+    directions: Vec<Along>,
+    thickness: Statistics,
+    vertices: usize,
+    triangles: usize,
+    closed: bool,
+    warnings: Vec<String>,
+}
+
+/// Three numbers with commas between, not all zero.
+pub fn direction(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').map_while(|s| s.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 => Some(Vec3::new(x, y, z)),
+        _ => None,
+    }
+    .filter(|d| d.is_finite() && d.length_squared() > 0.0)
+    .ok_or_else(|| "expected three numbers X,Y,Z, not all zero".into())
+}
+
+pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
+    let job = Job::default();
+    let (part, notes) = load(&args.mesh, args.how.unit, &job)?;
+    let clock = Clock::monotonic();
+    let file = args.mesh.display().to_string();
+    let checked =
+        check(&file, &part, &args.how.settings(), Limits::default(), &job, || clock.now_us() as f64 * 1e-6)
+            .map_err(|e| Fail::Usage(e.to_string()))?;
+    let m = measures(&part.mesh);
+    let along = |d: Vec3| projected_area(&part.mesh, d, &job).map_err(|e| Fail::Input(e.to_string()));
+    let s = checked.answer.summary;
+    let mut warnings = notes;
+    warnings.extend(checked.answer.warnings);
+    let faults = checked.thickness.surface.faults;
+    let out = Answer {
+        volume: m.volume,
+        area: m.area,
+        dimensions: m.dimensions,
+        centroid: m.centroid.map(|c| (c + part.centre).to_array()),
+        projected_area: Projected { x: along(Vec3::X)?, y: along(Vec3::Y)?, z: along(Vec3::Z)? },
+        directions: args
+            .direction
+            .iter()
+            .map(|&d| Ok(Along { direction: d.to_array(), area: along(d)? }))
+            .collect::<Result<_, Fail>>()?,
+        thickness: Statistics {
+            min: s.min,
+            max: s.max,
+            mean: s.mean,
+            median: s.median,
+            valid: s.valid,
+            error_bound: s.error_bound,
+        },
+        vertices: part.mesh.positions.len(),
+        triangles: part.mesh.triangles.len(),
+        closed: faults.boundary_edges == 0,
+        warnings,
+    };
+    for w in &out.warnings {
+        eprintln!("sculptd: warning: {file}: {w}");
+    }
+    answer(json, &out, |w| {
+        let [x, y, z] = out.dimensions;
+        writeln!(w, "volume      {:.4} mm3", out.volume)?;
+        writeln!(w, "area        {:.4} mm2", out.area)?;
+        writeln!(w, "dimensions  {x:.4} x {y:.4} x {z:.4} mm")?;
+        let p = &out.projected_area;
+        writeln!(w, "projected   x {:.4}  y {:.4}  z {:.4} mm2", p.x, p.y, p.z)?;
+        for a in &out.directions {
+            writeln!(w, "  along {:?}  {:.4} mm2", a.direction, a.area)?;
+        }
+        let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
+        let t = &out.thickness;
+        writeln!(w, "thickness   min {}  median {}  mean {}  max {} mm", n(t.min), n(t.median), n(t.mean), n(t.max))
+    });
+    Ok(())
+}

@@ -1,0 +1,305 @@
+//! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use sculptd_devices::Clock;
+
+use super::{Fail, Outcome, answer};
+use crate::analysis::cancel::Job;
+use crate::analysis::picture::{Camera, draw};
+use crate::analysis::thickness::check::{Answer, Checked, Limits, Part, Verdict, check};
+use crate::analysis::thickness::preset::Preset;
+use crate::analysis::thickness::{
+    At, Correction, EdgePolicy, Method, Outliers, Settings, Side, Thickness, Weights,
+};
+use crate::mesh::io::{read_mesh, write_beside};
+
+#[derive(Debug, clap::Args)]
+pub struct ThicknessArgs {
+    /// The mesh file, or several for a batch.
+    #[arg(required = true, value_name = "MESH")]
+    pub meshes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub how: How,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+    /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
+    #[arg(long, value_name = "FILE")]
+    pub ply: Option<PathBuf>,
+    /// Write a picture of the coloured part.
+    #[arg(long, value_name = "FILE")]
+    pub png: Option<PathBuf>,
+}
+
+/// How thickness is defined and measured.
+#[derive(Debug, Clone, clap::Args)]
+pub struct How {
+    /// Rays at each vertex, 1 to 1000.
+    #[arg(long, value_name = "N", default_value_t = 25)]
+    pub rays: usize,
+    /// `ray`: along the normal, or a cone around it; `sphere`: the largest ball inside the wall.
+    #[arg(long, value_enum, default_value = "ray")]
+    pub method: MethodArg,
+    /// The cone's full angle, degrees, 0 to 120.
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
+    pub opening: f32,
+    /// What each ray's length is corrected by: nothing, the hit face's angle, or the chord's (no bias on bent walls).
+    #[arg(long, value_enum, default_value = "chord")]
+    pub correction: CorrectionArg,
+    /// keep, range:0.1 to range:0.9, sigma-mean, sigma-median
+    #[arg(long, value_name = "RULE", default_value = "sigma-median", value_parser = outliers)]
+    pub outliers: Outliers,
+    /// What a ray counts in the mean.
+    #[arg(long, value_enum, default_value = "plain")]
+    pub weights: WeightsArg,
+    /// `wall`: behind the surface; `gap`: the clearance in front of it.
+    #[arg(long, value_enum, default_value = "wall")]
+    pub side: SideArg,
+    /// What vertices on sharp edges say.
+    #[arg(long, value_enum, default_value = "extrapolate")]
+    pub edges: EdgesArg,
+    /// An edge that turns by more than this is sharp.
+    #[arg(long, value_name = "DEGREES", default_value_t = 40.0)]
+    pub crease: f32,
+    /// The file's unit of length.
+    #[arg(long, value_enum, default_value = "mm")]
+    pub unit: Unit,
+}
+
+#[derive(Debug, Clone, clap::Args)]
+pub struct LimitArgs {
+    /// Limits by process or material: fdm, sla, sls, abs, pc, pp, pa, pom, or a preset file.
+    #[arg(long, value_name = "P")]
+    pub preset: Option<String>,
+    /// Thinner than this fails: exit code 1.
+    #[arg(long, value_name = "MM")]
+    pub fail_below: Option<f32>,
+    /// Thinner than this is worth a warning.
+    #[arg(long, value_name = "MM")]
+    pub warn_below: Option<f32>,
+    /// Thicker than this fails: exit code 1.
+    #[arg(long, value_name = "MM")]
+    pub fail_above: Option<f32>,
+    /// Neighbouring walls that differ by more than this ratio are worth a warning.
+    #[arg(long, value_name = "RATIO")]
+    pub neighbour_ratio: Option<f32>,
+    /// Thin regions smaller than this are no defects.
+    #[arg(long, value_name = "MM2", default_value_t = 0.0)]
+    pub minimum_area: f64,
+}
+
+macro_rules! choice {
+    ($arg:ident -> $to:ident { $($name:ident),+ }) => {
+        #[derive(Debug, Clone, Copy, clap::ValueEnum)]
+        pub enum $arg { $($name),+ }
+        impl From<$arg> for $to {
+            fn from(a: $arg) -> $to { match a { $($arg::$name => $to::$name),+ } }
+        }
+    };
+}
+choice!(MethodArg -> Method { Ray, Sphere });
+choice!(CorrectionArg -> Correction { None, Angle, Chord });
+choice!(WeightsArg -> Weights { Plain, InverseAngle });
+choice!(SideArg -> Side { Wall, Gap });
+choice!(EdgesArg -> EdgePolicy { Raw, Extrapolate, Sphere, Neutral });
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum Unit {
+    Um,
+    Mm,
+    Cm,
+    M,
+    In,
+}
+
+impl Unit {
+    /// Millimetres.
+    pub fn scale(self) -> f64 {
+        match self {
+            Unit::Um => 0.001,
+            Unit::Mm => 1.0,
+            Unit::Cm => 10.0,
+            Unit::M => 1000.0,
+            Unit::In => 25.4,
+        }
+    }
+}
+
+fn outliers(text: &str) -> Result<Outliers, String> {
+    match text {
+        "keep" => Ok(Outliers::Keep),
+        "sigma-mean" => Ok(Outliers::SigmaMean),
+        "sigma-median" => Ok(Outliers::SigmaMedian),
+        _ => text
+            .strip_prefix("range:")
+            .and_then(|s| s.parse().ok())
+            .filter(|s| (0.1..=0.9).contains(s))
+            .map(Outliers::Range)
+            .ok_or_else(|| "expected keep, range:0.1 to range:0.9, sigma-mean or sigma-median".into()),
+    }
+}
+
+impl How {
+    pub fn settings(&self) -> Settings {
+        Settings {
+            method: self.method.into(),
+            side: self.side.into(),
+            rays: self.rays,
+            opening: self.opening,
+            correction: self.correction.into(),
+            outliers: self.outliers,
+            weights: self.weights.into(),
+            edges: self.edges.into(),
+            crease: self.crease,
+            at: At::Vertices,
+        }
+    }
+}
+
+impl LimitArgs {
+    /// The preset's limits, each replaced by what was said itself.
+    pub fn limits(&self) -> Result<Limits, Fail> {
+        let mut limits = Limits::default();
+        if let Some(name) = &self.preset {
+            let preset = if name.ends_with(".toml") {
+                let text = std::fs::read_to_string(name).map_err(|e| Fail::io(Path::new(name), &e))?;
+                Preset::parse(name, &text).map_err(|e| Fail::Config(e.to_string()))?
+            } else {
+                Preset::named(name).map_err(|e| Fail::Usage(e.to_string()))?
+            };
+            limits = Limits::from(&preset);
+        }
+        limits.fail_below = self.fail_below.or(limits.fail_below);
+        limits.warn_below = self.warn_below.or(limits.warn_below);
+        limits.fail_above = self.fail_above.or(limits.fail_above);
+        limits.neighbour_ratio = self.neighbour_ratio.or(limits.neighbour_ratio);
+        limits.minimum_area = self.minimum_area;
+        let given = [limits.fail_below, limits.warn_below, limits.fail_above, limits.neighbour_ratio];
+        if given.into_iter().flatten().any(|l| !(l > 0.0 && l.is_finite())) || !(limits.minimum_area >= 0.0) {
+            return Err(Fail::Usage("limits must be numbers above 0".into()));
+        }
+        Ok(limits)
+    }
+}
+
+/// A part read from its file.
+pub fn load(path: &Path, unit: Unit, job: &Job) -> Result<(Part, Vec<String>), Fail> {
+    let loaded = read_mesh(path, job)?;
+    if loaded.mesh.face_count() == 0 {
+        return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
+    }
+    Ok((Part::new(&loaded.mesh, unit.scale()), loaded.warnings))
+}
+
+pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
+    let limits = args.limits.limits()?;
+    let job = Job::default();
+    let [path] = &args.meshes[..] else { return Err(Fail::Usage("expected one mesh file".into())) };
+    let (part, mut checked) = one(path, args, limits, &job)?;
+    for w in &checked.answer.warnings {
+        eprintln!("sculptd: warning: {}: {w}", path.display());
+    }
+    if let Some(out) = &args.ply {
+        write_beside(out, |w| write_ply(w, &part, &checked.thickness)).map_err(|e| Fail::io(out, &e))?;
+    }
+    if let Some(out) = &args.png {
+        let colours = checked.thickness.colours(checked.thickness.scale());
+        let camera = Camera::whole(&part.mesh, 4.0 / 3.0);
+        let picture = draw(&part.mesh, Some(&colours), &camera, 1200, 900);
+        let png = picture.png().map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
+        write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
+    }
+    checked.answer.file = path.display().to_string();
+    answer(json, &checked.answer, |w| text(w, &checked.answer));
+    judge(&checked.answer)
+}
+
+/// Reads and checks one file.
+fn one(path: &Path, args: &ThicknessArgs, limits: Limits, job: &Job) -> Result<(Part, Checked), Fail> {
+    let (part, notes) = load(path, args.how.unit, job)?;
+    let clock = Clock::monotonic();
+    let seconds = || clock.now_us() as f64 * 1e-6;
+    let mut checked = check(&path.display().to_string(), &part, &args.how.settings(), limits, job, seconds)
+        .map_err(|e| Fail::Usage(e.to_string()))?;
+    checked.answer.warnings.splice(0..0, notes);
+    Ok((part, checked))
+}
+
+fn judge(a: &Answer) -> Outcome {
+    if a.verdict != Verdict::Fail {
+        return Ok(());
+    }
+    let number = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4} mm"));
+    let mut why = Vec::new();
+    if let (Some(limit), Some(min)) = (a.limits.fail_below, a.summary.min)
+        && min < limit
+    {
+        why.push(format!("the thinnest wall is {}, below the limit of {limit} mm", number(a.summary.min)));
+    }
+    if let (Some(limit), Some(max)) = (a.limits.fail_above, a.summary.max)
+        && max > limit
+    {
+        why.push(format!("the thickest wall is {}, above the limit of {limit} mm", number(a.summary.max)));
+    }
+    Err(Fail::Check(format!("{}: {}", a.file, why.join("; "))))
+}
+
+fn text(w: &mut dyn Write, a: &Answer) -> std::io::Result<()> {
+    let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
+    let s = &a.summary;
+    writeln!(w, "{}: {} vertices, {} triangles", a.file, a.vertices, a.triangles)?;
+    writeln!(w, "  thickness  min {}  median {}  mean {}  max {} mm", n(s.min), n(s.median), n(s.mean), n(s.max))?;
+    writeln!(w, "  valid      {:.2} %   error bound {:.2e} mm (95 % of the vertices)", s.valid * 100.0, s.error_bound)?;
+    for (name, beyond) in [("below", a.below), ("above", a.above)] {
+        if let Some(b) = beyond {
+            writeln!(w, "  {name:9}  {:.3} % of the area is {name} {} mm", b.area_percent, b.limit)?;
+        }
+    }
+    if let Some(n) = a.uneven {
+        writeln!(w, "  uneven     {n} vertices differ from a neighbour by more than the ratio")?;
+    }
+    for (i, x) in a.worst.iter().enumerate() {
+        let [px, py, pz] = x.position;
+        writeln!(w, "  spot {:2}    {:.4} mm at ({px:.3}, {py:.3}, {pz:.3}), {:.3} mm2", i + 1, x.thickness, x.area)?;
+    }
+    writeln!(w, "  verdict    {}", verdict(a.verdict))?;
+    writeln!(w, "  {:.3} s, {:.2} million rays a second", a.seconds, a.rays_per_second * 1e-6)
+}
+
+/// As people read it.
+pub fn verdict(v: Verdict) -> &'static str {
+    match v {
+        Verdict::Unjudged => "no limit given",
+        Verdict::Pass => "pass",
+        Verdict::Warn => "warn",
+        Verdict::Fail => "fail",
+    }
+}
+
+/// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none), reason.
+fn write_ply(w: &mut dyn Write, part: &Part, t: &Thickness) -> std::io::Result<()> {
+    let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
+    write!(
+        w,
+        "ply\nformat binary_little_endian 1.0\ncomment thickness in mm; nan: no value; reason 0 measured, 1 edge, 2 nothing \
+         ahead, 3 no normal, 4 no face\nelement vertex {n}\nproperty double x\nproperty double y\nproperty double z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float thickness\nproperty uchar reason\n\
+         element face {m}\nproperty list uchar int vertex_indices\nend_header\n"
+    )?;
+    let colours = t.colours(t.scale());
+    let mut rows = Vec::with_capacity(n * 32 + m * 13);
+    for v in 0..n {
+        for x in (part.mesh.positions[v].as_dvec3() + part.centre).to_array() {
+            rows.extend(x.to_le_bytes());
+        }
+        rows.extend(colours[v]);
+        rows.extend(t.values[v].to_le_bytes());
+        rows.push(t.reasons[v] as u8);
+    }
+    for c in &part.mesh.triangles {
+        rows.push(3);
+        c.iter().for_each(|v| rows.extend(v.to_le_bytes()));
+    }
+    w.write_all(&rows)
+}
