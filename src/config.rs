@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::brush::BrushSettings;
+use crate::hand::HandSettings;
 use crate::stroke::Camera;
 
 /// The embedded defaults, which are also the documentation of every key.
@@ -23,6 +24,7 @@ pub struct Config {
     pub brush: BrushSettings,
     pub camera: CameraConfig,
     pub undo: UndoConfig,
+    pub hand: HandSettings,
     pub devices: DevicesConfig,
 }
 
@@ -251,6 +253,31 @@ impl Config {
         within("camera.aspect", self.camera.aspect, 0.1, 10.0)?;
         within("camera.yaw_degrees", self.camera.yaw_degrees, -360.0, 360.0)?;
         within("camera.pitch_degrees", self.camera.pitch_degrees, -89.0, 89.0)?;
+        let h = &self.hand;
+        within("hand.pinch_on_mm", h.pinch_on_mm, 5.0, 100.0)?;
+        within("hand.pinch_off_mm", h.pinch_off_mm, h.pinch_on_mm, 150.0)?;
+        within("hand.grab_on", h.grab_on, 0.1, 1.0)?;
+        within("hand.grab_off", h.grab_off, 0.0, h.grab_on)?;
+        within("hand.pinch_max_grab", h.pinch_max_grab, 0.0, 1.0)?;
+        within("hand.spread", h.spread, 0.3, 3.0)?;
+        for (key, ms) in [
+            ("hold_ms", h.hold_ms),
+            ("pose_ramp_ms", h.pose_ramp_ms),
+            ("appear_ramp_ms", h.appear_ramp_ms),
+            ("bridge_ms", h.bridge_ms),
+            ("view_rest_ms", h.view_rest_ms),
+        ] {
+            within(&format!("hand.{key}"), ms, 0.0, 5000.0)?;
+        }
+        for (key, mm) in [
+            ("tip_radius_mm", h.tip_radius_mm),
+            ("pinch_radius_mm", h.pinch_radius_mm),
+            ("palm_radius_mm", h.palm_radius_mm),
+        ] {
+            within(&format!("hand.{key}"), mm, 1.0, 200.0)?;
+        }
+        within("hand.dead_zone_mm", h.dead_zone_mm, 0.0, 50.0)?;
+        within("hand.dwell_zone_mm", h.dwell_zone_mm, 0.0, 50.0)?;
         within("undo.bytes", self.undo.bytes, 1 << 20, 1 << 40)?;
         Ok(())
     }

@@ -11,8 +11,8 @@ use glam::{Vec2, Vec3};
 use crate::brush::{BrushKind, BrushSettings, Gaussian, Smooth};
 use crate::command::Command;
 use crate::devices::{Body, DeviceId, Hands, Sample};
-use crate::hand::{HandTools, Volume};
-use crate::mesh::{Hit, Mesh, Ray, Reach, Workers};
+use crate::hand::{Act, HandSettings, HandTools, Pose};
+use crate::mesh::{Hit, Kernel, Mesh, Ray, Reach, Workers};
 use crate::stroke::{Camera, Flow, PenPoint, PenTrack, Surface};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
@@ -37,6 +37,7 @@ pub struct WorldOptions {
     /// Vertices that the dabs of one step may visit.
     pub dab_budget: u64,
     pub undo_bytes: u64,
+    pub hands: HandSettings,
 }
 
 #[derive(Debug)]
@@ -77,7 +78,7 @@ impl World {
             middle: Vec3::ZERO,
             extent: 1.0,
             pens: Vec::with_capacity(MAX_PENS),
-            hands: HandTools::default(),
+            hands: HandTools::new(options.hands),
             last_hands: None,
             report: StepReport::default(),
             retired: Vec::with_capacity(4),
@@ -92,6 +93,7 @@ impl World {
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::splat(-1.0), Vec3::ONE) };
         self.middle = (lo + hi) * 0.5;
         self.extent = ((hi - lo).length() * 0.5).max(1e-12);
+        self.hands.lay(self.middle, self.extent, self.camera.yaw);
     }
 
     fn frame(&mut self) {
@@ -172,8 +174,8 @@ impl World {
                 }
             }
             Body::Hands(hands) => {
-                let volume = Volume { middle: self.middle, extent: self.extent, yaw: self.camera.yaw };
-                self.hands.take(sample.device, sample.t_us, hands, &volume);
+                self.hands.follow(self.camera.target, self.camera.yaw);
+                self.hands.take(sample.device, sample.t_us, hands);
                 self.last_hands = Some(*hands);
             }
             Body::Pad(_) => {}
@@ -208,12 +210,48 @@ impl World {
                 }
             }
         }
-        while let Some(push) = self.hands.next_push() {
-            if clay.push(&push) == Flow::Pause {
-                clay.report.paused = true;
-                break;
-            }
+        let mut left = clay.left;
+        while left > 0 {
+            let Some(act) = self.hands.next_act() else { return };
+            left = self.by_hand(&act, left);
         }
+        self.report.paused |= self.hands.has_waiting();
+    }
+
+    /// One act of a hand; returns what is left of the budget.
+    fn by_hand(&mut self, act: &Act, left: u64) -> u64 {
+        let camera = &mut self.camera;
+        match act {
+            Act::Orbit(by) => camera.orbit(*by),
+            Act::Zoom(factor) => camera.zoom(*factor),
+            Act::Move(by) => camera.target -= *by,
+            Act::Hold { before, after } => {
+                // The camera keeps its place among the hands.
+                let mm = before.turn.inverse() * (camera.target - before.origin) / before.scale;
+                camera.target = after.to_world(mm);
+                camera.distance = (camera.distance * after.scale / before.scale).clamp(1e-6, 1e9);
+            }
+            Act::Push(a) => return self.touch(&a.reach(), &a.kernel(), left),
+            Act::Drag(a) => return self.touch(&a.reach(), &a.kernel(), left),
+            Act::Palm(a) => return self.touch(&a.reach(), &a.kernel(), left),
+        }
+        left
+    }
+
+    fn touch<K: Kernel>(&mut self, reach: &Reach, kernel: &K, left: u64) -> u64 {
+        self.mesh.begin_step();
+        let report = self.mesh.dab(reach, kernel, &self.workers);
+        if report.moved > 0 {
+            self.report.dabs += 1;
+            self.hands.sculpted();
+        }
+        self.report.vertices_moved += report.moved as u64;
+        left.saturating_sub(report.affected as u64 + 1)
+    }
+
+    /// The pose of every hand that is followed.
+    pub fn poses(&self) -> impl Iterator<Item = (DeviceId, i32, Pose)> + '_ {
+        self.hands.tracks().map(|t| (t.device, t.id, t.pose))
     }
 
     pub fn tick(&self) -> u64 {
@@ -317,15 +355,6 @@ impl Clay<'_> {
         self.report.dabs += 1;
         self.report.vertices_moved += moved.moved as u64;
         self.left = self.left.saturating_sub(moved.affected as u64 + 1);
-    }
-
-    fn push(&mut self, push: &crate::hand::Push) -> Flow {
-        self.mesh.begin_step();
-        let report = self.mesh.dab(&push.reach(), &push.kernel(), self.workers);
-        self.report.dabs += u64::from(report.moved > 0);
-        self.report.vertices_moved += report.moved as u64;
-        self.left = self.left.saturating_sub(report.affected as u64 + 1);
-        if self.left == 0 { Flow::Pause } else { Flow::Go }
     }
 }
 

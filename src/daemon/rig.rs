@@ -54,7 +54,11 @@ pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, RigError> {
 
 /// The world of a fresh session.
 pub fn world(mesh: Mesh, config: &Config) -> World {
-    let options = WorldOptions { dab_budget: config.r#loop.dab_budget, undo_bytes: config.undo.bytes };
+    let options = WorldOptions {
+        dab_budget: config.r#loop.dab_budget,
+        undo_bytes: config.undo.bytes,
+        hands: config.hand,
+    };
     let workers = Workers::new(config.r#loop.worker_count());
     World::new(mesh, config.camera.camera(), config.brush, workers, options)
 }
@@ -104,6 +108,7 @@ pub fn begin(
                 undo_bytes: config.undo.bytes,
                 camera: config.camera.camera(),
                 brush: config.brush,
+                hands: config.hand,
             };
             Some(session::create(path, &loaded.plain, &settings)?)
         }

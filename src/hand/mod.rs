@@ -1,125 +1,296 @@
-//! Bare hands: from tracked joints to tools that touch the clay.
+//! Bare hands: from tracked joints to tools that touch the clay, and to the view that turns.
+//!
+//! Laws kept here:
+//! * A hand acts by **contact**, never by a click: the swept path of its tool is what touches, so no speed tunnels through.
+//! * Nothing acts at full strength at once: a hand that appears, a pose that changes, a hand at the edge of what is tracked
+//!   or badly seen, all fade in ([`machine::Track::strength`], [`Volume::edge_fade`]).
+//! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has let go.
+//! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
 
+pub mod acts;
+pub mod machine;
+pub mod pose;
+pub mod settings;
 mod volume;
 
+pub use acts::{Act, Drag, PalmPress, Push};
+pub use machine::Track;
+pub use pose::Pose;
+pub use settings::HandSettings;
 pub use volume::Volume;
 
 use std::collections::VecDeque;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use crate::brush::Push as PushKernel;
 use crate::devices::{DeviceId, Hands};
-use crate::mesh::Reach;
 
-/// A hand that was not seen for longer than this starts anew: 100 ms is bridged, as one occluded moment.
-const BRIDGE_US: u64 = 100_000;
-/// Fingertip tool radius in mm: a fingertip is 14 to 18 mm wide, and clay gives.
-const TIP_RADIUS_MM: f32 = 12.0;
-/// A hand pushes softly in its first moments: 0.75 s after it appears it has its full strength, so that a hand that comes
-/// into view inside the clay does not tear it.
-const RAMP_US: u64 = 750_000;
-/// Swept pushes waiting for budget; the oldest two are joined when it is full.
+/// Acts waiting for the tick's budget; beyond it the newest sweep is joined to the one before.
 const MAX_WAITING: usize = 256;
+/// Hands followed at a time, over all trackers.
+const MAX_TRACKS: usize = 16;
 
-/// A tool swept from one place to another, world units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
-    pub from: Vec3,
-    pub to: Vec3,
-    pub radius: f32,
-    /// Share of the full displacement, 0 to 1.
-    pub strength: f32,
-}
-
-impl Push {
-    pub fn reach(&self) -> Reach {
-        Reach::Capsule { from: self.from, to: self.to, radius: self.radius }
-    }
-
-    pub fn kernel(&self) -> PushKernel {
-        PushKernel::new(self.from, self.to, self.radius, self.strength)
-    }
-}
-
+/// A hand as it was one frame ago, in the world.
 #[derive(Debug, Clone, Copy)]
-struct Track {
-    device: DeviceId,
-    hand: i32,
-    since_us: u64,
-    seen_us: u64,
-    tip: Vec3,
+struct Held {
+    track: Track,
+    /// Where the tool was; `None` just after the pose began.
+    tool: Option<Vec3>,
+    /// The palm when it last rested, mm: motion counts from here once it left the dead zone.
+    anchor_mm: Vec3,
+    free: bool,
+    moved_us: u64,
 }
 
 /// The state of all hands between samples.
 #[derive(Debug)]
 pub struct HandTools {
-    tracks: Vec<Track>,
-    waiting: VecDeque<Push>,
-    touching: bool,
-}
-
-impl Default for HandTools {
-    fn default() -> Self {
-        HandTools {
-            tracks: Vec::with_capacity(16),
-            waiting: VecDeque::with_capacity(MAX_WAITING),
-            touching: false,
-        }
-    }
+    pub settings: HandSettings,
+    held: Vec<Held>,
+    waiting: VecDeque<Act>,
+    volume: Volume,
+    /// The camera's yaw that the volume was laid for.
+    yaw: f32,
+    /// The two world points that two pinching hands hold.
+    pair: Option<[Vec3; 2]>,
+    /// Distance of two open hands one frame ago, mm.
+    apart_mm: Option<f32>,
+    sculpted_us: Option<u64>,
+    now_us: u64,
 }
 
 impl HandTools {
-    /// Takes one frame of one tracker.
-    pub fn take(&mut self, device: DeviceId, t_us: u64, hands: &Hands, volume: &Volume) {
-        self.tracks.retain(|t| t.device != device || t_us.saturating_sub(t.seen_us) <= BRIDGE_US);
-        for hand in hands.as_slice() {
-            let Some(index) = hand.fingers[1] else { continue };
-            if index.extended == Some(false) {
-                continue;
-            }
-            let tip = volume.to_world(index.tip);
-            let known = self.tracks.iter_mut().find(|t| t.device == device && t.hand == hand.id);
-            let Some(track) = known else {
-                if self.tracks.len() < self.tracks.capacity() {
-                    self.tracks.push(Track { device, hand: hand.id, since_us: t_us, seen_us: t_us, tip });
-                }
-                continue;
-            };
-            let ramp = (t_us.saturating_sub(track.since_us) as f32 / RAMP_US as f32).min(1.0);
-            let strength =
-                ramp * hand.confidence.unwrap_or(1.0).clamp(0.0, 1.0) * volume.edge_fade(index.tip);
-            let push = Push { from: track.tip, to: tip, radius: TIP_RADIUS_MM * volume.scale(), strength };
-            (track.tip, track.seen_us) = (tip, t_us);
-            if strength > 0.0 {
-                self.wait(push);
-            }
+    pub fn new(settings: HandSettings) -> Self {
+        HandTools {
+            settings,
+            held: Vec::with_capacity(MAX_TRACKS),
+            waiting: VecDeque::with_capacity(MAX_WAITING),
+            volume: Volume::over(Vec3::ZERO, 1.0, 0.0),
+            yaw: 0.0,
+            pair: None,
+            apart_mm: None,
+            sculpted_us: None,
+            now_us: 0,
         }
-        self.touching = !self.tracks.is_empty();
     }
 
-    fn wait(&mut self, push: Push) {
+    /// Lays the tracked volume over a work anew.
+    pub fn lay(&mut self, middle: Vec3, extent: f32, yaw: f32) {
+        self.volume = Volume::over(middle, extent, yaw);
+        self.yaw = yaw;
+    }
+
+    pub fn volume(&self) -> &Volume {
+        &self.volume
+    }
+
+    /// Every hand that is followed, for showing its state.
+    pub fn tracks(&self) -> impl Iterator<Item = &Track> {
+        self.held.iter().map(|h| &h.track)
+    }
+
+    /// The volume turns with the camera, whoever turned it: toward the user stays toward the user.
+    pub fn follow(&mut self, target: Vec3, yaw: f32) {
+        let by = yaw - self.yaw;
+        if by != 0.0 {
+            let turn = glam::Quat::from_rotation_y(by);
+            self.volume.origin = target + turn * (self.volume.origin - target);
+            self.volume.turn = (turn * self.volume.turn).normalize();
+            self.yaw = yaw;
+        }
+    }
+
+    /// Takes one frame of one tracker.
+    pub fn take(&mut self, device: DeviceId, t_us: u64, hands: &Hands) {
+        let s = self.settings;
+        self.now_us = t_us;
+        self.forget(t_us);
+        for hand in hands.as_slice() {
+            let known = self.held.iter().position(|h| h.track.device == device && h.track.id == hand.id).or_else(|| {
+                // The tracker gave the same hand a new number.
+                let lost = |h: &Held| {
+                    h.track.device == device
+                        && !hands.as_slice().iter().any(|o| o.id == h.track.id)
+                        && h.track.may_continue(t_us, hand, &s)
+                };
+                self.held.iter().position(lost)
+            });
+            match known {
+                Some(i) => {
+                    if self.held[i].track.take(t_us, hand, &s) {
+                        let held = &mut self.held[i];
+                        (held.tool, held.free, held.anchor_mm) = (None, false, hand.palm);
+                    }
+                }
+                None if self.held.len() < MAX_TRACKS => self.held.push(Held {
+                    track: Track::new(device, t_us, hand),
+                    tool: None,
+                    anchor_mm: hand.palm,
+                    free: false,
+                    moved_us: t_us,
+                }),
+                None => {}
+            }
+        }
+        self.act(t_us);
+    }
+
+    /// Lets go of hands that were not seen for longer than is bridged.
+    fn forget(&mut self, t_us: u64) {
+        let bridge_us = (self.settings.bridge_ms * 1000.0) as u64;
+        self.held.retain(|h| t_us.saturating_sub(h.track.seen_us) <= bridge_us);
+    }
+
+    fn act(&mut self, t_us: u64) {
+        let mut posed = self.held.iter().filter(|h| h.track.seen_us == t_us);
+        let two = posed.next().zip(posed.next()).map(|(a, b)| [a.track, b.track]);
+        let both = |pose: Pose| two.filter(|p| p.iter().all(|t| t.pose == pose));
+        if let Some([a, b]) = both(Pose::Pinch) {
+            self.hold_between(a, b);
+            return;
+        }
+        self.pair = None;
+        if let Some([a, b]) = both(Pose::Open) {
+            self.zoom_between(a, b, t_us);
+            return;
+        }
+        self.apart_mm = None;
+        for i in 0..self.held.len() {
+            if self.held[i].track.seen_us == t_us {
+                self.one_hand(i, t_us);
+            }
+        }
+    }
+
+    /// Two pinches hold two points of the world: move, turn, scale.
+    fn hold_between(&mut self, a: Track, b: Track) {
+        let Some((pa, pb)) = a.pinch_point.zip(b.pinch_point) else { return };
+        let held = *self.pair.get_or_insert([self.volume.to_world(pa), self.volume.to_world(pb)]);
+        if let Some(volume) = self.volume.holding(held, [pa, pb]) {
+            let before = self.volume;
+            self.volume = volume;
+            self.wait(Act::Hold { before, after: volume });
+        }
+    }
+
+    fn zoom_between(&mut self, a: Track, b: Track, t_us: u64) {
+        let apart = (a.palm - b.palm).length();
+        if let Some(before) = self.apart_mm
+            && self.view_may_move(t_us)
+            && before > 30.0
+        {
+            self.wait(Act::Zoom((apart / before).clamp(0.8, 1.25)));
+        }
+        self.apart_mm = Some(apart);
+    }
+
+    fn view_may_move(&self, t_us: u64) -> bool {
+        self.sculpted_us.is_none_or(|at| t_us.saturating_sub(at) as f32 * 1e-3 > self.settings.view_rest_ms)
+    }
+
+    fn one_hand(&mut self, i: usize, t_us: u64) {
+        let s = self.settings;
+        let Held { track, tool, .. } = self.held[i];
+        let v = self.volume;
+        let strength = track.strength(t_us, &s);
+        let at_mm = match track.pose {
+            Pose::Point => track.index_tip,
+            Pose::Pinch => track.pinch_point,
+            Pose::Flat => Some(track.palm),
+            Pose::Neutral | Pose::Grab | Pose::Open => None,
+        };
+        if let Some(mm) = at_mm {
+            let to = v.to_world(mm);
+            let strength = strength * Volume::edge_fade(mm);
+            if let Some(from) = tool.filter(|_| strength > 0.0) {
+                match track.pose {
+                    Pose::Point => self.wait(Act::Push(Push { from, to, radius: s.tip_radius_mm * v.scale, strength })),
+                    Pose::Pinch => {
+                        self.wait(Act::Drag(Drag { from, to, radius: s.pinch_radius_mm * v.scale, strength }));
+                    }
+                    _ => {
+                        let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
+                        let radius = s.palm_radius_mm * v.scale;
+                        self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
+                    }
+                }
+            }
+            self.held[i].tool = Some(to);
+            return;
+        }
+        self.held[i].tool = None;
+        if matches!(track.pose, Pose::Grab | Pose::Open) {
+            self.view_by(i, t_us);
+        }
+    }
+
+    /// An open hand turns the work, a fist moves it, once the palm has left its dead zone.
+    fn view_by(&mut self, i: usize, t_us: u64) {
+        let s = self.settings;
+        let may = self.view_may_move(t_us);
+        let held = &mut self.held[i];
+        let by = held.track.palm - held.anchor_mm;
+        let rests_ms = t_us.saturating_sub(held.moved_us) as f32 * 1e-3;
+        let zone = s.dead_zone_mm + if rests_ms > s.view_rest_ms { s.dwell_zone_mm } else { 0.0 };
+        if !held.free {
+            held.free = by.length() > zone;
+            if held.free {
+                held.anchor_mm = held.track.palm;
+            }
+            return;
+        }
+        if by.length() < 0.3 {
+            if rests_ms > s.view_rest_ms {
+                held.free = false;
+            }
+            return;
+        }
+        (held.anchor_mm, held.moved_us) = (held.track.palm, t_us);
+        let pose = held.track.pose;
+        if may {
+            let act = match pose {
+                // 300 mm of travel, a comfortable sweep of the forearm, is a half turn.
+                Pose::Open => Act::Orbit(Vec2::new(by.x, -by.y) / 300.0),
+                _ => Act::Move(self.volume.direction(by) * self.volume.scale),
+            };
+            self.wait(act);
+        }
+    }
+
+    fn wait(&mut self, act: Act) {
         if self.waiting.len() >= MAX_WAITING {
-            if let Some(last) = self.waiting.back_mut() {
-                last.to = push.to;
+            if let Some(last) = self.waiting.back_mut()
+                && last.join(&act)
+            {
                 return;
             }
+            self.waiting.pop_front();
         }
-        self.waiting.push_back(push);
+        self.waiting.push_back(act);
     }
 
-    pub fn next_push(&mut self) -> Option<Push> {
+    pub fn has_waiting(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    pub fn next_act(&mut self) -> Option<Act> {
         self.waiting.pop_front()
     }
 
-    /// A hand is over the clay or a push waits: the undo step stays open.
+    /// The world tells that an act moved clay: the view rests for a while.
+    pub fn sculpted(&mut self) {
+        self.sculpted_us = Some(self.now_us);
+    }
+
+    /// A tool is on the clay or an act waits: the undo step stays open.
     pub fn is_touching(&self) -> bool {
-        self.touching || !self.waiting.is_empty()
+        !self.waiting.is_empty() || self.held.iter().any(|h| h.tool.is_some())
     }
 
     /// Forgets every hand: what was touching stops.
     pub fn lift(&mut self) {
-        self.tracks.clear();
-        self.touching = false;
+        self.held.clear();
+        self.pair = None;
+        self.apart_mm = None;
     }
 }

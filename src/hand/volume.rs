@@ -1,9 +1,10 @@
-//! The tracked volume laid over the work.
+//! The tracked volume laid over the work: a similarity from the tracker's millimetres to the world.
 
 use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// The middle of a Leap's interaction box, mm over the device (protocol v6 `interactionBox.center`).
-const BOX_MIDDLE_MM: Vec3 = Vec3::new(0.0, 200.0, 0.0);
+pub const BOX_MIDDLE_MM: Vec3 = Vec3::new(0.0, 200.0, 0.0);
 /// Half the side of the tracked cube that is mapped, mm: the box is 235 x 235 x 148 mm.
 const BOX_HALF_MM: f32 = 117.6;
 /// The work's bounding sphere takes this share of the cube, so that a hand can come from outside.
@@ -11,28 +12,75 @@ const WORK_SHARE: f32 = 0.6;
 /// The tool fades out over the last 30 mm before the edge of what a Leap tracks well (about 250 mm from the middle).
 const EDGE_MM: [f32; 2] = [220.0, 250.0];
 
-/// Where the work is, in world units; see [`crate::world::World`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// `world = origin + turn * (mm * scale)`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Volume {
-    pub middle: Vec3,
-    pub extent: f32,
-    /// The camera's, radians: "toward the user" stays toward the user when the work is turned.
-    pub yaw: f32,
+    pub origin: Vec3,
+    pub turn: Quat,
+    /// World units a millimetre, > 0.
+    pub scale: f32,
 }
 
 impl Volume {
-    /// World units a millimetre.
-    pub fn scale(&self) -> f32 {
-        self.extent / (BOX_HALF_MM * WORK_SHARE)
+    /// Over a work with this middle and bounding radius, seen from `yaw`: "toward the user" is toward the camera.
+    pub fn over(middle: Vec3, extent: f32, yaw: f32) -> Self {
+        let scale = extent / (BOX_HALF_MM * WORK_SHARE);
+        let turn = Quat::from_rotation_y(yaw);
+        Volume { origin: middle - turn * (BOX_MIDDLE_MM * scale), turn, scale }
     }
 
     pub fn to_world(&self, mm: Vec3) -> Vec3 {
-        self.middle + Quat::from_rotation_y(self.yaw) * (mm - BOX_MIDDLE_MM) * self.scale()
+        self.origin + self.turn * (mm * self.scale)
+    }
+
+    /// Turns a direction of the tracker into one of the world.
+    pub fn direction(&self, d: Vec3) -> Vec3 {
+        self.turn * d
     }
 
     /// 1 well inside the tracked volume, 0 at its edge.
-    pub fn edge_fade(&self, mm: Vec3) -> f32 {
+    pub fn edge_fade(mm: Vec3) -> f32 {
         let off = (mm - BOX_MIDDLE_MM).abs().max_element();
         ((EDGE_MM[1] - off) / (EDGE_MM[1] - EDGE_MM[0])).clamp(0.0, 1.0)
+    }
+
+    /// The volume in which the two world points held so far lie under two fingers at `a` and `b` (mm): moved, scaled, and
+    /// turned by the smallest rotation. `None` where the fingers are too near each other to say.
+    pub fn holding(&self, held: [Vec3; 2], fingers: [Vec3; 2]) -> Option<Volume> {
+        let (mm, world) = (fingers[1] - fingers[0], held[1] - held[0]);
+        // Fingers nearer than 20 mm would turn the work by their own noise.
+        if mm.length() < 20.0 || world.length() <= 0.0 {
+            return None;
+        }
+        let scale = world.length() / mm.length();
+        let seen = (self.turn * mm).normalize();
+        let turn = (Quat::from_rotation_arc(seen, world.normalize()) * self.turn).normalize();
+        let middle = (fingers[0] + fingers[1]) * 0.5;
+        let origin = (held[0] + held[1]) * 0.5 - turn * (middle * scale);
+        (scale.is_finite() && scale > 0.0 && origin.is_finite()).then_some(Volume { origin, turn, scale })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_two_fingers_hold_stays_under_them_to_half_a_millimetre() {
+        let mut volume = Volume::over(Vec3::new(3.0, 1.0, -2.0), 5.0, 0.7);
+        let start = [Vec3::new(-60.0, 210.0, 5.0), Vec3::new(55.0, 190.0, -10.0)];
+        let held = start.map(|p| volume.to_world(p));
+        for i in 0..600 {
+            let t = i as f32 * 0.01;
+            let (reach, turn) = (50.0 + 30.0 * (t * 1.3).sin(), t * 0.9);
+            let middle = Vec3::new(10.0 * t.sin(), 200.0 + 20.0 * t.cos(), 8.0 * t);
+            let half = Vec3::new(reach * turn.cos(), 12.0 * (t * 2.0).sin(), reach * turn.sin());
+            let fingers = [middle - half, middle + half];
+            volume = volume.holding(held, fingers).expect("apart");
+            for (f, w) in fingers.iter().zip(held) {
+                let off_mm = (volume.to_world(*f) - w).length() / volume.scale;
+                assert!(off_mm < 0.5, "{off_mm} mm at step {i}");
+            }
+        }
     }
 }

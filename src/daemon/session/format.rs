@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::brush::BrushSettings;
 use crate::command::Command;
 use crate::devices::Sample;
+use crate::hand::HandSettings;
 use crate::stroke::Camera;
 
 /// The tables. `log` holds groups of ticks in order; `crc` is the CRC-32 of `data`.
@@ -33,6 +34,7 @@ pub struct Settings {
     /// As given to `World::new`, before it framed the work.
     pub camera: Camera,
     pub brush: BrushSettings,
+    pub hands: HandSettings,
 }
 
 /// What changed the world in one tick.

@@ -23,7 +23,7 @@ pub fn replay(
 ) -> Result<Replayed, BuildError> {
     let mesh = Mesh::build(&opened.start, job)?;
     let s = &opened.settings;
-    let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes };
+    let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
     let mut world = World::new(mesh, s.camera, s.brush, workers, options);
     let until = until.unwrap_or(u64::MAX);
     let mut tick = 0;
