@@ -87,7 +87,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let players = open_players(args, &config, &catalogue)?;
     let begun = begin(args, &config)?;
     let summary = if players.is_empty() {
-        run_live(args, &config, begun)?
+        run_live(args, &config, begun, catalogue)?
     } else {
         run_stepped(args, &config, begun, players)?
     };
@@ -198,10 +198,10 @@ fn run_stepped(
 }
 
 /// Waits for devices, until a signal or the time limit.
-fn run_live(args: &RunArgs, config: &Config, begun: Begun) -> Result<Summary, Fail> {
+fn run_live(args: &RunArgs, config: &Config, begun: Begun, catalogue: Catalogue) -> Result<Summary, Fail> {
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(config.channel.capacity);
-    let adaptors = adaptors::start(&config.devices, &clock, &factory);
+    let adaptors = adaptors::start(&config.devices, catalogue, &clock, &factory);
     for line in adaptors.describe() {
         eprintln!("sculptd: {line}");
     }

@@ -1,8 +1,9 @@
 //! Starting what the configuration asks for: one thread a device, each with its own sender.
 
 use crate::config::DevicesConfig;
+use crate::devices::catalogue::Catalogue;
 use crate::devices::queue::SenderFactory;
-use crate::devices::{Clock, DeviceId, leap, serial};
+use crate::devices::{Clock, DeviceId, hid, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial ports from 100, the
 /// tracker 200, recordings from 300, the window's own pointer 400.
@@ -14,14 +15,26 @@ pub const POINTER_ID: DeviceId = DeviceId(400);
 /// Running adaptors; they stop when this is dropped.
 #[derive(Debug, Default)]
 pub struct Adaptors {
+    hid: Option<hid::HidHandle>,
     serial: Vec<(String, serial::Handle)>,
     leap: Option<leap::Handle>,
     failed: Vec<String>,
 }
 
 /// Starts the adaptors. One that cannot be started does not hold up the others: it is told by [`Adaptors::describe`].
-pub fn start(config: &DevicesConfig, clock: &Clock, factory: &SenderFactory) -> Adaptors {
+pub fn start(
+    config: &DevicesConfig,
+    catalogue: Catalogue,
+    clock: &Clock,
+    factory: &SenderFactory,
+) -> Adaptors {
     let mut all = Adaptors::default();
+    if config.hid {
+        match hid::start(hid::HidConfig::default(), catalogue, clock.clone(), factory.clone()) {
+            Ok(handle) => all.hid = Some(handle),
+            Err(e) => all.failed.push(format!("pen tablets: {e}")),
+        }
+    }
     for (i, port) in config.serial.iter().enumerate() {
         let port = port.display().to_string();
         let settings = serial::Config {
@@ -48,6 +61,10 @@ impl Adaptors {
     /// One line a device: what it is, how it stands, what is wrong.
     pub fn describe(&self) -> Vec<String> {
         let mut lines = self.failed.clone();
+        let tablets = self.hid.iter().flat_map(|h| h.status());
+        lines.extend(tablets.filter(|t| t.usable).map(|t| {
+            format!("tablet {}: read as {}", t.name, t.model.unwrap_or_else(|| "a digitiser".into()))
+        }));
         for (port, handle) in &self.serial {
             let s = handle.status();
             let state = match (&s.model, s.connected) {

@@ -18,7 +18,10 @@ pub enum Act {
     /// Above 1 comes nearer.
     Zoom(f32),
     /// The tracked volume was moved, turned and scaled under two pinches; the camera goes with it.
-    Hold { before: Volume, after: Volume },
+    Hold {
+        before: Volume,
+        after: Volume,
+    },
 }
 
 impl Act {

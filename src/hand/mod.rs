@@ -106,15 +106,18 @@ impl HandTools {
         self.now_us = t_us;
         self.forget(t_us);
         for hand in hands.as_slice() {
-            let known = self.held.iter().position(|h| h.track.device == device && h.track.id == hand.id).or_else(|| {
-                // The tracker gave the same hand a new number.
-                let lost = |h: &Held| {
-                    h.track.device == device
-                        && !hands.as_slice().iter().any(|o| o.id == h.track.id)
-                        && h.track.may_continue(t_us, hand, &s)
-                };
-                self.held.iter().position(lost)
-            });
+            let known =
+                self.held.iter().position(|h| h.track.device == device && h.track.id == hand.id).or_else(
+                    || {
+                        // The tracker gave the same hand a new number.
+                        let lost = |h: &Held| {
+                            h.track.device == device
+                                && !hands.as_slice().iter().any(|o| o.id == h.track.id)
+                                && h.track.may_continue(t_us, hand, &s)
+                        };
+                        self.held.iter().position(lost)
+                    },
+                );
             match known {
                 Some(i) => {
                     if self.held[i].track.take(t_us, hand, &s) {
@@ -204,9 +207,16 @@ impl HandTools {
             let strength = strength * Volume::edge_fade(mm);
             if let Some(from) = tool.filter(|_| strength > 0.0) {
                 match track.pose {
-                    Pose::Point => self.wait(Act::Push(Push { from, to, radius: s.tip_radius_mm * v.scale, strength })),
+                    Pose::Point => {
+                        self.wait(Act::Push(Push { from, to, radius: s.tip_radius_mm * v.scale, strength }))
+                    }
                     Pose::Pinch => {
-                        self.wait(Act::Drag(Drag { from, to, radius: s.pinch_radius_mm * v.scale, strength }));
+                        self.wait(Act::Drag(Drag {
+                            from,
+                            to,
+                            radius: s.pinch_radius_mm * v.scale,
+                            strength,
+                        }));
                     }
                     _ => {
                         let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));

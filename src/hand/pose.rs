@@ -70,7 +70,8 @@ impl Features {
     pub fn pose(&self, now: Pose, s: &HandSettings) -> Pose {
         // Trackers give a hand seen from its edge a high grab strength though its fingers are out: a fist has none to show.
         let out = self.extended.iter().filter(|e| **e).count();
-        let fist = if now == Pose::Grab { self.grab >= s.grab_off } else { self.grab >= s.grab_on && out <= 1 };
+        let fist =
+            if now == Pose::Grab { self.grab >= s.grab_off } else { self.grab >= s.grab_on && out <= 1 };
         if fist {
             return Pose::Grab;
         }

@@ -56,15 +56,21 @@ fn watch(path: &std::path::Path) -> Seen {
 fn real_hands_are_read_as_what_they_do() {
     let Some(corpus) = corpus() else { return };
     let (mut false_entries, mut seconds) = (0, 0.0);
-    println!("{:<32}{:>6}{}", "recording", "s", Pose::ALL.map(|p| format!("{:>10}", format!("{p:?}"))).concat());
+    println!(
+        "{:<32}{:>6}{}",
+        "recording",
+        "s",
+        Pose::ALL.map(|p| format!("{:>10}", format!("{p:?}"))).concat()
+    );
     for (name, made, main) in MADE {
         let seen = watch(&corpus.join("devices/open/leap").join(name));
         let share = |p: Pose| {
             let all: usize = seen.frames.values().sum();
             *seen.frames.get(&p).unwrap_or(&0) as f64 / all.max(1) as f64
         };
-        let cells: String =
-            Pose::ALL.map(|p| format!("{:>5.0}%/{:<3}", share(p) * 100.0, seen.entries.get(&p).unwrap_or(&0))).concat();
+        let cells: String = Pose::ALL
+            .map(|p| format!("{:>5.0}%/{:<3}", share(p) * 100.0, seen.entries.get(&p).unwrap_or(&0)))
+            .concat();
         println!("{name:<32}{:>6.1}{cells}", seen.seconds);
         seconds += seen.seconds;
         for pose in [Pose::Pinch, Pose::Grab] {
@@ -73,7 +79,11 @@ fn real_hands_are_read_as_what_they_do() {
             }
         }
         if let Some(main) = main {
-            assert!(share(main) > 0.15, "{name}: {main:?} is seen in {:.0} % of the frames", share(main) * 100.0);
+            assert!(
+                share(main) > 0.15,
+                "{name}: {main:?} is seen in {:.0} % of the frames",
+                share(main) * 100.0
+            );
         }
     }
     let a_minute = false_entries as f64 / (seconds / 60.0);
