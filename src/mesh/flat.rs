@@ -43,25 +43,6 @@ impl PolyMesh {
     }
 }
 
-impl PolyMesh {
-    /// Triangles, and the face that each came from. Fans.
-    pub fn triangulate(&self) -> (TriMesh, Vec<u32>) {
-        let mut out = TriMesh {
-            positions: self.positions.iter().map(|p| p.as_vec3()).collect(),
-            triangles: Vec::new(),
-            colours: self.colours.clone(),
-        };
-        let mut of = Vec::new();
-        for (f, face) in self.faces().enumerate() {
-            for k in 1..face.len().saturating_sub(1) {
-                out.triangles.push([face[0], face[k], face[k + 1]]);
-                of.push(f as u32);
-            }
-        }
-        (out, of)
-    }
-}
-
 /// A triangle mesh in single precision, the clay's own.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TriMesh {

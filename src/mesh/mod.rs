@@ -8,6 +8,7 @@ pub mod page;
 mod ray;
 pub mod shapes;
 mod snapshot;
+pub mod triangulate;
 mod undo;
 
 pub use build::BuildError;

@@ -1,6 +1,7 @@
 //! One binary for all integration tests: one link, one start.
 
 mod hands;
+mod io;
 mod recovery;
 mod tidy;
 

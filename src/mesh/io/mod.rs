@@ -1,141 +1,130 @@
-//! Mesh files: OBJ, STL, PLY, OFF, in and out. The format is told by the content first, by the name's ending second.
+//! Mesh files: OBJ, STL, PLY, glTF/GLB, 3MF, OFF, in and out.
 //!
-//! Laws kept here: bad input is an error that names the file, the line or byte, and what was expected; sizes are checked
-//! before memory is taken; an output is written beside its place and renamed, so that it is there whole or not at all.
+//! A file is what its content says; the extension decides only where the content does not. Positions keep double precision and
+//! faces their corners, as far as the format has them. No input makes a parser panic or take memory that the file's length does
+//! not warrant: a mesh needs at most about six times its file's length. What is wrong is told with its line or byte, what was
+//! expected there and what was found.
 
+pub mod beside;
 mod obj;
 mod off;
 mod ply;
+pub mod problem;
 mod stl;
+mod text;
 mod write;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-pub use write::{WriteError, writable_format, write_mesh};
+pub use beside::write_beside;
+pub use problem::{At, Problem, ReadError, Stop, WriteError};
+pub use text::MAX_COORDINATE;
+pub use write::{encode, writable_format, write_mesh};
 
 use super::PolyMesh;
 use crate::analysis::cancel::Job;
 
+/// Longest file that is read: what needs more memory than a workstation has is refused before it is taken.
+pub const MAX_FILE: u64 = 16 << 30;
+
+/// What a file turned out to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     Obj,
-    Stl,
-    Ply,
+    StlBinary,
+    StlAscii,
+    PlyAscii,
+    PlyLittle,
+    PlyBig,
     Off,
 }
 
-#[derive(Debug)]
-pub struct Loaded {
-    pub mesh: PolyMesh,
-    pub format: Format,
-    pub warnings: Vec<String>,
-}
-
-/// Where in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    Line(usize),
-    Byte(usize),
-}
-
-impl std::fmt::Display for Place {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl Format {
+    /// As people call it.
+    pub fn name(self) -> &'static str {
         match self {
-            Place::Line(n) => write!(f, "line {n}"),
-            Place::Byte(n) => write!(f, "byte {n}"),
+            Format::Obj => "OBJ",
+            Format::StlBinary => "STL (binary)",
+            Format::StlAscii => "STL (text)",
+            Format::PlyAscii => "PLY (text)",
+            Format::PlyLittle => "PLY (binary, little-endian)",
+            Format::PlyBig => "PLY (binary, big-endian)",
+            Format::Off => "OFF",
         }
     }
 }
 
-/// What a parser says; the file's name is added by [`read_mesh`].
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{place}: {text}")]
-pub struct BadMesh {
-    pub place: Place,
-    pub text: String,
+/// A mesh from a file.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    pub mesh: PolyMesh,
+    pub format: Format,
+    /// What was left out or guessed, one sentence each.
+    pub warnings: Vec<String>,
 }
 
-impl BadMesh {
-    pub fn line(n: usize, text: impl Into<String>) -> Self {
-        BadMesh { place: Place::Line(n), text: text.into() }
-    }
-
-    pub fn byte(n: usize, text: impl Into<String>) -> Self {
-        BadMesh { place: Place::Byte(n), text: text.into() }
-    }
-}
-
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: std::io::Error },
-    #[error("{}: {source}", path.display())]
-    Bad { path: PathBuf, source: BadMesh },
-    #[error("{}: not a mesh that is known here (expected OBJ, STL, PLY or OFF)", path.display())]
-    Unknown { path: PathBuf },
-}
-
-/// Reads a mesh file.
+/// Reads the mesh at `path`. Every vertex is finite and within [`MAX_COORDINATE`], every face has at least three corners, every
+/// index is in range; nothing else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
 pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
-    let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
-    job.progress(0.2);
-    let bad = |source| ReadError::Bad { path: path.into(), source };
+    let io = |source| ReadError::Io { path: path.into(), source };
+    let meta = std::fs::metadata(path).map_err(io)?;
+    if meta.is_dir() {
+        return Err(io(std::io::Error::new(
+            std::io::ErrorKind::IsADirectory,
+            "expected a mesh file, found a folder",
+        )));
+    }
+    if meta.len() > MAX_FILE {
+        let found =
+            format!("{} bytes, which would need about {} GiB of memory", meta.len(), meta.len() * 6 >> 30);
+        let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
+        return Err(ReadError::Format { path: path.into(), problem });
+    }
+    let bytes = std::fs::read(path).map_err(io)?;
+    job.progress(0.1);
+    parse(&bytes, path, job).map_err(|stop| match stop {
+        Stop::Problem(problem) => ReadError::Format { path: path.into(), problem },
+        Stop::Cancelled => ReadError::Cancelled { path: path.into() },
+    })
+}
+
+/// The mesh in `bytes`; `name` gives the extension.
+pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
+    let extension = extension(name);
     if bytes.is_empty() {
-        return Err(bad(BadMesh::byte(0, "the file is empty, expected a mesh")));
+        return Err(Problem::new(At::Byte(0), "a mesh", "an empty file").into());
     }
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let mut warnings = Vec::new();
-    let (format, mesh) = if bytes.starts_with(b"ply") || ending == "ply" {
-        (Format::Ply, ply::parse(&bytes).map_err(bad)?)
-    } else if ending == "off" || bytes.starts_with(b"OFF") || bytes.starts_with(b"COFF") {
-        (Format::Off, off::parse(&bytes).map_err(bad)?)
-    } else if ending == "stl" {
-        (Format::Stl, stl::parse(&bytes).map_err(bad)?)
-    } else if ending == "obj" {
-        (Format::Obj, obj::parse(&bytes, &mut warnings).map_err(bad)?)
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let is = |e: &str| extension == e;
+    let (mesh, format) = if bytes.starts_with(b"ply") && bytes.get(3).is_some_and(u8::is_ascii_whitespace)
+        || is("ply")
+    {
+        ply::parse(bytes, &mut warnings, job)?
+    } else if off::header(text).is_some() || is("off") {
+        (off::parse(text, &mut warnings, job)?, Format::Off)
+    } else if stl::binary_exact(bytes) {
+        (stl::parse_binary(bytes, &mut warnings, job)?, Format::StlBinary)
+    } else if stl::looks_ascii(text) {
+        (stl::parse_ascii(text, &mut warnings, job)?, Format::StlAscii)
+    } else if is("stl") {
+        (stl::parse_binary(bytes, &mut warnings, job)?, Format::StlBinary)
+    } else if is("obj") || looks_obj(text) {
+        (obj::parse(text, &mut warnings, job)?, Format::Obj)
     } else {
-        return Err(ReadError::Unknown { path: path.into() });
+        let found = problem::excerpt(bytes);
+        return Err(Problem::new(At::Byte(0), "a mesh as OBJ, STL, PLY, OFF, glTF, GLB or 3MF", found).into());
     };
-    if mesh.face_count() == 0 {
-        return Err(bad(BadMesh::byte(bytes.len(), "the file holds no face")));
-    }
+    job.progress(1.0);
     Ok(Loaded { mesh, format, warnings })
 }
 
-/// Writes a file beside its place, syncs it and renames it: whole or not at all.
-pub fn write_beside(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-) -> std::io::Result<()> {
-    let dir = path.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}.part", std::process::id()));
-    let part = dir.join(name);
-    let result = (|| {
-        let file = std::fs::OpenOptions::new().write(true).create(true).truncate(true).open(&part)?;
-        let mut out = std::io::BufWriter::with_capacity(1 << 20, file);
-        fill(&mut out)?;
-        out.flush()?;
-        out.get_ref().sync_all()?;
-        std::fs::rename(&part, path)
-    })();
-    if result.is_err() {
-        let _ = std::fs::remove_file(&part);
-    }
-    result
+fn extension(name: &Path) -> String {
+    name.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// A finite number, or what was found instead.
-fn number(text: &str, line: usize) -> Result<f64, BadMesh> {
-    match text.parse::<f64>() {
-        Ok(v) if v.is_finite() => Ok(v),
-        Ok(_) => Err(BadMesh::line(line, format!("expected a finite number, found '{text}'"))),
-        Err(_) => Err(BadMesh::line(line, format!("expected a number, found '{}'", shorten(text)))),
-    }
-}
-
-fn shorten(text: &str) -> String {
-    text.chars().take(40).collect()
+/// OBJ has no mark of its own: its first words are looked at where the extension says nothing.
+fn looks_obj(text: &[u8]) -> bool {
+    let word = text::Cursor::new(&text[..text.len().min(1 << 16)]).word_anywhere(true);
+    matches!(word, Some(b"v" | b"o" | b"g" | b"mtllib" | b"usemtl" | b"vn" | b"vt"))
 }

@@ -1,104 +1,264 @@
-//! STL, both kinds; corners welded on exact coordinates.
-
-use std::collections::BTreeMap;
+//! STL, both kinds. Own code: the kept library says neither byte nor line, takes binary files that start with "solid" for
+//! text, and welds with a map that allocates by node.
+//!
+//! A file is binary if its length is what its triangle count says, whatever its header starts with. Corners that are equal in
+//! all three coordinates are one vertex, in the order of first use (minus zero is zero); nothing else is merged, so that what
+//! was written apart stays apart.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use super::{BadMesh, number};
+use super::problem::{At, Problem, Stop, excerpt};
+use super::text::{Cursor, float, refuse, unexpected};
+use crate::analysis::cancel::Job;
 use crate::mesh::PolyMesh;
 
-struct Weld {
-    mesh: PolyMesh,
-    known: BTreeMap<[u64; 3], u32>,
+/// Bytes before the first triangle: 80 of header, 4 of count.
+const HEAD: usize = 84;
+/// Bytes a triangle: a normal, three corners, two of attributes.
+const RECORD: usize = 50;
+
+/// The triangle count in the header, if there is a whole header.
+pub(super) fn binary_count(bytes: &[u8]) -> Option<u64> {
+    Some(u32::from_le_bytes(bytes.get(80..HEAD)?.try_into().ok()?) as u64)
 }
 
-impl Weld {
-    fn vertex(&mut self, p: DVec3) -> u32 {
-        // -0 and 0 are the same place.
-        let key = (p + 0.0).to_array().map(f64::to_bits);
-        *self.known.entry(key).or_insert_with(|| {
-            self.mesh.positions.push(p);
-            self.mesh.positions.len() as u32 - 1
-        })
-    }
+/// Whether the length is exactly what a binary file's count says.
+pub(super) fn binary_exact(bytes: &[u8]) -> bool {
+    binary_count(bytes).is_some_and(|n| HEAD as u64 + n * RECORD as u64 == bytes.len() as u64)
 }
 
-pub fn parse(bytes: &[u8]) -> Result<PolyMesh, BadMesh> {
-    let mut weld = Weld { mesh: PolyMesh::new(), known: BTreeMap::new() };
-    let count = bytes.get(80..84).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
-    let solid = bytes.trim_ascii_start().starts_with(b"solid");
-    let whole = count.is_some_and(|n| n.checked_mul(50).and_then(|b| b.checked_add(84)) == Some(bytes.len()));
-    if solid && !whole && bytes.windows(5).any(|w| w == b"facet") {
-        ascii(bytes, &mut weld)?;
-    } else {
-        let Some(count) = count else {
-            return Err(BadMesh::byte(bytes.len(), "the file ends within the 84-byte header"));
-        };
-        binary(bytes, count, &mut weld)?;
-    }
-    Ok(weld.mesh)
+/// Whether this is text: "solid", and then a facet or the end, soon.
+pub(super) fn looks_ascii(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    let start = head.trim_ascii_start();
+    let lower = start.to_ascii_lowercase();
+    lower.starts_with(b"solid")
+        && !head.contains(&0)
+        && (memchr::memmem::find(&lower, b"facet").is_some()
+            || memchr::memmem::find(&lower, b"endsolid").is_some())
 }
 
-fn binary(bytes: &[u8], count: usize, weld: &mut Weld) -> Result<(), BadMesh> {
-    let need = count.saturating_mul(50).saturating_add(84);
-    if bytes.len() < need {
-        return Err(BadMesh::byte(
-            bytes.len(),
-            format!("the file ends here; {count} triangles were announced, which need {need} bytes"),
-        ));
+pub(super) fn parse_binary(bytes: &[u8], warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+    let Some(count) = binary_count(bytes) else {
+        let problem = Problem::new(
+            At::Byte(bytes.len() as u64),
+            "a binary STL header of 84 bytes",
+            format!("the end of the file after {} bytes", bytes.len()),
+        );
+        return Err(problem.into());
+    };
+    let need = HEAD as u64 + count * RECORD as u64;
+    if need > bytes.len() as u64 {
+        let whole = (bytes.len() - HEAD) / RECORD;
+        let problem = Problem::new(
+            At::Byte(bytes.len() as u64),
+            format!("{need} bytes for the {count} triangles that the header at byte 80 states"),
+            format!(
+                "the end of the file after {whole} whole triangles (not text either: it starts with {})",
+                excerpt(bytes)
+            ),
+        );
+        return Err(problem.into());
     }
-    for (t, record) in bytes[84..need].chunks_exact(50).enumerate() {
-        let mut face = [0; 3];
-        for (k, corner) in face.iter_mut().enumerate() {
-            let at = |i: usize| {
-                let b = &record[12 + k * 12 + i * 4..];
-                f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-            };
-            let p = DVec3::new(at(0), at(1), at(2));
-            if !p.is_finite() {
-                return Err(BadMesh::byte(
-                    84 + t * 50 + 12 + k * 12,
-                    format!("expected a finite point, found {p}"),
-                ));
+    if count == 0 {
+        return Err(Problem::new(At::Byte(80), "at least one triangle", "a count of 0").into());
+    }
+    if count * 3 >= u32::MAX as u64 {
+        return Err(
+            Problem::new(At::Byte(80), "fewer than 2^32 corners", format!("{count} triangles")).into()
+        );
+    }
+    if need < bytes.len() as u64 {
+        warnings.push(format!("{} bytes after the last triangle left out", bytes.len() as u64 - need));
+    }
+    let records = &bytes[HEAD..need as usize];
+    let mut corners = vec![[0u32; 3]; count as usize * 3];
+    let bad = corners
+        .par_chunks_mut(3 << 14)
+        .enumerate()
+        .filter_map(|(block, out)| {
+            if job.cancelled() {
+                return Some(None);
             }
-            *corner = weld.vertex(p);
-        }
-        weld.mesh.push_face(&face);
-    }
-    Ok(())
-}
-
-fn ascii(bytes: &[u8], weld: &mut Weld) -> Result<(), BadMesh> {
-    let text = String::from_utf8_lossy(bytes);
-    let mut face: Vec<u32> = Vec::new();
-    let mut last = 0;
-    for (n, line) in text.lines().enumerate() {
-        let n = n + 1;
-        last = n;
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("vertex") => {
-                let v: Vec<f64> = words.map(|w| number(w, n)).collect::<Result<_, _>>()?;
-                let [x, y, z] = v[..] else {
-                    return Err(BadMesh::line(
-                        n,
-                        format!("expected three coordinates after 'vertex', found {}", v.len()),
-                    ));
-                };
-                face.push(weld.vertex(DVec3::new(x, y, z)));
-            }
-            Some("endfacet") => {
-                if face.len() != 3 {
-                    return Err(BadMesh::line(
-                        n,
-                        format!("expected three vertices in a facet, found {}", face.len()),
-                    ));
+            let first = block << 14;
+            for (t, three) in out.chunks_exact_mut(3).enumerate() {
+                let record = &records[(first + t) * RECORD + 12..];
+                for (c, corner) in three.iter_mut().enumerate() {
+                    for (axis, value) in corner.iter_mut().enumerate() {
+                        let at = c * 12 + axis * 4;
+                        let raw = [record[at], record[at + 1], record[at + 2], record[at + 3]];
+                        let float = f32::from_le_bytes(raw);
+                        if let Some(found) = refuse(float as f64) {
+                            return Some(Some((HEAD + (first + t) * RECORD + 12 + at, found)));
+                        }
+                        *value = float.to_bits();
+                    }
                 }
-                weld.mesh.push_face(&face);
-                face.clear();
             }
-            _ => {}
+            None
+        })
+        .min_by_key(|b| b.map_or(0, |(at, _)| at));
+    match bad {
+        None => {}
+        Some(None) => return Err(Stop::Cancelled),
+        Some(Some((at, found))) => {
+            return Err(Problem::new(At::Byte(at as u64), "a finite coordinate", found).into());
         }
     }
-    if face.is_empty() { Ok(()) } else { Err(BadMesh::line(last, "the file ends within a facet")) }
+    job.progress(0.3);
+    let (positions, corners) =
+        weld(corners.len(), job, |i| corners[i].map(|b| if b == 1 << 31 { 0 } else { b }))?;
+    let positions =
+        positions.into_iter().map(|p| glam::Vec3::from(p.map(f32::from_bits)).as_dvec3()).collect();
+    Ok(triangles(positions, corners))
+}
+
+pub(super) fn parse_ascii(text: &[u8], _warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+    let mut cursor = Cursor::new(text);
+    let mut corners: Vec<[u64; 3]> = Vec::new();
+    let mut in_facet = 0;
+    let mut ended = false;
+    let mut lines = 0u32;
+    while !cursor.ended() {
+        lines = lines.wrapping_add(1);
+        if lines.is_multiple_of(1 << 16) {
+            job.check()?;
+        }
+        let line = cursor.at;
+        let Some(word) = cursor.word() else {
+            cursor.skip_line();
+            continue;
+        };
+        let is = |name: &[u8]| word.eq_ignore_ascii_case(name);
+        if is(b"vertex") {
+            let mut bits = [0; 3];
+            for b in &mut bits {
+                let value = cursor.word().and_then(float);
+                let Some(value) = value else {
+                    return Err(unexpected(text, line, "\"vertex\" and three numbers").into());
+                };
+                if let Some(found) = refuse(value) {
+                    let problem = Problem::new(
+                        At::Line(super::text::line_of(text, line)),
+                        "a finite coordinate",
+                        found,
+                    );
+                    return Err(problem.into());
+                }
+                *b = (value + 0.0).to_bits();
+            }
+            corners.push(bits);
+            in_facet += 1;
+            if in_facet > 3 {
+                return Err(unexpected(text, line, "three corners in a facet").into());
+            }
+        } else if is(b"endfacet") {
+            if in_facet != 3 {
+                return Err(unexpected(
+                    text,
+                    line,
+                    format!("three corners before the facet's end, not {in_facet}"),
+                )
+                .into());
+            }
+            in_facet = 0;
+        } else if is(b"solid") || is(b"endsolid") {
+            ended = is(b"endsolid");
+        } else if !(is(b"facet") || is(b"outer") || is(b"endloop") || is(b"end") || is(b"color")) {
+            return Err(
+                unexpected(text, line, "facet, outer loop, vertex, endloop, endfacet or endsolid").into()
+            );
+        }
+        cursor.skip_line();
+    }
+    if in_facet != 0 || !ended {
+        return Err(unexpected(text, text.len(), "\"endsolid\"").into());
+    }
+    if corners.is_empty() {
+        return Err(Problem::new(At::File, "at least one facet", "none").into());
+    }
+    if corners.len() >= u32::MAX as usize {
+        return Err(Problem::new(At::File, "fewer than 2^32 corners", format!("{}", corners.len())).into());
+    }
+    job.progress(0.7);
+    let (positions, corners) = weld(corners.len(), job, |i| corners[i])?;
+    Ok(triangles(positions.into_iter().map(|p| DVec3::from(p.map(f64::from_bits))).collect(), corners))
+}
+
+fn triangles(positions: Vec<DVec3>, corners: Vec<u32>) -> PolyMesh {
+    let face_starts = (0..=corners.len() as u32 / 3).map(|t| t * 3).collect();
+    PolyMesh { positions, face_starts, corners, ..Default::default() }
+}
+
+/// Equal keys become one, numbered by first use. An open table of half load: one probe and a half a corner.
+pub(crate) fn weld<K: Copy + PartialEq + Bits>(
+    count: usize,
+    job: &Job,
+    key: impl Fn(usize) -> K,
+) -> Result<(Vec<K>, Vec<u32>), crate::analysis::cancel::Cancelled> {
+    // A closed surface has a sixth as many vertices as corners; the table grows where there are more.
+    let mut table = vec![u32::MAX; (count / 2).max(16).next_power_of_two()];
+    let mut unique: Vec<K> = Vec::with_capacity(count / 6 + 1);
+    let mut of = Vec::with_capacity(count);
+    for i in 0..count {
+        if i.is_multiple_of(1 << 18) {
+            job.check()?;
+        }
+        if unique.len() * 2 >= table.len() {
+            let size = table.len() * 2;
+            table = vec![u32::MAX; size];
+            for (n, k) in unique.iter().enumerate() {
+                let mut slot = k.hash() as usize & (size - 1);
+                while table[slot] != u32::MAX {
+                    slot = (slot + 1) & (size - 1);
+                }
+                table[slot] = n as u32;
+            }
+        }
+        let k = key(i);
+        let mask = table.len() - 1;
+        let mut slot = k.hash() as usize & mask;
+        loop {
+            let n = table[slot];
+            if n == u32::MAX {
+                table[slot] = unique.len() as u32;
+                of.push(unique.len() as u32);
+                unique.push(k);
+                break;
+            }
+            if unique[n as usize] == k {
+                of.push(n);
+                break;
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+    Ok((unique, of))
+}
+
+/// A key's hash, well mixed in its low bits.
+pub(crate) trait Bits {
+    fn hash(&self) -> u64;
+}
+
+fn mix(words: impl Iterator<Item = u64>) -> u64 {
+    let mut h = 0x9e37_79b9_7f4a_7c15u64;
+    for w in words {
+        h = (h ^ w).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        h ^= h >> 32;
+    }
+    h
+}
+
+impl Bits for [u32; 3] {
+    fn hash(&self) -> u64 {
+        mix(self.iter().map(|&w| w as u64))
+    }
+}
+
+impl Bits for [u64; 3] {
+    fn hash(&self) -> u64 {
+        mix(self.iter().copied())
+    }
 }

@@ -1,108 +1,183 @@
-//! Writing, each format as the plainest file that every program reads.
+//! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in single precision and no
+//! colours, OFF no groups, PLY no groups.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::{Format, write_beside};
+use super::{WriteError, extension, write_beside};
 use crate::mesh::PolyMesh;
 
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    #[error("{}: expected a name that ends in .obj, .stl, .ply or .off", path.display())]
-    Format { path: PathBuf },
-    #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: io::Error },
+/// The formats written, by the ending of a name.
+const ENDINGS: [&str; 4] = ["obj", "stl", "ply", "off"];
+
+/// The ending (lower case) by which [`write_mesh`] will write, asked for before the work is done.
+pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {
+    let kind = extension(path);
+    ENDINGS.into_iter().find(|e| *e == kind).ok_or_else(|| WriteError::Extension { path: path.into() })
 }
 
-/// The format that a name asks for.
-pub fn writable_format(path: &Path) -> Result<Format, WriteError> {
-    match path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase().as_str() {
-        "obj" => Ok(Format::Obj),
-        "stl" => Ok(Format::Stl),
-        "ply" => Ok(Format::Ply),
-        "off" => Ok(Format::Off),
-        _ => Err(WriteError::Format { path: path.into() }),
-    }
-}
-
+/// Writes `mesh` in the format that the extension of `path` names, whole or not at all ([`write_beside`]).
+/// The same mesh gives the same bytes. Reading it again gives the same mesh, to the last bit of every coordinate, where the
+/// format keeps double precision (OBJ, OFF, PLY).
 pub fn write_mesh(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
-    let format = writable_format(path)?;
-    write_beside(path, |out| match format {
-        Format::Obj => obj(out, mesh),
-        Format::Stl => stl(out, mesh),
-        Format::Ply => ply(out, mesh),
-        Format::Off => off(out, mesh),
-    })
-    .map_err(|source| WriteError::Io { path: path.into(), source })
+    let kind = writable_format(path)?;
+    write_beside(path, |out| encode(kind, mesh, out))
+        .map_err(|source| WriteError::Io { path: path.into(), source })
 }
 
-fn obj(out: &mut dyn Write, mesh: &PolyMesh) -> io::Result<()> {
-    writeln!(out, "# sculptd")?;
-    for p in &mesh.positions {
-        writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+/// The bytes of `mesh` as a file of extension `kind` (lower case) holds them.
+pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    match kind {
+        "obj" => obj(mesh, out),
+        "stl" => stl(mesh, out),
+        "ply" => ply(mesh, out),
+        "off" => off(mesh, out),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, format!("no mesh format is called \"{kind}\""))),
     }
-    for face in mesh.faces() {
-        write!(out, "f")?;
-        for v in face {
-            write!(out, " {}", v + 1)?;
+}
+
+fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let mut line = Vec::with_capacity(128);
+    for (v, p) in mesh.positions.iter().enumerate() {
+        line.clear();
+        write!(line, "v {} {} {}", p.x, p.y, p.z)?;
+        if let Some(c) = &mesh.colours {
+            let [r, g, b, _] = c[v].map(|c| c as f64 / 255.0);
+            write!(line, " {r} {g} {b}")?;
         }
-        writeln!(out)?;
+        line.push(b'\n');
+        out.write_all(&line)?;
     }
-    Ok(())
-}
-
-fn stl(out: &mut dyn Write, mesh: &PolyMesh) -> io::Result<()> {
-    let (tri, _) = mesh.triangulate();
-    let mut header = [0u8; 80];
-    header[..7].copy_from_slice(b"sculptd");
-    out.write_all(&header)?;
-    out.write_all(&(tri.triangles.len() as u32).to_le_bytes())?;
-    for t in 0..tri.triangles.len() {
-        let [a, b, c] = tri.corners(t);
-        let n = (b - a).cross(c - a).normalize_or_zero();
-        for v in [n, a, b, c] {
-            for f in v.to_array() {
-                out.write_all(&f.to_le_bytes())?;
+    let mut group = None;
+    for (f, corners) in mesh.faces().enumerate() {
+        line.clear();
+        let now = mesh.groups.as_ref().map(|g| g[f]);
+        if now != group {
+            group = now;
+            if let Some(g) = group {
+                writeln!(line, "g group_{g}")?;
             }
         }
-        out.write_all(&[0, 0])?;
+        line.push(b'f');
+        for &c in corners {
+            line.push(b' ');
+            whole(&mut line, c as u64 + 1);
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
     }
     Ok(())
 }
 
-fn ply(out: &mut dyn Write, mesh: &PolyMesh) -> io::Result<()> {
+fn whole(line: &mut Vec<u8>, mut n: u64) {
+    let mut digits = [0u8; 20];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] = b'0' + (n % 10) as u8;
+        n /= 10;
+        if n == 0 {
+            break;
+        }
+    }
+    line.extend_from_slice(&digits[at..]);
+}
+
+fn stl(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let (triangles, _) = mesh.triangles();
+    let count = u32::try_from(triangles.len())
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidInput, "STL holds at most 2^32 - 1 triangles"))?;
+    let mut head = [0u8; 84];
+    head[..7].copy_from_slice(b"sculptd");
+    head[80..].copy_from_slice(&count.to_le_bytes());
+    out.write_all(&head)?;
+    for t in triangles {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let mut record = [0u8; 50];
+        for (n, p) in [normal, a, b, c].into_iter().enumerate() {
+            for (axis, v) in p.to_array().into_iter().enumerate() {
+                record[n * 12 + axis * 4..][..4].copy_from_slice(&(v as f32).to_le_bytes());
+            }
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}
+
+/// Little-endian; coordinates in single precision where that loses nothing.
+fn ply(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let single = mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
+    let kind = if single { "float" } else { "double" };
+    writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", mesh.positions.len())?;
+    for axis in ["x", "y", "z"] {
+        writeln!(out, "property {kind} {axis}")?;
+    }
+    if mesh.colours.is_some() {
+        for c in ["red", "green", "blue", "alpha"] {
+            writeln!(out, "property uchar {c}")?;
+        }
+    }
+    let long = mesh.faces().any(|f| f.len() > 255);
+    let count = if long { "uint" } else { "uchar" };
     writeln!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment sculptd\nelement vertex {}",
-        mesh.positions.len()
+        "element face {}\nproperty list {count} int vertex_indices\nend_header",
+        mesh.face_count()
     )?;
-    writeln!(out, "property double x\nproperty double y\nproperty double z")?;
-    writeln!(out, "element face {}\nproperty list uchar int vertex_indices\nend_header", mesh.face_count())?;
-    for p in &mesh.positions {
-        for f in p.to_array() {
-            out.write_all(&f.to_le_bytes())?;
+    let mut row = Vec::with_capacity(64);
+    for (v, p) in mesh.positions.iter().enumerate() {
+        row.clear();
+        for c in p.to_array() {
+            if single {
+                row.extend_from_slice(&(c as f32).to_le_bytes());
+            } else {
+                row.extend_from_slice(&c.to_le_bytes());
+            }
         }
+        if let Some(c) = &mesh.colours {
+            row.extend_from_slice(&c[v]);
+        }
+        out.write_all(&row)?;
     }
-    for face in mesh.faces() {
-        out.write_all(&[face.len().min(255) as u8])?;
-        for v in &face[..face.len().min(255)] {
-            out.write_all(&(*v as i32).to_le_bytes())?;
+    for corners in mesh.faces() {
+        row.clear();
+        if long {
+            row.extend_from_slice(&(corners.len() as u32).to_le_bytes());
+        } else {
+            row.push(corners.len() as u8);
         }
+        for &c in corners {
+            row.extend_from_slice(&c.to_le_bytes());
+        }
+        out.write_all(&row)?;
     }
     Ok(())
 }
 
-fn off(out: &mut dyn Write, mesh: &PolyMesh) -> io::Result<()> {
-    writeln!(out, "OFF\n{} {} 0", mesh.positions.len(), mesh.face_count())?;
-    for p in &mesh.positions {
-        writeln!(out, "{} {} {}", p.x, p.y, p.z)?;
-    }
-    for face in mesh.faces() {
-        write!(out, "{}", face.len())?;
-        for v in face {
-            write!(out, " {v}")?;
+fn off(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let kind = if mesh.colours.is_some() { "COFF" } else { "OFF" };
+    writeln!(out, "{kind}\n{} {} 0", mesh.positions.len(), mesh.face_count())?;
+    let mut line = Vec::with_capacity(128);
+    for (v, p) in mesh.positions.iter().enumerate() {
+        line.clear();
+        write!(line, "{} {} {}", p.x, p.y, p.z)?;
+        if let Some(c) = &mesh.colours {
+            let [r, g, b, a] = c[v];
+            write!(line, " {r} {g} {b} {a}")?;
         }
-        writeln!(out)?;
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    for corners in mesh.faces() {
+        line.clear();
+        whole(&mut line, corners.len() as u64);
+        for &c in corners {
+            line.push(b' ');
+            whole(&mut line, c as u64);
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
     }
     Ok(())
 }

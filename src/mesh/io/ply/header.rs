@@ -1,0 +1,295 @@
+//! The header, and the plan that it becomes.
+
+use super::super::problem::{At, Problem, excerpt};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    Little,
+    Big,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn named(name: &str) -> Option<Scalar> {
+        Some(match name {
+            "char" | "int8" => Scalar::I8,
+            "uchar" | "uint8" => Scalar::U8,
+            "short" | "int16" => Scalar::I16,
+            "ushort" | "uint16" => Scalar::U16,
+            "int" | "int32" => Scalar::I32,
+            "uint" | "uint32" => Scalar::U32,
+            "float" | "float32" => Scalar::F32,
+            "double" | "float64" => Scalar::F64,
+            _ => return None,
+        })
+    }
+
+    pub(super) fn size(self) -> usize {
+        match self {
+            Scalar::I8 | Scalar::U8 => 1,
+            Scalar::I16 | Scalar::U16 => 2,
+            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
+            Scalar::F64 => 8,
+        }
+    }
+
+    pub(super) fn whole(self) -> bool {
+        !matches!(self, Scalar::F32 | Scalar::F64)
+    }
+
+    /// What a colour of this type is multiplied by to fill a byte.
+    pub(super) fn colour_scale(self) -> f64 {
+        match self {
+            Scalar::I16 | Scalar::U16 => 255.0 / 65535.0,
+            Scalar::F32 | Scalar::F64 => 255.0,
+            _ => 1.0,
+        }
+    }
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Property {
+    pub name: String,
+    /// Type of the count, if this is a list.
+    pub list: Option<Scalar>,
+    pub kind: Scalar,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    Vertex,
+    Face,
+    Strips,
+    Other,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Element {
+    pub name: String,
+    pub role: Role,
+    pub count: usize,
+    pub properties: Vec<Property>,
+}
+
+impl Element {
+    /// Bytes of a row with all lists empty.
+    pub(super) fn least(&self) -> usize {
+        self.properties.iter().map(|p| p.list.unwrap_or(p.kind).size()).sum()
+    }
+
+    pub(super) fn fixed(&self) -> bool {
+        self.properties.iter().all(|p| p.list.is_none())
+    }
+
+    /// Which property holds the corners.
+    pub(super) fn corners(&self) -> Option<usize> {
+        let named = |n: &str| self.properties.iter().position(|p| p.name == n && p.list.is_some());
+        named("vertex_indices").or_else(|| named("vertex_index"))
+    }
+
+    /// For each property the place among [`super::ROLES`] that it fills.
+    pub(super) fn roles(&self) -> Vec<Option<usize>> {
+        self.properties
+            .iter()
+            .map(|p| {
+                let name = p.name.strip_prefix("diffuse_").unwrap_or(&p.name);
+                let name = match name {
+                    "r" => "red",
+                    "g" => "green",
+                    "b" => "blue",
+                    "a" => "alpha",
+                    n => n,
+                };
+                super::ROLES.iter().position(|r| *r == name).filter(|_| p.list.is_none())
+            })
+            .collect()
+    }
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Header {
+    pub encoding: Encoding,
+    pub elements: Vec<Element>,
+    /// Where the data starts.
+    pub data: usize,
+    /// The line on which text data starts.
+    pub data_line: u64,
+}
+
+impl Header {
+    pub(super) fn vertices(&self) -> Option<&Element> {
+        self.elements.iter().find(|e| e.role == Role::Vertex)
+    }
+
+    pub(super) fn coloured(&self) -> bool {
+        self.vertices().is_some_and(|e| {
+            let roles = e.roles();
+            (3..6).all(|r| roles.contains(&Some(r)))
+        })
+    }
+
+    /// 255 over the colours' largest value.
+    pub(super) fn colour_scale(&self) -> f64 {
+        self.vertices()
+            .and_then(|e| {
+                let red = e.roles().iter().position(|&r| r == Some(3))?;
+                Some(e.properties[red].kind.colour_scale())
+            })
+            .unwrap_or(1.0)
+    }
+
+    /// That the counts stated fit into the file, before any memory is taken for them.
+    pub(super) fn check(&self, bytes: usize) -> Result<(), Problem> {
+        let Some(vertex) = self.vertices() else {
+            return Err(Problem::new(At::Line(1), "an element \"vertex\"", "none in the header"));
+        };
+        let roles = vertex.roles();
+        for (r, name) in super::ROLES.iter().enumerate().take(3) {
+            if !roles.contains(&Some(r)) {
+                return Err(Problem::new(
+                    At::Line(1),
+                    format!("a vertex property \"{name}\""),
+                    "none in the header",
+                ));
+            }
+        }
+        if vertex.count == 0 {
+            return Err(Problem::new(At::Line(1), "at least one vertex", "a count of 0"));
+        }
+        let mut need = self.data as u128;
+        for e in &self.elements {
+            if e.count >= u32::MAX as usize {
+                return Err(Problem::new(
+                    At::Line(1),
+                    "fewer than 2^32 of an element",
+                    format!("{} of \"{}\"", e.count, e.name),
+                ));
+            }
+            if e.count > 0 && e.properties.is_empty() {
+                return Err(Problem::new(
+                    At::Line(1),
+                    format!("a property of \"{}\"", e.name),
+                    "none in the header",
+                ));
+            }
+            let row = match self.encoding {
+                // A digit and a separator each.
+                Encoding::Ascii => e.properties.len() * 2,
+                _ => e.least(),
+            };
+            need += e.count as u128 * row as u128;
+        }
+        // The last separator may be missing.
+        if need > bytes as u128 + 1 {
+            let found = format!("the end of the file after {bytes} bytes");
+            return Err(Problem::new(
+                At::Byte(bytes as u64),
+                format!("at least {need} bytes for the counts in the header"),
+                found,
+            ));
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
+    let mut at = 0;
+    let mut number = 0u64;
+    let mut encoding = None;
+    let mut elements: Vec<Element> = Vec::new();
+    loop {
+        number += 1;
+        let rest = &bytes[at..];
+        // Old writers end lines with CR alone; data starts after the first line end of "end_header".
+        let end = memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        let line = rest[..end].trim_ascii();
+        let problem = |expected: &str| Problem::new(At::Line(number), expected.to_string(), excerpt(line));
+        at = (at + end + 1).min(bytes.len());
+        if rest.get(end) == Some(&b'\r') && bytes.get(at) == Some(&b'\n') {
+            at += 1;
+        }
+        if number == 1 {
+            if line != b"ply" {
+                return Err(problem("\"ply\""));
+            }
+            continue;
+        }
+        if rest.is_empty() {
+            return Err(Problem::new(At::Line(number), "\"end_header\"", "the end of the file"));
+        }
+        let Ok(line_text) = std::str::from_utf8(line) else {
+            if line.starts_with(b"comment") || line.starts_with(b"obj_info") {
+                continue;
+            }
+            return Err(problem("header text"));
+        };
+        let words: Vec<&str> = line_text.split_ascii_whitespace().collect();
+        match words.as_slice() {
+            [] | ["comment" | "obj_info", ..] => {}
+            ["format", kind, _version @ ..] => {
+                encoding = Some(match *kind {
+                    "ascii" => Encoding::Ascii,
+                    "binary_little_endian" => Encoding::Little,
+                    "binary_big_endian" => Encoding::Big,
+                    _ => return Err(problem("format ascii, binary_little_endian or binary_big_endian")),
+                });
+            }
+            ["element", name, count] => {
+                let Ok(count) = count.parse::<usize>() else {
+                    return Err(problem("\"element\", a name and a count"));
+                };
+                let role = match *name {
+                    "vertex" => Role::Vertex,
+                    "face" => Role::Face,
+                    "tristrips" => Role::Strips,
+                    _ => Role::Other,
+                };
+                if role != Role::Other && elements.iter().any(|e| e.role == role) {
+                    return Err(problem("each element once"));
+                }
+                elements.push(Element { name: name.to_string(), role, count, properties: Vec::new() });
+            }
+            ["property", "list", count, kind, name] => {
+                let (Some(count), Some(kind)) =
+                    (Scalar::named(count).filter(|s| s.whole()), Scalar::named(kind))
+                else {
+                    return Err(problem("\"property list\", a whole type for the count, a type, a name"));
+                };
+                let Some(element) = elements.last_mut() else {
+                    return Err(problem("an element before its properties"));
+                };
+                element.properties.push(Property { name: name.to_string(), list: Some(count), kind });
+            }
+            ["property", kind, name] => {
+                let Some(kind) = Scalar::named(kind) else {
+                    return Err(problem("\"property\", a type, a name"));
+                };
+                let Some(element) = elements.last_mut() else {
+                    return Err(problem("an element before its properties"));
+                };
+                element.properties.push(Property { name: name.to_string(), list: None, kind });
+            }
+            ["end_header"] => break,
+            _ => return Err(problem("format, element, property, comment or end_header")),
+        }
+        if number > 10_000 {
+            return Err(problem("\"end_header\" within 10,000 lines"));
+        }
+    }
+    let Some(encoding) = encoding else {
+        return Err(Problem::new(At::Line(2), "a line \"format ...\"", "none in the header"));
+    };
+    Ok(Header { encoding, elements, data: at, data_line: number + 1 })
+}

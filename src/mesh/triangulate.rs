@@ -1,0 +1,188 @@
+//! Polygons into triangles, concave ones too.
+//!
+//! A face is seen along the axis of its normal's (Newell) largest component and cut by ears (Meisters 1975). Whether a corner
+//! is convex and whether another lies in the ear is decided exactly (Shewchuk's `orient2d`) on the coordinates as they are, so
+//! that the result depends on nothing but them. A quadrilateral is cut along the shorter of its diagonals that lie inside.
+//! A polygon that crosses itself gives triangles too, one fewer than corners less one; they overlap as it does.
+
+use glam::DVec3;
+use robust::{Coord, orient2d};
+
+use super::{PolyMesh, TriMesh};
+
+impl PolyMesh {
+    /// All faces in triangles (indices into `positions`), and the face of each. A face of n corners gives n - 2.
+    pub fn triangles(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
+        let count = self.faces().map(|f| f.len().saturating_sub(2)).sum();
+        let (mut out, mut of) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (f, corners) in self.faces().enumerate() {
+            match *corners {
+                [a, b, c] => out.push([a, b, c]),
+                _ => face(&self.positions, corners, &mut out),
+            }
+            of.resize(out.len(), f as u32);
+        }
+        (out, of)
+    }
+
+    /// The same surface in triangles and single precision, and the face of each triangle.
+    pub fn triangulate(&self) -> (TriMesh, Vec<u32>) {
+        let (triangles, of) = self.triangles();
+        let positions = self.positions.iter().map(|p| p.as_vec3()).collect();
+        (TriMesh { positions, triangles, colours: self.colours.clone() }, of)
+    }
+}
+
+/// Twice the area vector of a polygon (Newell's sum), taken around its first corner.
+pub fn area_vector(positions: &[DVec3], corners: &[u32]) -> DVec3 {
+    let Some(&first) = corners.first() else { return DVec3::ZERO };
+    let o = positions[first as usize];
+    corners.windows(2).map(|w| (positions[w[0] as usize] - o).cross(positions[w[1] as usize] - o)).sum()
+}
+
+/// Appends the triangles of one polygon.
+pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
+    if corners.len() < 3 {
+        return;
+    }
+    let n = area_vector(positions, corners);
+    let a = n.abs();
+    // Looked at so that the polygon runs counter-clockwise.
+    let flat = |v: u32| {
+        let p = positions[v as usize];
+        let (x, y, up) = if a.x >= a.y && a.x >= a.z {
+            (p.y, p.z, n.x)
+        } else if a.y >= a.z {
+            (p.z, p.x, n.y)
+        } else {
+            (p.x, p.y, n.z)
+        };
+        if up < 0.0 { Coord { x: y, y: x } } else { Coord { x, y } }
+    };
+    let points: Vec<Coord<f64>> = corners.iter().map(|&c| flat(c)).collect();
+    let turn = |i: usize, j: usize, k: usize| orient2d(points[i], points[j], points[k]);
+    if corners.len() == 4 {
+        let good = |i: usize, j: usize, k: usize| turn(i, j, k) > 0.0;
+        let first = good(0, 1, 2) && good(0, 2, 3);
+        let second = good(0, 1, 3) && good(1, 2, 3);
+        let length = |i: usize, j: usize| {
+            positions[corners[i] as usize].distance_squared(positions[corners[j] as usize])
+        };
+        let by_first = match (first, second) {
+            (true, true) | (false, false) => length(0, 2) <= length(1, 3),
+            (f, _) => f,
+        };
+        let order: [[usize; 3]; 2] = if by_first { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
+        out.extend(order.map(|t| t.map(|i| corners[i])));
+        return;
+    }
+    ears(corners, &points, turn, out);
+}
+
+fn ears(
+    corners: &[u32],
+    points: &[Coord<f64>],
+    turn: impl Fn(usize, usize, usize) -> f64,
+    out: &mut Vec<[u32; 3]>,
+) {
+    let n = corners.len();
+    let mut next: Vec<usize> = (1..n).chain([0]).collect();
+    let mut prev: Vec<usize> = [n - 1].into_iter().chain(0..n - 1).collect();
+    // Only corners that are not convex can lie in an ear, and a corner that became convex stays so.
+    let mut reflex: Vec<usize> = (0..n).filter(|&i| turn(prev[i], i, next[i]) <= 0.0).collect();
+    let inside = |p: usize, i: usize, q: usize, r: usize| {
+        // A corner at the same place as one of the ear's is a touch, not a hindrance.
+        [p, i, q].iter().all(|&c| (points[c].x, points[c].y) != (points[r].x, points[r].y))
+            && turn(p, i, r) >= 0.0
+            && turn(i, q, r) >= 0.0
+            && turn(q, p, r) >= 0.0
+    };
+    let (mut left, mut at, mut tried) = (n, 0, 0);
+    // Rounds of ever lower demands: a true ear; any convex corner; any corner. Simple polygons need the first only.
+    let mut demand = 0;
+    while left > 3 {
+        let (p, q) = (prev[at], next[at]);
+        let convex = turn(p, at, q) > 0.0;
+        let good = match demand {
+            0 => convex && !reflex.iter().any(|&r| r != p && r != at && r != q && inside(p, at, q, r)),
+            1 => convex,
+            _ => true,
+        };
+        if !good {
+            at = q;
+            tried += 1;
+            if tried > left {
+                demand += 1;
+                tried = 0;
+            }
+            continue;
+        }
+        out.push([corners[p], corners[at], corners[q]]);
+        next[p] = q;
+        prev[q] = p;
+        left -= 1;
+        tried = 0;
+        demand = 0;
+        let gone = at;
+        reflex.retain(|&r| r != gone && ((r != p && r != q) || turn(prev[r], r, next[r]) <= 0.0));
+        // One on, so that a round polygon is not cut into a fan.
+        at = next[q];
+    }
+    out.push([corners[prev[at]], corners[at], corners[next[at]]]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(mesh: &PolyMesh) -> (f64, f64) {
+        let (triangles, of) = mesh.triangles();
+        assert_eq!(triangles.len(), of.len());
+        let areas = triangles.iter().map(|t| area_vector(&mesh.positions, t).z / 2.0);
+        (areas.clone().sum(), areas.fold(f64::INFINITY, f64::min))
+    }
+
+    fn polygon(points: &[(f64, f64)]) -> PolyMesh {
+        let mut m = PolyMesh::new();
+        m.positions = points.iter().map(|&(x, y)| DVec3::new(x, y, x * 0.25)).collect();
+        m.push_face(&(0..points.len() as u32).collect::<Vec<_>>());
+        m
+    }
+
+    #[test]
+    fn concave_polygons_are_covered_once() {
+        let comb: Vec<(f64, f64)> = (0..40)
+            .map(|i| (i as f64, if i % 2 == 0 { 10.0 } else { 1.0 }))
+            .rev()
+            .chain([(0.0, 0.0), (39.0, 0.0)])
+            .collect();
+        let shapes: [&[(f64, f64)]; 4] = [
+            &[(0., 0.), (4., 0.), (4., 4.), (1., 1.)],
+            &[(0., 0.), (2., 1.), (4., 0.), (4., 4.), (2., 3.), (0., 4.)],
+            &[(0., 0.), (1., 0.), (2., 0.), (3., 0.), (3., 3.), (0., 3.)],
+            &comb,
+        ];
+        for points in shapes {
+            let m = polygon(points);
+            let want = area_vector(&m.positions, m.face(0)).z / 2.0;
+            let (sum, least) = area(&m);
+            assert!((sum - want).abs() < 1e-12 * want && least >= 0.0, "{points:?}: {sum} {want} {least}");
+        }
+    }
+
+    #[test]
+    fn a_large_star_takes_no_time_and_any_polygon_gives_two_fewer_triangles_than_corners() {
+        let star: Vec<(f64, f64)> = (0..2000)
+            .map(|i| {
+                let (a, r) = (i as f64 * std::f64::consts::TAU / 2000.0, if i % 2 == 0 { 1.0 } else { 0.9 });
+                (r * a.cos(), r * a.sin())
+            })
+            .collect();
+        let m = polygon(&star);
+        let (sum, least) = area(&m);
+        assert!((sum - area_vector(&m.positions, m.face(0)).z / 2.0).abs() < 1e-9 && least > 0.0);
+        for crossed in [&[(0., 0.), (1., 1.), (1., 0.), (0., 1.), (0.5, 3.0)][..], &[(0., 0.); 7]] {
+            assert_eq!(polygon(crossed).triangles().0.len(), crossed.len() - 2);
+        }
+    }
+}
