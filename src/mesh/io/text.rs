@@ -84,8 +84,9 @@ pub(super) fn integer(token: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// Largest coordinate that is let in: its square still has room in single precision.
-pub const MAX_COORDINATE: f64 = 1e18;
+/// Largest coordinate that is let in: it has room in single precision, the cube of it in double precision.
+/// (Real files hold boxes of 1e19 a side, meant as half spaces.)
+pub const MAX_COORDINATE: f64 = 1e30;
 
 /// What is wrong with a coordinate, if anything.
 #[inline]
@@ -95,7 +96,7 @@ pub(super) fn refuse(value: f64) -> Option<&'static str> {
     } else if value.is_nan() {
         Some("NaN")
     } else {
-        Some("a coordinate beyond 1e18")
+        Some("a coordinate beyond 1e30")
     }
 }
 
