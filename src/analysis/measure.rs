@@ -54,12 +54,8 @@ pub fn projected_area(mesh: &TriMesh, direction: Vec3, job: &Job) -> Result<f64,
     }
     // Strips run along x of the projection where the direction is an axis, so that a box's sides fall on their borders.
     let (u, v) = d.any_orthonormal_pair();
-    let flat: Vec<DVec2> = mesh
-        .positions
-        .iter()
-        .map(|p| p.as_dvec3())
-        .map(|p| DVec2::new(p.dot(u), p.dot(v)))
-        .collect();
+    let flat: Vec<DVec2> =
+        mesh.positions.iter().map(|p| p.as_dvec3()).map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
     let used = mesh.triangles.iter().flatten().map(|&i| flat[i as usize].y);
     let (lo, hi) = used.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     let height = (hi - lo) / STRIPS as f64;
@@ -150,7 +146,10 @@ mod tests {
     #[test]
     fn a_tetrahedron_is_measured_exactly() {
         let mesh = TriMesh {
-            positions: vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0].iter().map(|p| *p + 100.0).collect(),
+            positions: vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0]
+                .iter()
+                .map(|p| *p + 100.0)
+                .collect(),
             triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
             colours: None,
         };

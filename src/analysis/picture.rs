@@ -62,7 +62,13 @@ const OVER: usize = 2;
 
 /// Draws `mesh` with one sRGB colour a vertex (grey without), lit from the eye's upper left, over white. The colours are
 /// interpolated over the triangles; both sides are drawn, so that an inverted face is not a hole.
-pub fn draw(mesh: &TriMesh, colours: Option<&[[u8; 3]]>, camera: &Camera, width: usize, height: usize) -> Picture {
+pub fn draw(
+    mesh: &TriMesh,
+    colours: Option<&[[u8; 3]]>,
+    camera: &Camera,
+    width: usize,
+    height: usize,
+) -> Picture {
     let (w, h) = (width * OVER, height * OVER);
     let axes = camera.axes().transpose();
     let scale = h as f32 * 0.5 / camera.half_height;
@@ -114,7 +120,8 @@ pub fn draw(mesh: &TriMesh, colours: Option<&[[u8; 3]]>, camera: &Camera, width:
 /// Calls `put(pixel, depth, weights)` for each pixel whose centre is in the triangle.
 fn fill([a, b, c]: [Vec3; 3], w: usize, h: usize, mut put: impl FnMut(usize, f32, Vec3)) {
     let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-    if !(lo.is_finite() && hi.is_finite()) || hi.x < 0.0 || hi.y < 0.0 || lo.x >= w as f32 || lo.y >= h as f32 {
+    if !(lo.is_finite() && hi.is_finite()) || hi.x < 0.0 || hi.y < 0.0 || lo.x >= w as f32 || lo.y >= h as f32
+    {
         return;
     }
     let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -140,7 +147,8 @@ fn fill([a, b, c]: [Vec3; 3], w: usize, h: usize, mut put: impl FnMut(usize, f32
 impl Picture {
     /// Where a point of the mesh is in the picture, pixels from the upper left.
     pub fn place(&self, camera: &Camera, p: Vec3) -> (f32, f32) {
-        let q = camera.axes().transpose() * (p - camera.target) * (self.height as f32 * 0.5 / camera.half_height);
+        let q =
+            camera.axes().transpose() * (p - camera.target) * (self.height as f32 * 0.5 / camera.half_height);
         (self.width as f32 * 0.5 + q.x, self.height as f32 * 0.5 - q.y)
     }
 

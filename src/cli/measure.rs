@@ -126,7 +126,14 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
         }
         let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
         let t = &out.thickness;
-        writeln!(w, "thickness   min {}  median {}  mean {}  max {} mm", n(t.min), n(t.median), n(t.mean), n(t.max))
+        writeln!(
+            w,
+            "thickness   min {}  median {}  mean {}  max {} mm",
+            n(t.min),
+            n(t.median),
+            n(t.mean),
+            n(t.max)
+        )
     });
     Ok(())
 }

@@ -249,8 +249,20 @@ fn text(w: &mut dyn Write, a: &Answer) -> std::io::Result<()> {
     let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
     let s = &a.summary;
     writeln!(w, "{}: {} vertices, {} triangles", a.file, a.vertices, a.triangles)?;
-    writeln!(w, "  thickness  min {}  median {}  mean {}  max {} mm", n(s.min), n(s.median), n(s.mean), n(s.max))?;
-    writeln!(w, "  valid      {:.2} %   error bound {:.2e} mm (95 % of the vertices)", s.valid * 100.0, s.error_bound)?;
+    writeln!(
+        w,
+        "  thickness  min {}  median {}  mean {}  max {} mm",
+        n(s.min),
+        n(s.median),
+        n(s.mean),
+        n(s.max)
+    )?;
+    writeln!(
+        w,
+        "  valid      {:.2} %   error bound {:.2e} mm (95 % of the vertices)",
+        s.valid * 100.0,
+        s.error_bound
+    )?;
     for (name, beyond) in [("below", a.below), ("above", a.above)] {
         if let Some(b) = beyond {
             writeln!(w, "  {name:9}  {:.3} % of the area is {name} {} mm", b.area_percent, b.limit)?;
@@ -261,7 +273,13 @@ fn text(w: &mut dyn Write, a: &Answer) -> std::io::Result<()> {
     }
     for (i, x) in a.worst.iter().enumerate() {
         let [px, py, pz] = x.position;
-        writeln!(w, "  spot {:2}    {:.4} mm at ({px:.3}, {py:.3}, {pz:.3}), {:.3} mm2", i + 1, x.thickness, x.area)?;
+        writeln!(
+            w,
+            "  spot {:2}    {:.4} mm at ({px:.3}, {py:.3}, {pz:.3}), {:.3} mm2",
+            i + 1,
+            x.thickness,
+            x.area
+        )?;
     }
     writeln!(w, "  verdict    {}", verdict(a.verdict))?;
     writeln!(w, "  {:.3} s, {:.2} million rays a second", a.seconds, a.rays_per_second * 1e-6)

@@ -6,8 +6,13 @@ use super::Thickness;
 /// Missing values.
 pub const NONE: [u8; 3] = [40, 90, 220];
 
-const STOPS: [[f32; 3]; 5] =
-    [[88.0, 0.0, 24.0], [176.0, 12.0, 32.0], [230.0, 85.0, 30.0], [252.0, 178.0, 72.0], [255.0, 250.0, 205.0]];
+const STOPS: [[f32; 3]; 5] = [
+    [88.0, 0.0, 24.0],
+    [176.0, 12.0, 32.0],
+    [230.0, 85.0, 30.0],
+    [252.0, 178.0, 72.0],
+    [255.0, 250.0, 205.0],
+];
 
 /// The colour of a value on a scale from `low` to `high`; sRGB.
 pub fn colour(value: f32, low: f32, high: f32) -> [u8; 3] {

@@ -102,7 +102,8 @@ impl Thickness {
         let s = &self.surface;
         let half = (self.settings.opening * 0.5).to_radians();
         // The mean length of the cone's rays through a slab, over its thickness: (int dz / z) / (int dz).
-        let long = if self.settings.rays > 1 && half > 0.0 { -half.cos().ln() / (1.0 - half.cos()) } else { 1.0 };
+        let long =
+            if self.settings.rays > 1 && half > 0.0 { -half.cos().ln() / (1.0 - half.cos()) } else { 1.0 };
         let biased = self.settings.method == Method::Ray && self.settings.correction == Correction::None;
         let mut bounds: Vec<f32> = Vec::with_capacity(self.values.len());
         for (i, &w) in s.weld.iter().enumerate() {
@@ -110,8 +111,11 @@ impl Thickness {
             if !value.is_finite() || s.sharp[v] {
                 continue;
             }
-            let least =
-                s.around(v).iter().map(|&t| s.face_normals[t as usize].dot(s.normals[v])).fold(1.0f32, f32::min);
+            let least = s
+                .around(v)
+                .iter()
+                .map(|&t| s.face_normals[t as usize].dot(s.normals[v]))
+                .fold(1.0f32, f32::min);
             let tilt = (least.clamp(-1.0, 1.0).acos() * 0.5).min(1.2);
             let mut bound = 4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + 2.0 * self.errors[i];
             if biased {

@@ -17,7 +17,9 @@ pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
     });
     say(faults.degenerate, &|n| format!("{n} triangles have no area: left out; no value changes by it"));
     say(faults.duplicate, &|n| {
-        format!("{n} triangles are there twice: the copies are left out, or they would hide the wall behind them")
+        format!(
+            "{n} triangles are there twice: the copies are left out, or they would hide the wall behind them"
+        )
     });
     say(faults.boundary_edges, &|n| {
         format!(
@@ -33,7 +35,9 @@ pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
         )
     });
     say(faults.crowded_edges, &|n| {
-        format!("{n} edges have more than two faces: the solid is not defined there, and values beside them may be wrong")
+        format!(
+            "{n} edges have more than two faces: the solid is not defined there, and values beside them may be wrong"
+        )
     });
     say(faults.inside_out as usize, &|_| {
         "the mesh is inside out (its volume is negative): measured as if every face were turned round".into()
@@ -45,7 +49,9 @@ pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
         )
     });
     say(summary.missing.no_normal as usize, &|n| {
-        format!("{n} vertices have faces that cancel each other, so no direction to measure in: no value there")
+        format!(
+            "{n} vertices have faces that cancel each other, so no direction to measure in: no value there"
+        )
     });
     if size > 0.0 && size < 1.0 {
         out.push(format!(

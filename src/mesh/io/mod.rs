@@ -18,7 +18,6 @@ use std::path::Path;
 
 pub use beside::write_beside;
 pub use problem::{At, Problem, ReadError, Stop, WriteError};
-pub use text::MAX_COORDINATE;
 pub use write::{encode, writable_format, write_mesh};
 
 use super::PolyMesh;
@@ -63,7 +62,7 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads the mesh at `path`. Every vertex is finite and within [`MAX_COORDINATE`], every face has at least three corners, every
+/// Reads the mesh at `path`. Every vertex is finite in single precision too, every face has at least three corners, every
 /// index is in range; nothing else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
 pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
     let io = |source| ReadError::Io { path: path.into(), source };

@@ -84,19 +84,16 @@ pub(super) fn integer(token: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// Largest coordinate that is let in: it has room in single precision, the cube of it in double precision.
-/// (Real files hold boxes of 1e19 a side, meant as half spaces.)
-pub const MAX_COORDINATE: f64 = 1e30;
-
-/// What is wrong with a coordinate, if anything.
+/// What is wrong with a coordinate, if anything. It must have room in single precision, the clay's own. (Real files hold boxes
+/// of 3.4e38 a side, meant as half spaces.)
 #[inline]
 pub(super) fn refuse(value: f64) -> Option<&'static str> {
-    if value.abs() <= MAX_COORDINATE {
+    if (value as f32).is_finite() {
         None
     } else if value.is_nan() {
         Some("NaN")
     } else {
-        Some("a coordinate beyond 1e30")
+        Some("a coordinate beyond 3.4e38")
     }
 }
 
