@@ -20,6 +20,7 @@ pub mod catalogue;
 pub mod clock;
 pub mod filter;
 pub mod hid;
+pub mod latency;
 pub mod leap;
 mod lifeline;
 pub mod pen_state;

@@ -363,4 +363,6 @@ impl Receiver {
 }
 
 #[cfg(test)]
+mod flood;
+#[cfg(test)]
 mod tests;

@@ -10,6 +10,7 @@ use super::decoder::Decoder;
 use super::transport::Transport;
 use crate::Clock;
 use crate::catalogue::Found;
+use crate::latency::{Latency, Quantiles};
 use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
@@ -26,19 +27,28 @@ pub struct Status {
     pub broken: u64,
     pub ignored: u64,
     pub samples: u64,
+    /// From the read of a report to its samples being in the channel.
+    pub to_channel_us: Quantiles,
     pub last_error: Option<String>,
 }
 
 /// A running reader; dropping it ends its thread.
 #[derive(Debug)]
 pub struct Handle {
-    status: Arc<Mutex<Status>>,
+    shared: Arc<Mutex<Shared>>,
     _thread: Lifeline,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    status: Status,
+    to_channel: Latency,
 }
 
 impl Handle {
     pub fn status(&self) -> Status {
-        self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        Status { to_channel_us: shared.to_channel.quantiles(), ..shared.status.clone() }
     }
 }
 
@@ -54,15 +64,16 @@ pub fn start(
     clock: Clock,
     sender: Sender,
 ) -> io::Result<Handle> {
-    let status = Arc::new(Mutex::new(Status { connected: true, ..Status::default() }));
-    let shared = status.clone();
+    let status = Status { connected: true, ..Status::default() };
+    let shared = Arc::new(Mutex::new(Shared { status, ..Shared::default() }));
+    let theirs = shared.clone();
     let decoder = Decoder::new(found, descriptor, device);
     let thread = lifeline::spawn("hid-pen", move |leash| {
         let mut sender = sender;
         sender.stop_when(leash.flag());
-        Reader { transport, decoder, clock, sender, status: shared }.run(&leash);
+        Reader { transport, decoder, clock, sender, shared: theirs }.run(&leash);
     })?;
-    Ok(Handle { status, _thread: thread })
+    Ok(Handle { shared, _thread: thread })
 }
 
 struct Reader {
@@ -70,7 +81,7 @@ struct Reader {
     decoder: Decoder,
     clock: Clock,
     sender: Sender,
-    status: Arc<Mutex<Status>>,
+    shared: Arc<Mutex<Shared>>,
 }
 
 impl Reader {
@@ -92,9 +103,9 @@ impl Reader {
         }
         self.decoder.leave(self.clock.now_us(), &mut |s| out.push(s));
         self.send(&mut out);
-        let mut status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
-        status.connected = false;
-        status.last_error = error;
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        shared.status.connected = false;
+        shared.status.last_error = error;
     }
 
     /// A pen that is near when its tablet is opened was named before anyone listened.
@@ -109,12 +120,17 @@ impl Reader {
     }
 
     fn send(&mut self, out: &mut Vec<Sample>) {
-        let n = out.len() as u64;
+        let (n, read_us) = (out.len() as u64, out.first().map(|s| s.t_us));
         for sample in out.drain(..) {
             self.sender.push(sample);
         }
         let counts = self.decoder.counts;
-        let mut status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
+        let taken = read_us.map(|t| self.clock.now_us().saturating_sub(t));
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(us) = taken {
+            shared.to_channel.record(us);
+        }
+        let status = &mut shared.status;
         (status.reports, status.broken, status.ignored) = (counts.reports, counts.broken, counts.ignored);
         status.samples += n;
     }

@@ -39,7 +39,7 @@ impl Sim {
         let Identification::Identified(found) = catalogue.identify(&who) else { panic!("{model}") };
         let (journal, a) = (journal(), found.tablet.area);
         let script = journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
-        let (tablet, end) = Tablet::new(&found, script, TabletConfig::default()).unwrap();
+        let (tablet, end) = Tablet::new(&found, script, TabletConfig::default());
         let node = Node { path: path.into(), serial: serial.into(), who, may_be_pen: true };
         self.0.lock().unwrap().push((node, Some(Ok(end))));
         tablet

@@ -242,3 +242,6 @@ pub struct Playing {
     pub address: SocketAddr,
     _thread: Lifeline,
 }
+
+#[cfg(test)]
+mod leapjs_tests;
