@@ -119,11 +119,20 @@ pub struct DevicesConfig {
     pub serial: Vec<PathBuf>,
     pub leap: String,
     pub tablets: Vec<PathBuf>,
+    pub models: BTreeMap<String, String>,
+    pub ignore: Vec<String>,
 }
 
 impl Default for DevicesConfig {
     fn default() -> Self {
-        DevicesConfig { hid: true, serial: vec![], leap: String::new(), tablets: vec![] }
+        DevicesConfig {
+            hid: true,
+            serial: vec![],
+            leap: String::new(),
+            tablets: vec![],
+            models: BTreeMap::new(),
+            ignore: vec![],
+        }
     }
 }
 

@@ -2,8 +2,10 @@
 
 use crate::config::DevicesConfig;
 use crate::devices::catalogue::Catalogue;
+use crate::devices::hid::{self, HidConfig, HidHandle};
 use crate::devices::queue::SenderFactory;
-use crate::devices::{Clock, DeviceId, hid, leap, serial};
+use crate::devices::tablet::TabletError;
+use crate::devices::{Clock, DeviceId, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial ports from 100, the
 /// tracker 200, recordings from 300, the window's own pointer 400.
@@ -15,7 +17,7 @@ pub const POINTER_ID: DeviceId = DeviceId(400);
 /// Running adaptors; they stop when this is dropped.
 #[derive(Debug, Default)]
 pub struct Adaptors {
-    hid: Option<hid::HidHandle>,
+    hid: Option<HidHandle>,
     serial: Vec<(String, serial::Handle)>,
     leap: Option<leap::Handle>,
     failed: Vec<String>,
@@ -30,7 +32,12 @@ pub fn start(
 ) -> Adaptors {
     let mut all = Adaptors::default();
     if config.hid {
-        match hid::start(hid::HidConfig::default(), catalogue, clock.clone(), factory.clone()) {
+        let settings = HidConfig {
+            models: config.models.clone(),
+            ignore: config.ignore.clone(),
+            first_device: DeviceId(0),
+        };
+        match hid::start(settings, catalogue, clock.clone(), factory.clone()) {
             Ok(handle) => all.hid = Some(handle),
             Err(e) => all.failed.push(format!("pen tablets: {e}")),
         }
@@ -57,14 +64,21 @@ pub fn start(
     all
 }
 
+/// Every model known: the built-in ones, and those in the folders that the configuration names.
+pub fn tablets(config: &DevicesConfig) -> Result<Catalogue, TabletError> {
+    config.tablets.iter().try_fold(Catalogue::builtin()?, |all, dir| all.with_dir(dir))
+}
+
 impl Adaptors {
     /// One line a device: what it is, how it stands, what is wrong.
     pub fn describe(&self) -> Vec<String> {
         let mut lines = self.failed.clone();
-        let tablets = self.hid.iter().flat_map(|h| h.status());
-        lines.extend(tablets.filter(|t| t.usable).map(|t| {
-            format!("tablet {}: read as {}", t.name, t.model.unwrap_or_else(|| "a digitiser".into()))
-        }));
+        let tablets = self.hid.as_ref().map_or_else(Vec::new, HidHandle::status);
+        for t in tablets.iter().filter(|t| t.usable || t.model.is_some()) {
+            let name = t.model.as_ref().unwrap_or(&t.name);
+            let state = t.reason.as_deref().unwrap_or(if t.usable { "connected" } else { "looking for it" });
+            lines.push(format!("{name} on {}: {state}", t.path));
+        }
         for (port, handle) in &self.serial {
             let s = handle.status();
             let state = match (&s.model, s.connected) {

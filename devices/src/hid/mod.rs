@@ -16,6 +16,7 @@ pub mod makers;
 pub mod pad_state;
 pub mod reader;
 pub mod report;
+pub mod tap;
 pub mod transport;
 pub mod uclogic;
 pub mod wacom_bamboo;

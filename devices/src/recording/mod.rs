@@ -4,6 +4,7 @@ mod hands;
 pub mod hid_recorder;
 mod pens;
 mod player;
+pub mod raw;
 
 use std::path::PathBuf;
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::hands::HandRecording;
 use super::pens::PenPlayer;
-use super::{HidRecording, RecordingError, hands, hid_recorder};
+use super::{HidRecording, RecordingError, hands, hid_recorder, raw};
 use crate::catalogue::Catalogue;
 use crate::sample::{DeviceId, Sample};
 
@@ -61,8 +61,9 @@ impl Player {
         if bytes.contains(&0) {
             return Err(broken(1, "binary data: not a recording".to_owned()));
         }
-        let recording =
-            hid_recorder::parse(&String::from_utf8_lossy(&bytes)).map_err(|b| broken(b.line, b.what))?;
+        let text = String::from_utf8_lossy(&bytes);
+        let parsed = if raw::looks_like(&bytes) { raw::parse(&text) } else { hid_recorder::parse(&text) };
+        let recording = parsed.map_err(|b| broken(b.line, b.what))?;
         Player::of(path, recording, device, catalogue)
     }
 

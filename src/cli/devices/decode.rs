@@ -1,56 +1,15 @@
-//! `sculptd devices`: what is plugged in, what it says, and recordings of it.
+//! `devices decode`: every sample of a recording as a row.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::Subcommand;
 use sculptd_devices::catalogue::Catalogue;
-use sculptd_devices::recording::{Player, RecordingError};
+use sculptd_devices::recording::Player;
 use sculptd_devices::{Body, DeviceId, Hand, Hands, Pen, Sample, Tool};
 use serde::Serialize;
 
-use super::{Fail, Outcome, answer};
-
-#[derive(Debug, Subcommand)]
-pub enum DevicesCommand {
-    /// Print what a recording's device said, one row a sample.
-    Decode {
-        /// A hid-recorder file.
-        recording: PathBuf,
-        /// Write rows as CSV to this file; with no name, to standard output.
-        #[arg(long, num_args = 0..=1, default_missing_value = "-")]
-        csv: Option<PathBuf>,
-        /// A folder of further tablet files.
-        #[arg(long)]
-        tablets: Option<PathBuf>,
-    },
-}
-
-pub(crate) fn run(command: &DevicesCommand, json: bool) -> Outcome {
-    match command {
-        DevicesCommand::Decode { recording, csv, tablets } => {
-            decode(recording, csv.as_deref(), &catalogue(tablets.as_deref())?, json)
-        }
-    }
-}
-
-/// The built-in models, and those of a folder of the user's.
-pub(crate) fn catalogue(dir: Option<&Path>) -> Result<Catalogue, Fail> {
-    let all = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
-    match dir {
-        Some(dir) => all.with_dir(dir).map_err(|e| Fail::Config(e.to_string())),
-        None => Ok(all),
-    }
-}
-
-/// A recording that cannot be played: an unknown device is 5, a file that is not what it claims is 6.
-pub(crate) fn recording_fail(e: RecordingError) -> Fail {
-    match e {
-        RecordingError::Io { path, error } => Fail::io(&path, &error),
-        RecordingError::Broken { .. } => Fail::Input(e.to_string()),
-        RecordingError::Unknown { .. } => Fail::Device(e.to_string()),
-    }
-}
+use super::super::{Outcome, answer};
+use super::{recording_fail, write_text};
 
 /// One sample as a row. Raw axes, tilt (degrees) and distance are the device's own counts.
 #[derive(Debug, Serialize)]
@@ -85,7 +44,7 @@ struct Decoded {
     rows: Vec<Row>,
 }
 
-fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) -> Outcome {
+pub(super) fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) -> Outcome {
     let mut player = Player::open(path, DeviceId(0), catalogue).map_err(recording_fail)?;
     let mut rows = Vec::new();
     player.advance(u64::MAX / 4, &mut |sample| rows.extend(row(&sample)));
@@ -116,17 +75,6 @@ fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) ->
         out.write_all(text.as_bytes())
     });
     Ok(())
-}
-
-/// Whole or not at all: written beside, then renamed.
-fn write_text(path: &Path, text: &str) -> Outcome {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    std::fs::File::create(&beside)
-        .and_then(|mut f| f.write_all(text.as_bytes()).and_then(|()| f.sync_all()))
-        .and_then(|()| std::fs::rename(&beside, path))
-        .map_err(|e| Fail::io(path, &e))
 }
 
 fn row(s: &Sample) -> Option<Row> {
