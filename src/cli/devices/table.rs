@@ -89,7 +89,7 @@ impl Table {
             jitter_ms: if n > 1 { (spread / (n - 1) as f64).sqrt() / 1000.0 } else { 0.0 },
             coalesced: lost.coalesced,
             lost_motion: lost.lost_motion,
-            lost_transitions: lost.lost_transitions,
+            lost_transitions: lost.lost_transition,
         }
     }
 
