@@ -80,7 +80,7 @@ pub(super) fn list(config: &DevicesConfig, json: bool) -> Outcome {
 pub(super) fn watch(config: &DevicesConfig, limit_s: Option<f64>, json: bool) -> Outcome {
     let clock = Clock::monotonic();
     let (factory, mut rx) = queue::channel(CHANNEL);
-    let running = adaptors::start(config, &clock, &factory);
+    let running = adaptors::start(config, catalogue(config)?, &clock, &factory);
     for line in running.describe() {
         eprintln!("{line}");
     }
