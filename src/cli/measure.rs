@@ -75,7 +75,7 @@ pub fn direction(text: &str) -> Result<Vec3, String> {
 
 pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let job = Job::default();
-    let (part, notes) = load(&args.mesh, args.how.unit, &job)?;
+    let (part, notes) = load(&args.mesh, &args.how, &job)?;
     let clock = Clock::monotonic();
     let file = args.mesh.display().to_string();
     let checked =
@@ -106,8 +106,8 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
             valid: s.valid,
             error_bound: s.error_bound,
         },
-        vertices: part.mesh.positions.len(),
-        triangles: part.mesh.triangles.len(),
+        vertices: part.counts[0],
+        triangles: part.counts[1],
         closed: faults.boundary_edges == 0,
         warnings,
     };

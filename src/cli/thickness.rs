@@ -62,6 +62,9 @@ pub struct How {
     /// An edge that turns by more than this is sharp.
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0)]
     pub crease: f32,
+    /// Longest edge between two places to measure at; a part of large flat faces gets some by itself, 0 forbids it.
+    #[arg(long, value_name = "MM")]
+    pub spacing: Option<f32>,
     /// The file's unit of length.
     #[arg(long, value_enum, default_value = "mm")]
     pub unit: Unit,
@@ -184,12 +187,14 @@ impl LimitArgs {
 }
 
 /// A part read from its file.
-pub fn load(path: &Path, unit: Unit, job: &Job) -> Result<(Part, Vec<String>), Fail> {
+pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fail> {
     let loaded = read_mesh(path, job)?;
     if loaded.mesh.face_count() == 0 {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
-    Ok((Part::new(&loaded.mesh, unit.scale()), loaded.warnings))
+    let mut part = Part::new(&loaded.mesh, how.unit.scale());
+    part.refine(how.spacing, how.crease);
+    Ok((part, loaded.warnings))
 }
 
 pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
@@ -217,7 +222,7 @@ pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
 
 /// Reads and checks one file.
 fn one(path: &Path, args: &ThicknessArgs, limits: Limits, job: &Job) -> Result<(Part, Checked), Fail> {
-    let (part, notes) = load(path, args.how.unit, job)?;
+    let (part, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
     let mut checked = check(&path.display().to_string(), &part, &args.how.settings(), limits, job, seconds)
@@ -248,7 +253,11 @@ fn judge(a: &Answer) -> Outcome {
 fn text(w: &mut dyn Write, a: &Answer) -> std::io::Result<()> {
     let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
     let s = &a.summary;
-    writeln!(w, "{}: {} vertices, {} triangles", a.file, a.vertices, a.triangles)?;
+    writeln!(
+        w,
+        "{}: {} vertices, {} triangles, measured at {} places",
+        a.file, a.vertices, a.triangles, a.places
+    )?;
     writeln!(
         w,
         "  thickness  min {}  median {}  mean {}  max {} mm",

@@ -15,8 +15,8 @@ use crate::simd::wide::{self, Wide, WideWork};
 
 /// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the wall.
 const SAME_SIDE: f32 = 0.94;
-/// cos 120 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in a wall.
-const CORNER: f32 = -0.5;
+/// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in a wall.
+const CORNER: f32 = -0.766;
 /// The ball has settled when no point is deeper inside it than this share of its radius.
 const SETTLED: f32 = 1e-5;
 const STEPS: usize = 40;
@@ -25,7 +25,7 @@ const STEPS: usize = 40;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     pub diameter: f32,
-    /// The two touches are nearer to each other than 120 degrees seen from the centre: the ball is held by a corner or
+    /// The two touches are nearer to each other than 140 degrees seen from the centre: the ball is held by a corner or
     /// an edge, not by the opposite side of a wall.
     pub in_corner: bool,
 }

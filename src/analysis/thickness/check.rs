@@ -4,10 +4,11 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::preset::Preset;
+use super::refine::refine;
 use super::summary::Summary;
 use super::warnings::warnings;
 use super::worst::Spot;
-use super::{Method, Refused, Settings, Thickness, measure};
+use super::{Method, Refused, Settings, Surface, Thickness, measure};
 use crate::analysis::cancel::Job;
 use crate::analysis::measure::measures;
 use crate::mesh::{PolyMesh, TriMesh};
@@ -15,10 +16,15 @@ use crate::mesh::{PolyMesh, TriMesh};
 /// Worst spots that are told.
 pub const SPOTS: usize = 10;
 
+/// Places to measure at that a coarse part is given.
+const PLACES: usize = 20_000;
+
 /// A file's mesh about its own centre in single precision, scaled to millimetres.
 #[derive(Debug, Clone)]
 pub struct Part {
     pub mesh: TriMesh,
+    /// Vertices and triangles in the file.
+    pub counts: [usize; 2],
     /// Added to the mesh's coordinates, gives the file's, scaled.
     pub centre: DVec3,
 }
@@ -34,7 +40,25 @@ impl Part {
         let centre = if lo.x <= hi.x { (lo + hi) * 0.5 } else { DVec3::ZERO };
         let (mut mesh, _) = poly.triangulate();
         mesh.positions = poly.positions.iter().map(|&p| ((p - centre) * scale).as_vec3()).collect();
-        Part { mesh, centre: centre * scale }
+        let counts = [mesh.positions.len(), mesh.triangles.len()];
+        Part { mesh, counts, centre: centre * scale }
+    }
+
+    /// Puts places to measure on walls that have none. `spacing` is the longest edge that stays, millimetres; without it,
+    /// a part of which more than half of the vertices lie on sharp edges gets about [`PLACES`] of them, other parts none.
+    pub fn refine(&mut self, spacing: Option<f32>, crease: f32) {
+        let spacing = spacing.or_else(|| {
+            if self.mesh.triangles.len() > PLACES {
+                return None;
+            }
+            let s = Surface::new(&self.mesh, crease.to_radians());
+            let sharp = s.sharp.iter().filter(|&&s| s).count();
+            let area = measures(&self.mesh).area as f32;
+            (sharp * 2 > s.sharp.len()).then(|| (area * 2.0 / PLACES as f32).sqrt())
+        });
+        if let Some(spacing) = spacing.filter(|s| *s > 0.0 && s.is_finite()) {
+            self.mesh = refine(&self.mesh, spacing);
+        }
     }
 
     fn place(&self, p: [f32; 3]) -> [f64; 3] {
@@ -109,6 +133,8 @@ pub struct Answer {
     pub worst: Vec<WorstSpot>,
     pub vertices: usize,
     pub triangles: usize,
+    /// Vertices that were measured: more than the file has, where a coarse part was refined.
+    pub places: usize,
     pub volume: f64,
     pub area: f64,
     pub dimensions: [f64; 3],
@@ -192,8 +218,9 @@ pub fn check(
         above: limits.fail_above.map(|l| beyond(l, true)),
         uneven,
         worst: spots.iter().map(place).collect(),
-        vertices: part.mesh.positions.len(),
-        triangles: part.mesh.triangles.len(),
+        vertices: part.counts[0],
+        triangles: part.counts[1],
+        places: part.mesh.positions.len(),
         volume: sizes.volume,
         area: sizes.area,
         dimensions: sizes.dimensions,

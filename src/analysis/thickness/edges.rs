@@ -1,13 +1,17 @@
 //! What vertices on sharp edges say.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use super::ray::{Caster, Site};
 use super::{EdgePolicy, Method, Reason, Settings, Surface, Value};
 
-/// Rings of neighbours that an edge vertex is extrapolated from at most.
-const RINGS: usize = 3;
+/// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along the mesh is longer.
+const REACH: f32 = 1.5;
 
 /// Applies the policy to the values marked [`Reason::Edge`].
 pub(super) fn apply(caster: &Caster<'_>, surface: &Surface, settings: &Settings, values: &mut [Value]) {
+    mark(surface, values);
     let marked: Vec<usize> = (0..values.len()).filter(|&v| values[v].reason == Reason::Edge).collect();
     match settings.edges {
         EdgePolicy::Raw => {}
@@ -18,54 +22,89 @@ pub(super) fn apply(caster: &Caster<'_>, surface: &Surface, settings: &Settings,
                 let away = surface.normals[v] * caster.sign;
                 let site = Site { point: surface.positions[v], away, own: surface.around(v) };
                 if let Some(ball) = caster.ball(&site) {
-                    values[v] = Value { value: ball.diameter, error: 0.0, reason: Reason::Edge };
+                    values[v] =
+                        Value { value: ball.diameter, error: 0.0, reason: Reason::Edge, turned: false };
                 }
             }
         }
         EdgePolicy::Extrapolate => {
-            let mut beside = Vec::new();
-            let found: Vec<Value> = marked
-                .iter()
-                .map(|&v| {
-                    from_neighbours(surface, values, v, &mut beside)
-                        .or_else(|| under_faces(caster, surface, v))
-                        .unwrap_or(values[v])
-                })
-                .collect();
-            for (v, value) in marked.into_iter().zip(found) {
-                values[v] = value;
+            let mut alone = marked;
+            spread(surface, values, &mut alone);
+            for v in alone {
+                if let Some(value) = under_faces(caster, surface, v) {
+                    values[v] = value;
+                }
             }
         }
     }
 }
 
-/// The median of the measured vertices in the first ring that has any.
-fn from_neighbours(surface: &Surface, values: &[Value], v: usize, beside: &mut Vec<u32>) -> Option<Value> {
-    let mut seen = vec![v as u32];
-    let mut ring = vec![v as u32];
-    for _ in 0..RINGS {
-        let mut next = Vec::new();
-        for &u in &ring {
-            surface.neighbours(u as usize, beside);
-            next.extend(beside.iter().copied().filter(|w| !seen.contains(w)));
-        }
-        next.sort_unstable();
-        next.dedup();
-        let mut known: Vec<(f32, f32)> = next
-            .iter()
-            .map(|&u| values[u as usize])
-            .filter(|x| x.reason == Reason::Measured)
-            .map(|x| (x.value, x.error))
-            .collect();
-        if !known.is_empty() {
-            known.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let (value, error) = known[known.len() / 2];
-            return Some(Value { value, error, reason: Reason::Edge });
-        }
-        seen.extend(&next);
-        ring = next;
+/// Marks what tells of an edge and not of a wall: the opposite side is turned by more than 40 degrees, and a sharp vertex
+/// is as near (along the mesh's edges) as the edge of such a wedge must be, within 1.5 times the value.
+fn mark(surface: &Surface, values: &mut [Value]) {
+    if !values.iter().any(|v| v.turned && v.reason == Reason::Measured) {
+        return;
     }
-    None
+    let longest =
+        values.iter().filter(|v| v.turned && v.value.is_finite()).map(|v| v.value).fold(0.0f32, f32::max);
+    let mut far = vec![f32::INFINITY; values.len()];
+    // Distances are not negative, so their bits are ordered as they are.
+    let mut heap = BinaryHeap::new();
+    for v in (0..values.len()).filter(|&v| surface.sharp[v]) {
+        far[v] = 0.0;
+        heap.push(Reverse((0u32, v as u32)));
+    }
+    let mut beside = Vec::new();
+    while let Some(Reverse((bits, v))) = heap.pop() {
+        let d = f32::from_bits(bits);
+        if d > far[v as usize] || d > REACH * longest {
+            continue;
+        }
+        surface.neighbours(v as usize, &mut beside);
+        for &u in &beside {
+            let next = d + surface.positions[u as usize].distance(surface.positions[v as usize]);
+            if next < far[u as usize] {
+                far[u as usize] = next;
+                heap.push(Reverse((next.to_bits(), u)));
+            }
+        }
+    }
+    for (value, far) in values.iter_mut().zip(far) {
+        if value.turned && value.reason == Reason::Measured && far <= REACH * value.value {
+            value.reason = Reason::Edge;
+        }
+    }
+}
+
+/// Each marked vertex takes the median of its neighbours that are measured or took theirs in an earlier round.
+fn spread(surface: &Surface, values: &mut [Value], marked: &mut Vec<usize>) {
+    let mut known: Vec<bool> = values.iter().map(|v| v.reason == Reason::Measured).collect();
+    let (mut beside, mut near) = (Vec::new(), Vec::new());
+    while !marked.is_empty() {
+        let mut found = Vec::new();
+        marked.retain(|&v| {
+            surface.neighbours(v, &mut beside);
+            near.clear();
+            near.extend(beside.iter().filter(|&&u| known[u as usize]).map(|&u| {
+                let value = values[u as usize];
+                (value.value, value.error)
+            }));
+            if near.is_empty() {
+                return true;
+            }
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (value, error) = near[near.len() / 2];
+            found.push((v, value, error));
+            false
+        });
+        if found.is_empty() {
+            return;
+        }
+        for (v, value, error) in found {
+            values[v] = Value { value, error, ..values[v] };
+            known[v] = true;
+        }
+    }
 }
 
 /// The smallest of the walls under the faces around `v`, each measured along its own normal from a point one per cent of
@@ -80,5 +119,5 @@ fn under_faces(caster: &Caster<'_>, surface: &Surface, v: usize) -> Option<Value
         let found = caster.hit(&site, -site.away).map(|h| h.t);
         least = least.min(found.unwrap_or(f32::INFINITY));
     }
-    least.is_finite().then_some(Value { value: least, error: 0.0, reason: Reason::Edge })
+    least.is_finite().then_some(Value { value: least, error: 0.0, reason: Reason::Edge, turned: false })
 }

@@ -17,6 +17,7 @@ pub mod cone;
 mod edges;
 pub mod preset;
 pub mod ray;
+pub mod refine;
 pub mod summary;
 pub mod surface;
 pub mod warnings;
@@ -185,11 +186,13 @@ struct Value {
     value: f32,
     error: f32,
     reason: Reason,
+    /// The other side is not parallel enough to make a wall: near a sharp edge the value tells of the edge.
+    turned: bool,
 }
 
 impl Value {
     const fn missing(reason: Reason) -> Self {
-        Value { value: f32::NAN, error: 0.0, reason }
+        Value { value: f32::NAN, error: 0.0, reason, turned: false }
     }
 }
 
@@ -286,27 +289,19 @@ fn one(
     sharp: bool,
     scratch: &mut Vec<(f32, f32)>,
 ) -> Value {
-    match settings.method {
-        Method::Ray => match caster.measure(site, scratch).or_else(|| {
-            // Where every ray of the cone leaves the solid (a needle's tip), the ball still has a size.
-            caster.ball(site).map(|b| cone::Folded { value: b.diameter, error: 0.0 })
-        }) {
-            Some(f) => Value {
-                value: f.value,
-                error: f.error,
-                reason: if sharp { Reason::Edge } else { Reason::Measured },
-            },
-            None => Value::missing(Reason::NothingAhead),
-        },
-        Method::Sphere => match caster.ball(site) {
-            Some(b) => Value {
-                value: b.diameter,
-                error: 0.0,
-                reason: if sharp || b.in_corner { Reason::Edge } else { Reason::Measured },
-            },
-            None => Value::missing(Reason::NothingAhead),
-        },
-    }
+    let marked = |edge| if edge { Reason::Edge } else { Reason::Measured };
+    let by_rays = match settings.method {
+        Method::Ray => caster.measure(site, scratch),
+        Method::Sphere => None,
+    };
+    // Where every ray of the cone leaves the solid (a needle's tip), the ball still has a size.
+    let found = by_rays
+        .map(|(f, turned)| Value { value: f.value, error: f.error, reason: marked(sharp), turned })
+        .or_else(|| {
+            let b = caster.ball(site)?;
+            Some(Value { value: b.diameter, error: 0.0, reason: marked(sharp), turned: b.in_corner })
+        });
+    found.unwrap_or(Value::missing(Reason::NothingAhead))
 }
 
 /// `value` at each index of `order`, in parallel over spatially coherent chunks; the others have no face.

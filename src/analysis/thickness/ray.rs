@@ -57,6 +57,9 @@ pub struct Caster<'a> {
 /// A hit on a wall turned by more than this from the axis ray's wall is another wall's: cos 60 degrees.
 const SAME_WALL: f32 = 0.5;
 
+/// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
+const TURNED: f32 = 0.766;
+
 impl Caster<'_> {
     /// The nearest wall ahead that faces the site: not its own triangles, none whose normal points the site's way.
     pub fn hit(&self, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
@@ -66,17 +69,24 @@ impl Caster<'_> {
         })
     }
 
-    /// The cone's value; `scratch` is reused between calls.
-    pub fn measure(&self, site: &Site<'_>, scratch: &mut Vec<(f32, f32)>) -> Option<Folded> {
+    /// The cone's value, and whether the wall that the axis ray meets is turned by more than [`TURNED`] from the site's;
+    /// `scratch` is reused between calls.
+    pub fn measure(&self, site: &Site<'_>, scratch: &mut Vec<(f32, f32)>) -> Option<(Folded, bool)> {
         scratch.clear();
+        let mut turned = false;
         let (x, y) = frame(site.away);
         let mut first = None::<Vec3>;
         for (i, d) in self.cone.dirs.iter().enumerate() {
             // Turned about the axis so that +z of the cone runs into the wall.
             let dir = x * d.x + y * d.y - site.away * d.z;
             let hit = self.hit(site, dir);
-            if i == 0 && self.correction == Correction::Chord {
-                first = hit.map(|h| self.wall(&h));
+            if i == 0 {
+                if self.correction == Correction::Chord {
+                    first = hit.map(|h| self.wall(&h));
+                }
+                turned = hit.is_some_and(|h| {
+                    -self.sign * self.face_normals[h.triangle as usize].dot(site.away) < TURNED
+                });
             }
             let Some(hit) = hit else { continue };
             let weight = self.cone.weights[i];
@@ -115,7 +125,7 @@ impl Caster<'_> {
                 }
             }
         }
-        fold(scratch, self.outliers)
+        fold(scratch, self.outliers).map(|f| (f, turned))
     }
 
     /// The smooth normal of the wall at a hit, turned towards the site.
