@@ -19,6 +19,8 @@ pub mod calibration;
 pub mod catalogue;
 pub mod clock;
 pub mod filter;
+#[doc(hidden)]
+pub mod fuzzing;
 pub mod hid;
 pub mod latency;
 pub mod leap;

@@ -96,11 +96,10 @@ impl Descriptor {
             return Err(DescriptorError::TooLong(bytes.len()));
         }
         let bytes = mended(bytes)?;
-        let read = ReportDescriptor::try_from(&bytes).or_else(|first| {
+        let read = read(&bytes).or_else(|first| {
             let kept = bytes.iter().rposition(|&b| b != 0).map_or(0, |i| i + 1);
-            ReportDescriptor::try_from(&bytes[..kept]).map_err(|_| first)
-        });
-        let read = read.map_err(|e| DescriptorError::Bad(e.to_string()))?;
+            read(&bytes[..kept]).map_err(|_| first)
+        })?;
         let mut out = Descriptor::default();
         for report in read.input_reports() {
             let id = report.report_id().as_ref().map(|&id| u8::from(id));
@@ -149,6 +148,14 @@ impl Descriptor {
     }
 }
 
+/// The library's reading. It panics on some nonsense; to us that is one more descriptor that cannot be read.
+fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
+    match std::panic::catch_unwind(|| ReportDescriptor::try_from(bytes)) {
+        Ok(read) => read.map_err(|e| DescriptorError::Bad(e.to_string())),
+        Err(_) => Err(DescriptorError::Bad("it makes no sense to the parser".to_owned())),
+    }
+}
+
 /// Refuses sizes that would make a reader allocate without bound, and rewrites maxima that were written in too few bytes: after a
 /// minimum that is not negative a maximum is unsigned, whatever its top bit (Linux reads it so). Items: HID 1.11 section 6.2.2.
 fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
@@ -156,6 +163,7 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     let mut globals = Globals::default();
     let (mut stack, mut total) = (Vec::new(), 0u64);
     let (mut low, mut high) = (0u64, 0u64);
+    let mut short_usage = false;
     let mut i = 0;
     while i < bytes.len() {
         let at = i;
@@ -185,13 +193,18 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
         match prefix & 0xfc {
             0x14 => globals.logical_min_negative = negative,
             0x34 => globals.physical_min_negative = negative,
+            0x04 => globals.page = true,
             0x74 => globals.size = value,
             0x94 => globals.count = value,
+            0x08 => short_usage |= n < 4,
             0x18 => low = value,
             0x28 => high = value,
             0xa4 if stack.len() < 64 => stack.push(globals),
             0xa4 => return Err(DescriptorError::Absurd(at)),
             0xb4 => globals = stack.pop().unwrap_or(globals),
+            0x80 | 0x90 | 0xa0 | 0xb0 if std::mem::take(&mut short_usage) && !globals.page => {
+                return Err(DescriptorError::Bad(format!("usages without a page before byte {at}")));
+            }
             0x80 | 0x90 | 0xb0 => {
                 total = total.saturating_add(globals.size.saturating_mul(globals.count));
                 let wide =
@@ -213,6 +226,7 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
 struct Globals {
     size: u64,
     count: u64,
+    page: bool,
     logical_min_negative: bool,
     physical_min_negative: bool,
 }
