@@ -17,3 +17,6 @@ pub use client::{Config, Handle, Status, start};
 pub use clock_map::ClockMap;
 pub use file::FrameFile;
 pub use frame::{Frame, FrameError, Message, parse_frame, parse_message};
+
+#[cfg(test)]
+mod bridge_tests;
