@@ -107,7 +107,10 @@ impl Visit {
         let Body::Pen(p) = s.body else { return };
         assert!(p.pos_mm.cmpge(Vec2::ZERO).all() && p.pos_mm.cmple(p.area_mm).all(), "off the tablet: {p:?}");
         assert!(p.pressure.is_none_or(|v| (0.0..=1.0).contains(&v)), "pressure: {p:?}");
-        assert!(p.tilt.is_none_or(|t| t.is_finite() && t.abs().max_element() < 1.5708), "tilt: {p:?}");
+        assert!(
+            p.tilt.is_none_or(|t| t.is_finite() && t.abs().max_element() <= std::f32::consts::FRAC_PI_2),
+            "tilt: {p:?}"
+        );
         assert!(p.twist.is_none_or(f32::is_finite), "twist: {p:?}");
         assert!(p.in_range || (!p.tip && p.buttons == 0), "pressed from afar: {p:?}");
         assert!(s.t_us >= self.last_us, "time runs back");
