@@ -28,7 +28,7 @@ impl Kernel for Drag {
                 out.visit();
                 // Smooth to the second order at the rim and flat at the middle, so that what is held moves as one piece.
                 let w = 1.0 - x * x * x * (x * (x * 6.0 - 15.0) + 10.0);
-                out.set(i, p + self.by * (w * (1.0 - page.mask[i])));
+                out.set(i, p + self.by * (w * (1.0 - page.mask(i))));
             }
         }
     }

@@ -6,6 +6,7 @@
 
 use glam::Vec3;
 
+use super::weights::{Weights, exp};
 use crate::mesh::{Kernel, PageIn, PageOut};
 
 pub const SIGMA: f32 = 0.7;
@@ -35,14 +36,9 @@ impl Gaussian {
 
 impl Kernel for Gaussian {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
-        for i in 0..page.own() {
-            let p = page.positions.get(i);
-            let d2 = (p - self.centre).length_squared();
-            if d2 < self.radius2 {
-                let w = (d2 * self.fall).exp() * (1.0 - page.mask[i]);
-                out.visit();
-                out.set(i, p + self.offset * w);
-            }
-        }
+        Weights::with(|w| {
+            out.visit_many(w.sphere(page, self.centre, self.radius2, |d2| exp(d2 * self.fall)));
+            out.push_all(self.offset, w.of(page));
+        });
     }
 }

@@ -6,6 +6,7 @@ mod palm;
 mod push;
 pub mod settings;
 mod smooth;
+pub mod weights;
 
 pub use drag::Drag;
 pub use gaussian::Gaussian;

@@ -38,7 +38,7 @@ impl Kernel for Palm {
             if aside < 1.0 && height <= 0.0 && height > -0.5 * self.radius && faces {
                 out.visit();
                 let fade = 1.0 - aside * aside;
-                out.set(i, p - self.normal * (height * fade * fade * self.strength * (1.0 - page.mask[i])));
+                out.set(i, p - self.normal * (height * fade * fade * self.strength * (1.0 - page.mask(i))));
             }
         }
     }

@@ -33,7 +33,7 @@ impl Kernel for Push {
                 out.visit();
                 // On the axis itself the surface's own normal says where "out" is not: inward.
                 let dir = if d > 0.0 { off / d } else { -page.normals.get(i) };
-                out.set(i, p + dir * ((self.radius - d) * self.strength * (1.0 - page.mask[i])));
+                out.set(i, p + dir * ((self.radius - d) * self.strength * (1.0 - page.mask(i))));
             }
         }
     }

@@ -37,7 +37,7 @@ impl Kernel for Smooth {
             }
             out.visit();
             let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-            for &[b, c] in page.wedges(i) {
+            for [b, c] in page.wedges(i) {
                 let (b, c) = (page.point(b), page.point(c));
                 let (wb, wc) = (cot(c, p, b), cot(b, c, p));
                 sum += (b - p) * wb + (c - p) * wc;
@@ -45,7 +45,7 @@ impl Kernel for Smooth {
             }
             if weights > 0.0 {
                 let x = d / self.radius;
-                let fade = (1.0 - x * x) * (1.0 - x * x) * (1.0 - page.mask[i]);
+                let fade = (1.0 - x * x) * (1.0 - x * x) * (1.0 - page.mask(i));
                 out.set(i, p + sum * (self.lambda * fade / weights));
             }
         }

@@ -5,128 +5,99 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::TriMesh;
-use super::build::{BuildError, build};
-use super::page::{Page, Points};
-use super::ray::{Hit, PreparedRay, Ray};
-use super::snapshot::Snapshot;
+use super::boxtree::BoxTree;
+use super::build::{BuildError, Built, build};
+use super::dab::{Bench, PhaseTimes};
+use super::page::Page;
+use super::pick;
+use super::pool::Pool;
+use super::publish::{Shelf, Stale};
+use super::ray::{Hit, Ray};
+use super::reach::Reach;
+use super::snapshot::{Snapshot, Totals, hash, to_tri};
 use super::undo::History;
 use crate::analysis::cancel::Job;
 
-/// What part of space a dab may change.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Reach {
-    Sphere { centre: Vec3, radius: f32 },
-    Capsule { from: Vec3, to: Vec3, radius: f32 },
-}
-
-impl Reach {
-    /// Whether the reach may touch a box (never wrongly "no").
-    pub fn touches(&self, lo: Vec3, hi: Vec3) -> bool {
-        match *self {
-            Reach::Sphere { centre, radius } => {
-                (centre - centre.clamp(lo, hi)).length_squared() <= radius * radius
-            }
-            Reach::Capsule { from, to, radius } => {
-                (from.min(to) - radius).cmple(hi).all() && (from.max(to) + radius).cmpge(lo).all()
-            }
-        }
-    }
-}
-
-/// A page as a kernel reads it: the state before the dab, halo included.
-#[derive(Debug)]
-pub struct PageIn<'a> {
-    page: &'a Page,
-    pub positions: &'a Points,
-    pub normals: &'a Points,
-    pub mask: &'a [f32],
-    pub colours: &'a [[u8; 4]],
-}
-
-impl PageIn<'_> {
-    pub fn own(&self) -> usize {
-        self.page.topology.own
-    }
-
-    /// An own or a halo vertex by local index.
-    pub fn point(&self, local: u16) -> Vec3 {
-        self.page.point(local as usize)
-    }
-
-    /// The two other corners of each triangle about own vertex `v`.
-    pub fn wedges(&self, v: usize) -> &[[u16; 2]] {
-        let t = &self.page.topology;
-        &t.wedges[t.wedge_starts[v] as usize..t.wedge_starts[v + 1] as usize]
-    }
-}
-
-/// Where a kernel writes.
-#[derive(Debug)]
-pub struct PageOut<'a> {
-    moved: &'a mut Vec<(u16, Vec3)>,
-    affected: &'a mut usize,
-}
-
-impl PageOut<'_> {
-    /// Counts a vertex within the reach.
-    pub fn visit(&mut self) {
-        *self.affected += 1;
-    }
-
-    /// Gives own vertex `v` a new place. Each vertex at most once a dab.
-    pub fn set(&mut self, v: usize, p: Vec3) {
-        if p.is_finite() {
-            self.moved.push((v as u16, p));
-        }
-    }
-}
-
-/// What a brush does to one page.
-pub trait Kernel: Sync {
-    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);
-}
-
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct DabReport {
-    pub affected: usize,
-    pub moved: usize,
-}
-
-/// Threads that help with a dab.
-#[derive(Debug, Clone)]
-pub struct Workers {
-    count: usize,
-}
-
-impl Workers {
-    pub fn new(count: usize) -> Self {
-        Workers { count: count.max(1) }
-    }
-
-    pub fn count(&self) -> usize {
-        self.count
-    }
-}
-
+/// Pages, the tree over them, their history. Changed by one thread; others read [`Snapshot`]s.
 #[derive(Debug)]
 pub struct Mesh {
-    pub(super) pages: Vec<Page>,
+    pub(super) pages: Vec<Arc<Page>>,
+    pub(super) top: BoxTree,
+    pub(super) history: History,
+    pub(super) pool: Pool,
+    pub(super) bench: Bench,
+    pub(super) order: Vec<u32>,
+    pub(super) stale: Stale,
+    shelf: Shelf,
+    pub(super) revision: u64,
     vertices: usize,
     triangles: usize,
-    revision: u64,
-    pub(super) history: History,
     warnings: Vec<String>,
+    pub(super) clock: Option<fn() -> u64>,
+    pub(super) phases: PhaseTimes,
+    built_cost: f32,
+}
+
+/// Bytes by part.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Positions, mask, normals, colour, halos, trees.
+    pub pages: usize,
+    /// Triangles, rings, ids, halo sources.
+    pub topology: usize,
+    /// The tree over the pages, and tables with an entry a page.
+    pub top: usize,
+    /// Pages ready for reuse.
+    pub pool: usize,
+    /// Steps.
+    pub undo: usize,
+}
+
+impl Memory {
+    /// What the clay takes at rest: all but undo.
+    pub fn at_rest(&self) -> usize {
+        self.pages + self.topology + self.top + self.pool
+    }
 }
 
 impl Mesh {
+    /// Builds clay from any triangle soup: open, non-manifold, with stray vertices. See [`Mesh::warnings`].
     pub fn build(tri: &TriMesh, job: &Job) -> Result<Mesh, BuildError> {
-        build(tri, job)
+        Ok(Mesh::of(build(tri, job)?))
     }
 
-    pub(super) fn of_pages(pages: Vec<Page>, vertices: usize, triangles: usize) -> Mesh {
-        Mesh { pages, vertices, triangles, revision: 0, history: History::default(), warnings: vec![] }
+    fn of(built: Built) -> Mesh {
+        let Built { pages, vertices, triangles, warnings } = built;
+        let mut top = BoxTree::default();
+        top.reset(pages.len());
+        for (i, page) in pages.iter().enumerate() {
+            top.set_leaf(i, page.lo, page.hi);
+        }
+        top.refit_all();
+        let rows = pages.iter().map(|p| p.points.len()).max().unwrap_or(0);
+        let leaves = pages.iter().map(|p| p.tree.leaves()).max().unwrap_or(0);
+        let count = pages.len();
+        Mesh {
+            built_cost: top.cost(),
+            top,
+            history: History::new(count),
+            // A page of a strange mesh may be huge: then pooled pages grow on use instead.
+            pool: Pool::new(rows.min(2048), leaves.min(512), (count / 64).clamp(8, 256)),
+            bench: Bench::new(count),
+            order: Vec::with_capacity(256),
+            stale: Stale::new(count),
+            shelf: Shelf::new(&pages),
+            pages,
+            revision: 0,
+            vertices,
+            triangles,
+            warnings,
+            clock: None,
+            phases: PhaseTimes::default(),
+        }
     }
 
+    /// What was odd about the input, in words.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -139,83 +110,67 @@ impl Mesh {
         self.triangles
     }
 
+    /// Grows with every change.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
+    /// Lower and upper corner of the box around everything.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        self.pages.iter().fold(none, |(lo, hi), p| (lo.min(p.lo), hi.max(p.hi)))
+        self.top.bounds()
     }
 
+    pub fn page_count(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// # Panics
+    /// When there is no such page.
+    pub fn page(&self, index: u32) -> &Arc<Page> {
+        &self.pages[index as usize]
+    }
+
+    fn totals(&self) -> Totals {
+        Totals {
+            revision: self.revision,
+            vertices: self.vertices,
+            triangles: self.triangles,
+            pages: self.pages.len(),
+        }
+    }
+
+    /// The clay as it is now, for others to read. Costs as much as what changed since the last one.
     pub fn snapshot(&mut self) -> Snapshot {
-        Snapshot::of(&self.pages, self.revision, self.vertices, self.triangles)
+        let now = self.clock.unwrap_or(|| 0);
+        let t0 = now();
+        let spine = self.shelf.publish(&self.pages, &mut self.stale);
+        self.phases.publish += now() - t0;
+        Snapshot { spine, totals: self.totals() }
     }
 
+    /// The nearest point of the surface on the ray, seen from either side. Exact: no ray passes between two triangles that
+    /// share an edge or a vertex.
     pub fn pick(&self, ray: Ray) -> Option<Hit> {
-        pick(&self.pages, ray)
+        pick::everywhere(&self.top, &self.pages, ray)
     }
 
-    pub fn dab<K: Kernel>(&mut self, reach: &Reach, kernel: &K, _workers: &Workers) -> DabReport {
-        let mut report = DabReport::default();
-        let mut changed: Vec<(u32, Vec<(u16, Vec3)>)> = Vec::new();
-        for (i, page) in self.pages.iter().enumerate() {
-            if !reach.touches(page.lo, page.hi) {
-                continue;
-            }
-            let mut moved = Vec::new();
-            let input = PageIn {
-                page,
-                positions: &page.positions,
-                normals: &page.normals,
-                mask: &page.mask,
-                colours: &page.colours,
-            };
-            kernel.page(&input, &mut PageOut { moved: &mut moved, affected: &mut report.affected });
-            moved.retain(|&(v, p)| p != page.positions.get(v as usize));
-            if !moved.is_empty() {
-                changed.push((i as u32, moved));
-            }
-        }
-        if changed.is_empty() {
-            return report;
-        }
-        let mut dirty: Vec<u32> = changed.iter().map(|c| c.0).collect();
-        for &(i, _) in &changed {
-            dirty.extend_from_slice(&self.pages[i as usize].topology.neighbours);
-        }
-        dirty.sort_unstable();
-        dirty.dedup();
-        for &i in &dirty {
-            self.history.keep(i, &self.pages[i as usize]);
-        }
-        for (i, moved) in &changed {
-            report.moved += moved.len();
-            let points = Arc::make_mut(&mut self.pages[*i as usize].positions);
-            for &(v, p) in moved {
-                points.set(v as usize, p);
-            }
-        }
-        self.refresh(&dirty);
-        report
+    /// Calls `visit` with each page that the reach may touch, in ascending order.
+    pub fn each_page(&self, reach: &Reach, mut visit: impl FnMut(u32, &Arc<Page>)) {
+        self.top.walk_boxes(|lo, hi| reach.touches(lo, hi), |p| visit(p as u32, &self.pages[p]));
     }
 
-    /// Brings halos, normals and bounds of these pages up to date.
-    fn refresh(&mut self, dirty: &[u32]) {
-        for &i in dirty {
-            let page = &self.pages[i as usize];
-            let topology = page.topology.clone();
-            let fresh = Points::of(
-                topology.halo.iter().map(|&(p, v)| self.pages[p as usize].positions.get(v as usize)),
-            );
-            self.pages[i as usize].halo = Arc::new(fresh);
-        }
-        for &i in dirty {
-            let page = &mut self.pages[i as usize];
-            page.normals = Arc::new(Points::of((0..page.topology.own).map(|v| page.normal_of(v))));
-            page.measure();
-        }
-        self.revision += 1;
+    /// Calls `visit` with each vertex within the reach: page, local index, squared distance to the centre or the axis.
+    /// In an order that only the clay decides.
+    pub fn each_vertex(&self, reach: &Reach, mut visit: impl FnMut(&Page, usize, f32)) {
+        let radius2 = reach.radius() * reach.radius();
+        self.each_page(reach, |_, page| {
+            for v in 0..page.own() {
+                let d2 = reach.distance_squared(page.point(v));
+                if d2 <= radius2 {
+                    visit(page, v, d2);
+                }
+            }
+        });
     }
 
     /// Opens an undo step, unless one is open.
@@ -228,16 +183,32 @@ impl Mesh {
         self.history.end();
     }
 
+    /// Takes back the newest step. False when there is none.
     pub fn undo(&mut self) -> bool {
         self.history.end();
-        let done = self.history.undo(&mut self.pages);
-        self.revision += u64::from(done);
-        done
+        self.travel(|history, swap| history.undo(swap))
     }
 
+    /// Does the step again that was taken back last. False when there is none.
     pub fn redo(&mut self) -> bool {
         self.history.end();
-        let done = self.history.redo(&mut self.pages);
+        self.travel(|history, swap| history.redo(swap))
+    }
+
+    fn travel(
+        &mut self,
+        way: impl FnOnce(&mut History, &mut dyn FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool,
+    ) -> bool {
+        let Mesh { history, pages, top, stale, .. } = self;
+        let done = way(history, &mut |i, page| {
+            top.set_leaf(i as usize, page.lo, page.hi);
+            stale.add(i);
+            std::mem::replace(&mut pages[i as usize], page)
+        });
+        for &leaf in stale.paths() {
+            top.refit_path(leaf as usize);
+        }
+        stale.clear_paths();
         self.revision += u64::from(done);
         done
     }
@@ -250,78 +221,45 @@ impl Mesh {
         self.history.redo_steps()
     }
 
+    /// Bytes that undo may hold; the oldest steps go first.
     pub fn set_undo_bytes(&mut self, bytes: u64) {
         self.history.limit = bytes;
+        self.history.trim();
     }
 
+    /// Measures the phases of all that follows with this clock, nanoseconds. Without one nothing is measured.
+    pub fn set_clock(&mut self, now: fn() -> u64) {
+        self.clock = Some(now);
+        self.phases = PhaseTimes::default();
+    }
+
+    /// Time spent since [`Mesh::set_clock`], by phase; `pick` stays 0, its caller measures it.
+    pub fn phases(&self) -> PhaseTimes {
+        self.phases
+    }
+
+    /// Cost of a ray in the tree over the pages, against what it was after loading.
+    pub fn tree_growth(&self) -> f32 {
+        if self.built_cost > 0.0 { self.top.cost() / self.built_cost } else { 1.0 }
+    }
+
+    /// In the order of the mesh that was loaded; triangles that were left out then are not there.
     pub fn to_tri(&self) -> TriMesh {
-        super::snapshot::to_tri(&self.pages, self.vertices, self.triangles)
+        to_tri(&|i| &self.pages[i as usize], self.totals())
     }
 
+    /// One number for positions, mask, colours and triangles; costs as much as the clay is large.
     pub fn hash(&self) -> u64 {
-        super::snapshot::hash(&self.pages, self.vertices)
+        hash(&|i| &self.pages[i as usize], self.totals())
     }
 
-    /// Whether every page, halo and bound says the same.
-    pub fn verify_invariants(&self) -> Result<(), String> {
-        for (i, page) in self.pages.iter().enumerate() {
-            let t = &page.topology;
-            for (k, &(p, v)) in t.halo.iter().enumerate() {
-                if page.halo.get(k) != self.pages[p as usize].positions.get(v as usize) {
-                    return Err(format!("page {i}: halo vertex {k} is not where page {p} has it"));
-                }
-            }
-            for v in 0..t.own {
-                let p = page.positions.get(v);
-                if !p.is_finite() {
-                    return Err(format!("page {i}: vertex {v} is at {p}"));
-                }
-                if page.normals.get(v) != page.normal_of(v) {
-                    return Err(format!("page {i}: the normal of vertex {v} is out of date"));
-                }
-            }
-            let mut measured = page.clone();
-            measured.measure();
-            if (measured.lo, measured.hi) != (page.lo, page.hi) {
-                return Err(format!("page {i}: its bounds are out of date"));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// The nearest hit over all pages.
-pub(super) fn pick(pages: &[Page], ray: Ray) -> Option<Hit> {
-    let prepared = PreparedRay::new(ray);
-    let mut best: Option<(f32, [f32; 3], u32, u32)> = None;
-    for (i, page) in pages.iter().enumerate() {
-        let far = best.map_or(f32::INFINITY, |b| b.0);
-        if prepared.enters(page.lo, page.hi, far).is_none() {
-            continue;
-        }
-        for t in 0..page.topology.triangles.len() {
-            if let Some((at, weights)) = prepared.triangle(page.corners(t)) {
-                if best.is_none_or(|b| at < b.0) {
-                    best = Some((at, weights, i as u32, t as u32));
-                }
-            }
+    pub fn memory(&self) -> Memory {
+        Memory {
+            pages: self.pages.iter().map(|p| p.bytes()).sum(),
+            topology: self.pages.iter().map(|p| p.topology.bytes()).sum(),
+            top: self.top.bytes() + self.pages.len() * (8 + 8 + 4 + 8 + 8),
+            pool: self.pool.bytes(),
+            undo: self.history.bytes() as usize,
         }
     }
-    let (t, weights, page, triangle) = best?;
-    let home = &pages[page as usize];
-    let normal = home.topology.triangles[triangle as usize]
-        .iter()
-        .zip(weights)
-        .map(|(&v, w)| {
-            let own = home.topology.own;
-            if (v as usize) < own {
-                home.normals.get(v as usize) * w
-            } else {
-                let (p, l) = home.topology.halo[v as usize - own];
-                pages[p as usize].normals.get(l as usize) * w
-            }
-        })
-        .sum::<Vec3>()
-        .normalize_or(-ray.dir);
-    Some(Hit { t, position: ray.origin + ray.dir * t, normal, page, triangle, barycentric: weights })
 }

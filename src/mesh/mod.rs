@@ -1,19 +1,41 @@
 //! The clay: pages, topology, trees, queries, snapshots, undo; and the flat meshes that files hold.
+//!
+//! Laws kept here:
+//! * The cost of a change follows the pages that it reaches, never the mesh: [`dab`](Mesh::dab), normals, trees, undo and
+//!   [`Snapshot`] alike.
+//! * Whoever holds a page may read it for ever: a page is written anew, never changed.
+//! * Same input, same bits, with any number of [`Workers`].
+//!
+//! Memory at rest: about 95 bytes a vertex all told, measured by a test against 120.
 
+mod boxtree;
 mod build;
 mod clay;
+mod dab;
 pub mod flat;
 pub mod io;
+mod kernel;
+mod normals;
 pub mod page;
+mod pick;
+mod pool;
+mod publish;
 mod ray;
+mod reach;
 pub mod shapes;
 mod snapshot;
 pub mod triangulate;
 mod undo;
+mod verify;
+mod workers;
 
-pub use build::BuildError;
-pub use clay::{DabReport, Kernel, Mesh, PageIn, PageOut, Reach, Workers};
+pub use build::{BuildError, PAGE_VERTICES, bytes_to_build};
+pub use clay::{Memory, Mesh};
+pub use dab::{DabReport, PhaseTimes};
 pub use flat::{PolyMesh, TriMesh};
-pub use page::Page;
+pub use kernel::{Kernel, PageIn, PageOut};
+pub use page::{Page, Points};
 pub use ray::{Hit, Ray};
+pub use reach::Reach;
 pub use snapshot::Snapshot;
+pub use workers::Workers;

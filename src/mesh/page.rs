@@ -1,122 +1,214 @@
-//! One page: about a thousand vertices, their surroundings, and the triangles between them.
+//! One page: some five hundred vertices, their surroundings, and the triangles between them.
 //!
 //! Laws kept here:
-//! * A page holds its **own** vertices and copies (the **halo**) of the foreign vertices that its triangles and normals need, so
+//! * A page holds its **own** vertices and copies (the **halo**) of the foreign vertices that its triangles and rings need, so
 //!   every inner loop stays within the page. Local index `< own` is own, the rest is halo.
 //! * What never changes while the topology stands ([`Topology`]) is apart from what a dab changes, so that copy on write
 //!   copies only the latter.
+//! * A vertex is two 16-byte rows: position with mask, normal with colour. A ring's neighbour is one aligned load.
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
+
+use super::boxtree::BoxTree;
+
+/// The bit of a ring's entry that says: between the entry before and this one there is no triangle.
+pub const BREAK: u16 = 0x8000;
+
+/// How the triangles lie about a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Ring {
+    /// One closed fan: the last neighbour and the first make a triangle too.
+    Closed,
+    /// One open fan: the vertex lies on the border of the surface. Also a vertex without triangles.
+    Open,
+    /// Several fans, parted by [`BREAK`]; a closed one among them repeats its first neighbour.
+    Several,
+}
+
+/// A page from which others are seen: its number, and where its part of the halo begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Neighbour {
+    pub page: u32,
+    /// Index into [`Topology::halo_sources`]; the part ends where the next neighbour's begins.
+    pub first: u32,
+}
 
 /// What stands still while a mesh is only displaced.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Topology {
     pub own: usize,
-    /// Where each halo vertex is at home: page, local index there.
-    pub halo: Vec<(u32, u16)>,
-    /// Pages that hold copies of vertices of this one.
-    pub neighbours: Vec<u32>,
-    /// Local corners, counter-clockwise seen from outside.
-    pub triangles: Vec<[u16; 3]>,
-    /// The triangles' numbers in the mesh that was loaded.
-    pub triangle_ids: Vec<u32>,
     /// The own vertices' numbers in the mesh that was loaded.
-    pub ids: Vec<u32>,
-    /// For own vertex `v`, `wedges[wedge_starts[v]..wedge_starts[v + 1]]`: the two other corners of each triangle about it,
-    /// in the triangle's own order.
-    pub wedge_starts: Vec<u16>,
-    pub wedges: Vec<[u16; 2]>,
+    pub ids: Box<[u32]>,
+    /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight make a leaf.
+    pub triangles: Box<[[u16; 3]]>,
+    /// The triangles' numbers in the mesh that was loaded.
+    pub triangle_ids: Box<[u32]>,
+    /// The neighbours of own vertex `v` are `rings[ring_starts[v]..ring_starts[v + 1]]`, counter-clockwise.
+    pub ring_starts: Box<[u16]>,
+    pub rings: Box<[u16]>,
+    pub kinds: Box<[Ring]>,
+    /// Local index of each halo vertex in its home page.
+    pub halo_sources: Box<[u16]>,
+    /// The homes of the halo, ascending. Neighbourhood is mutual.
+    pub neighbours: Box<[Neighbour]>,
 }
 
-/// Coordinates as separate arrays: what the vectorised loops want.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Points {
-    pub x: Vec<f32>,
-    pub y: Vec<f32>,
-    pub z: Vec<f32>,
+impl Topology {
+    /// The neighbours of own vertex `v`, [`BREAK`] bits included.
+    #[inline]
+    pub fn ring(&self, v: usize) -> &[u16] {
+        &self.rings[self.ring_starts[v] as usize..self.ring_starts[v + 1] as usize]
+    }
+
+    /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index there.
+    pub fn halo_home(&self, k: usize) -> (u32, u16) {
+        let n = self.neighbours.partition_point(|n| n.first as usize <= k) - 1;
+        (self.neighbours[n].page, self.halo_sources[k])
+    }
+
+    /// The halo's parts: home page, and which halo vertices are its.
+    pub fn halo_parts(&self) -> impl Iterator<Item = (u32, std::ops::Range<usize>)> + '_ {
+        self.neighbours.iter().enumerate().map(|(i, n)| {
+            let end = self.neighbours.get(i + 1).map_or(self.halo_sources.len(), |next| next.first as usize);
+            (n.page, n.first as usize..end)
+        })
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Topology>()
+            + self.ids.len() * 4
+            + self.triangles.len() * 10
+            + self.ring_starts.len() * 2
+            + self.rings.len() * 2
+            + self.kinds.len()
+            + self.halo_sources.len() * 2
+            + self.neighbours.len() * size_of::<Neighbour>()
+    }
 }
 
-impl Points {
-    pub fn of(points: impl Iterator<Item = Vec3>) -> Self {
-        let mut out = Points::default();
-        for p in points {
-            out.x.push(p.x);
-            out.y.push(p.y);
-            out.z.push(p.z);
-        }
-        out
+/// Rows of 16 bytes, read as points.
+#[derive(Debug, Clone, Copy)]
+pub struct Points<'a>(pub &'a [Vec4]);
+
+impl Points<'_> {
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Vec3 {
+        self.0[i].truncate()
     }
 
     pub fn len(&self) -> usize {
-        self.x.len()
+        self.0.len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.x.is_empty()
-    }
-
-    pub fn get(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x[i], self.y[i], self.z[i])
-    }
-
-    pub fn set(&mut self, i: usize, p: Vec3) {
-        (self.x[i], self.y[i], self.z[i]) = (p.x, p.y, p.z);
+        self.0.is_empty()
     }
 }
 
-/// What a dab may change.
-#[derive(Debug, Clone)]
+/// What a dab may change, and the topology it belongs to.
+#[derive(Debug, Default)]
 pub struct Page {
-    pub topology: Arc<Topology>,
-    pub positions: Arc<Points>,
-    pub halo: Arc<Points>,
-    pub normals: Arc<Points>,
-    /// 0 free to 1 protected, one an own vertex.
-    pub mask: Arc<Vec<f32>>,
-    /// RGBA, sRGB, one an own vertex.
-    pub colours: Arc<Vec<[u8; 4]>>,
-    /// Of the page's triangles.
-    pub lo: Vec3,
-    pub hi: Vec3,
+    pub(super) topology: Arc<Topology>,
+    /// Own, then halo: x, y, z, mask (0 free to 1 protected).
+    pub(super) points: Vec<Vec4>,
+    /// Own, then halo: unit normal (zero where all triangles are degenerate), and RGBA as the bits of a float.
+    pub(super) normals: Vec<Vec4>,
+    /// Over the page's triangles, eight a leaf.
+    pub(super) tree: BoxTree,
+    /// Of the page's triangles and own vertices.
+    pub(super) lo: Vec3,
+    pub(super) hi: Vec3,
+    /// The clay's revision that wrote this page.
+    pub(super) revision: u64,
 }
 
 impl Page {
+    pub fn topology(&self) -> &Arc<Topology> {
+        &self.topology
+    }
+
+    /// Own vertices; the rest of every array is halo.
+    pub fn own(&self) -> usize {
+        self.topology.own
+    }
+
+    /// Own and halo vertices as rows of x, y, z, mask: ready for a GPU.
+    pub fn point_rows(&self) -> &[Vec4] {
+        &self.points
+    }
+
+    /// Own and halo normals as rows of x, y, z and RGBA bits: ready for a GPU. Never compare or add whole rows: the
+    /// colour's bits may spell "not a number".
+    pub fn normal_rows(&self) -> &[Vec4] {
+        &self.normals
+    }
+
+    pub fn positions(&self) -> Points<'_> {
+        Points(&self.points)
+    }
+
+    pub fn normals(&self) -> Points<'_> {
+        Points(&self.normals)
+    }
+
     /// An own or a halo vertex.
+    #[inline]
     pub fn point(&self, local: usize) -> Vec3 {
-        let own = self.topology.own;
-        if local < own { self.positions.get(local) } else { self.halo.get(local - own) }
+        self.points[local].truncate()
+    }
+
+    #[inline]
+    pub fn normal(&self, local: usize) -> Vec3 {
+        self.normals[local].truncate()
+    }
+
+    /// 0 free to 1 protected.
+    #[inline]
+    pub fn mask(&self, local: usize) -> f32 {
+        self.points[local].w
+    }
+
+    /// RGBA, sRGB.
+    #[inline]
+    pub fn colour(&self, local: usize) -> [u8; 4] {
+        self.normals[local].w.to_bits().to_le_bytes()
+    }
+
+    /// Local corners of each triangle, into own and halo vertices.
+    pub fn triangles(&self) -> &[[u16; 3]] {
+        &self.topology.triangles
     }
 
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.topology.triangles[triangle].map(|v| self.point(v as usize))
     }
 
-    /// Bounds of the page's triangles.
-    pub fn measure(&mut self) {
-        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for t in 0..self.topology.triangles.len() {
-            for p in self.corners(t) {
-                (lo, hi) = (lo.min(p), hi.max(p));
-            }
-        }
-        // A page of lonely vertices is still found by its own points.
-        for i in 0..self.positions.len() {
-            let p = self.positions.get(i);
-            (lo, hi) = (lo.min(p), hi.max(p));
+    /// Lower and upper corner of the box around the page's triangles and own vertices.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        (self.lo, self.hi)
+    }
+
+    /// The clay's revision that wrote this page.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Brings the page's tree and bounds up to date.
+    pub(super) fn refit(&mut self) {
+        let Page { topology, points, tree, .. } = self;
+        let (mut lo, mut hi) = tree.refit_triangles(&topology.triangles, points);
+        // Own vertices whose triangles all belong to other pages are found by themselves.
+        for p in &points[..topology.own] {
+            (lo, hi) = (lo.min(p.truncate()), hi.max(p.truncate()));
         }
         (self.lo, self.hi) = (lo, hi);
     }
 
-    /// Area-weighted normal of an own vertex; zero where all its triangles are degenerate.
-    pub fn normal_of(&self, v: usize) -> Vec3 {
-        let t = &self.topology;
-        let p = self.positions.get(v);
-        let mut n = Vec3::ZERO;
-        for &[b, c] in &t.wedges[t.wedge_starts[v] as usize..t.wedge_starts[v + 1] as usize] {
-            n += (self.point(b as usize) - p).cross(self.point(c as usize) - p);
-        }
-        n.normalize_or_zero()
+    /// Heap bytes of what a copy on write copies.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Page>() + 16 + (self.points.capacity() + self.normals.capacity()) * 16 + self.tree.bytes()
     }
 }

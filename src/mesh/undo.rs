@@ -1,86 +1,131 @@
-//! Undo: a step is the list of pages as they were.
+//! Undo: a step is the list of pages as they were before its first touch of each.
 
-use std::collections::BTreeMap;
+use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::page::Page;
+use super::pool::{Garbage, discard};
 
 /// Pages by number, as they were before a step (or, on the redo side, after it).
-type Step = BTreeMap<u32, Page>;
+type Step = Vec<(u32, Arc<Page>)>;
+
+/// Steps remembered at most, whatever they weigh.
+const STEPS: usize = 1024;
 
 #[derive(Debug)]
-pub struct History {
+pub(super) struct History {
     open: Option<Step>,
-    undo: Vec<Step>,
+    undo: VecDeque<Step>,
     redo: Vec<Step>,
     /// Bytes that all steps together may hold.
-    pub limit: u64,
+    pub(super) limit: u64,
     bytes: u64,
+    /// For each page the step that touched it last, and where in the step's list it lies.
+    touched: Vec<(u32, u32)>,
+    stamp: u32,
 }
 
-impl Default for History {
-    fn default() -> Self {
-        History { open: None, undo: vec![], redo: vec![], limit: 1 << 30, bytes: 0 }
-    }
-}
-
-/// What a kept page holds that the clay does not share once it has moved on.
-fn cost(page: &Page) -> u64 {
-    (page.positions.len() * 24 + page.halo.len() * 12) as u64
+fn cost(step: &Step) -> u64 {
+    step.iter().map(|(_, p)| p.bytes() as u64).sum()
 }
 
 impl History {
-    pub fn begin(&mut self) {
-        self.open.get_or_insert_with(Step::new);
-    }
-
-    /// The page is about to change.
-    pub fn keep(&mut self, index: u32, page: &Page) {
-        if let Some(step) = &mut self.open {
-            if let std::collections::btree_map::Entry::Vacant(slot) = step.entry(index) {
-                self.bytes += cost(page);
-                slot.insert(page.clone());
-            }
+    pub(super) fn new(pages: usize) -> Self {
+        History {
+            open: None,
+            undo: VecDeque::with_capacity(STEPS + 1),
+            redo: Vec::new(),
+            limit: 1 << 30,
+            bytes: 0,
+            touched: vec![(0, 0); pages],
+            stamp: 0,
         }
     }
 
-    pub fn end(&mut self) {
-        let Some(step) = self.open.take().filter(|s| !s.is_empty()) else { return };
+    pub(super) fn begin(&mut self) {
+        if self.open.is_none() {
+            self.open = Some(Vec::with_capacity(256));
+            self.stamp += 1;
+        }
+    }
+
+    /// Keeps the page if the open step has not touched it before; else (or without a step) hands it back.
+    pub(super) fn keep(&mut self, index: u32, page: Arc<Page>) -> Option<Arc<Page>> {
+        let Some(step) = &mut self.open else { return Some(page) };
+        let touched = &mut self.touched[index as usize];
+        if touched.0 == self.stamp {
+            return Some(page);
+        }
+        *touched = (self.stamp, step.len() as u32);
+        self.bytes += page.bytes() as u64;
+        step.push((index, page));
+        None
+    }
+
+    /// The page as it was when the open step began, if the step has touched it.
+    pub(super) fn before(&self, index: u32) -> Option<&Arc<Page>> {
+        let step = self.open.as_ref()?;
+        let (stamp, at) = self.touched[index as usize];
+        (stamp == self.stamp).then(|| &step[at as usize].1)
+    }
+
+    /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to the dropping thread.
+    pub(super) fn end(&mut self) {
+        let Some(step) = self.open.take() else { return };
+        if step.is_empty() {
+            return;
+        }
+        self.forget_redo();
+        self.undo.push_back(step);
+        self.trim();
+    }
+
+    pub(super) fn forget_redo(&mut self) {
         for gone in self.redo.drain(..) {
-            self.bytes -= gone.values().map(cost).sum::<u64>();
-        }
-        self.undo.push(step);
-        while self.bytes > self.limit && self.undo.len() > 1 {
-            let gone = self.undo.remove(0);
-            self.bytes -= gone.values().map(cost).sum::<u64>();
+            self.bytes -= cost(&gone);
+            discard(Garbage::Pages(gone));
         }
     }
 
-    fn swap(step: Step, pages: &mut [Page]) -> Step {
-        step.into_iter()
-            .map(|(i, page)| {
-                let now = std::mem::replace(&mut pages[i as usize], page);
-                (i, now)
-            })
-            .collect()
+    pub(super) fn trim(&mut self) {
+        while (self.bytes > self.limit && !self.undo.is_empty()) || self.undo.len() > STEPS {
+            let Some(gone) = self.undo.pop_front() else { break };
+            self.bytes -= cost(&gone);
+            discard(Garbage::Pages(gone));
+        }
     }
 
-    pub fn undo(&mut self, pages: &mut [Page]) -> bool {
-        let Some(step) = self.undo.pop() else { return false };
-        self.redo.push(Self::swap(step, pages));
+    /// Swaps the newest step's pages with the clay's through `swap`; false when there is none.
+    pub(super) fn undo(&mut self, swap: impl FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool {
+        let Some(step) = self.undo.pop_back() else { return false };
+        let step = self.swapped(step, swap);
+        self.redo.push(step);
         true
     }
 
-    pub fn redo(&mut self, pages: &mut [Page]) -> bool {
+    pub(super) fn redo(&mut self, swap: impl FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool {
         let Some(step) = self.redo.pop() else { return false };
-        self.undo.push(Self::swap(step, pages));
+        let step = self.swapped(step, swap);
+        self.undo.push_back(step);
         true
     }
 
-    pub fn undo_steps(&self) -> usize {
+    fn swapped(&mut self, step: Step, mut swap: impl FnMut(u32, Arc<Page>) -> Arc<Page>) -> Step {
+        self.bytes -= cost(&step);
+        let step: Step = step.into_iter().map(|(i, page)| (i, swap(i, page))).collect();
+        self.bytes += cost(&step);
+        step
+    }
+
+    pub(super) fn undo_steps(&self) -> usize {
         self.undo.len()
     }
 
-    pub fn redo_steps(&self) -> usize {
+    pub(super) fn redo_steps(&self) -> usize {
         self.redo.len()
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.bytes
     }
 }

@@ -1,0 +1,54 @@
+//! What part of space a dab or a query concerns.
+
+use glam::Vec3;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reach {
+    Sphere { centre: Vec3, radius: f32 },
+    Capsule { from: Vec3, to: Vec3, radius: f32 },
+}
+
+impl Reach {
+    /// Whether the reach may touch a box (never wrongly "no").
+    #[inline]
+    pub fn touches(&self, lo: Vec3, hi: Vec3) -> bool {
+        match *self {
+            Reach::Sphere { centre, radius } => {
+                (centre - centre.clamp(lo, hi)).length_squared() <= radius * radius
+            }
+            Reach::Capsule { from, to, radius } => {
+                if !((from.min(to) - radius).cmple(hi).all() && (from.max(to) + radius).cmpge(lo).all()) {
+                    return false;
+                }
+                // A ball around the box against the axis: cheap, and never wrongly "no".
+                let (middle, half) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
+                self.distance_squared(middle) <= (radius + half) * (radius + half) * 1.000_001
+            }
+        }
+    }
+
+    /// Squared distance to the sphere's centre or the capsule's axis.
+    #[inline]
+    pub fn distance_squared(&self, p: Vec3) -> f32 {
+        match *self {
+            Reach::Sphere { centre, .. } => (p - centre).length_squared(),
+            Reach::Capsule { from, to, .. } => {
+                let along = to - from;
+                let length2 = along.length_squared();
+                let t = if length2 > 0.0 { ((p - from).dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+                (p - (from + along * t)).length_squared()
+            }
+        }
+    }
+
+    pub fn radius(&self) -> f32 {
+        match *self {
+            Reach::Sphere { radius, .. } | Reach::Capsule { radius, .. } => radius,
+        }
+    }
+
+    #[inline]
+    pub fn contains(&self, p: Vec3) -> bool {
+        self.distance_squared(p) <= self.radius() * self.radius()
+    }
+}

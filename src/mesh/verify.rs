@@ -1,0 +1,70 @@
+//! Whether everything in the clay agrees with everything else. For tests and simulation runs: costs as much as the clay is
+//! large.
+
+use glam::Vec4Swizzles;
+
+use super::boxtree::BoxTree;
+use super::clay::Mesh;
+use super::normals;
+use super::page::BREAK;
+
+impl Mesh {
+    /// Every halo says what its home says, every normal is what the positions give, every tree and bound fits, every
+    /// triangle's corners exist.
+    pub fn verify_invariants(&self) -> Result<(), String> {
+        for (i, page) in self.pages.iter().enumerate() {
+            let t = &page.topology;
+            let rows = t.own + t.halo_sources.len();
+            if page.points.len() != rows || page.normals.len() != rows {
+                return Err(format!("page {i}: {rows} rows expected, it has {}", page.points.len()));
+            }
+            let corners = t.triangles.iter().flatten().chain(t.rings.iter());
+            if let Some(&v) = corners.into_iter().find(|&&v| (v & !BREAK) as usize >= rows) {
+                return Err(format!("page {i}: local vertex {v} does not exist"));
+            }
+            for k in 0..t.halo_sources.len() {
+                let (home, local) = t.halo_home(k);
+                let Some(other) = self.pages.get(home as usize).filter(|o| (local as usize) < o.own()) else {
+                    return Err(format!("page {i}: halo vertex {k} has no home"));
+                };
+                let same = |a: glam::Vec4, b: glam::Vec4| {
+                    a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
+                };
+                if !same(page.points[t.own + k], other.points[local as usize]) {
+                    return Err(format!("page {i}: halo vertex {k} is not where page {home} has it"));
+                }
+                if !same(page.normals[t.own + k], other.normals[local as usize]) {
+                    return Err(format!("page {i}: halo normal {k} is not what page {home} has"));
+                }
+            }
+            for v in 0..t.own {
+                let p = page.point(v);
+                if !p.is_finite() {
+                    return Err(format!("page {i}: vertex {v} is at {p}"));
+                }
+                if !(0.0..=1.0).contains(&page.mask(v)) {
+                    return Err(format!("page {i}: vertex {v} has mask {}", page.mask(v)));
+                }
+                if normals::of_vertex(t, &page.points, v).xyz() != page.normal(v) {
+                    return Err(format!("page {i}: the normal of vertex {v} is out of date"));
+                }
+            }
+            let mut fresh = BoxTree::default();
+            fresh.reset(page.tree.leaves());
+            fresh.refit_triangles(&t.triangles, &page.points);
+            if !fresh.same(&page.tree) {
+                return Err(format!("page {i}: its tree is out of date"));
+            }
+        }
+        let mut top = BoxTree::default();
+        top.reset(self.pages.len());
+        for (i, page) in self.pages.iter().enumerate() {
+            top.set_leaf(i, page.lo, page.hi);
+        }
+        top.refit_all();
+        if !top.same(&self.top) {
+            return Err("the tree over the pages is out of date".into());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! The threads that help with a large dab. The tick thread is one of them.
+
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Threads that work on a dab's pages. The first thread that uses them takes part itself, so it should be the tick thread;
+/// others may use them too, but then only wait. Results do not depend on the count.
+#[derive(Debug, Clone)]
+pub struct Workers {
+    count: usize,
+    pool: Arc<OnceLock<Option<ThreadPool>>>,
+}
+
+impl Workers {
+    pub fn new(count: usize) -> Self {
+        Workers { count: count.max(1), pool: Arc::default() }
+    }
+
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Starts the threads, so that the first dab does not have to.
+    pub fn warm(&self) {
+        self.pool();
+    }
+
+    fn pool(&self) -> Option<&ThreadPool> {
+        if self.count == 1 {
+            return None;
+        }
+        let named = || {
+            ThreadPoolBuilder::new().num_threads(self.count).thread_name(|i| format!("sculptd-worker-{i}"))
+        };
+        // A thread can belong to one pool only; if this one does, the pool works without it.
+        self.pool
+            .get_or_init(|| named().use_current_thread().build().or_else(|_| named().build()).ok())
+            .as_ref()
+    }
+
+    /// Calls `work` with each pair, on several threads if `parallel`.
+    pub(super) fn each<A: Send, B: Send>(
+        &self,
+        parallel: bool,
+        a: &mut [A],
+        b: &mut [B],
+        work: impl Fn(&mut A, &mut B) + Sync,
+    ) {
+        match if parallel { self.pool() } else { None } {
+            Some(pool) => pool.install(|| {
+                a.par_iter_mut().zip(b.par_iter_mut()).for_each(|(a, b)| work(a, b));
+            }),
+            None => a.iter_mut().zip(b.iter_mut()).for_each(|(a, b)| work(a, b)),
+        }
+    }
+}
