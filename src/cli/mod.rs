@@ -8,11 +8,13 @@ use crate::mesh::io::{ReadError, WriteError};
 use clap::{CommandFactory, Parser, Subcommand};
 
 pub mod config;
+pub mod convert;
 #[cfg(unix)]
 pub mod ctl;
 pub mod demo;
 pub mod devices;
 pub mod display;
+pub mod info;
 pub mod measure;
 pub mod replay;
 pub mod run;
@@ -40,6 +42,10 @@ pub enum Command {
     Run(run::RunArgs),
     /// Run a session's input once more and print the clay's hash.
     Replay(replay::ReplayArgs),
+    /// The facts of mesh files: counts, topology, size, whether they cross themselves.
+    Info(info::InfoArgs),
+    /// A mesh from one format to another, scaled or mended on the way.
+    Convert(convert::ConvertArgs),
     /// Pens and hands: decode a recording.
     Devices {
         #[command(subcommand)]
@@ -146,6 +152,8 @@ pub fn run() -> u8 {
         Some(Command::Config { command }) => config::run(&command, cli.json),
         Some(Command::Thickness(args)) => thickness::run(&args, cli.json),
         Some(Command::Measure(args)) => measure::run(&args, cli.json),
+        Some(Command::Info(args)) => info::run(&args, cli.json),
+        Some(Command::Convert(args)) => convert::run(&args, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Man) => clap_mangen::Man::new(Cli::command())
             .render(&mut std::io::stdout())

@@ -10,11 +10,15 @@
 
 mod boxtree;
 mod build;
+pub mod check;
 mod clay;
+pub mod crossing;
 mod dab;
+pub mod edges;
 pub mod flat;
 pub mod io;
 mod kernel;
+pub mod mend;
 mod normals;
 pub mod page;
 mod pick;
