@@ -62,8 +62,8 @@ pub struct Fact {
     pub usage: u32,
     pub start: usize,
     pub len: usize,
-    pub min: i32,
-    pub max: i32,
+    pub min: i64,
+    pub max: i64,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -112,13 +112,14 @@ impl Descriptor {
                     out.kinds.push(kind);
                 }
                 let Field::Variable(f) = field else { continue };
+                let (min, max) = (i32::from(f.logical_minimum), i32::from(f.logical_maximum));
                 out.facts.push(Fact {
                     report_id: id,
                     usage: u32::from(&f.usage),
                     start: f.bits.start,
                     len: f.bits.len(),
-                    min: f.logical_minimum.into(),
-                    max: f.logical_maximum.into(),
+                    min: min.into(),
+                    max: if min >= 0 { i64::from(max as u32) } else { max.into() },
                 });
                 match kind {
                     Some(Kind::Pen) => pen.take(f),
@@ -156,14 +157,16 @@ fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
     }
 }
 
-/// Refuses sizes that would make a reader allocate without bound, and rewrites maxima that were written in too few bytes: after a
-/// minimum that is not negative a maximum is unsigned, whatever its top bit (Linux reads it so). Items: HID 1.11 section 6.2.2.
+/// Refuses sizes that would make a reader allocate without bound. Writes out each usage with its page, and what a pop restores.
+/// Rewrites maxima that were written in too few bytes: after a minimum that is not negative a maximum is unsigned, whatever its
+/// top bit (Linux reads it so). Items: HID 1.11 section 6.2.2.
 fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     let mut out = Vec::with_capacity(bytes.len() + 16);
     let mut globals = Globals::default();
+    // There is always a page, so that nothing depends on its absence.
+    item(&mut out, 0x04, 0);
     let (mut stack, mut total) = (Vec::new(), 0u64);
     let (mut low, mut high) = (0u64, 0u64);
-    let mut short_usage = false;
     let mut i = 0;
     while i < bytes.len() {
         let at = i;
@@ -177,38 +180,40 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
         let n = [0, 1, 2, 4][usize::from(prefix & 3)];
         let value =
             (0..n).fold(0u64, |v, k| v | u64::from(bytes.get(i + 1 + k).copied().unwrap_or(0)) << (8 * k));
-        let negative = n > 0 && value >> (8 * n - 1) & 1 == 1;
         i = (i + 1 + n).min(bytes.len());
-        let maximum = match prefix & 0xfc {
-            0x24 => globals.logical_min_negative,
-            0x44 => globals.physical_min_negative,
-            _ => true,
-        };
-        if negative && !maximum && n < 4 {
-            out.push(prefix & 0xfc | 3);
-            out.extend_from_slice(&(value as u32).to_le_bytes());
-        } else {
-            out.extend_from_slice(&bytes[at..i]);
-        }
-        match prefix & 0xfc {
-            0x14 => globals.logical_min_negative = negative,
-            0x34 => globals.physical_min_negative = negative,
-            0x04 => globals.page = true,
-            0x74 => globals.size = value,
-            0x94 => globals.count = value,
-            0x08 => short_usage |= n < 4,
-            0x18 => low = value,
-            0x28 => high = value,
+        let tag = prefix & 0xfc;
+        match tag {
+            // A usage belongs to the page before it, also when the page changes before the field it names.
+            0x08 if (1..=2).contains(&n) => item(&mut out, tag, globals.of(0x04) << 16 | value),
+            0x24 | 0x44 if n < 4 && globals.of(tag - 0x10) & NEGATIVE == 0 => {
+                globals.set(tag, value);
+                item(&mut out, tag, value);
+            }
+            0x04..=0x94 if tag & 0x0c == 4 => {
+                // Negative numbers are written out in full, so that a size need not be remembered.
+                let negative = n > 0 && n < 4 && tag <= 0x54 && tag >= 0x14 && value >> (8 * n - 1) & 1 == 1;
+                let full = if negative { value | u64::MAX << (8 * n) } else { value } & 0xffff_ffff;
+                globals.set(tag, full);
+                item(&mut out, tag, full);
+            }
             0xa4 if stack.len() < 64 => stack.push(globals),
             0xa4 => return Err(DescriptorError::Absurd(at)),
-            0xb4 => globals = stack.pop().unwrap_or(globals),
-            0x80 | 0x90 | 0xa0 | 0xb0 if std::mem::take(&mut short_usage) && !globals.page => {
-                return Err(DescriptorError::Bad(format!("usages without a page before byte {at}")));
+            0xb4 => {
+                let was = stack.pop().unwrap_or(globals);
+                for tag in (0x04..=0x94).step_by(0x10).filter(|t| was.of(*t) != globals.of(*t)) {
+                    item(&mut out, tag, was.of(tag));
+                }
+                globals = was;
             }
+            _ => out.extend_from_slice(&bytes[at..i]),
+        }
+        match tag {
+            0x18 => low = value,
+            0x28 => high = value,
             0x80 | 0x90 | 0xb0 => {
-                total = total.saturating_add(globals.size.saturating_mul(globals.count));
-                let wide =
-                    globals.size > 4096 * 8 || globals.count > MAX_REPORT_BITS || total > 8 * MAX_REPORT_BITS;
+                let (size, count) = (globals.of(0x74), globals.of(0x94));
+                total = total.saturating_add(size.saturating_mul(count));
+                let wide = size > 4096 * 8 || count > MAX_REPORT_BITS || total > 8 * MAX_REPORT_BITS;
                 // A range of usages over several pages would be listed one by one.
                 if wide || high > 0xffff && low > 0xffff && high >> 16 != low >> 16 {
                     return Err(DescriptorError::Absurd(at));
@@ -221,14 +226,33 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     Ok(out)
 }
 
-/// The global items that matter to [`mended`].
+/// Top bit of an item's value, written out in full.
+const NEGATIVE: u64 = 1 << 31;
+
+/// Writes an item with a four-byte value. A report id is one byte by definition.
+fn item(out: &mut Vec<u8>, tag: u8, value: u64) {
+    if tag == 0x84 {
+        out.extend_from_slice(&[tag | 1, value as u8]);
+    } else {
+        out.push(tag | 3);
+        out.extend_from_slice(&(value as u32).to_le_bytes());
+    }
+}
+
+/// The global items' values, tag 0x04 first, 0x94 last.
 #[derive(Debug, Clone, Copy, Default)]
-struct Globals {
-    size: u64,
-    count: u64,
-    page: bool,
-    logical_min_negative: bool,
-    physical_min_negative: bool,
+struct Globals([u64; 10]);
+
+impl Globals {
+    fn of(&self, tag: u8) -> u64 {
+        self.0.get(usize::from(tag >> 4)).copied().unwrap_or(0)
+    }
+
+    fn set(&mut self, tag: u8, value: u64) {
+        if let Some(slot) = self.0.get_mut(usize::from(tag >> 4)) {
+            *slot = value;
+        }
+    }
 }
 
 fn page_id(usage: u32) -> (u32, u32) {

@@ -1,0 +1,136 @@
+//! The tablet files: valid, canonical, all built in, and extended by a folder.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use sculptd_devices::catalogue::{Catalogue, Identification, Identity};
+use sculptd_devices::recording::{HidRecording, Player, Stamped};
+use sculptd_devices::tablet::Tablet;
+use sculptd_devices::{Body, DeviceId};
+
+fn folder() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tablets")
+}
+
+#[test]
+fn every_file_is_valid_canonical_and_built_in() {
+    let mut names = BTreeSet::new();
+    let listed =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/builtin.rs")).unwrap();
+    let files = super::files(&folder(), ".toml");
+    for path in &files {
+        let file = path.file_name().unwrap().to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(path).unwrap();
+        let tablet = Tablet::parse(&file, &text).unwrap();
+        assert_eq!(text, tablet.canonical(), "{file} is not in canonical form");
+        assert!(names.insert(tablet.name.clone()), "{file}: a second `{}`", tablet.name);
+        assert!(!tablet.source.is_empty(), "{file}");
+        assert!(listed.contains(&format!("\"{file}\"")), "{file} is not listed in src/builtin.rs");
+    }
+    let builtin = Catalogue::builtin().unwrap();
+    assert_eq!(builtin.tablets().len(), files.len());
+    assert!(files.len() >= 170, "{} models", files.len());
+}
+
+#[test]
+fn the_udev_rule_names_every_maker() {
+    let rule = Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/70-sculptd.rules");
+    let rule = std::fs::read_to_string(rule).unwrap();
+    for tablet in Catalogue::builtin().unwrap().tablets() {
+        for id in &tablet.id {
+            let maker = format!("ATTRS{{idVendor}}==\"{:04x}\", TAG", id.vid);
+            let one =
+                format!("ATTRS{{idVendor}}==\"{:04x}\", ATTRS{{idProduct}}==\"{:04x}\"", id.vid, id.pid);
+            assert!(
+                rule.contains(&maker) || rule.contains(&one),
+                "{}: {:04x}:{:04x}",
+                tablet.name,
+                id.vid,
+                id.pid
+            );
+        }
+    }
+}
+
+const NEW: &str = r#"name = "Acme Slate 7"
+source = "its maker's data sheet"
+
+[area]
+width_mm = 200.0
+height_mm = 100.0
+max_x = 20000
+max_y = 10000
+
+[pen]
+max_pressure = 8191
+buttons = 2
+
+[[id]]
+vid = 0xfeed
+pid = 0x0007
+length = 12
+parser = "huion"
+"#;
+
+fn recording() -> HidRecording {
+    let who = Identity { vid: 0xfeed, pid: 7, seen_lengths: vec![12], ..Identity::default() };
+    let report = |i: u64, flags: u8, pressure: u8| Stamped {
+        t_us: i * 5000,
+        interface: 0,
+        bytes: vec![8, flags, 0x10, 0x27, 0x88, 0x13, 0, pressure, 0, 0, 10, 0],
+    };
+    let reports = vec![report(0, 0x80, 0), report(1, 0x81, 16), report(2, 0x80, 0), report(3, 0, 0)];
+    HidRecording { interfaces: vec![who], reports }
+}
+
+#[test]
+fn a_new_tablet_is_one_file_in_a_folder() {
+    let dir = tempfile::tempdir().unwrap();
+    let name = Path::new("new.hid");
+    let builtin = Catalogue::builtin().unwrap();
+    assert!(Player::of(name, recording(), DeviceId(0), &builtin).is_err(), "nobody knows it yet");
+    std::fs::File::create(dir.path().join("slate.toml"))
+        .and_then(|mut f| std::io::Write::write_all(&mut f, NEW.as_bytes()))
+        .unwrap();
+    let more = builtin.with_dir(dir.path()).unwrap();
+    let mut player = Player::of(name, recording(), DeviceId(0), &more).unwrap();
+    assert_eq!(player.device().name, "Acme Slate 7");
+    let mut pens = Vec::new();
+    player.advance(1_000_000, &mut |s| {
+        if let Body::Pen(p) = s.body {
+            pens.push(p);
+        }
+    });
+    let states: Vec<_> = pens.iter().map(|p| (p.in_range, p.tip)).collect();
+    assert_eq!(states, [(true, false), (true, true), (true, false), (false, false)]);
+    assert_eq!((pens[1].pos_mm.x, pens[1].pos_mm.y), (100.0, 50.0));
+    assert_eq!(pens[1].pressure, Some(0x1000 as f32 / 8191.0));
+}
+
+#[test]
+fn a_broken_file_in_the_folder_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::File::create(dir.path().join("bad.toml"))
+        .and_then(|mut f| std::io::Write::write_all(&mut f, NEW.replace("buttons", "knobs").as_bytes()))
+        .unwrap();
+    let e = Catalogue::builtin().unwrap().with_dir(dir.path()).unwrap_err().to_string();
+    assert!(e.contains("bad.toml") && e.contains("knobs"), "{e}");
+}
+
+#[test]
+fn usb_strings_tell_namesakes_apart() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let with = |text: &str| {
+        let mut raw = vec![(2 + 2 * text.len()) as u8, 3];
+        raw.extend(text.encode_utf16().flat_map(u16::to_le_bytes));
+        let strings = vec![(201, raw)];
+        let who = Identity { vid: 0x256c, pid: 0x6d, seen_lengths: vec![12], strings, ..Identity::default() };
+        match catalogue.identify(&who) {
+            Identification::Identified(found) => found.tablet.name.clone(),
+            other => format!("{other:?}"),
+        }
+    };
+    assert_eq!(with("HUION_T173_190619"), "Huion H640P");
+    assert_eq!(with("HUION_T194_190619"), "Huion HS610");
+    assert!(with("HUION_X999_190619").contains("Declined"), "{}", with("HUION_X999_190619"));
+}
