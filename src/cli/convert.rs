@@ -13,7 +13,7 @@ use crate::mesh::mend;
 #[derive(Debug, Clone, clap::Args)]
 pub struct ConvertArgs {
     pub input: PathBuf,
-    /// The ending names the format: .obj, .stl, .ply or .off.
+    /// The ending names the format: .obj, .stl, .ply, .off, .glb or .3mf.
     pub output: PathBuf,
     /// Multiply all coordinates, for instance by 25.4 from inches to millimetres.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]

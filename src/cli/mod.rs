@@ -11,6 +11,7 @@ pub mod config;
 pub mod convert;
 #[cfg(unix)]
 pub mod ctl;
+pub mod decimate;
 pub mod demo;
 pub mod devices;
 pub mod display;
@@ -18,6 +19,7 @@ pub mod info;
 pub mod measure;
 pub mod replay;
 pub mod run;
+pub mod subdivide;
 pub mod thickness;
 
 #[derive(Debug, Parser)]
@@ -46,6 +48,10 @@ pub enum Command {
     Info(info::InfoArgs),
     /// A mesh from one format to another, scaled or mended on the way.
     Convert(convert::ConvertArgs),
+    /// Smaller faces and a rounder surface.
+    Subdivide(subdivide::SubdivideArgs),
+    /// Fewer triangles for nearly the same surface.
+    Decimate(decimate::DecimateArgs),
     /// Pens and hands: decode a recording.
     Devices {
         #[command(subcommand)]
@@ -154,6 +160,8 @@ pub fn run() -> u8 {
         Some(Command::Measure(args)) => measure::run(&args, cli.json),
         Some(Command::Info(args)) => info::run(&args, cli.json),
         Some(Command::Convert(args)) => convert::run(&args, cli.json),
+        Some(Command::Subdivide(args)) => subdivide::run(&args, cli.json),
+        Some(Command::Decimate(args)) => decimate::run(&args, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Man) => clap_mangen::Man::new(Cli::command())
             .render(&mut std::io::stdout())

@@ -3,6 +3,7 @@
 mod clay;
 mod hands;
 mod io;
+mod io_files;
 mod recovery;
 mod tidy;
 

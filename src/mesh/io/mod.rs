@@ -6,13 +6,16 @@
 //! expected there and what was found.
 
 pub mod beside;
+mod gltf;
 mod obj;
 mod off;
 mod ply;
 pub mod problem;
 mod stl;
 mod text;
+mod threemf;
 mod write;
+mod write_packed;
 
 use std::path::Path;
 
@@ -36,6 +39,9 @@ pub enum Format {
     PlyLittle,
     PlyBig,
     Off,
+    Gltf,
+    Glb,
+    ThreeMf,
 }
 
 impl Format {
@@ -49,6 +55,9 @@ impl Format {
             Format::PlyLittle => "PLY (binary, little-endian)",
             Format::PlyBig => "PLY (binary, big-endian)",
             Format::Off => "OFF",
+            Format::Gltf => "glTF",
+            Format::Glb => "GLB",
+            Format::ThreeMf => "3MF",
         }
     }
 }
@@ -100,6 +109,15 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
         || is("ply")
     {
         ply::parse(bytes, &mut warnings, job)?
+    } else if bytes.starts_with(b"glTF") || is("glb") {
+        if !bytes.starts_with(b"glTF") {
+            return Err(Problem::new(At::Byte(0), "\"glTF\"", problem::excerpt(bytes)).into());
+        }
+        (gltf::parse(bytes, name, &mut warnings, job)?, Format::Glb)
+    } else if text.trim_ascii_start().starts_with(b"{") || is("gltf") {
+        (gltf::parse(text, name, &mut warnings, job)?, Format::Gltf)
+    } else if bytes.starts_with(b"PK\x03\x04") || is("3mf") {
+        (threemf::parse(bytes, job)?, Format::ThreeMf)
     } else if off::header(text).is_some() || is("off") {
         (off::parse(text, &mut warnings, job)?, Format::Off)
     } else if stl::binary_exact(bytes) {

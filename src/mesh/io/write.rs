@@ -4,11 +4,11 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{WriteError, extension, write_beside};
+use super::{WriteError, extension, write_beside, write_packed};
 use crate::mesh::PolyMesh;
 
 /// The formats written, by the ending of a name.
-const ENDINGS: [&str; 4] = ["obj", "stl", "ply", "off"];
+const ENDINGS: [&str; 6] = ["obj", "stl", "ply", "off", "glb", "3mf"];
 
 /// The ending (lower case) by which [`write_mesh`] will write, asked for before the work is done.
 pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {
@@ -32,6 +32,8 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "stl" => stl(mesh, out),
         "ply" => ply(mesh, out),
         "off" => off(mesh, out),
+        "glb" => write_packed::glb(mesh, out),
+        "3mf" => write_packed::threemf(mesh, out),
         _ => Err(io::Error::new(io::ErrorKind::InvalidInput, format!("no mesh format is called \"{kind}\""))),
     }
 }

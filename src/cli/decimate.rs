@@ -1,0 +1,39 @@
+//! `sculptd decimate`: quadric edge collapse on a mesh file.
+
+use std::path::PathBuf;
+
+use super::convert::deliver;
+use super::info::interrupted;
+use super::{Fail, Outcome};
+use crate::analysis::cancel::Job;
+use crate::mesh::decimate::{Target, quadric};
+use crate::mesh::io::{read_mesh, writable_format};
+
+#[derive(Debug, Clone, clap::Args)]
+pub struct DecimateArgs {
+    pub mesh: PathBuf,
+    /// Stop at this many triangles.
+    #[arg(long, default_value_t = 0, required_unless_present = "max_error")]
+    pub faces: usize,
+    /// Stop before the surface moves by more than about this, in the mesh's unit.
+    #[arg(long, value_name = "DISTANCE")]
+    pub max_error: Option<f64>,
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
+pub fn run(args: &DecimateArgs, json: bool) -> Outcome {
+    writable_format(&args.output)?;
+    if args.max_error.is_some_and(|e| !(e >= 0.0)) {
+        return Err(Fail::Usage("--max-error: expected a distance of 0 or more".into()));
+    }
+    let job = Job::default();
+    let loaded = read_mesh(&args.mesh, &job)?;
+    let mut warnings = loaded.warnings;
+    let target = Target { triangles: args.faces, error: args.max_error.unwrap_or(f64::INFINITY) };
+    let made = quadric(&loaded.mesh, target, &job).map_err(interrupted)?;
+    if args.max_error.is_none() && made.face_count() > args.faces {
+        warnings.push(format!("stopped at {} triangles: more would break the surface", made.face_count()));
+    }
+    deliver(&args.output, &made, warnings, json)
+}
