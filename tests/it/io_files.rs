@@ -141,7 +141,7 @@ fn what_is_wrong_is_told_with_its_place() {
         ("a.obj", b"v 0 0 0\nf 1 a 1\n", "line 2: expected a vertex index (not 0) of the face, found \"a 1\""),
         ("a.obj", b"hello\n", "expected OBJ text with vertices (lines \"v x y z\"), found \"hello\""),
         ("a.ply", b"this is no mesh\n", "line 1: expected \"ply\", found \"this is no mesh\""),
-        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "byte 114: expected at least 6000000108 bytes for the counts in the header, found the end of the file after 114 bytes"),
+        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "byte 115: expected at least 6000000109 bytes for the counts in the header, found the end of the file after 115 bytes"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 inf 0\n", "line 8: expected a finite coordinate, found a coordinate beyond 3.4e38"),
         ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6: expected a vertex index from 0 to 2, found 3"),
         ("a.off", b"OFF\n4 4 0\n0 0 0\n1 0 0\n", "line 5: expected three coordinates of vertex 2, found the end of the file"),
