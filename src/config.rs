@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::brush::BrushSettings;
+use crate::devices::calibration::Calibrations;
 use crate::hand::HandSettings;
 use crate::stroke::Camera;
 
@@ -121,6 +122,7 @@ pub struct DevicesConfig {
     pub tablets: Vec<PathBuf>,
     pub models: BTreeMap<String, String>,
     pub ignore: Vec<String>,
+    pub calibration: Calibrations,
 }
 
 impl Default for DevicesConfig {
@@ -132,6 +134,7 @@ impl Default for DevicesConfig {
             tablets: vec![],
             models: BTreeMap::new(),
             ignore: vec![],
+            calibration: Calibrations::new(),
         }
     }
 }
@@ -262,7 +265,13 @@ impl Config {
         within("camera.aspect", self.camera.aspect, 0.1, 10.0)?;
         within("camera.yaw_degrees", self.camera.yaw_degrees, -360.0, 360.0)?;
         within("camera.pitch_degrees", self.camera.pitch_degrees, -89.0, 89.0)?;
+        for (name, calibration) in &self.devices.calibration {
+            calibration.check().map_err(|e| format!("devices.calibration.\"{name}\".{e}"))?;
+        }
         let h = &self.hand;
+        within("hand.steady.min_cutoff", h.steady.min_cutoff, 0.05, 50.0)?;
+        within("hand.steady.beta", h.steady.beta, 0.0, 10.0)?;
+        within("hand.steady.speed_cutoff", h.steady.speed_cutoff, 0.05, 50.0)?;
         within("hand.pinch_on_mm", h.pinch_on_mm, 5.0, 100.0)?;
         within("hand.pinch_off_mm", h.pinch_off_mm, h.pinch_on_mm, 150.0)?;
         within("hand.grab_on", h.grab_on, 0.1, 1.0)?;

@@ -46,12 +46,12 @@ impl Default for PressureCurve {
     }
 }
 
-/// All tablets' settings, by serial number or name.
+/// All tablets' settings, by serial number, ids, model or port.
 pub type Calibrations = BTreeMap<String, Calibration>;
 
-/// The setting for a tablet: by its serial number, else by its name, else none.
-pub fn find(all: &Calibrations, serial: Option<&str>, name: &str) -> Calibration {
-    serial.and_then(|s| all.get(s)).or_else(|| all.get(name)).copied().unwrap_or_default()
+/// The setting of the first of a tablet's names that has one: its serial number first, what it shares with others last.
+pub fn find<'a>(all: &Calibrations, names: impl IntoIterator<Item = &'a str>) -> Calibration {
+    names.into_iter().find_map(|n| all.get(n)).copied().unwrap_or_default()
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -215,9 +215,9 @@ mod tests {
     fn a_config_reads_by_serial_number_and_nonsense_is_named() {
         let text = "[\"7AB01\"]\nquarter_turns = 2\n[\"7AB01\".pressure]\nstart = 0.1\nfull = 0.8\n[\"Wacom One\"]\nleft_handed = true\n";
         let all: Calibrations = toml::from_str(text).unwrap();
-        assert_eq!(find(&all, Some("7AB01"), "Wacom One").quarter_turns, 2);
-        assert!(find(&all, Some("other"), "Wacom One").left_handed);
-        assert!(find(&all, None, "another").is_plain());
+        assert_eq!(find(&all, ["7AB01", "Wacom One"]).quarter_turns, 2);
+        assert!(find(&all, ["other", "Wacom One"]).left_handed);
+        assert!(find(&all, ["another"]).is_plain());
         assert!(
             toml::from_str::<Calibrations>("[a]\nrotation = 1\n")
                 .unwrap_err()

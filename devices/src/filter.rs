@@ -84,7 +84,8 @@ struct HandFilter {
 /// Filters every hand of a tracker. A hand that appears, or comes back with another id, starts afresh.
 #[derive(Debug, Clone)]
 pub struct HandsFilter {
-    figures: OneEuro,
+    /// May be changed at any time.
+    pub figures: OneEuro,
     hands: [Option<HandFilter>; MAX_HANDS],
 }
 

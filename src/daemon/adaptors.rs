@@ -35,6 +35,7 @@ pub fn start(
         let settings = HidConfig {
             models: config.models.clone(),
             ignore: config.ignore.clone(),
+            calibration: config.calibration.clone(),
             first_device: DeviceId(0),
         };
         match hid::start(settings, catalogue, clock.clone(), factory.clone()) {
@@ -46,6 +47,7 @@ pub fn start(
         let port = port.display().to_string();
         let settings = serial::Config {
             port: Some(port.clone()),
+            calibration: config.calibration.get(&port).copied().unwrap_or_default(),
             device: DeviceId(SERIAL_IDS + i as u16),
             ..Default::default()
         };

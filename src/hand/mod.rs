@@ -5,6 +5,7 @@
 //! * Nothing acts at full strength at once: a hand that appears, a pose that changes, a hand at the edge of what is tracked
 //!   or badly seen, all fade in ([`machine::Track::strength`], [`Volume::edge_fade`]).
 //! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has let go.
+//! * Every joint is steadied before anything looks at it, the same in a replay as live.
 //! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
 
 pub mod acts;
@@ -23,6 +24,7 @@ use std::collections::VecDeque;
 
 use glam::{Vec2, Vec3};
 
+use crate::devices::filter::HandsFilter;
 use crate::devices::{DeviceId, Hands};
 
 /// Acts waiting for the tick's budget; beyond it the newest sweep is joined to the one before.
@@ -57,6 +59,8 @@ pub struct HandTools {
     apart_mm: Option<f32>,
     sculpted_us: Option<u64>,
     now_us: u64,
+    /// One for each tracker.
+    steady: Vec<(DeviceId, HandsFilter)>,
 }
 
 impl HandTools {
@@ -71,6 +75,7 @@ impl HandTools {
             apart_mm: None,
             sculpted_us: None,
             now_us: 0,
+            steady: Vec::new(),
         }
     }
 
@@ -100,9 +105,23 @@ impl HandTools {
         }
     }
 
+    /// A frame with the tremble taken out of it.
+    fn steadied(&mut self, device: DeviceId, t_us: u64, hands: &Hands) -> Hands {
+        let at = self.steady.iter().position(|(d, _)| *d == device).unwrap_or_else(|| {
+            self.steady.push((device, HandsFilter::new(self.settings.steady)));
+            self.steady.len() - 1
+        });
+        let filter = &mut self.steady[at].1;
+        filter.figures = self.settings.steady;
+        let mut hands = *hands;
+        filter.apply(&mut hands, t_us);
+        hands
+    }
+
     /// Takes one frame of one tracker.
     pub fn take(&mut self, device: DeviceId, t_us: u64, hands: &Hands) {
         let s = self.settings;
+        let hands = &self.steadied(device, t_us, hands);
         self.now_us = t_us;
         self.forget(t_us);
         for hand in hands.as_slice() {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::devices::filter::OneEuro;
+
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HandSettings {
@@ -35,6 +37,8 @@ pub struct HandSettings {
     pub dwell_zone_mm: f32,
     /// After sculpting the view stays still this long, ms, whatever the hand does.
     pub view_rest_ms: f32,
+    /// How joints are steadied.
+    pub steady: OneEuro,
 }
 
 impl Default for HandSettings {
@@ -56,6 +60,7 @@ impl Default for HandSettings {
             dead_zone_mm: 3.0,
             dwell_zone_mm: 5.0,
             view_rest_ms: 500.0,
+            steady: OneEuro::default(),
         }
     }
 }

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::bus::{Bus, HidApiBus, Node, read_more};
 use super::reader;
 use crate::Clock;
+use crate::calibration::{self, Calibration, Calibrations};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
 use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::SenderFactory;
@@ -32,6 +33,8 @@ pub struct HidConfig {
     pub models: BTreeMap<String, String>,
     /// Devices left alone, by `vid:pid` or `vid:pid:serial`.
     pub ignore: Vec<String>,
+    /// What the user set, by `vid:pid:serial`, `vid:pid` or the model's name.
+    pub calibration: Calibrations,
     /// The first id given to a tablet's interface.
     #[serde(skip)]
     pub first_device: DeviceId,
@@ -289,11 +292,17 @@ impl Watcher {
         let mut status = NodeStatus { connections: *connections, ..NodeStatus::of(node) };
         status.found(&found, candidates);
         (status.usable, status.device) = (true, Some(number.0));
-        let handle =
-            reader::start(device, &found, &who.descriptor, number, self.clock.clone(), self.factory.sender())
-                .map_err(|e| Refusal::Later(e.to_string()))?;
+        let mut sender = self.factory.sender();
+        sender.calibrate(number, self.calibration(node, &found));
+        let handle = reader::start(device, &found, &who.descriptor, number, self.clock.clone(), sender)
+            .map_err(|e| Refusal::Later(e.to_string()))?;
         tracing::info!("{}: {}", node.path, found.in_words());
         Ok(Open { path: node.path.clone(), handle, status })
+    }
+
+    fn calibration(&self, node: &Node, found: &Found) -> Calibration {
+        let (own, shared) = (key(node, true), key(node, false));
+        calibration::find(&self.config.calibration, [&own, &shared, found.tablet.name.as_str()])
     }
 
     /// The id of an interface: the one it had, while nothing else holds it. Two tablets alike get one each.

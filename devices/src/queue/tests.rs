@@ -108,6 +108,29 @@ fn draining_takes_at_most_what_was_asked_and_allocates_nothing() {
     assert_eq!(place, out.as_ptr());
 }
 
+#[test]
+fn what_a_person_set_for_a_tablet_holds_for_that_tablet() {
+    let (factory, mut rx) = channel(8);
+    let mut tx = factory.sender();
+    let turned = Calibration { left_handed: true, ..Calibration::default() };
+    tx.calibrate(DeviceId(1), turned);
+    let mut got = Vec::new();
+    let mut at = |device| {
+        let mut s = pen(device, 3, true);
+        if let Body::Pen(p) = &mut s.body {
+            p.area_mm = vec2(10.0, 10.0);
+        }
+        tx.push(s);
+        rx.drain(1, &mut got);
+        let Some(Sample { body: Body::Pen(p), .. }) = got.pop() else { panic!() };
+        p.pos_mm
+    };
+    assert_eq!((at(0), at(1)), (vec2(3.0, 0.0), vec2(7.0, 10.0)));
+    tx.calibrate(DeviceId(1), Calibration::default());
+    tx.push(pen(1, 4, true));
+    assert!(tx.calibrations.is_empty());
+}
+
 /// What a test does to the channel: one device moves or turns its tip over, or the consumer takes some.
 #[derive(Debug, Clone)]
 enum Op {
