@@ -172,10 +172,8 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
         let at = i;
         let prefix = bytes[i];
         if prefix == 0xfe {
-            let end = (i + 3 + usize::from(bytes.get(i + 1).copied().unwrap_or(0))).min(bytes.len());
-            out.extend_from_slice(&bytes[i..end]);
-            i = end;
-            continue;
+            // Long items are reserved: no device has one, and readers disagree on where it ends.
+            return Err(DescriptorError::Bad(format!("a long item at byte {at}")));
         }
         let n = [0, 1, 2, 4][usize::from(prefix & 3)];
         let value =

@@ -52,6 +52,8 @@ pub struct Status {
     pub area_mm: Option<[f32; 2]>,
     pub counts: Counts,
     pub samples: u64,
+    /// Packets in the last full second.
+    pub rate: f32,
     pub connections: u64,
     pub last_error: Option<String>,
 }
@@ -80,7 +82,7 @@ pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Ha
         let mut sender = sender;
         sender.stop_when(leash.flag());
         sender.calibrate(config.device, config.calibration);
-        Reader { config, clock, sender, status: shared }.run(&leash);
+        Reader { config, clock, sender, status: shared, second: (0, 0) }.run(&leash);
     })?;
     Ok(Handle { status, _thread: thread })
 }
@@ -90,6 +92,8 @@ struct Reader {
     clock: Clock,
     sender: Sender,
     status: Arc<Mutex<Status>>,
+    /// When the present second of counting began, and the packets by then.
+    second: (u64, u64),
 }
 
 impl Reader {
@@ -219,8 +223,15 @@ impl Reader {
         for sample in out.drain(..) {
             self.sender.push(sample);
         }
+        let (now, (from, before), packets) = (self.clock.now_us(), self.second, decoder.counts.packets);
+        let rate = (now >= from + 1_000_000).then(|| {
+            self.second = (now, packets);
+            // A new line counts from nought again.
+            packets.saturating_sub(before) as f32 * 1e6 / (now - from) as f32
+        });
         self.note(|s| {
             s.samples += n;
+            s.rate = rate.unwrap_or(s.rate);
             s.counts = decoder.counts;
         });
     }

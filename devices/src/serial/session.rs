@@ -259,15 +259,5 @@ fn version(model: &str) -> (u32, u32) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn replies_read() {
-        assert_eq!(answer(b"junk~#UD-0608-R00,V1.3-4\r", "~#").as_deref(), Some("UD-0608-R00,V1.3-4"));
-        assert_eq!(answer(b"~#\r", "~#"), None);
-        assert_eq!(version("UD-0608-R00,V1.3-4"), (1, 3));
-        assert_eq!(version("UD-0608"), (0, 0));
-        assert_eq!(numbers("4C00,0,0,1270,1270"), [0, 0, 0, 1270, 1270]);
-    }
-}
+#[path = "session_tests.rs"]
+mod tests;

@@ -79,6 +79,7 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
         assert!(protocol == Protocol::SummaMm || erased > 50, "{protocol:?}: {erased}");
         assert_eq!(status.counts.cut + status.counts.suspect + status.counts.stray + status.counts.broken, 0);
         assert_eq!(status.samples, rig.got.len() as u64);
+        assert!(status.rate < 140.0, "{}", status.rate);
         if protocol != Protocol::SummaMm {
             assert!(rig.got.iter().any(|s| pen(s).pressure.unwrap() > 0.85));
             let tilted = rig.got.iter().find(|s| pen(s).tip).and_then(|s| pen(s).tilt).unwrap();
