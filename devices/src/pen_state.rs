@@ -213,3 +213,6 @@ fn wrapped(t: f32) -> f32 {
     let w = (t + PI).rem_euclid(TAU) - PI;
     if w < PI { w } else { -PI }
 }
+
+#[cfg(test)]
+mod tests;

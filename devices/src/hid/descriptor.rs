@@ -189,7 +189,8 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
             }
             0x04..=0x94 if tag & 0x0c == 4 => {
                 // Negative numbers are written out in full, so that a size need not be remembered.
-                let negative = n > 0 && n < 4 && tag <= 0x54 && tag >= 0x14 && value >> (8 * n - 1) & 1 == 1;
+                let negative =
+                    n > 0 && n < 4 && (0x14..=0x54).contains(&tag) && value >> (8 * n - 1) & 1 == 1;
                 let full = if negative { value | u64::MAX << (8 * n) } else { value } & 0xffff_ffff;
                 globals.set(tag, full);
                 item(&mut out, tag, full);

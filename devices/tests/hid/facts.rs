@@ -36,11 +36,9 @@ fn every_descriptor_reads_as_another_parser_reads_it() {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
         // In the order of the file, as the script goes.
-        let mut place = 0;
-        for r in text.lines().filter(|l| l.starts_with("R:")) {
+        for (place, r) in text.lines().filter(|l| l.starts_with("R:")).enumerate() {
             let one = hid_recorder::parse(r).unwrap();
             ours.push(line(&name, place, &one.interfaces[0].descriptor));
-            place += 1;
         }
     }
     let theirs: Vec<&str> = FACTS.lines().collect();

@@ -1,5 +1,7 @@
 //! Pens over HID against real devices: the kernel's own decode, every recording, another descriptor parser.
 
+#![allow(clippy::print_stdout)] // Tests print what they compared and what they skipped.
+
 use std::path::PathBuf;
 
 mod catalogue;
