@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::mesh::io::{ReadError, WriteError};
 use clap::{CommandFactory, Parser, Subcommand};
 
+pub mod bench;
 pub mod config;
 pub mod convert;
 #[cfg(unix)]
@@ -17,6 +18,7 @@ pub mod devices;
 pub mod display;
 pub mod info;
 pub mod measure;
+mod memory;
 pub mod replay;
 pub mod run;
 pub mod subdivide;
@@ -52,6 +54,8 @@ pub enum Command {
     Subdivide(subdivide::SubdivideArgs),
     /// Fewer triangles for nearly the same surface.
     Decimate(decimate::DecimateArgs),
+    /// Measure whether this machine holds a mesh at a rate.
+    Bench(bench::BenchArgs),
     /// Pens and hands: decode a recording.
     Devices {
         #[command(subcommand)]
@@ -151,6 +155,7 @@ pub fn run() -> u8 {
         }
         Some(Command::Demo(args)) => demo::run(&args, cli.json),
         Some(Command::Run(args)) => run::run(&args, cli.json),
+        Some(Command::Bench(args)) => bench::run(&args, cli.json),
         Some(Command::Replay(args)) => replay::run(&args, cli.json),
         None => run::run(&run::RunArgs::default(), cli.json),
         #[cfg(unix)]

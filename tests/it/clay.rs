@@ -203,10 +203,11 @@ fn a_pick_is_the_nearest_hit_of_all_triangles() {
                     "ray {i}: {t}, not within {perhaps} to {surely}"
                 );
                 assert!((hit.normal.length() - 1.0).abs() < 1e-4);
-                // From outside a closed surface the first hit is on a front: a back means that the front leaked.
+                // From outside a closed surface the first hit is on a front: a back well behind it means that the front
+                // leaked. (On an outline a front and a back meet at the same distance.)
                 let [a, b, c] = mesh.page(hit.page).corners(hit.triangle as usize);
                 let facing = (b - a).cross(c - a).normalize_or_zero().dot(ray.dir);
-                assert!(facing < 0.02, "ray {i} came out at a back: {facing}");
+                assert!(facing < 0.02 || t < perhaps + 1e-4, "ray {i} came out at a back: {facing}");
             }
             None => assert!(surely.is_infinite(), "ray {i} slipped through at {perhaps}"),
         }
