@@ -23,7 +23,7 @@ pub const NO_TRIANGLE: u32 = u32::MAX;
 
 /// Eight boxes and what is in them.
 #[derive(Debug, Clone, Copy)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub struct Node {
     /// `planes[axis]` are the lower sides, `planes[3 + axis]` the upper ones. An unused child has +inf below and -inf above.
     pub planes: [[f32; 8]; 6],
@@ -34,18 +34,20 @@ pub struct Node {
 /// The bit of [`Node::child`] that tells a pack from a node.
 pub const LEAF: u32 = 1 << 31;
 
-/// A ray made ready for both tests.
+/// A ray made ready for both tests. The fields are private because the tests trust the indices.
 #[derive(Debug, Clone, Copy)]
 pub struct Prepared {
-    pub origin: [f32; 3],
-    pub inverse: [f32; 3],
-    /// Index into [`Node::planes`] of the side that the ray meets first, and last, per axis.
-    pub near: [usize; 3],
-    pub far: [usize; 3],
-    /// The axes in the order in which the triangle test reads them: the last is the one along which the ray is longest.
-    pub k: [usize; 3],
-    pub shear: [f32; 3],
-    pub t_min: f32,
+    origin: [f32; 3],
+    inverse: [f32; 3],
+    /// Index into [`Node::planes`], below 6, of the side that the ray meets first, and last, per axis.
+    near: [usize; 3],
+    far: [usize; 3],
+    /// The axes, below 3, in the order in which the triangle test reads them: the last is the ray's longest.
+    k: [usize; 3],
+    /// The origin in that order.
+    turned: [f32; 3],
+    shear: [f32; 3],
+    t_min: f32,
 }
 
 impl Prepared {
@@ -69,6 +71,7 @@ impl Prepared {
             near: [s[0], 1 + s[1], 2 + s[2]],
             far: [3 - s[0], 4 - s[1], 5 - s[2]],
             k: [kx, ky, kz],
+            turned: [origin[kx], origin[ky], origin[kz]],
             shear: [dir[kx] / dir[kz], dir[ky] / dir[kz], 1.0 / dir[kz]],
             t_min,
         }
@@ -157,17 +160,18 @@ mod avx2 {
     use super::{Node, Pack, PackHits, Prepared, WIDEN, Wide};
     use std::arch::x86_64::*;
 
-    /// Proof that the processor has AVX2: only [`super::avx2`] makes one.
+    /// Proof that the processor has AVX2: made only after the check in [`super::dispatch`].
     #[derive(Debug, Clone, Copy)]
     pub(super) struct Avx2(pub(super) ());
 
     impl Wide for Avx2 {
         #[inline(always)]
         fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
-            // SAFETY: the token proves AVX2; all loads and stores are within the arrays they take their address from.
+            // SAFETY: the token proves AVX2; `near` and `far` are below 6, as only `Prepared::new` makes them; all loads and
+            // stores are within the arrays they take their address from.
             unsafe {
                 let at = |plane: usize, axis: usize| {
-                    let p = _mm256_load_ps(node.planes[plane].as_ptr());
+                    let p = _mm256_load_ps(node.planes.get_unchecked(plane).as_ptr());
                     _mm256_mul_ps(
                         _mm256_sub_ps(p, _mm256_set1_ps(r.origin[axis])),
                         _mm256_set1_ps(r.inverse[axis]),
@@ -190,12 +194,16 @@ mod avx2 {
         #[inline(always)]
         fn triangles(self, r: &Prepared, p: &Pack, t_max: f32) -> PackHits {
             let mut out = PackHits { mask: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
-            // SAFETY: the token proves AVX2 (and so SSE); all loads and stores are within their arrays.
+            // SAFETY: the token proves AVX2 (and so SSE); `k` is below 3, as only `Prepared::new` makes it; all loads and
+            // stores are within their arrays.
             unsafe {
-                let o = r.k.map(|k| _mm_set1_ps(r.origin[k]));
+                let o = r.turned.map(|x| _mm_set1_ps(x));
                 let s = r.shear.map(|s| _mm_set1_ps(s));
                 let corner = |c: usize| {
-                    let get = |a: usize| _mm_sub_ps(_mm_load_ps(p.v[c][r.k[a]].as_ptr()), o[a]);
+                    let get = |a: usize| {
+                        let v = p.v[c].get_unchecked(r.k[a]).as_ptr();
+                        _mm_sub_ps(_mm_load_ps(v), o[a])
+                    };
                     let z = get(2);
                     let x = _mm_sub_ps(get(0), _mm_mul_ps(s[0], z));
                     let y = _mm_sub_ps(get(1), _mm_mul_ps(s[1], z));
@@ -241,14 +249,6 @@ pub trait WideWork {
     fn run<W: Wide>(self, w: W) -> Self::Out;
 }
 
-/// Whether this processor has AVX2.
-pub fn has_avx2() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return std::arch::is_x86_feature_detected!("avx2");
-    #[cfg(not(target_arch = "x86_64"))]
-    false
-}
-
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn with_avx2<J: WideWork>(work: J) -> J::Out {
@@ -266,10 +266,20 @@ pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Out {
     work.run(Scalar)
 }
 
-/// AVX2 came together with BMI in every processor that has it (Haswell, Excavator); both are checked all the same.
+/// AVX2 came together with BMI in every processor (Haswell, Excavator); both are checked all the same, once.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn has_fast() -> bool {
-    use std::arch::is_x86_feature_detected as has;
-    has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt")
+    use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+    static KNOWN: AtomicU8 = AtomicU8::new(0);
+    match KNOWN.load(Relaxed) {
+        1 => true,
+        2 => false,
+        _ => {
+            use std::arch::is_x86_feature_detected as has;
+            let all = has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt");
+            KNOWN.store(if all { 1 } else { 2 }, Relaxed);
+            all
+        }
+    }
 }

@@ -33,7 +33,7 @@ use super::tree::WideTree;
 use crate::mesh::TriMesh;
 pub use cone::{Cone, Outliers, Weights};
 pub use ray::Correction;
-use ray::{Caster, Site};
+use ray::{Caster, Scratch, Site};
 pub use surface::{Faults, Surface};
 
 /// How thickness is defined.
@@ -230,7 +230,7 @@ pub fn measure_prepared(
     };
     let order = spatial_order(&surface, tree);
     job.progress(0.2);
-    let at_vertex = |v: usize, scratch: &mut Vec<(f32, f32)>| -> Value {
+    let at_vertex = |v: usize, scratch: &mut Scratch| -> Value {
         let own = surface.around(v);
         if own.is_empty() {
             return Value::missing(Reason::NoFace);
@@ -246,7 +246,7 @@ pub fn measure_prepared(
     edges::apply(&caster, &surface, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
     if settings.at == At::VerticesAndFaces {
-        let at_face = |t: usize, scratch: &mut Vec<(f32, f32)>| -> Value {
+        let at_face = |t: usize, scratch: &mut Scratch| -> Value {
             let Some([a, b, c]) = surface.corners(t) else { return Value::missing(Reason::NoFace) };
             let own = [t as u32];
             let site =
@@ -287,7 +287,7 @@ fn one(
     site: &Site<'_>,
     settings: &Settings,
     sharp: bool,
-    scratch: &mut Vec<(f32, f32)>,
+    scratch: &mut Scratch,
 ) -> Value {
     let marked = |edge| if edge { Reason::Edge } else { Reason::Measured };
     let by_rays = match settings.method {
@@ -310,14 +310,14 @@ fn scattered(
     count: usize,
     job: &Job,
     (from, to): (f32, f32),
-    value: impl Fn(usize, &mut Vec<(f32, f32)>) -> Value + Sync,
+    value: impl Fn(usize, &mut Scratch) -> Value + Sync,
 ) -> Result<Vec<Value>, Cancelled> {
     let done = std::sync::atomic::AtomicUsize::new(0);
     let found: Vec<Value> = order
         .par_chunks(CHUNK)
         .map(|chunk| {
             job.check()?;
-            let mut scratch = Vec::new();
+            let mut scratch = Scratch::default();
             let values: Vec<Value> = chunk.iter().map(|&i| value(i as usize, &mut scratch)).collect();
             let n = done.fetch_add(chunk.len(), std::sync::atomic::Ordering::Relaxed);
             job.progress(from + (to - from) * n as f32 / order.len() as f32);

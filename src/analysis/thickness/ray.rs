@@ -16,7 +16,7 @@
 use glam::Vec3;
 
 use super::cone::{Cone, Folded, Outliers, fold, frame};
-use crate::analysis::tree::{Ray, TreeHit, WideTree};
+use crate::analysis::tree::{Ray, Stack, TreeHit, WideTree};
 
 /// What a ray's length is corrected by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -57,21 +57,33 @@ pub struct Caster<'a> {
 /// A hit on a wall turned by more than this from the axis ray's wall is another wall's: cos 60 degrees.
 const SAME_WALL: f32 = 0.5;
 
+/// What a thread reuses from site to site.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    values: Vec<(f32, f32)>,
+    stack: Stack,
+}
+
 /// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
 const TURNED: f32 = 0.766;
 
 impl Caster<'_> {
     /// The nearest wall ahead that faces the site: not its own triangles, none whose normal points the site's way.
     pub fn hit(&self, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
+        self.hit_with(&mut Stack::new(), site, dir)
+    }
+
+    fn hit_with(&self, stack: &mut Stack, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
         let ray = Ray::new(site.point, dir);
-        self.tree.closest_hit(ray, |t| {
+        self.tree.closest_hit_with(stack, ray, |t| {
             self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.own.contains(&t)
         })
     }
 
     /// The cone's value, and whether the wall that the axis ray meets is turned by more than [`TURNED`] from the site's;
     /// `scratch` is reused between calls.
-    pub fn measure(&self, site: &Site<'_>, scratch: &mut Vec<(f32, f32)>) -> Option<(Folded, bool)> {
+    pub fn measure(&self, site: &Site<'_>, scratch: &mut Scratch) -> Option<(Folded, bool)> {
+        let Scratch { values: scratch, stack } = scratch;
         scratch.clear();
         let mut turned = false;
         let (x, y) = frame(site.away);
@@ -79,7 +91,7 @@ impl Caster<'_> {
         for (i, d) in self.cone.dirs.iter().enumerate() {
             // Turned about the axis so that +z of the cone runs into the wall.
             let dir = x * d.x + y * d.y - site.away * d.z;
-            let hit = self.hit(site, dir);
+            let hit = self.hit_with(stack, site, dir);
             if i == 0 {
                 if self.correction == Correction::Chord {
                     first = hit.map(|h| self.wall(&h));
@@ -119,7 +131,7 @@ impl Caster<'_> {
         if scratch.is_empty() && self.correction == Correction::Chord {
             for (d, &weight) in self.cone.dirs.iter().zip(&self.cone.weights) {
                 let dir = x * d.x + y * d.y - site.away * d.z;
-                if let Some(hit) = self.hit(site, dir) {
+                if let Some(hit) = self.hit_with(stack, site, dir) {
                     let cos = self.face_normals[hit.triangle as usize].dot(dir).abs();
                     scratch.push((hit.t * cos, weight));
                 }

@@ -16,6 +16,8 @@ use glam::Vec3;
 use super::cancel::{Cancelled, Job};
 use crate::mesh::TriMesh;
 use crate::simd::wide;
+pub use traverse::Stack;
+
 pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};
 
 /// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <= t_max` count.
@@ -100,12 +102,20 @@ impl WideTree {
     }
 
     /// The nearest hit on a triangle that `accept` takes.
-    #[inline]
     pub fn closest_hit(&self, ray: Ray, accept: impl Fn(u32) -> bool) -> Option<TreeHit> {
-        wide::dispatch(
-            self.scalar,
-            traverse::Closest { tree: self, ray, accept, stack: &mut traverse::Stack::new(self) },
-        )
+        self.closest_hit_with(&mut Stack::new(), ray, accept)
+    }
+
+    /// The same for many rays: `stack` is reused, which saves about a tenth of a short ray's time.
+    #[inline]
+    pub fn closest_hit_with(
+        &self,
+        stack: &mut Stack,
+        ray: Ray,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<TreeHit> {
+        let stack = stack.slots(self);
+        wide::dispatch(self.scalar, traverse::Closest { tree: self, ray: &ray, accept, stack })
     }
 
     /// Any hit on a triangle that `accept` takes: is the way between `t_min` and `t_max` blocked?
@@ -122,10 +132,9 @@ impl WideTree {
     /// Every hit, each triangle once, in no order; `visit` returns whether to go on.
     #[inline]
     pub fn each_hit(&self, ray: Ray, visit: impl FnMut(TreeHit) -> bool) {
-        wide::dispatch(
-            self.scalar,
-            traverse::Each { tree: self, ray, visit, stack: &mut traverse::Stack::new(self) },
-        );
+        let mut stack = Stack::new();
+        let stack = stack.slots(self);
+        wide::dispatch(self.scalar, traverse::Each { tree: self, ray: &ray, visit, stack });
     }
 
     /// Every hit, nearest first; equal distances by triangle.

@@ -5,30 +5,26 @@ use crate::simd::wide::{Prepared, Wide, WideWork};
 
 /// A subtree still to visit, and where the ray enters it.
 #[derive(Debug, Clone, Copy)]
-struct Waiting {
+pub(super) struct Waiting {
     at: u32,
     near: f32,
 }
 
-/// The subtrees still to visit. Small trees keep it on the stack; deeper ones than any sane mesh gives, on the heap.
-pub(super) struct Stack {
-    inline: [Waiting; Stack::INLINE],
-    heap: Vec<Waiting>,
-}
+/// The subtrees still to visit; kept between rays so that it is made once.
+#[derive(Debug, Clone, Default)]
+pub struct Stack(Vec<Waiting>);
 
 impl Stack {
-    const INLINE: usize = 96;
-
-    #[inline(always)]
-    pub(super) fn new(tree: &WideTree) -> Self {
-        let none = Waiting { at: 0, near: 0.0 };
-        let heap = if tree.stack > Stack::INLINE { vec![none; tree.stack] } else { Vec::new() };
-        Stack { inline: [none; Stack::INLINE], heap }
+    pub fn new() -> Self {
+        Stack::default()
     }
 
     #[inline(always)]
-    fn slots(&mut self) -> &mut [Waiting] {
-        if self.heap.is_empty() { &mut self.inline } else { &mut self.heap }
+    pub(super) fn slots(&mut self, tree: &WideTree) -> &mut [Waiting] {
+        if self.0.len() < tree.stack {
+            self.0.resize(tree.stack, Waiting { at: 0, near: 0.0 });
+        }
+        &mut self.0
     }
 }
 
@@ -104,9 +100,9 @@ fn walk<W: Wide>(
 
 pub(super) struct Closest<'a, A> {
     pub tree: &'a WideTree,
-    pub ray: Ray,
+    pub ray: &'a Ray,
     pub accept: A,
-    pub stack: &'a mut Stack,
+    pub stack: &'a mut [Waiting],
 }
 
 impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
@@ -116,7 +112,7 @@ impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
     fn run<W: Wide>(self, w: W) -> Option<TreeHit> {
         let mut best = None::<TreeHit>;
         let tree = self.tree;
-        walk(w, tree, &self.ray, self.stack.slots(), |ready, pack, mut t_max| {
+        walk(w, tree, self.ray, self.stack, |ready, pack, mut t_max| {
             let pack = &tree.packs[pack as usize];
             let hits = w.triangles(ready, pack, t_max);
             let mut mask = hits.mask;
@@ -138,9 +134,9 @@ impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
 
 pub(super) struct Each<'a, V> {
     pub tree: &'a WideTree,
-    pub ray: Ray,
+    pub ray: &'a Ray,
     pub visit: V,
-    pub stack: &'a mut Stack,
+    pub stack: &'a mut [Waiting],
 }
 
 impl<V: FnMut(TreeHit) -> bool> WideWork for Each<'_, V> {
@@ -149,7 +145,7 @@ impl<V: FnMut(TreeHit) -> bool> WideWork for Each<'_, V> {
     #[inline(always)]
     fn run<W: Wide>(mut self, w: W) {
         let tree = self.tree;
-        walk(w, tree, &self.ray, self.stack.slots(), |ready, pack, t_max| {
+        walk(w, tree, self.ray, self.stack, |ready, pack, t_max| {
             let pack = &tree.packs[pack as usize];
             let hits = w.triangles(ready, pack, t_max);
             let mut mask = hits.mask;
