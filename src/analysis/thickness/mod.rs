@@ -18,6 +18,7 @@ mod edges;
 pub mod preset;
 pub mod ray;
 pub mod refine;
+pub mod report;
 pub mod summary;
 pub mod surface;
 pub mod warnings;

@@ -1,5 +1,7 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
+mod batch;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -10,6 +12,7 @@ use crate::analysis::cancel::Job;
 use crate::analysis::picture::{Camera, draw};
 use crate::analysis::thickness::check::{Answer, Checked, Limits, Part, Verdict, check};
 use crate::analysis::thickness::preset::Preset;
+use crate::analysis::thickness::report;
 use crate::analysis::thickness::{
     At, Correction, EdgePolicy, Method, Outliers, Settings, Side, Thickness, Weights,
 };
@@ -30,6 +33,15 @@ pub struct ThicknessArgs {
     /// Write a picture of the coloured part.
     #[arg(long, value_name = "FILE")]
     pub png: Option<PathBuf>,
+    /// Write the report: one HTML page that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// Write the outcome as JUnit XML.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Where a batch writes its reports and its page of all; taken up again where it was broken off.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
 }
 
 /// How thickness is defined and measured.
@@ -200,8 +212,11 @@ pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fa
 pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
     let limits = args.limits.limits()?;
     let job = Job::default();
-    let [path] = &args.meshes[..] else { return Err(Fail::Usage("expected one mesh file".into())) };
-    let (part, mut checked) = one(path, args, limits, &job)?;
+    let path = match &args.meshes[..] {
+        [path] if args.out.is_none() => path,
+        _ => return batch::run(args, limits, json),
+    };
+    let (part, checked) = one(path, args, limits, &job)?;
     for w in &checked.answer.warnings {
         eprintln!("sculptd: warning: {}: {w}", path.display());
     }
@@ -215,7 +230,15 @@ pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
         let png = picture.png().map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }
-    checked.answer.file = path.display().to_string();
+    if let Some(out) = &args.report {
+        write_report(out, path, &part, &checked)?;
+    }
+    if let Some(out) = &args.junit {
+        let why = judge(&checked.answer).err().map(|e| e.to_string());
+        let verdict = if why.is_some() { "fail" } else { "pass" };
+        let row = batch::Row::single(checked.answer.file.clone(), verdict, checked.answer.seconds, why);
+        write_beside(out, |w| w.write_all(batch::junit(&[row]).as_bytes())).map_err(|e| Fail::io(out, &e))?;
+    }
     answer(json, &checked.answer, |w| text(w, &checked.answer));
     judge(&checked.answer)
 }
@@ -229,6 +252,16 @@ fn one(path: &Path, args: &ThicknessArgs, limits: Limits, job: &Job) -> Result<(
         .map_err(|e| Fail::Usage(e.to_string()))?;
     checked.answer.warnings.splice(0..0, notes);
     Ok((part, checked))
+}
+
+/// The report of a checked part to `out`.
+fn write_report(out: &Path, path: &Path, part: &Part, checked: &Checked) -> Outcome {
+    let bytes = std::fs::read(path).map_err(|e| Fail::io(path, &e))?;
+    let program = concat!("sculptd ", env!("CARGO_PKG_VERSION"));
+    let origin = report::Origin { hash: report::fnv(&bytes), bytes: bytes.len() as u64, program };
+    let page =
+        report::html(part, checked, origin).map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
+    write_beside(out, |w| w.write_all(page.as_bytes())).map_err(|e| Fail::io(out, &e))
 }
 
 fn judge(a: &Answer) -> Outcome {
