@@ -102,19 +102,19 @@ impl BoxRay {
     fn slabs(&self, node: &Planes, far: f32, near: &mut [f32; 8]) -> u32 {
         let r = &self.ready;
         let (n, f) = (
-            [&node.0[r.near[0]], &node.0[r.near[1]], &node.0[r.near[2]]],
-            [&node.0[r.far[0]], &node.0[r.far[1]], &node.0[r.far[2]]],
+            [&node.0[r.near()[0]], &node.0[r.near()[1]], &node.0[r.near()[2]]],
+            [&node.0[r.far()[0]], &node.0[r.far()[1]], &node.0[r.far()[2]]],
         );
         let more = |a: f32, b: f32| if a > b { a } else { b };
         let less = |a: f32, b: f32| if a < b { a } else { b };
         let mut mask = 0;
         let mut exit = [0.0f32; 8];
         for i in 0..8 {
-            let at = |a: usize| (n[a][i] - self.near[a]) * r.inverse[a];
+            let at = |a: usize| (n[a][i] - self.near[a]) * r.inverse()[a];
             near[i] = more(more(at(0), at(1)), more(at(2), 0.0));
         }
         for i in 0..8 {
-            let at = |a: usize| (f[a][i] - self.far[a]) * r.inverse[a];
+            let at = |a: usize| (f[a][i] - self.far[a]) * r.inverse()[a];
             exit[i] = less(less(at(0), at(1)), less(at(2), far)) * 1.000_000_5;
         }
         for i in 0..8 {

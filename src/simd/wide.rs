@@ -51,6 +51,24 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// Index into [`Node::planes`], below 6, of the side that the ray meets first, per axis.
+    #[inline(always)]
+    pub fn near(&self) -> [usize; 3] {
+        self.near
+    }
+
+    /// The same of the side that it meets last.
+    #[inline(always)]
+    pub fn far(&self) -> [usize; 3] {
+        self.far
+    }
+
+    /// One over the direction, finite.
+    #[inline(always)]
+    pub fn inverse(&self) -> [f32; 3] {
+        self.inverse
+    }
+
     #[inline(always)]
     pub fn new(origin: [f32; 3], dir: [f32; 3], t_min: f32) -> Self {
         let a = dir.map(f32::abs);

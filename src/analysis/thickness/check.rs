@@ -92,7 +92,7 @@ impl From<&Preset> for Limits {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// No limit was given.
+    /// No limit was given, or nothing could be measured.
     Unjudged,
     Pass,
     Warn,
@@ -195,7 +195,8 @@ pub fn check(
         Verdict::Fail
     } else if broken(limits.warn_below) || uneven.is_some_and(|n| n > 0) {
         Verdict::Warn
-    } else if limits.fail_below.or(limits.warn_below).or(limits.fail_above).is_some() {
+    } else if summary.min.is_some() && limits.fail_below.or(limits.warn_below).or(limits.fail_above).is_some()
+    {
         Verdict::Pass
     } else {
         Verdict::Unjudged
