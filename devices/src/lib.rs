@@ -1,5 +1,19 @@
 //! Everything between a wire and a [`Sample`].
 //!
+//! | room | what it does | its threads |
+//! |---|---|---|
+//! | [`hid`] with [`catalogue`], [`tablet`] | pen tablets: which model, its reports, plug and replug | one watcher, one reader an interface |
+//! | [`serial`] | serial pens: four protocols, resync, probing of allowed ports only | one a port |
+//! | [`leap`] | tracked hands: WebSocket client, frames, the tracker's clock | one a service |
+//! | [`pen_state`] | what a pen means, alike for every family | none |
+//! | [`calibration`], [`filter`] | what a person set for a tablet; steady hands | none |
+//! | [`queue`] | the one door out: bounded, lock-free, no transition lost | none |
+//! | [`recording`] | recorded bytes through the same objects | none |
+//! | [`sim`] | simulated devices that speak bytes, for anyone's tests | one a device, if it runs by itself |
+//!
+//! Absences: no mesh, no config file, no global state; no reader waits for the consumer except with its own list of kept
+//! samples full of transitions; no port or service is opened that was not named or allowed.
+//!
 //! Pens over HID: [`catalogue`] says which model a device is, [`hid`] reads its reports, [`pen_state`] judges them;
 //! [`recording::Player`] plays recorded bytes through the same objects:
 //!

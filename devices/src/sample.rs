@@ -20,7 +20,8 @@ pub struct DeviceId(pub u16);
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     pub device: DeviceId,
-    /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read.
+    /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a tracker that stamps its frames:
+    /// when the frame was taken, brought onto our clock ([`crate::leap::ClockMap`]); never later than the read.
     pub t_us: u64,
     /// Microseconds on the device's own clock, where it has one (its origin is unknown).
     pub device_t_us: Option<u64>,

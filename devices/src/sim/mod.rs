@@ -3,6 +3,28 @@
 //! A **script** ([`PenScript`], [`HandScript`]) says where a pen or a hand is at any instant; a **device** ([`Tracker`] and
 //! its fellows) turns that into wire bytes; [`Faults`] spoil them, the same way for the same seed. A device can be stepped
 //! (`advance(until)`), so that with a manual [`crate::Clock`] two runs give the same bits.
+//!
+//! A hand tracker, its client, and every frame of a performance, with no hardware and no waiting for the clock:
+//!
+//! ```
+//! use std::time::Duration;
+//! use sculptd_devices::{Clock, leap, queue, sim};
+//!
+//! let mut tracker = sim::Tracker::new(sim::journal().hands, sim::TrackerConfig::default())?;
+//! let (factory, mut samples) = queue::channel(1024);
+//! let clock = Clock::manual();
+//! let config = leap::Config { url: tracker.url(), ..leap::Config::default() };
+//! let _client = leap::start(config, clock.clone(), factory.sender())?;
+//! assert!(tracker.wait_for_client(Duration::from_secs(10)));
+//! for us in (0..200_000).step_by(10_000) {
+//!     clock.set_us(us);
+//!     for _ in 0..tracker.advance(us) {
+//!         let sample = samples.next_within(Duration::from_secs(10)).expect("one for each frame");
+//!         assert!(sample.t_us <= us);
+//!     }
+//! }
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
 pub mod faults;
 pub mod hand;
