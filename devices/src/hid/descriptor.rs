@@ -46,6 +46,8 @@ pub struct PenLayout {
     pub y: Option<Bits>,
     pub tip: Option<Bits>,
     pub in_range: Option<Bits>,
+    /// Sensed, though too far to be placed: Wacom's own usage.
+    pub sense: Option<Bits>,
     pub invert: Option<Bits>,
     pub eraser: Option<Bits>,
     pub barrel: [Option<Bits>; 3],
@@ -376,6 +378,7 @@ impl PenLayout {
             (0x01, 0x30) | (0xff0d, 0x130) => keep(&mut self.x),
             (0x01, 0x31) | (0xff0d, 0x131) => keep(&mut self.y),
             (0x01, 0x32) | (0xff0d, 0x132) => keep(&mut self.distance),
+            (0xff0d, 0x36) => keep(&mut self.sense),
             (0x0d | 0xff0d, id) => match id {
                 0x30 => keep(&mut self.pressure),
                 0x32 => keep(&mut self.in_range),

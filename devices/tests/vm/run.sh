@@ -35,14 +35,16 @@ if [ -z "$(ls "$work"/kernel/boot/vmlinuz-* 2>/dev/null)" ]; then
 fi
 version=$(ls "$work/kernel/lib/modules")
 
-(cd "$root" && cargo build --release --no-default-features --bin sculptd &&
-    cargo build --release -p sculptd-devices --example vm_guest)
+# SCULPTD_VM_BINARY: a daemon that was built already.
+daemon=${SCULPTD_VM_BINARY:-$root/target/release/sculptd}
+[ -n "${SCULPTD_VM_BINARY:-}" ] || (cd "$root" && cargo build --release --no-default-features --bin sculptd)
+(cd "$root" && cargo build --release -p sculptd-devices --example vm_guest)
 
 initrd=$work/initrd
 rm -rf "$initrd"
 mkdir -p "$initrd/bin" "$initrd/modules" "$initrd/proc" "$initrd/sys" "$initrd/dev" "$initrd/tmp"
 cp "$(command -v busybox)" "$initrd/bin/busybox"
-for binary in "$root/target/release/sculptd" "$root/target/release/examples/vm_guest"; do
+for binary in "$daemon" "$root/target/release/examples/vm_guest"; do
     strip -o "$initrd/bin/$(basename "$binary")" "$binary"
     ldd "$binary" | grep -o '/[^ ]*' | while read -r library; do
         mkdir -p "$initrd$(dirname "$library")"
