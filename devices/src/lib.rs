@@ -27,6 +27,10 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! [`hid::start`] watches the machine's own tablets and reads each on a thread of its own; [`hid::HidHandle::status`] lists what
+//! is read and what is not, with the reason. A new model is a file in `tablets/`, or in a folder given to
+//! [`catalogue::Catalogue::with_dir`]: [`tablet`] says what stands in it.
 
 mod builtin;
 pub mod calibration;
