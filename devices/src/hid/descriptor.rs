@@ -11,6 +11,8 @@ use hidreport::{Field, FieldAttributes, Report as _, ReportDescriptor, VariableF
 const MAX_DESCRIPTOR: usize = 4096;
 /// Most bits in one report that are believed; the longest real one seen has 1,101 bytes.
 const MAX_REPORT_BITS: u64 = 65_536;
+/// Usages in all ranges together: a few vendors' ranges of a whole page each.
+const MAX_USAGES: u64 = 1 << 18;
 
 /// What an application collection is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -168,7 +170,7 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     // There is always a page, so that nothing depends on its absence.
     item(&mut out, 0x04, 0);
     let (mut stack, mut total) = (Vec::new(), 0u64);
-    let (mut low, mut high) = (0u64, 0u64);
+    let (mut low, mut high, mut listed) = (0u64, 0u64, 0u64);
     let mut i = 0;
     while i < bytes.len() {
         let at = i;
@@ -215,8 +217,9 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
                 let (size, count) = (globals.of(0x74), globals.of(0x94));
                 total = total.saturating_add(size.saturating_mul(count));
                 let wide = size > 4096 * 8 || count > MAX_REPORT_BITS || total > 8 * MAX_REPORT_BITS;
-                // A range of usages over several pages would be listed one by one.
-                if wide || high > 0xffff && low > 0xffff && high >> 16 != low >> 16 {
+                // A range of usages is listed one by one.
+                listed += high.saturating_sub(low);
+                if wide || listed > MAX_USAGES {
                     return Err(DescriptorError::Absurd(at));
                 }
                 (low, high) = (0, 0);
