@@ -24,7 +24,7 @@ pub struct DecimateArgs {
 
 pub fn run(args: &DecimateArgs, json: bool) -> Outcome {
     writable_format(&args.output)?;
-    if args.max_error.is_some_and(|e| !(e >= 0.0)) {
+    if args.max_error.is_some_and(|e| e.is_nan() || e < 0.0) {
         return Err(Fail::Usage("--max-error: expected a distance of 0 or more".into()));
     }
     let job = Job::default();

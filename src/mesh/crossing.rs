@@ -107,7 +107,7 @@ fn cross(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> bool {
     let (ps, pt) = (s.map(p), t.map(p));
     let of_t = pt.map(|d| side(ps[0], ps[1], ps[2], d));
     if of_t.iter().all(|&v| v == 0.0) {
-        return overlap(ps, pt, s, t);
+        return overlap(ps, pt);
     }
     if shared >= 2 {
         return false;
@@ -135,7 +135,7 @@ fn pierces(p: DVec3, q: DVec3, d: f64, e: f64, t: [DVec3; 3]) -> bool {
 }
 
 /// Whether two triangles in one plane have an area in common: no edge's line has one on either side.
-fn overlap(ps: [DVec3; 3], pt: [DVec3; 3], s: [u32; 3], t: [u32; 3]) -> bool {
+fn overlap(ps: [DVec3; 3], pt: [DVec3; 3]) -> bool {
     let n = ((ps[1] - ps[0]).cross(ps[2] - ps[0])).abs();
     let m = ((pt[1] - pt[0]).cross(pt[2] - pt[0])).abs();
     let n = n.max(m);
@@ -157,6 +157,5 @@ fn overlap(ps: [DVec3; 3], pt: [DVec3; 3], s: [u32; 3], t: [u32; 3]) -> bool {
                 b.iter().all(|&q| orient2d(a[i], a[j], q) * turn.signum() <= 0.0)
             })
     };
-    let _ = (s, t);
     !apart(&a, &b) && !apart(&b, &a)
 }

@@ -355,7 +355,7 @@ mod tests {
     #[test]
     fn flat_faces_cost_nothing_and_the_bound_holds_the_edges() {
         let cube = cuboid(DVec3::ZERO, DVec3::ONE);
-        let mut fine = cube.clone();
+        let mut fine = cube;
         // Cut only, not smoothed: each level halves every edge.
         for _ in 0..4 {
             let sharp = loop_(&fine, 1, &Job::default()).unwrap();

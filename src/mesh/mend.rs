@@ -106,10 +106,8 @@ pub fn drop_unused(mesh: &mut PolyMesh) -> usize {
     for &c in &mesh.corners {
         new[c as usize] = 0;
     }
-    let mut count = 0;
-    for n in new.iter_mut().filter(|n| **n == 0) {
-        *n = count;
-        count += 1;
+    for (count, n) in new.iter_mut().filter(|n| **n == 0).enumerate() {
+        *n = count as u32;
     }
     let mut used = new.iter().map(|&n| n != u32::MAX);
     let mut keep = || used.next().unwrap_or(false);
@@ -242,7 +240,7 @@ fn turn_out(mesh: &PolyMesh, patch: &[u32], patches: usize, open: &[u32], turned
         lists[p].push(t as u32);
     }
     // Aslant, so that it meets no edge of a part built along the axes.
-    let direction = DVec3::new(0.577_215_664_901_532_9, 0.693_147_180_559_945_3, 0.434_294_481_903_251_8);
+    let direction = DVec3::new(0.577_215_7, 0.702_340_1, 0.416_593_3);
     let turn: Vec<bool> = (0..patches)
         .map(|p| {
             if !closed[p] {

@@ -128,12 +128,10 @@ pub fn torus(major: f64, minor: f64, around: u32, across: u32) -> PolyMesh {
 fn icosahedron() -> ([DVec3; 12], [[u32; 3]; 20]) {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
     let mut p = [DVec3::ZERO; 12];
-    let mut n = 0;
-    for (a, b) in [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)] {
+    for (n, (a, b)) in [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)].into_iter().enumerate() {
         p[n] = DVec3::new(a, b, 0.0);
         p[n + 4] = DVec3::new(0.0, a, b);
         p[n + 8] = DVec3::new(b, 0.0, a);
-        n += 1;
     }
     let f = [
         [0, 11, 5],

@@ -106,4 +106,6 @@ fn the_topology_of_every_mesh_of_the_corpus_is_what_its_index_says() {
         facts.iter().filter(|f| f.crossings.is_some()).count()
     );
     assert_eq!(wrong, 0, "of {}", facts.len());
+    // The index was measured in single precision: where triangles touch exactly, or polygons were cut otherwise, it differs.
+    assert!(other_crossings <= 5, "{other_crossings}");
 }

@@ -158,7 +158,7 @@ fn what_is_wrong_is_told_with_its_place() {
         let told = complaint(name, text);
         assert!(told.starts_with(want), "{name}: {told}");
     }
-    let mut nan = stl.clone();
+    let mut nan = stl;
     nan[84 + 50 + 12 + 4..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
     assert_eq!(complaint("a.stl", &nan), "byte 150: expected a finite coordinate, found NaN");
     let ply = bytes("ply", &cube);
@@ -259,7 +259,7 @@ fn the_commands_answer_and_bad_input_leaves_nothing_behind() {
     for (name, text) in
         [("e.stl", &b""[..]), ("n.obj", b"v nan 0 0\n"), ("t.ply", b"hello"), ("c.stl", &[0; 90])]
     {
-        std::fs::write(dir.path().join(name), text).unwrap();
+        io::write_beside(&dir.path().join(name), |w| w.write_all(text)).unwrap();
         let out = sculptd(&["convert", &at(name), &at("out.obj")]);
         assert_eq!(out.status.code(), Some(6), "{name}");
         let told = String::from_utf8(out.stderr).unwrap();

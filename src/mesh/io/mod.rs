@@ -84,7 +84,7 @@ pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
     }
     if meta.len() > MAX_FILE {
         let found =
-            format!("{} bytes, which would need about {} GiB of memory", meta.len(), meta.len() * 6 >> 30);
+            format!("{} bytes, which would need about {} GiB of memory", meta.len(), (meta.len() * 6) >> 30);
         let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
         return Err(ReadError::Format { path: path.into(), problem });
     }

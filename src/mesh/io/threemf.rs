@@ -84,10 +84,11 @@ fn model_of(rels: &[u8]) -> Option<String> {
     let mut reader = Reader::from_str(&text);
     loop {
         match reader.read_event().ok()? {
-            Event::Empty(e) | Event::Start(e) if e.local_name().as_ref() == "Relationship" => {
-                if get(&e, "Type").is_some_and(|t| t.ends_with("/3dmodel")) {
-                    return get(&e, "Target").map(|t| t.trim_start_matches('/').to_string());
-                }
+            Event::Empty(e) | Event::Start(e)
+                if e.local_name().as_ref() == "Relationship"
+                    && get(&e, "Type").is_some_and(|t| t.ends_with("/3dmodel")) =>
+            {
+                return get(&e, "Target").map(|t| t.trim_start_matches('/').to_string());
             }
             Event::Eof => return None,
             _ => {}
