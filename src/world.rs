@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use crate::brush::{BrushKind, BrushSettings, Gaussian, Smooth};
 use crate::command::Command;
 use crate::devices::{Body, DeviceId, Hands, Sample};
-use crate::hand::{Act, HandSettings, HandTools, Pose};
+use crate::hand::{Act, HandSettings, HandTools, Pose, Volume};
 use crate::mesh::{Hit, Kernel, Mesh, Ray, Reach, Workers};
 use crate::stroke::{Camera, Flow, PenPoint, PenTrack, Surface};
 
@@ -283,6 +283,15 @@ impl World {
     /// Bounding radius of the work when it was put in place.
     pub fn extent(&self) -> f32 {
         self.extent
+    }
+
+    pub fn middle(&self) -> Vec3 {
+        self.middle
+    }
+
+    /// The tracked volume of hands over the work.
+    pub fn volume(&self) -> &Volume {
+        self.hands.volume()
     }
 
     /// Where each pen is, over the view, while in range.

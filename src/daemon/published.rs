@@ -6,10 +6,12 @@
 use std::sync::Arc;
 
 use arc_swap::ArcSwap;
+use glam::Vec3;
 
 use super::figures::{Losses, Percentiles};
 use crate::brush::BrushSettings;
 use crate::devices::{DeviceId, Hands};
+use crate::hand::Volume;
 use crate::mesh::Snapshot;
 use crate::stroke::{Camera, PenPoint};
 use crate::world::World;
@@ -28,6 +30,10 @@ pub struct Published {
     pub brush_radius: f32,
     /// Bounding radius of the work when it was put in place.
     pub extent: f32,
+    /// Middle of the work when it was put in place: where the mirrors stand.
+    pub middle: Vec3,
+    /// The tracked volume over the work.
+    pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
     pub hands: Option<Hands>,
     pub undo_steps: usize,
@@ -61,6 +67,8 @@ impl Published {
             brush: *world.brush(),
             brush_radius: world.brush_radius(),
             extent: world.extent(),
+            middle: world.middle(),
+            volume: *world.volume(),
             pens,
             hands: world.hands().copied(),
             undo_steps: world.mesh().undo_steps(),

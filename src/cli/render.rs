@@ -1,0 +1,97 @@
+//! `sculptd render`: a picture of a mesh, by the viewer's own renderer, without a window.
+
+use std::path::PathBuf;
+
+use image::{ExtendedColorType, ImageEncoder};
+use serde_json::json;
+
+use super::{Fail, Outcome, answer};
+use crate::analysis::cancel::Job;
+use crate::config::CameraConfig;
+use crate::daemon::rig;
+use crate::mesh::io::write_beside;
+use crate::viewer::picture::Painter;
+use crate::viewer::renderer::Scene;
+
+#[derive(Debug, clap::Args)]
+pub struct RenderArgs {
+    pub mesh: PathBuf,
+    /// The picture, a PNG.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x800")]
+    pub size: (u32, u32),
+    /// Where the eye is.
+    #[arg(long, value_enum, default_value_t)]
+    pub view: ViewFrom,
+    /// No perspective.
+    #[arg(long)]
+    pub orthographic: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum ViewFrom {
+    #[default]
+    Iso,
+    Front,
+    Back,
+    Left,
+    Right,
+    Top,
+    Bottom,
+}
+
+impl ViewFrom {
+    /// Yaw and pitch in degrees.
+    fn angles(self) -> (f32, f32) {
+        match self {
+            ViewFrom::Iso => (28.0, 20.0),
+            ViewFrom::Front => (0.0, 0.0),
+            ViewFrom::Back => (180.0, 0.0),
+            ViewFrom::Left => (-90.0, 0.0),
+            ViewFrom::Right => (90.0, 0.0),
+            ViewFrom::Top => (0.0, 89.0),
+            ViewFrom::Bottom => (0.0, -89.0),
+        }
+    }
+}
+
+/// Width and height from 16 to 8192, as most adapters allow.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parts {
+        Some((w, h)) if (16..=8192).contains(&w) && (16..=8192).contains(&h) => Ok((w, h)),
+        _ => Err(format!("expected WIDTHxHEIGHT, each from 16 to 8192, found '{text}'")),
+    }
+}
+
+pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
+    let mut loaded = rig::load(Some(&args.mesh), &Job::default()).map_err(super::run::rig_fail)?;
+    let (width, height) = args.size;
+    let (yaw, pitch) = args.view.angles();
+    let mut camera = CameraConfig {
+        yaw_degrees: yaw,
+        pitch_degrees: pitch,
+        orthographic: args.orthographic,
+        aspect: width as f32 / height as f32,
+        ..Default::default()
+    }
+    .camera();
+    let snapshot = loaded.mesh.snapshot();
+    let (lo, hi) = snapshot.bounds();
+    camera.frame(lo, hi);
+    let no_adapter = |e: crate::viewer::NoViewer| Fail::Device(e.to_string());
+    let mut painter = Painter::new().map_err(no_adapter)?;
+    let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[] };
+    let picture = painter.paint(&scene, width, height).map_err(no_adapter)?;
+    write_beside(&args.output, |out| {
+        image::codecs::png::PngEncoder::new(out)
+            .write_image(picture.as_raw(), width, height, ExtendedColorType::Rgba8)
+            .map_err(std::io::Error::other)
+    })
+    .map_err(|e| Fail::io(&args.output, &e))?;
+    let said = json!({ "file": args.output, "width": width, "height": height, "adapter": painter.adapter() });
+    answer(as_json, &said, |out| writeln!(out, "{} ({width}x{height}, {})", args.output.display(), painter.adapter()));
+    Ok(())
+}

@@ -1,0 +1,112 @@
+// The clay, lit from the eye's own frame so that form reads from every side, and the lines that lie over it.
+
+struct Frame {
+    view_projection: mat4x4<f32>,
+    // Rows of the view's rotation: right, up, backward. The w of the first is 1 where colours come from the vertices.
+    right: vec4<f32>,
+    up: vec4<f32>,
+    back: vec4<f32>,
+    // xyz: the brush's place; w: its radius, 0 for none.
+    brush: vec4<f32>,
+};
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+struct Corner {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) colour: vec4<f32>,
+    @location(2) place: vec3<f32>,
+    @location(3) masked: f32,
+};
+
+@vertex
+fn clay_vertex(
+    @location(0) place: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+    @location(2) colour: vec4<f32>,
+) -> Corner {
+    var out: Corner;
+    out.clip = frame.view_projection * vec4<f32>(place, 1.0);
+    out.normal = normal.xyz;
+    out.masked = normal.w;
+    out.colour = colour;
+    out.place = place;
+    return out;
+}
+
+// Two soft lights, a rim and a sky, in the frame of the view.
+fn lit(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
+    let key = max(dot(n, normalize(vec3<f32>(-0.45, 0.65, 0.62))), 0.0);
+    let fill = max(dot(n, normalize(vec3<f32>(0.8, -0.1, 0.45))), 0.0);
+    let sky = 0.5 + 0.5 * n.y;
+    let rim = pow(1.0 - clamp(n.z, 0.0, 1.0), 3.0);
+    let half_way = normalize(normalize(vec3<f32>(-0.45, 0.65, 0.62)) + vec3<f32>(0.0, 0.0, 1.0));
+    let shine = pow(max(dot(n, half_way), 0.0), 40.0) * 0.22;
+    let warm = vec3<f32>(1.0, 0.95, 0.88) * key * 0.85;
+    let cool = vec3<f32>(0.55, 0.68, 0.95) * fill * 0.28;
+    let ambient = mix(vec3<f32>(0.13, 0.11, 0.11), vec3<f32>(0.26, 0.29, 0.34), sky);
+    return base * (warm + cool + ambient) + vec3<f32>(shine) + vec3<f32>(0.35, 0.42, 0.5) * rim * 0.25;
+}
+
+@fragment
+fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    var n = normalize(in.normal);
+    var view = vec3<f32>(dot(n, frame.right.xyz), dot(n, frame.up.xyz), dot(n, frame.back.xyz));
+    var base = vec3<f32>(0.74, 0.47, 0.36) * mix(vec3<f32>(1.0), in.colour.rgb, frame.right.w);
+    if (frame.right.w < 0.5) {
+        base = base * in.colour.rgb;
+    }
+    if (!front) {
+        view = -view;
+        base = vec3<f32>(0.28, 0.30, 0.36);
+    }
+    var colour = lit(view, mix(base, base * 0.35, in.masked));
+    // The falloff inside the brush: strongest in the middle.
+    if (frame.brush.w > 0.0) {
+        let x = distance(in.place, frame.brush.xyz) / frame.brush.w;
+        if (x < 1.0) {
+            colour += vec3<f32>(0.10, 0.13, 0.16) * exp(-x * x * 12.5);
+        }
+    }
+    return vec4<f32>(colour, 1.0);
+}
+
+struct LineCorner {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) colour: vec4<f32>,
+};
+
+@vertex
+fn line_vertex(@location(0) place: vec3<f32>, @location(1) colour: vec4<f32>) -> LineCorner {
+    var out: LineCorner;
+    out.clip = frame.view_projection * vec4<f32>(place, 1.0);
+    // A hair nearer, so that a line on the surface is not eaten by it.
+    out.clip.z -= 0.0004 * out.clip.w;
+    out.colour = colour;
+    return out;
+}
+
+@fragment
+fn line_fragment(in: LineCorner) -> @location(0) vec4<f32> {
+    return in.colour;
+}
+
+struct Sky {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) height: f32,
+};
+
+@vertex
+fn sky_vertex(@builtin(vertex_index) i: u32) -> Sky {
+    let corner = vec2<f32>(f32((i << 1u) & 2u), f32(i & 2u));
+    var out: Sky;
+    out.clip = vec4<f32>(corner * 2.0 - 1.0, 1.0, 1.0);
+    out.height = corner.y;
+    return out;
+}
+
+@fragment
+fn sky_fragment(in: Sky) -> @location(0) vec4<f32> {
+    return vec4<f32>(mix(vec3<f32>(0.045, 0.048, 0.058), vec3<f32>(0.135, 0.145, 0.17), in.height), 1.0);
+}

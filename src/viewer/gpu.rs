@@ -1,0 +1,62 @@
+//! The adapter and its device, or one clear line why there is none.
+
+/// Why nothing can be drawn here.
+#[derive(Debug, thiserror::Error)]
+pub enum NoViewer {
+    #[error("no graphics adapter: {0}")]
+    Adapter(String),
+    #[error("the graphics device refused: {0}")]
+    Device(String),
+    #[error("no window: {0}")]
+    Window(String),
+    #[error("the picture could not be read back: {0}")]
+    ReadBack(String),
+}
+
+#[derive(Debug)]
+pub struct Gpu {
+    pub instance: wgpu::Instance,
+    pub adapter: wgpu::Adapter,
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    /// A software adapter: no multisampling, redraw only when something changed.
+    pub software: bool,
+}
+
+pub fn instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
+}
+
+impl Gpu {
+    /// An adapter that can draw on `surface`, or with `None` into a texture.
+    pub fn new(instance: wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Gpu, NoViewer> {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: surface,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|e| NoViewer::Adapter(e.to_string()))?;
+        let has = adapter.limits();
+        let required_limits = wgpu::Limits {
+            max_buffer_size: has.max_buffer_size,
+            max_texture_dimension_2d: has.max_texture_dimension_2d,
+            ..wgpu::Limits::downlevel_defaults()
+        };
+        let wanted = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) = pollster::block_on(adapter.request_device(&wanted))
+            .map_err(|e| NoViewer::Device(e.to_string()))?;
+        let software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        Ok(Gpu { instance, adapter, device, queue, software })
+    }
+
+    /// Samples a pixel: four, or one where a processor draws.
+    pub fn samples(&self) -> u32 {
+        if self.software { 1 } else { 4 }
+    }
+
+    pub fn name(&self) -> String {
+        let info = self.adapter.get_info();
+        format!("{} ({:?})", info.name, info.backend)
+    }
+}

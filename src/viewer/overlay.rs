@@ -1,0 +1,92 @@
+//! Lines over the clay: the brush ring and its mirror images, ghost pens, ghost hands.
+
+use glam::{Vec2, Vec3};
+
+use super::renderer::LineEnd;
+use crate::devices::Hands;
+use crate::hand::Volume;
+use crate::mesh::{Ray, Snapshot};
+
+const RING: [u8; 4] = [255, 236, 190, 255];
+const MIRRORED: [u8; 4] = [150, 205, 255, 190];
+const BONE: [u8; 4] = [190, 225, 255, 200];
+/// Corners of a ring: smooth to the eye at any size.
+const CORNERS: usize = 72;
+
+fn segment(out: &mut Vec<LineEnd>, a: Vec3, b: Vec3, colour: [u8; 4]) {
+    out.push(LineEnd { place: a.to_array(), colour });
+    out.push(LineEnd { place: b.to_array(), colour });
+}
+
+/// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped along the normal onto
+/// the clay, and where there is none within reach it stays in the tangent plane.
+pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3, radius: f32, mirrored: bool) {
+    let colour = if mirrored { MIRRORED } else { RING };
+    let (u, v) = normal.any_orthonormal_pair();
+    let corner = |i: usize| {
+        let (s, c) = (i as f32 / CORNERS as f32 * std::f32::consts::TAU).sin_cos();
+        let flat = centre + (u * c + v * s) * radius;
+        let above = Ray { origin: flat + normal * radius, dir: -normal };
+        match mesh.pick(above) {
+            Some(hit) if hit.t < 2.0 * radius => hit.position + normal * (radius * 0.01),
+            _ => flat,
+        }
+    };
+    let mut last = corner(0);
+    for i in 1..=CORNERS {
+        let next = corner(i);
+        segment(out, last, next, colour);
+        last = next;
+    }
+    segment(out, centre, centre + normal * radius * 0.4, colour);
+}
+
+/// A hand's bones, in the world.
+pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
+    for hand in hands.as_slice() {
+        let mut knuckles: Vec<Vec3> = Vec::with_capacity(5);
+        for finger in hand.fingers.iter().flatten() {
+            let joints = finger.joints.iter().flatten().copied().chain([finger.tip]);
+            let mut last: Option<Vec3> = None;
+            for mm in joints {
+                let p = volume.to_world(mm);
+                if let Some(last) = last {
+                    segment(out, last, p, BONE);
+                }
+                last = Some(p);
+            }
+            if let Some(knuckle) = finger.joints[1].or(finger.joints[2]) {
+                knuckles.push(volume.to_world(knuckle));
+            }
+            diamond(out, volume.to_world(finger.tip), 5.0 * volume.scale);
+        }
+        for pair in knuckles.windows(2) {
+            segment(out, pair[0], pair[1], BONE);
+        }
+        if let (Some(wrist), Some(first), Some(last)) = (hand.wrist, knuckles.first(), knuckles.last()) {
+            segment(out, volume.to_world(wrist), *first, BONE);
+            segment(out, volume.to_world(wrist), *last, BONE);
+        }
+    }
+}
+
+fn diamond(out: &mut Vec<LineEnd>, p: Vec3, r: f32) {
+    let corners = [Vec3::X, Vec3::Y, -Vec3::X, -Vec3::Y].map(|d| p + d * r);
+    for i in 0..4 {
+        segment(out, corners[i], corners[(i + 1) % 4], BONE);
+        segment(out, corners[i], p + Vec3::Z * r, BONE);
+    }
+}
+
+/// Signs of the mirror images of a brush, itself left out.
+pub fn mirrors(symmetry: [bool; 3]) -> impl Iterator<Item = Vec3> {
+    (1..8u32).filter(move |m| (0..3).all(|axis| m >> axis & 1 == 0 || symmetry[axis])).map(|m| {
+        let sign = |axis: u32| if m >> axis & 1 == 1 { -1.0 } else { 1.0 };
+        Vec3::new(sign(0), sign(1), sign(2))
+    })
+}
+
+/// A view point from a pointer's place in a window.
+pub fn view_point(at: Vec2, size: Vec2) -> Vec2 {
+    at / size.max(Vec2::ONE)
+}

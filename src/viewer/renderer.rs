@@ -1,0 +1,264 @@
+//! Drawing a frame: sky, clay, lines. The same for a window and for a picture.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3};
+
+use super::gpu::Gpu;
+use super::pages::{Pages, VERTEX_LAYOUT};
+use crate::mesh::{Page, Snapshot};
+use crate::stroke::Camera;
+
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// An end of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LineEnd {
+    pub place: [f32; 3],
+    pub colour: [u8; 4],
+}
+
+/// Ends of lines a frame at most: a dozen rings and four hands.
+const MAX_LINE_ENDS: usize = 8192;
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Frame {
+    view_projection: [[f32; 4]; 4],
+    right: [f32; 4],
+    up: [f32; 4],
+    back: [f32; 4],
+    brush: [f32; 4],
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Scene<'a> {
+    pub mesh: &'a Snapshot,
+    pub camera: &'a Camera,
+    /// The brush's place and radius, for the falloff on the surface.
+    pub brush: Option<(Vec3, f32)>,
+    pub lines: &'a [LineEnd],
+}
+
+#[derive(Debug)]
+pub struct Renderer {
+    frame: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    sky: wgpu::RenderPipeline,
+    clay: wgpu::RenderPipeline,
+    line: wgpu::RenderPipeline,
+    line_ends: wgpu::Buffer,
+    pages: Option<Pages>,
+    samples: u32,
+    format: wgpu::TextureFormat,
+    targets: Option<(wgpu::TextureView, Option<wgpu::TextureView>, (u32, u32))>,
+    /// Bytes of pages sent with the last frame, and pages that still wait.
+    pub uploaded: u64,
+    pub waiting: usize,
+}
+
+impl Renderer {
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Renderer {
+        let device = &gpu.device;
+        let samples = gpu.samples();
+        let shader = device.create_shader_module(wgpu::include_wgsl!("clay.wgsl"));
+        let buffer = |label, size, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let frame = buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM);
+        let line_ends =
+            buffer("lines", (MAX_LINE_ENDS * size_of::<LineEnd>()) as u64, wgpu::BufferUsages::VERTEX);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("frame"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("clay"),
+            bind_group_layouts: &[Some(&layout)],
+            ..Default::default()
+        });
+        let line_layout = wgpu::VertexBufferLayout {
+            array_stride: size_of::<LineEnd>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
+        };
+        let pipeline = |name: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], lines: bool, depth: bool| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(name),
+                layout: Some(&pipeline_layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some(&format!("{name}_vertex")),
+                    compilation_options: Default::default(),
+                    buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology: if lines { wgpu::PrimitiveTopology::LineList } else { wgpu::PrimitiveTopology::TriangleList },
+                    ..Default::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(depth && !lines),
+                    depth_compare: Some(if depth { wgpu::CompareFunction::LessEqual } else { wgpu::CompareFunction::Always }),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(&format!("{name}_fragment")),
+                    compilation_options: Default::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format,
+                        blend: lines.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        Renderer {
+            sky: pipeline("sky", &[], false, false),
+            clay: pipeline("clay", &[Some(VERTEX_LAYOUT)], false, true),
+            line: pipeline("line", &[Some(line_layout)], true, true),
+            frame,
+            group,
+            line_ends,
+            pages: None,
+            samples,
+            format,
+            targets: None,
+            uploaded: 0,
+            waiting: 0,
+        }
+    }
+
+    /// Depth and multisampling targets of the right size.
+    fn targets(&mut self, device: &wgpu::Device, size: (u32, u32)) {
+        if self.targets.as_ref().is_some_and(|t| t.2 == size) {
+            return;
+        }
+        let view = |format| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("target"),
+                size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: self.samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        };
+        self.targets = Some((view(DEPTH), (self.samples > 1).then(|| view(self.format)), size));
+    }
+
+    /// Draws into `target`, which has `size` pixels.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+        scene: &Scene<'_>,
+    ) {
+        self.targets(&gpu.device, size);
+        if self.pages.as_ref().is_none_or(|p| !p.fits(scene.mesh)) {
+            self.pages = Some(Pages::new(&gpu.device, &gpu.queue, scene.mesh));
+        }
+        let (lo, hi) = bounds(scene.mesh);
+        let radius = if lo.cmple(hi).all() {
+            (hi - scene.camera.target).abs().max((lo - scene.camera.target).abs()).length()
+        } else {
+            1.0
+        };
+        let matrix = scene.camera.view_projection(radius);
+        let (right, up) = scene.camera.axes();
+        let frame = Frame {
+            view_projection: matrix.to_cols_array_2d(),
+            right: right.extend(0.0).to_array(),
+            up: up.extend(0.0).to_array(),
+            back: scene.camera.backward().extend(0.0).to_array(),
+            brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
+        };
+        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];
+        gpu.queue.write_buffer(&self.line_ends, 0, bytemuck::cast_slice(lines));
+        if let Some(pages) = &mut self.pages {
+            pages.update(&gpu.queue, scene.mesh);
+            (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting);
+        }
+        let Some((depth, smooth, _)) = &self.targets else { return };
+        let (view, resolve) = match smooth {
+            Some(smooth) => (smooth, Some(target)),
+            None => (target, None),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clay"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: resolve,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_pipeline(&self.sky);
+        pass.draw(0..3, 0..1);
+        if let Some(pages) = &self.pages {
+            pass.set_pipeline(&self.clay);
+            pages.draw(&mut pass, |page| in_view(&matrix, page));
+        }
+        if !lines.is_empty() {
+            pass.set_pipeline(&self.line);
+            pass.set_vertex_buffer(0, self.line_ends.slice(..));
+            pass.draw(0..lines.len() as u32, 0..1);
+        }
+    }
+}
+
+fn bounds(mesh: &Snapshot) -> (Vec3, Vec3) {
+    mesh.pages().iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p.lo), hi.max(p.hi)))
+}
+
+/// Whether a page's box may be seen: not wholly beyond one plane of the view.
+fn in_view(matrix: &Mat4, page: &Page) -> bool {
+    let mut beyond = [0u8; 5];
+    for corner in 0..8u32 {
+        let pick = |axis: u32, lo: f32, hi: f32| if corner >> axis & 1 == 0 { lo } else { hi };
+        let p = Vec3::new(pick(0, page.lo.x, page.hi.x), pick(1, page.lo.y, page.hi.y), pick(2, page.lo.z, page.hi.z));
+        let c = *matrix * p.extend(1.0);
+        for (n, out) in beyond.iter_mut().zip([c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0]) {
+            *n += u8::from(out);
+        }
+    }
+    beyond.iter().all(|&n| n < 8)
+}
