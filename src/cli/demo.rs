@@ -3,11 +3,13 @@
 
 use std::path::PathBuf;
 
+use super::live::{self, LiveRun};
 use super::run::{self, seconds};
-use super::{Fail, Outcome};
+use super::{Fail, Outcome, display};
 use crate::config::Config;
 use crate::daemon::stepped::{Pace, Stepped, SteppedOptions, summary};
 use crate::daemon::{ghost, rig};
+use crate::devices::catalogue::Catalogue;
 use crate::devices::{Clock, queue};
 use crate::world::World;
 
@@ -32,7 +34,22 @@ pub struct DemoArgs {
 
 pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     crate::mesh::io::writable_format(&args.export).map_err(|e| Fail::Usage(e.to_string()))?;
-    headless(args, json)
+    if !display::wanted(args.headless) {
+        return headless(args, json);
+    }
+    let config = Config::default();
+    let loaded = run::load_work(args.mesh.as_deref())?;
+    let begun = rig::Begun { world: rig::world(loaded.mesh, &config), journal: None, warnings: vec![] };
+    let live_run = LiveRun {
+        window: true,
+        ghosts: true,
+        devices: true,
+        limit_s: args.limit_s,
+        export: Some(args.export.clone()),
+        ..Default::default()
+    };
+    let catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
+    run::report(&live::run(live_run, &config, begun, catalogue)?, None, json)
 }
 
 fn headless(args: &DemoArgs, json: bool) -> Outcome {
@@ -85,7 +102,7 @@ impl Progress {
     }
 
     fn tick(&mut self, tick: u64, world: &World) {
-        if tick % 12 != 0 {
+        if !tick.is_multiple_of(12) {
             return;
         }
         let who: Vec<&str> =
@@ -96,7 +113,7 @@ impl Progress {
         let message = format!("{}  {} steps to undo", who.join(" and "), world.mesh().undo_steps());
         self.bar.set_position(tick);
         self.bar.set_message(message.clone());
-        if self.plain && tick % 600 == 0 {
+        if self.plain && tick.is_multiple_of(600) {
             eprintln!("tick {tick}: {message}");
         }
     }

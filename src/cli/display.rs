@@ -1,4 +1,12 @@
-//! Whether there is a screen to show a window on, and why not.
+//! Whether there is a screen to show a window on, why not, and showing it.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::daemon::adaptors::Adaptors;
+use crate::daemon::live::Live;
+use crate::devices::Clock;
+use crate::devices::queue::SenderFactory;
 
 /// `Err` holds the reason, in words for a person.
 pub fn available() -> Result<(), String> {
@@ -10,4 +18,56 @@ pub fn available() -> Result<(), String> {
         return Err("no display: neither DISPLAY nor WAYLAND_DISPLAY is set".into());
     }
     Ok(())
+}
+
+/// Whether to open a window: not if it is not wanted, and not where there is no screen (which is said in one line).
+pub fn wanted(headless: bool) -> bool {
+    if headless {
+        return false;
+    }
+    match available() {
+        Ok(()) => true,
+        Err(why) => {
+            eprintln!("sculptd: headless: {why}");
+            false
+        }
+    }
+}
+
+/// What joins a window to a live run.
+#[derive(Debug)]
+pub struct Wired<'a> {
+    pub live: &'a Live,
+    pub factory: &'a SenderFactory,
+    pub clock: &'a Clock,
+    pub stop: &'a Arc<AtomicBool>,
+    pub adaptors: Arc<Adaptors>,
+    pub session: Option<String>,
+    /// On the clock; 0 without ghosts.
+    pub ghosts_until_us: u64,
+    pub full_screen: bool,
+}
+
+/// Shows the window until it is closed or the run ends; `Err` says why there is none.
+#[cfg(feature = "viewer")]
+pub fn show(wired: &Wired<'_>) -> Result<(), String> {
+    let adaptors = wired.adaptors.clone();
+    let wiring = crate::viewer::Wiring {
+        commands: wired.live.commands.clone(),
+        published: wired.live.published.clone(),
+        pointer: wired.factory.sender(),
+        pointer_id: crate::daemon::adaptors::POINTER_ID,
+        clock: wired.clock.clone(),
+        stop: wired.stop.clone(),
+        devices: Box::new(move || adaptors.describe()),
+        session: wired.session.clone(),
+        ghosts_until_us: wired.ghosts_until_us,
+        full_screen: wired.full_screen,
+    };
+    crate::viewer::run(wiring).map_err(|e| e.to_string())
+}
+
+#[cfg(not(feature = "viewer"))]
+pub fn show(_: &Wired<'_>) -> Result<(), String> {
+    available()
 }

@@ -17,8 +17,11 @@ pub mod demo;
 pub mod devices;
 pub mod display;
 pub mod info;
+pub mod live;
 pub mod measure;
 mod memory;
+#[cfg(feature = "viewer")]
+pub mod render;
 pub mod replay;
 pub mod run;
 pub mod subdivide;
@@ -61,6 +64,9 @@ pub enum Command {
         #[command(subcommand)]
         command: devices::DevicesCommand,
     },
+    /// A picture of a mesh, without a window.
+    #[cfg(feature = "viewer")]
+    Render(render::RenderArgs),
     /// Ask the running daemon.
     #[cfg(unix)]
     Ctl(ctl::CtlArgs),
@@ -156,6 +162,8 @@ pub fn run() -> u8 {
         Some(Command::Demo(args)) => demo::run(&args, cli.json),
         Some(Command::Run(args)) => run::run(&args, cli.json),
         Some(Command::Bench(args)) => bench::run(&args, cli.json),
+        #[cfg(feature = "viewer")]
+        Some(Command::Render(args)) => render::run(&args, cli.json),
         Some(Command::Replay(args)) => replay::run(&args, cli.json),
         None => run::run(&run::RunArgs::default(), cli.json),
         #[cfg(unix)]

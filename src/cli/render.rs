@@ -92,6 +92,8 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
     })
     .map_err(|e| Fail::io(&args.output, &e))?;
     let said = json!({ "file": args.output, "width": width, "height": height, "adapter": painter.adapter() });
-    answer(as_json, &said, |out| writeln!(out, "{} ({width}x{height}, {})", args.output.display(), painter.adapter()));
+    answer(as_json, &said, |out| {
+        writeln!(out, "{} ({width}x{height}, {})", args.output.display(), painter.adapter())
+    });
     Ok(())
 }

@@ -3,15 +3,15 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
 
-use super::{Fail, Outcome, answer};
+use super::live::{self, LiveRun, close_journal};
+use super::{Fail, Outcome, answer, display};
 use crate::analysis::cancel::Job;
 use crate::config::{Config, ConfigError, Resolved};
 use crate::daemon::control::{Host, Server, default_path};
 use crate::daemon::live::Journal;
 use crate::daemon::rig::{self, Area, BeginError, Begun, Loaded, RecordingFeed, RigError};
-use crate::daemon::session::writer::WriterThread;
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
 use crate::daemon::{Summary, adaptors, live::Live};
 use crate::devices::catalogue::Catalogue;
@@ -34,6 +34,9 @@ pub struct RunArgs {
     /// No window, even where there is a display.
     #[arg(long)]
     pub headless: bool,
+    /// Full screen, for an installation.
+    #[arg(long)]
+    pub kiosk: bool,
     /// End after this many seconds of the loop's time.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
@@ -86,8 +89,19 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     }
     let players = open_players(args, &config, &catalogue)?;
     let begun = begin(args, &config)?;
-    let summary = if players.is_empty() {
-        run_live(args, &config, begun, catalogue)?
+    let window = display::wanted(args.headless);
+    let summary = if window || players.is_empty() {
+        let run = LiveRun {
+            window,
+            full_screen: args.kiosk,
+            ghosts: false,
+            devices: true,
+            players,
+            limit_s: args.limit_s,
+            export: args.export.clone(),
+            session: args.session.clone(),
+        };
+        live::run(run, &config, begun, catalogue)?
     } else {
         run_stepped(args, &config, begun, players)?
     };
@@ -106,11 +120,15 @@ pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
     }
 }
 
-pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
-    let loaded = rig::load(path, &Job::default()).map_err(|e| match e {
+pub fn rig_fail(e: RigError) -> Fail {
+    match e {
         RigError::Read(e) => Fail::from(e),
         RigError::Build { .. } => Fail::Input(e.to_string()),
-    })?;
+    }
+}
+
+pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
+    let loaded = rig::load(path, &Job::default()).map_err(rig_fail)?;
     for warning in &loaded.warnings {
         eprintln!("sculptd: warning: {warning}");
     }
@@ -120,20 +138,13 @@ pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
 fn begin(args: &RunArgs, config: &Config) -> Result<Begun, Fail> {
     let begun = rig::begin(args.mesh.as_deref(), args.session.as_deref(), config, &Job::default());
     let begun = begun.map_err(|e| match e {
-        BeginError::Rig(RigError::Read(e)) => Fail::from(e),
+        BeginError::Rig(e) => rig_fail(e),
         e => Fail::Input(e.to_string()),
     })?;
     for warning in &begun.warnings {
         eprintln!("sculptd: warning: {warning}");
     }
     Ok(begun)
-}
-
-/// Waits for the journal's last group, and says so if the disk did not take it.
-fn close_journal(thread: Option<WriterThread>) {
-    if let Some(fault) = thread.and_then(WriterThread::finish) {
-        eprintln!("sculptd: warning: {fault}");
-    }
 }
 
 /// Opens every recording, and finds the part of the tablet that each one uses.
@@ -195,43 +206,6 @@ fn run_stepped(
     close_journal(thread);
     let export = export(args.export.as_deref(), &world)?;
     Ok(summary(&figures, &world, &receiver, export))
-}
-
-/// Waits for devices, until a signal or the time limit.
-fn run_live(args: &RunArgs, config: &Config, begun: Begun, catalogue: Catalogue) -> Result<Summary, Fail> {
-    let clock = Clock::monotonic();
-    let (factory, receiver) = queue::channel(config.channel.capacity);
-    let adaptors = adaptors::start(&config.devices, catalogue, &clock, &factory);
-    for line in adaptors.describe() {
-        eprintln!("sculptd: {line}");
-    }
-    eprintln!("sculptd: sculpting; control socket {}; end with Ctrl-C", default_path().display());
-    let (writer, thread) = begun.journal.unzip();
-    let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
-    let drain = config.channel.drain_per_tick;
-    let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)
-        .map_err(|e| Fail::Permission(e.to_string()))?;
-    let stop = stop_signal();
-    let until = args.limit_s.map(|s| (s * 1e6) as u64);
-    let (_keep, tick) = crossbeam_channel::bounded::<()>(1);
-    let host =
-        Host { commands: live.commands.clone(), published: live.published.clone(), stop: stop.clone() };
-    let _server = Server::start(&default_path(), host).map_err(|e| Fail::Permission(e.to_string()))?;
-    while live.is_running() && !stop.load(Relaxed) && until.is_none_or(|u| clock.now_us() < u) {
-        // Nothing is ever sent: this is a wait that a test can shorten, not a poll of a resource.
-        let _ = tick.recv_timeout(std::time::Duration::from_millis(20));
-    }
-    drop(adaptors);
-    let summary = finish_live(live, args.export.as_deref());
-    close_journal(thread);
-    summary
-}
-
-/// Ends the loop, writes the export and sums up.
-pub fn finish_live(live: Live, path: Option<&Path>) -> Result<Summary, Fail> {
-    let ended = live.stop().map_err(|e| Fail::Check(e.to_string()))?;
-    let export = export(path, &ended.world)?;
-    Ok(summary(&ended.figures, &ended.world, &ended.receiver, export))
 }
 
 /// Set once by SIGINT or SIGTERM.

@@ -78,11 +78,6 @@ impl Snapshot {
         }
     }
 
-    pub fn bounds(&self) -> (Vec3, Vec3) {
-        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        self.pages.iter().fold(none, |(lo, hi), p| (lo.min(p.lo), hi.max(p.hi)))
-    }
-
     pub fn revision(&self) -> u64 {
         self.totals.revision
     }

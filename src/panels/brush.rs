@@ -9,8 +9,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Command>) {
     let mut brush: BrushSettings = view.state.brush;
     ui.strong("Brush");
     ui.horizontal(|ui| {
-        ui.selectable_value(&mut brush.kind, BrushKind::Gaussian, "Draw").on_hover_text("Raises a bell of clay (1)");
-        ui.selectable_value(&mut brush.kind, BrushKind::Smooth, "Smooth").on_hover_text("Evens the surface (2, or hold Shift)");
+        ui.selectable_value(&mut brush.kind, BrushKind::Gaussian, "Draw")
+            .on_hover_text("Raises a bell of clay (1)");
+        ui.selectable_value(&mut brush.kind, BrushKind::Smooth, "Smooth")
+            .on_hover_text("Evens the surface (2, or hold Shift)");
     });
     let radius = egui::Slider::new(&mut brush.radius, 0.005..=1.0).logarithmic(true).text("Radius");
     ui.add(radius).on_hover_text("Share of the work's size ([ and ])");
@@ -20,7 +22,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label("Mirror");
         for (axis, name) in brush.symmetry.iter_mut().zip(["x", "y", "z"]) {
-            ui.toggle_value(axis, name).on_hover_text(format!("Sculpt on both sides of the plane {name} = 0"));
+            ui.toggle_value(axis, name)
+                .on_hover_text(format!("Sculpt on both sides of the plane {name} = 0"));
         }
     });
     ui.horizontal(|ui| {

@@ -24,7 +24,9 @@ impl Done {
 pub fn ui(ctx: &egui::Context, done: &Done, ghosts: bool) {
     let hint = if ghosts { Some("Ghosts are sculpting. Touch the clay any time") } else { None };
     let Some(text) = done.hint().filter(|_| !ghosts || done.touched).or(hint) else { return };
-    let place = egui::Area::new(egui::Id::new("hint")).anchor(egui::Align2::CENTER_BOTTOM, [110.0, -28.0]).interactable(false);
+    let place = egui::Area::new(egui::Id::unique("hint"))
+        .anchor(egui::Align2::CENTER_BOTTOM, [110.0, -28.0])
+        .interactable(false);
     place.show(ctx, |ui| {
         egui::Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
             ui.label(egui::RichText::new(text).size(16.0));

@@ -20,7 +20,14 @@ fn segment(out: &mut Vec<LineEnd>, a: Vec3, b: Vec3, colour: [u8; 4]) {
 
 /// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped along the normal onto
 /// the clay, and where there is none within reach it stays in the tangent plane.
-pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3, radius: f32, mirrored: bool) {
+pub fn ring(
+    out: &mut Vec<LineEnd>,
+    mesh: &Snapshot,
+    centre: Vec3,
+    normal: Vec3,
+    radius: f32,
+    mirrored: bool,
+) {
     let colour = if mirrored { MIRRORED } else { RING };
     let (u, v) = normal.any_orthonormal_pair();
     let corner = |i: usize| {

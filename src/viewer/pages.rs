@@ -31,21 +31,20 @@ pub struct Pages {
     indices: wgpu::Buffer,
     /// Index range of each page.
     ranges: Vec<std::ops::Range<u32>>,
-    /// The pages as they were when they were sent.
-    sent: Vec<Option<Page>>,
+    /// The newest clay that was looked at.
+    seen: Option<Snapshot>,
+    /// Pages that changed and are not sent yet, oldest first.
+    queue: Vec<u32>,
+    queued: Vec<bool>,
     slot: usize,
-    revision: Option<u64>,
     scratch: Vec<Vertex>,
     /// Bytes sent by the last [`Pages::update`].
     pub uploaded: u64,
-    /// Pages that changed and are not sent yet.
-    pub waiting: usize,
 }
 
 impl Pages {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &Snapshot) -> Pages {
-        let pages = mesh.pages();
-        let slot = pages.iter().map(|p| p.topology.own).max().unwrap_or(1).max(1);
+        let slot = mesh.pages().map(|p| p.own()).max().unwrap_or(1).max(1);
         let buffer = |size: usize, usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pages"),
@@ -55,82 +54,97 @@ impl Pages {
             })
         };
         let mut indices: Vec<u32> = Vec::with_capacity(mesh.triangle_count() * 3);
-        let mut ranges = Vec::with_capacity(pages.len());
-        for (p, page) in pages.iter().enumerate() {
+        let mut ranges = Vec::with_capacity(mesh.page_count());
+        for (p, page) in mesh.pages().enumerate() {
             let start = indices.len() as u32;
-            let t = &page.topology;
-            indices.extend(t.triangles.iter().flatten().map(|&v| {
+            // A halo vertex is drawn from its home's slot: every vertex is on the card once.
+            indices.extend(page.triangles().iter().flatten().map(|&v| {
                 let v = v as usize;
-                let (page, local) = if v < t.own { (p, v) } else { (t.halo[v - t.own].0 as usize, t.halo[v - t.own].1 as usize) };
-                (page * slot + local) as u32
+                let (home, local) = match v.checked_sub(page.own()) {
+                    None => (p, v),
+                    Some(k) => {
+                        let (home, local) = page.topology().halo_home(k);
+                        (home as usize, local as usize)
+                    }
+                };
+                (home * slot + local) as u32
             }));
             ranges.push(start..indices.len() as u32);
         }
         let index_buffer = buffer(indices.len() * 4, wgpu::BufferUsages::INDEX);
         queue.write_buffer(&index_buffer, 0, bytemuck::cast_slice(&indices));
+        let count = mesh.page_count();
         Pages {
-            vertices: buffer(pages.len() * slot * size_of::<Vertex>(), wgpu::BufferUsages::VERTEX),
+            vertices: buffer(count * slot * size_of::<Vertex>(), wgpu::BufferUsages::VERTEX),
             indices: index_buffer,
             ranges,
-            sent: vec![None; pages.len()],
+            seen: None,
+            queue: (0..count as u32).collect(),
+            queued: vec![true; count],
             slot,
-            revision: None,
             scratch: Vec::with_capacity(slot),
             uploaded: 0,
-            waiting: 0,
         }
     }
 
-    /// Whether this snapshot has the pages that the buffers were made for.
-    pub fn fits(&self, mesh: &Snapshot) -> bool {
-        let same = |(sent, now): (&Option<Page>, &Page)| {
-            sent.as_ref().is_none_or(|s| Arc::ptr_eq(&s.topology, &now.topology))
-        };
-        self.sent.len() == mesh.pages().len() && self.sent.iter().zip(mesh.pages()).all(same)
+    /// Pages that changed and are not sent yet.
+    pub fn waiting(&self) -> usize {
+        self.queue.len()
     }
 
-    /// Sends pages that changed since they were last sent, up to the budget.
+    /// Whether this snapshot has the topology that the buffers were made for.
+    pub fn fits(&self, mesh: &Snapshot) -> bool {
+        let Some(seen) = &self.seen else { return self.ranges.len() == mesh.page_count() };
+        let mut same = seen.page_count() == mesh.page_count();
+        if same {
+            mesh.each_changed(seen, |i, page| same &= Arc::ptr_eq(page.topology(), seen.page(i).topology()));
+        }
+        same
+    }
+
+    /// Sends pages that changed since they were last sent, up to the budget; the first time all of them.
     pub fn update(&mut self, queue: &wgpu::Queue, mesh: &Snapshot) {
-        (self.uploaded, self.waiting) = (0, 0);
-        for (i, page) in mesh.pages().iter().enumerate() {
-            let unchanged = self.sent[i].as_ref().is_some_and(|s| {
-                Arc::ptr_eq(&s.positions, &page.positions)
-                    && Arc::ptr_eq(&s.normals, &page.normals)
-                    && Arc::ptr_eq(&s.mask, &page.mask)
-                    && Arc::ptr_eq(&s.colours, &page.colours)
+        let first = self.seen.is_none();
+        if let Some(seen) = &self.seen {
+            let (waiting, queued) = (&mut self.queue, &mut self.queued);
+            mesh.each_changed(seen, |i, _| {
+                if !std::mem::replace(&mut queued[i as usize], true) {
+                    waiting.push(i);
+                }
             });
-            if unchanged {
-                continue;
-            }
-            if self.uploaded > BUDGET && self.revision.is_some() {
-                self.waiting += 1;
-                continue;
-            }
+        }
+        self.seen = Some(mesh.clone());
+        self.uploaded = 0;
+        let mut sent = 0;
+        while sent < self.queue.len() && (first || self.uploaded < BUDGET) {
+            let i = self.queue[sent];
+            sent += 1;
+            self.queued[i as usize] = false;
+            let page = mesh.page(i);
             self.scratch.clear();
-            self.scratch.extend((0..page.topology.own).map(|v| {
-                let p = page.positions.get(v);
-                let n = (page.normals.get(v) * 32767.0).to_array().map(|c| c as i16);
+            self.scratch.extend((0..page.own()).map(|v| {
+                let n = (page.normal(v) * 32767.0).to_array().map(|c| c as i16);
                 Vertex {
-                    place: p.to_array(),
-                    normal: [n[0], n[1], n[2], (page.mask[v] * 32767.0) as i16],
-                    colour: page.colours[v],
+                    place: page.point(v).to_array(),
+                    normal: [n[0], n[1], n[2], (page.mask(v) * 32767.0) as i16],
+                    colour: page.colour(v),
                 }
             }));
             let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
-            queue.write_buffer(&self.vertices, (i * self.slot * size_of::<Vertex>()) as u64, bytes);
+            queue.write_buffer(&self.vertices, (i as usize * self.slot * size_of::<Vertex>()) as u64, bytes);
             self.uploaded += bytes.len() as u64;
-            self.sent[i] = Some(page.clone());
         }
-        self.revision = Some(mesh.revision());
+        self.queue.drain(..sent);
     }
 
     /// Draws every page whose bounds `visible` accepts.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(&Page) -> bool) {
+        let Some(mesh) = &self.seen else { return };
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut run: Option<std::ops::Range<u32>> = None;
-        for (range, page) in self.ranges.iter().zip(&self.sent) {
-            let shown = page.as_ref().is_some_and(&visible);
+        for (range, page) in self.ranges.iter().zip(mesh.pages()) {
+            let shown = visible(page);
             run = match run {
                 Some(r) if shown => Some(r.start..range.end),
                 Some(r) => {

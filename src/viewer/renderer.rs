@@ -102,42 +102,51 @@ impl Renderer {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
         };
-        let pipeline = |name: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], lines: bool, depth: bool| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(name),
-                layout: Some(&pipeline_layout),
-                vertex: wgpu::VertexState {
-                    module: &shader,
-                    entry_point: Some(&format!("{name}_vertex")),
-                    compilation_options: Default::default(),
-                    buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology: if lines { wgpu::PrimitiveTopology::LineList } else { wgpu::PrimitiveTopology::TriangleList },
-                    ..Default::default()
-                },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(depth && !lines),
-                    depth_compare: Some(if depth { wgpu::CompareFunction::LessEqual } else { wgpu::CompareFunction::Always }),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
-                fragment: Some(wgpu::FragmentState {
-                    module: &shader,
-                    entry_point: Some(&format!("{name}_fragment")),
-                    compilation_options: Default::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend: lines.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+        let pipeline =
+            |name: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], lines: bool, depth: bool| {
+                device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                    label: Some(name),
+                    layout: Some(&pipeline_layout),
+                    vertex: wgpu::VertexState {
+                        module: &shader,
+                        entry_point: Some(&format!("{name}_vertex")),
+                        compilation_options: Default::default(),
+                        buffers,
+                    },
+                    primitive: wgpu::PrimitiveState {
+                        topology: if lines {
+                            wgpu::PrimitiveTopology::LineList
+                        } else {
+                            wgpu::PrimitiveTopology::TriangleList
+                        },
+                        ..Default::default()
+                    },
+                    depth_stencil: Some(wgpu::DepthStencilState {
+                        format: DEPTH,
+                        depth_write_enabled: Some(depth && !lines),
+                        depth_compare: Some(if depth {
+                            wgpu::CompareFunction::LessEqual
+                        } else {
+                            wgpu::CompareFunction::Always
+                        }),
+                        stencil: Default::default(),
+                        bias: Default::default(),
+                    }),
+                    multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+                    fragment: Some(wgpu::FragmentState {
+                        module: &shader,
+                        entry_point: Some(&format!("{name}_fragment")),
+                        compilation_options: Default::default(),
+                        targets: &[Some(wgpu::ColorTargetState {
+                            format,
+                            blend: lines.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                            write_mask: wgpu::ColorWrites::ALL,
+                        })],
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                })
+            };
         Renderer {
             sky: pipeline("sky", &[], false, false),
             clay: pipeline("clay", &[Some(VERTEX_LAYOUT)], false, true),
@@ -188,7 +197,7 @@ impl Renderer {
         if self.pages.as_ref().is_none_or(|p| !p.fits(scene.mesh)) {
             self.pages = Some(Pages::new(&gpu.device, &gpu.queue, scene.mesh));
         }
-        let (lo, hi) = bounds(scene.mesh);
+        let (lo, hi) = scene.mesh.bounds();
         let radius = if lo.cmple(hi).all() {
             (hi - scene.camera.target).abs().max((lo - scene.camera.target).abs()).length()
         } else {
@@ -208,7 +217,7 @@ impl Renderer {
         gpu.queue.write_buffer(&self.line_ends, 0, bytemuck::cast_slice(lines));
         if let Some(pages) = &mut self.pages {
             pages.update(&gpu.queue, scene.mesh);
-            (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting);
+            (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting());
         }
         let Some((depth, smooth, _)) = &self.targets else { return };
         let (view, resolve) = match smooth {
@@ -221,11 +230,17 @@ impl Renderer {
                 view,
                 depth_slice: None,
                 resolve_target: resolve,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
                 stencil_ops: None,
             }),
             ..Default::default()
@@ -245,16 +260,13 @@ impl Renderer {
     }
 }
 
-fn bounds(mesh: &Snapshot) -> (Vec3, Vec3) {
-    mesh.pages().iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p.lo), hi.max(p.hi)))
-}
-
 /// Whether a page's box may be seen: not wholly beyond one plane of the view.
 fn in_view(matrix: &Mat4, page: &Page) -> bool {
+    let (lo, hi) = page.bounds();
     let mut beyond = [0u8; 5];
     for corner in 0..8u32 {
         let pick = |axis: u32, lo: f32, hi: f32| if corner >> axis & 1 == 0 { lo } else { hi };
-        let p = Vec3::new(pick(0, page.lo.x, page.hi.x), pick(1, page.lo.y, page.hi.y), pick(2, page.lo.z, page.hi.z));
+        let p = Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z));
         let c = *matrix * p.extend(1.0);
         for (n, out) in beyond.iter_mut().zip([c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0]) {
             *n += u8::from(out);

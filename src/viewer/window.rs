@@ -164,7 +164,9 @@ impl ApplicationHandler for App {
                 open.camera.zoom(1.12f32.powf(steps));
                 open.send_camera(&self.wiring);
             }
-            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed && !response.consumed => {
+            WindowEvent::KeyboardInput { event, .. }
+                if event.state == ElementState::Pressed && !response.consumed =>
+            {
                 if let PhysicalKey::Code(key) = event.physical_key {
                     open.key(key, &self.wiring);
                 }
@@ -301,7 +303,8 @@ impl Open {
             return;
         }
         let state = wiring.published.load();
-        let on_clay = || state.mesh.pick(self.camera.ray(overlay::view_point(self.pointer, self.size()))).is_some();
+        let on_clay =
+            || state.mesh.pick(self.camera.ray(overlay::view_point(self.pointer, self.size()))).is_some();
         self.drag = match button {
             MouseButton::Left if !self.mods.alt_key() && on_clay() => Drag::Sculpt,
             MouseButton::Left | MouseButton::Right => Drag::Orbit,
@@ -400,7 +403,9 @@ impl Open {
         if matches!(self.drag, Drag::None | Drag::Sculpt) && self.pointer.x > PANEL {
             ring_at(overlay::view_point(self.pointer, self.size()), 0.66);
         }
-        for (_, pen) in state.pens.iter().flatten().filter(|(id, _)| *id != crate::daemon::adaptors::POINTER_ID) {
+        for (_, pen) in
+            state.pens.iter().flatten().filter(|(id, _)| *id != crate::daemon::adaptors::POINTER_ID)
+        {
             ring_at(pen.view, pen.pressure);
         }
         if let Some(hands) = &state.hands {

@@ -1,0 +1,164 @@
+//! One live run, with or without a window: the wall's clock, real devices, ghosts or recordings beside them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
+
+use super::run::{export, stop_signal};
+use super::{Fail, display};
+use crate::config::Config;
+use crate::daemon::live::{Journal, Live};
+use crate::daemon::rig::{Area, Begun, RecordingFeed};
+use crate::daemon::session::writer::WriterThread;
+use crate::daemon::stepped::{Feed, summary};
+use crate::daemon::{Summary, adaptors, ghost};
+use crate::devices::Clock;
+use crate::devices::catalogue::Catalogue;
+use crate::devices::queue::{self, SenderFactory};
+use crate::devices::recording::Player;
+
+/// What makes one live run different from another.
+#[derive(Debug, Default)]
+pub struct LiveRun {
+    pub window: bool,
+    pub full_screen: bool,
+    /// Simulated devices perform the demo's journal.
+    pub ghosts: bool,
+    /// Real devices are listened to.
+    pub devices: bool,
+    pub players: Vec<(Player, Option<Area>)>,
+    pub limit_s: Option<f64>,
+    pub export: Option<PathBuf>,
+    pub session: Option<PathBuf>,
+}
+
+/// How often a run without a window looks whether it should end.
+const LOOK: Duration = Duration::from_millis(20);
+
+pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) -> Result<Summary, Fail> {
+    let clock = Clock::monotonic();
+    let (factory, receiver) = queue::channel(config.channel.capacity);
+    let mut settings = config.devices.clone();
+    if !run.devices {
+        settings = crate::config::DevicesConfig { hid: false, ..Default::default() };
+    }
+    let adaptors = Arc::new(adaptors::start(&settings, catalogue, &clock, &factory));
+    let (writer, thread) = begun.journal.unzip();
+    let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
+    let drain = config.channel.drain_per_tick;
+    let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)
+        .map_err(|e| Fail::Permission(e.to_string()))?;
+    let stop = stop_signal();
+    let _control = control(&live, &stop)?;
+    let ghosts = match run.ghosts {
+        true => Some(ghost::playing(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?),
+        false => None,
+    };
+    let _players = play(run.players, &clock, &factory, &stop);
+    let _limit = run.limit_s.map(|s| end_after(s, &stop));
+    if run.window {
+        let wired = display::Wired {
+            live: &live,
+            factory: &factory,
+            clock: &clock,
+            stop: &stop,
+            adaptors: adaptors.clone(),
+            session: run.session.as_ref().map(|p| p.display().to_string()),
+            ghosts_until_us: ghosts.as_ref().map_or(0, |g| g.ends_us),
+            full_screen: run.full_screen,
+        };
+        if let Err(why) = display::show(&wired) {
+            eprintln!("sculptd: going on without a window: {why}");
+        }
+    } else {
+        for line in adaptors.describe() {
+            eprintln!("sculptd: {line}");
+        }
+        eprintln!("sculptd: sculpting; end with Ctrl-C");
+    }
+    // Without a window, or after one that could not open: until a signal. A closed window has raised `stop`.
+    let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
+    while live.is_running() && !stop.load(Relaxed) {
+        let _ = quiet.recv_timeout(LOOK);
+    }
+    drop((ghosts, adaptors));
+    let ended = live.stop().map_err(|e| Fail::Check(e.to_string()))?;
+    let path = export(run.export.as_deref(), &ended.world)?;
+    let summary = summary(&ended.figures, &ended.world, &ended.receiver, path);
+    drop(ended);
+    close_journal(thread);
+    Ok(summary)
+}
+
+/// Waits for the journal's last group, and says so if the disk did not take it.
+pub fn close_journal(thread: Option<WriterThread>) {
+    if let Some(fault) = thread.and_then(WriterThread::finish) {
+        eprintln!("sculptd: warning: {fault}");
+    }
+}
+
+#[cfg(unix)]
+fn control(live: &Live, stop: &Arc<AtomicBool>) -> Result<Option<crate::daemon::control::Server>, Fail> {
+    use crate::daemon::control::{Host, Server, default_path, server::ServeError};
+    let host =
+        Host { commands: live.commands.clone(), published: live.published.clone(), stop: stop.clone() };
+    match Server::start(&default_path(), host) {
+        Ok(server) => Ok(Some(server)),
+        // A second daemon sculpts all the same; `sculptd ctl` talks to the first.
+        Err(e @ ServeError::Taken { .. }) => {
+            eprintln!("sculptd: no control socket: {e}");
+            Ok(None)
+        }
+        Err(e) => Err(Fail::Permission(e.to_string())),
+    }
+}
+
+#[cfg(not(unix))]
+fn control(_: &Live, _: &Arc<AtomicBool>) -> Result<Option<()>, Fail> {
+    Ok(None)
+}
+
+/// Plays recordings at their own speed on a thread of their own, from now on.
+fn play(
+    players: Vec<(Player, Option<Area>)>,
+    clock: &Clock,
+    factory: &SenderFactory,
+    stop: &Arc<AtomicBool>,
+) -> Option<std::thread::JoinHandle<()>> {
+    if players.is_empty() {
+        return None;
+    }
+    let start = clock.now_us();
+    let mut feeds: Vec<RecordingFeed> = players
+        .into_iter()
+        .map(|(mut player, area)| {
+            player.start_at(start);
+            RecordingFeed::new(player, factory.sender(), area)
+        })
+        .collect();
+    let (clock, stop) = (clock.clone(), stop.clone());
+    let thread = std::thread::Builder::new().name("sculptd-player".into()).spawn(move || {
+        let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
+        while !stop.load(Relaxed) && !feeds.iter().all(|f| f.finished()) {
+            let now = clock.now_us();
+            for feed in &mut feeds {
+                feed.advance(now);
+            }
+            let _ = quiet.recv_timeout(Duration::from_millis(2));
+        }
+    });
+    thread.ok()
+}
+
+/// Raises `stop` after so many seconds.
+fn end_after(seconds: f64, stop: &Arc<AtomicBool>) -> Option<std::thread::JoinHandle<()>> {
+    let stop = stop.clone();
+    let wait = Duration::from_secs_f64(seconds);
+    let thread = std::thread::Builder::new().name("sculptd-limit".into()).spawn(move || {
+        let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
+        let _ = quiet.recv_timeout(wait);
+        stop.store(true, Relaxed);
+    });
+    thread.ok()
+}
