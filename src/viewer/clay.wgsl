@@ -53,7 +53,7 @@ fn lit(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
 fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     var n = normalize(in.normal);
     var view = vec3<f32>(dot(n, frame.right.xyz), dot(n, frame.up.xyz), dot(n, frame.back.xyz));
-    var base = vec3<f32>(0.74, 0.47, 0.36) * mix(vec3<f32>(1.0), in.colour.rgb, frame.right.w);
+    var base = vec3<f32>(0.52, 0.25, 0.165) * mix(vec3<f32>(1.0), in.colour.rgb, frame.right.w);
     if (frame.right.w < 0.5) {
         base = base * in.colour.rgb;
     }
@@ -108,5 +108,5 @@ fn sky_vertex(@builtin(vertex_index) i: u32) -> Sky {
 
 @fragment
 fn sky_fragment(in: Sky) -> @location(0) vec4<f32> {
-    return vec4<f32>(mix(vec3<f32>(0.045, 0.048, 0.058), vec3<f32>(0.135, 0.145, 0.17), in.height), 1.0);
+    return vec4<f32>(mix(vec3<f32>(0.012, 0.013, 0.016), vec3<f32>(0.05, 0.054, 0.064), in.height), 1.0);
 }

@@ -1,5 +1,6 @@
 //! One binary for all integration tests: one link, one start.
 
+mod bad_input;
 mod clay;
 mod hands;
 mod io;
