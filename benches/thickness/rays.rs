@@ -51,7 +51,8 @@ fn load(name: &str) -> TriMesh {
         }),
         "blob" => ring(1024, 512, |u, v| {
             let (a, b) = (u * turn, v * turn);
-            let dent = 1.0 + 0.15 * (7.0 * a).sin() * (5.0 * b).cos() + 0.03 * (31.0 * a).cos() * (17.0 * b).sin();
+            let dent =
+                1.0 + 0.15 * (7.0 * a).sin() * (5.0 * b).cos() + 0.03 * (31.0 * a).cos() * (17.0 * b).sin();
             let r = 10.0 + 4.0 * dent * b.cos();
             DVec3::new(r * a.cos(), r * a.sin(), 4.0 * dent * b.sin())
         }),
@@ -116,7 +117,10 @@ fn main() {
             let start = clock.now_us();
             let done = measure(&mesh, &settings, &Job::default());
             let wall = (clock.now_us() - start) as f64 * 1e-6;
-            whole.push(format!("{{\"method\":\"{method:?}\",\"rays\":{rays},\"wall\":{wall:.4},\"ok\":{}}}", done.is_ok()));
+            whole.push(format!(
+                "{{\"method\":\"{method:?}\",\"rays\":{rays},\"wall\":{wall:.4},\"ok\":{}}}",
+                done.is_ok()
+            ));
         }
     }
     let _ = writeln!(

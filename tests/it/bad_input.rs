@@ -75,11 +75,24 @@ fn a_recording_of_an_unknown_device_is_an_absent_device() {
     let keyboard = b"D:0\nR: 63 05 01 09 06 a1 01 05 07 19 e0 29 e7 15 00 25 01 75 01 95 08 81 02 95 01 75 08 81 03 95 05 75 01 05 08 19 01 29 05 91 02 95 01 75 03 91 03 95 06 75 08 15 00 25 65 05 07 19 00 29 65 81 00 c0\nN: Somebody's Keyboard\nI: 3 dead beef\nE: 0.000000 8 00 00 04 00 00 00 00 00\n";
     let path = bench.file("keyboard.hid", keyboard);
     let out = bench.out();
-    let args =
-        ["run", "--headless", "--play-device", path.to_str().expect("UTF-8"), "--export", out.to_str().expect("UTF-8")];
+    let args = [
+        "run",
+        "--headless",
+        "--play-device",
+        path.to_str().expect("UTF-8"),
+        "--export",
+        out.to_str().expect("UTF-8"),
+    ];
     refused(&args, 5, &["keyboard.hid"], &out);
     let torn = bench.file("torn.hid", b"D:0\nR: 4 05 0d zz\n");
-    let args = ["run", "--headless", "--play-device", torn.to_str().expect("UTF-8"), "--export", out.to_str().expect("UTF-8")];
+    let args = [
+        "run",
+        "--headless",
+        "--play-device",
+        torn.to_str().expect("UTF-8"),
+        "--export",
+        out.to_str().expect("UTF-8"),
+    ];
     refused(&args, 6, &["torn.hid"], &out);
 }
 
@@ -96,7 +109,12 @@ fn a_bad_configuration_names_key_line_and_range() {
     ] {
         let path = bench.file("my.toml", content.as_bytes());
         let path = path.to_str().expect("UTF-8");
-        refused(&["run", "--headless", "--config", path, "--export", out.to_str().expect("UTF-8")], 3, words, &out);
+        refused(
+            &["run", "--headless", "--config", path, "--export", out.to_str().expect("UTF-8")],
+            3,
+            words,
+            &out,
+        );
         refused(&["config", "check", path], 3, words, &out);
     }
 }
