@@ -54,7 +54,7 @@ pub struct Bounds {
     pub max: [f64; 3],
 }
 
-/// Looks at everything; `crossings`: also for triangles that cross, the slowest part (about 1 us a triangle).
+/// Looks at everything; `crossings`: also for triangles that cross, the slowest part.
 /// Sums run in double precision around the middle of the box, in the order of the faces.
 pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<Report, Cancelled> {
     let edges = Edges::of(mesh);

@@ -159,7 +159,7 @@ fn icosahedron() -> ([DVec3; 12], [[u32; 3]; 20]) {
 }
 
 /// A sphere of the icosahedron's 20 faces, each in `frequency` squared triangles (1 to 10,000): 10 f^2 + 2 vertices.
-/// The largest triangle has about twice the area of the smallest.
+/// Triangles near the middle of a face of the icosahedron are larger than those at its corners.
 pub fn icosphere(radius: f32, frequency: u32) -> TriMesh {
     let f = frequency.clamp(1, 10_000);
     let (corners, faces) = icosahedron();

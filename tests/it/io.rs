@@ -106,6 +106,7 @@ fn the_topology_of_every_mesh_of_the_corpus_is_what_its_index_says() {
         facts.iter().filter(|f| f.crossings.is_some()).count()
     );
     assert_eq!(wrong, 0, "of {}", facts.len());
-    // The index was measured in single precision: where triangles touch exactly, or polygons were cut otherwise, it differs.
+    // Five meshes differ from the index (they are printed); why is not established. The bound is what was seen: it holds the
+    // others, and is no statement that these five are right.
     assert!(other_crossings <= 5, "{other_crossings}");
 }

@@ -1,9 +1,9 @@
 //! Mesh files: OBJ, STL, PLY, glTF/GLB, 3MF, OFF, in and out.
 //!
 //! A file is what its content says; the extension decides only where the content does not. Positions keep double precision and
-//! faces their corners, as far as the format has them. No input makes a parser panic or take memory that the file's length does
-//! not warrant: a mesh needs at most about six times its file's length. What is wrong is told with its line or byte, what was
-//! expected there and what was found.
+//! faces their corners, as far as the format has them. Counts in a file are held against its length before memory is
+//! taken for them; what may grow beyond it (3MF's packed parts, instances in glTF and 3MF) has a bound of its own. What is wrong is
+//! told with its line or byte where the format has one, what was expected and what was found.
 
 pub mod beside;
 mod gltf;
@@ -83,8 +83,7 @@ pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
         )));
     }
     if meta.len() > MAX_FILE {
-        let found =
-            format!("{} bytes, which would need about {} GiB of memory", meta.len(), (meta.len() * 6) >> 30);
+        let found = format!("{} bytes; the file and its mesh must both fit into memory", meta.len());
         let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
         return Err(ReadError::Format { path: path.into(), problem });
     }

@@ -1,5 +1,5 @@
-//! Wavefront OBJ. Own code rather than a library: the kept ones read single precision, split or triangulate polygons, or name
-//! no line; and this one reads pieces of the file on all cores, which pays from about 1 MB on.
+//! Wavefront OBJ. Own code, so that errors name their line, double precision and polygons are kept, and pieces of the file are
+//! read on all cores.
 //!
 //! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative indices, a backslash that
 //! continues a line, and `g`, `usemtl`, `o` as groups. Normals, texture coordinates, lines, points and smoothing groups are

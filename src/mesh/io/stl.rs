@@ -1,5 +1,4 @@
-//! STL, both kinds. Own code: the kept library says neither byte nor line, takes binary files that start with "solid" for
-//! text, and welds with a map that allocates by node.
+//! STL, both kinds. Own code, so that errors name their byte or line, and the weld's rule and order are ours.
 //!
 //! A file is binary if its length is what its triangle count says, whatever its header starts with. Corners that are equal in
 //! all three coordinates are one vertex, in the order of first use (minus zero is zero); nothing else is merged, so that what

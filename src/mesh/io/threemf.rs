@@ -40,7 +40,7 @@ fn bad(at: At, expected: impl Into<String>, found: impl Into<String>) -> Stop {
 pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, Stop> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes))
         .map_err(|e| bad(At::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string()))?;
-    // XML shrinks to a fiftieth at best; what promises more is a trap.
+    // A choice, not a law of the format: what unpacks to more than this is taken for a trap.
     let mut room = bytes.len() as u64 * 100 + (16 << 20);
     let mut part = |name: &str| -> Result<Vec<u8>, Stop> {
         let entry = zip.by_name(name).map_err(|e| bad(At::File, format!("a part {name}"), e.to_string()))?;
