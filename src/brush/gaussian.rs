@@ -35,6 +35,7 @@ impl Gaussian {
 }
 
 impl Kernel for Gaussian {
+    #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         Weights::with(|w| {
             out.visit_many(w.sphere(page, self.centre, self.radius2, |d2| exp(d2 * self.fall)));

@@ -1,28 +1,26 @@
 //! How much a brush does to each vertex of a page, computed for all of them at once: loops over plain arrays without a
 //! branch, which the compiler turns into wide instructions, the same bits with any width.
 
-use std::cell::RefCell;
-
 use glam::Vec3;
 
-use crate::mesh::PageIn;
+use crate::mesh::{PAGE_VERTICES, PageIn};
 
-/// Room for one page's numbers, one set a thread.
-#[derive(Debug, Default)]
+/// Vertices looked at together.
+const BLOCK: usize = 64;
+/// Own vertices of the largest page.
+const MOST: usize = PAGE_VERTICES.next_multiple_of(BLOCK);
+
+/// One page's weights, on the stack.
+#[derive(Debug)]
 pub struct Weights {
-    d2: Vec<f32>,
-    free: Vec<f32>,
-    weight: Vec<f32>,
-}
-
-thread_local! {
-    static WEIGHTS: RefCell<Weights> = RefCell::default();
+    weight: [f32; MOST],
 }
 
 impl Weights {
-    /// Calls `work` with this thread's room. Not to be nested.
+    /// Calls `work` with room for one page's weights.
+    #[inline(always)]
     pub fn with<T>(work: impl FnOnce(&mut Weights) -> T) -> T {
-        WEIGHTS.with_borrow_mut(work)
+        work(&mut Weights { weight: [0.0; MOST] })
     }
 
     /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) * (1 - mask)` within
@@ -35,30 +33,33 @@ impl Weights {
         radius2: f32,
         profile: impl Fn(f32) -> f32,
     ) -> usize {
-        let own = page.own();
-        for v in [&mut self.d2, &mut self.free, &mut self.weight] {
-            v.resize(own.max(v.len()), 0.0);
-        }
-        let (d2, free, weight) = (&mut self.d2[..own], &mut self.free[..own], &mut self.weight[..own]);
-        for ((row, d2), free) in page.rows()[..own].iter().zip(d2.iter_mut()).zip(free.iter_mut()) {
-            let [x, y, z, mask] = row.to_array();
-            let (x, y, z) = (x - centre.x, y - centre.y, z - centre.z);
-            *d2 = x * x + y * y + z * z;
-            *free = 1.0 - mask;
-        }
+        let own = page.own().min(MOST);
         let mut within = 0u32;
-        for ((&d2, &free), weight) in d2.iter().zip(free.iter()).zip(weight.iter_mut()) {
-            let inside = d2 < radius2;
-            within += u32::from(inside);
-            let w = profile(d2) * free;
-            *weight = if inside { w } else { 0.0 };
+        for (rows, weights) in page.rows()[..own].chunks(BLOCK).zip(self.weight.chunks_mut(BLOCK)) {
+            let (mut d2, mut free) = ([f32::INFINITY; BLOCK], [0.0f32; BLOCK]);
+            for ((row, d2), free) in rows.iter().zip(&mut d2).zip(&mut free) {
+                let [x, y, z, mask] = row.to_array();
+                let (x, y, z) = (x - centre.x, y - centre.y, z - centre.z);
+                *d2 = x * x + y * y + z * z;
+                *free = 1.0 - mask;
+            }
+            let inside = d2.iter().map(|d2| u32::from(*d2 < radius2)).sum::<u32>();
+            within += inside;
+            if inside == 0 {
+                weights.fill(0.0);
+                continue;
+            }
+            for ((&d2, &free), weight) in d2.iter().zip(&free).zip(weights.iter_mut()) {
+                let w = profile(d2) * free;
+                *weight = if d2 < radius2 { w } else { 0.0 };
+            }
         }
         within as usize
     }
 
     /// What [`Weights::sphere`] computed, one an own vertex.
     pub fn of(&self, page: &PageIn<'_>) -> &[f32] {
-        &self.weight[..page.own()]
+        &self.weight[..page.own().min(MOST)]
     }
 }
 

@@ -203,6 +203,7 @@ impl BoxTree {
     }
 
     /// Carries all leaves' boxes up; returns the box around everything.
+    #[inline(always)]
     pub(super) fn refit_all(&mut self) -> (Vec3, Vec3) {
         let (starts, depth) = self.levels();
         for level in 1..depth {
@@ -228,16 +229,22 @@ impl BoxTree {
         if root > 0.0 { self.nodes.iter().map(Planes::area).sum::<f32>() / root } else { 0.0 }
     }
 
-    /// The boxes of a page's triangles from its vertices' rows, and everything above them.
-    pub(super) fn refit_triangles(&mut self, triangles: &[[u16; 3]], points: &[Vec4]) -> (Vec3, Vec3) {
-        for (leaf, eight) in triangles.chunks(LEAF).enumerate() {
-            let (mut lo, mut hi) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-            for t in eight {
-                let [a, b, c] = t.map(|v| points[v as usize]);
-                lo = lo.min(a.min(b).min(c));
-                hi = hi.max(a.max(b).max(c));
+    /// The leaves' boxes from the vertices that each has, and everything above them. `corners[ends[i - 1]..ends[i]]` are
+    /// leaf `i`'s.
+    #[inline(always)]
+    pub(super) fn refit_leaves(&mut self, corners: &[u16], ends: &[u16], points: &[Vec4]) -> (Vec3, Vec3) {
+        let mut from = 0;
+        for (eight, node) in ends.chunks(8).zip(&mut self.nodes) {
+            for (lane, &end) in eight.iter().enumerate() {
+                let some = &corners[from..end as usize];
+                from = end as usize;
+                let (mut lo, mut hi) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+                for &v in some {
+                    let p = points[v as usize];
+                    (lo, hi) = (lo.min(p), hi.max(p));
+                }
+                node.set(lane, lo.xyz(), hi.xyz());
             }
-            self.set_leaf(leaf, lo.xyz(), hi.xyz());
         }
         self.refit_all()
     }

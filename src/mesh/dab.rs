@@ -19,6 +19,7 @@ use super::normals::{MOVED, PAINTED, TURNED, around_moved};
 use super::page::Page;
 use super::reach::Reach;
 use super::workers::Workers;
+use crate::simd::wide::{Wide, WideWork, dispatch};
 
 /// Rows below which one thread does a dab alone: waking another costs more than it helps.
 const PARALLEL: usize = 6 * 1024;
@@ -154,7 +155,8 @@ impl Mesh {
         {
             let Mesh { bench, pages, history, .. } = self;
             workers.each(parallel, &mut bench.slots, &mut bench.sides, |slot, side| {
-                displace(slot, side, &pages[slot.index as usize], history.before(slot.index), kernel);
+                let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
+                dispatch(false, Displace { slot, side, old, before, kernel });
             });
         }
         add_neighbours(self, selected, MOVED | PAINTED);
@@ -171,7 +173,8 @@ impl Mesh {
             self.order = indices;
             let clock = now;
             workers.each(parallel, slots, sides, |slot, side| {
-                turn(slot, side, &pages[slot.index as usize], clock);
+                let old = &pages[slot.index as usize];
+                dispatch(false, Turn { slot, side, old, now: clock });
             });
         }
         let turned = self.bench.slots.len();
@@ -248,7 +251,41 @@ impl Mesh {
     }
 }
 
+/// [`displace`], compiled for this processor.
+struct Displace<'a, K> {
+    slot: &'a mut Slot,
+    side: &'a mut Side,
+    old: &'a Page,
+    before: Option<&'a Arc<Page>>,
+    kernel: &'a K,
+}
+
+impl<K: Kernel> WideWork for Displace<'_, K> {
+    type Out = ();
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) {
+        displace(self.slot, self.side, self.old, self.before, self.kernel);
+    }
+}
+
+/// [`turn`], compiled for this processor.
+struct Turn<'a> {
+    slot: &'a mut Slot,
+    side: &'a mut Side,
+    old: &'a Page,
+    now: fn() -> u64,
+}
+
+impl WideWork for Turn<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) {
+        turn(self.slot, self.side, self.old, self.now);
+    }
+}
+
 /// Copies the points and lets the kernel write.
+#[inline(always)]
 fn displace<K: Kernel>(slot: &mut Slot, side: &mut Side, old: &Page, before: Option<&Arc<Page>>, kernel: &K) {
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
     page.points.clear();
@@ -303,6 +340,7 @@ fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, 
 }
 
 /// Takes over the halo's new places, and computes the normals and the tree.
+#[inline(always)]
 fn turn(slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -> u64) {
     if slot.any == 0 && side.incoming.is_empty() {
         return;

@@ -44,6 +44,9 @@ pub struct Topology {
     pub ids: Box<[u32]>,
     /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight make a leaf.
     pub triangles: Box<[[u16; 3]]>,
+    /// The vertices of each leaf of the page's tree, each once: `leaf_corners[leaf_ends[i - 1]..leaf_ends[i]]`.
+    pub leaf_corners: Box<[u16]>,
+    pub leaf_ends: Box<[u16]>,
     /// The triangles' numbers in the mesh that was loaded.
     pub triangle_ids: Box<[u32]>,
     /// The neighbours of own vertex `v` are `rings[ring_starts[v]..ring_starts[v + 1]]`, counter-clockwise.
@@ -82,6 +85,8 @@ impl Topology {
             + self.ids.len() * 4
             + self.triangles.len() * 10
             + self.ring_starts.len() * 2
+            + self.leaf_corners.len() * 2
+            + self.leaf_ends.len() * 2
             + self.rings.len() * 2
             + self.kinds.len()
             + self.halo_sources.len() * 2
@@ -197,13 +202,16 @@ impl Page {
     }
 
     /// Brings the page's tree and bounds up to date.
+    #[inline(always)]
     pub(super) fn refit(&mut self) {
         let Page { topology, points, tree, .. } = self;
-        let (mut lo, mut hi) = tree.refit_triangles(&topology.triangles, points);
+        let (mut lo, mut hi) = tree.refit_leaves(&topology.leaf_corners, &topology.leaf_ends, points);
         // Own vertices whose triangles all belong to other pages are found by themselves.
-        for p in &points[..topology.own] {
-            (lo, hi) = (lo.min(p.truncate()), hi.max(p.truncate()));
+        let (mut least, mut most) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+        for &p in &points[..topology.own] {
+            (least, most) = (least.min(p), most.max(p));
         }
+        (lo, hi) = (lo.min(least.truncate()), hi.max(most.truncate()));
         (self.lo, self.hi) = (lo, hi);
     }
 

@@ -3,7 +3,7 @@
 
 use glam::Vec4Swizzles;
 
-use super::boxtree::BoxTree;
+use super::boxtree::{BoxTree, LEAF};
 use super::clay::Mesh;
 use super::normals;
 use super::page::BREAK;
@@ -51,7 +51,14 @@ impl Mesh {
             }
             let mut fresh = BoxTree::default();
             fresh.reset(page.tree.leaves());
-            fresh.refit_triangles(&t.triangles, &page.points);
+            fresh.refit_leaves(&t.leaf_corners, &t.leaf_ends, &page.points);
+            for (i, eight) in t.triangles.chunks(LEAF).enumerate() {
+                let from = if i == 0 { 0 } else { t.leaf_ends[i - 1] as usize };
+                let own = &t.leaf_corners[from..t.leaf_ends[i] as usize];
+                if eight.iter().flatten().any(|v| !own.contains(v)) {
+                    return Err(format!("page {i}: a leaf does not know its triangles' vertices"));
+                }
+            }
             if !fresh.same(&page.tree) {
                 return Err(format!("page {i}: its tree is out of date"));
             }

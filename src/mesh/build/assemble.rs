@@ -117,6 +117,18 @@ pub(super) fn assemble(
     order::order_runs(&mut mine, LEAF);
     let triangles: Box<[[u16; 3]]> = mine.iter().map(|m| locals[m.1 as usize]).collect();
 
+    let (mut leaf_corners, mut leaf_ends) = (Vec::with_capacity(count * 3), Vec::new());
+    for eight in triangles.chunks(LEAF) {
+        let mut some: Vec<u16> = eight.iter().flatten().copied().collect();
+        some.sort_unstable();
+        some.dedup();
+        leaf_corners.extend(some);
+        leaf_ends.push(leaf_corners.len().min(u16::MAX as usize) as u16);
+    }
+    if leaf_corners.len() > u16::MAX as usize {
+        return Err(tangled("too many corners", u16::MAX as usize));
+    }
+
     let everyone = || own.iter().copied().chain(halo.iter().map(|h| h.2));
     let points: Vec<Vec4> = everyone().map(|v| tri.positions[v as usize].extend(0.0)).collect();
     let normals: Vec<Vec4> = everyone()
@@ -133,6 +145,8 @@ pub(super) fn assemble(
             ids: own.into(),
             triangle_ids: mine.iter().map(|m| touching[m.1 as usize]).collect(),
             triangles,
+            leaf_corners: leaf_corners.into(),
+            leaf_ends: leaf_ends.into(),
             ring_starts: ring_starts.into(),
             rings: rings.into(),
             kinds: kinds.into(),
