@@ -26,8 +26,9 @@ fn area_sum(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
     let mut sum = Vec4::ZERO;
     if let (Ring::Closed, &[a, b, c, d, e, f]) = (t.kinds[v], ring) {
         // Most vertices of most meshes. Two neighbouring terms share a factor: d0 x d1 + d1 x d2 = d1 x (d2 - d0).
-        let [a, c, e] = [a, c, e].map(|k| points[k as usize]);
-        let [b, d, f] = [b, d, f].map(|k| points[k as usize] - p);
+        // Written out: an array's `map` is not always inlined into code for wider instructions.
+        let (a, c, e) = (points[a as usize], points[c as usize], points[e as usize]);
+        let (b, d, f) = (points[b as usize] - p, points[d as usize] - p, points[f as usize] - p);
         let term = |u: Vec4, v: Vec4| u * v.yzxw() - u.yzxw() * v;
         return (term(b, c - a) + term(d, e - c) + term(f, a - e)).yzxw();
     }
@@ -115,8 +116,8 @@ pub(super) fn around_moved(page: &mut Page, marks: &mut [u8], all_moved: bool) {
         } else {
             match *topology.ring(v) {
                 [a, b, c, d, e, f] => {
-                    let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|k| marks[(k & !BREAK) as usize]);
-                    (a | b) | (c | d) | (e | f)
+                    let at = |k: u16| marks[(k & !BREAK) as usize];
+                    (at(a) | at(b)) | (at(c) | at(d)) | (at(e) | at(f))
                 }
                 ref ring => ring.iter().fold(0, |m, &k| m | marks[(k & !BREAK) as usize]),
             }
