@@ -146,10 +146,7 @@ mod tests {
     #[test]
     fn a_tetrahedron_is_measured_exactly() {
         let mesh = TriMesh {
-            positions: vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0]
-                .iter()
-                .map(|p| *p + 100.0)
-                .collect(),
+            positions: [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0].map(|p| p + 100.0).to_vec(),
             triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
             colours: None,
         };

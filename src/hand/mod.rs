@@ -139,8 +139,9 @@ impl HandTools {
                 );
             match known {
                 Some(i) => {
-                    if self.held[i].track.take(t_us, hand, &s) {
-                        let held = &mut self.held[i];
+                    let held = &mut self.held[i];
+                    let changed = held.track.take(t_us, hand, &s);
+                    if changed {
                         (held.tool, held.free, held.anchor_mm) = (None, false, hand.palm);
                     }
                 }

@@ -315,7 +315,7 @@ mod tests {
         let mut spacer = Spacer::new(1.0);
         spacer.begin(&point(0.1), &mut field);
         spacer.walk(&point(0.1), &point(0.9), 0.0, &mut field);
-        let before = field.dabs.iter().filter(|p| p.x < 0.5).last().expect("dabs before the gap").x;
+        let before = field.dabs.iter().rfind(|p| p.x < 0.5).expect("dabs before the gap").x;
         let after = field.dabs.iter().find(|p| p.x > 0.5).expect("dabs after the gap").x;
         assert!(before > 0.375 && (0.6..0.601).contains(&after), "{before} {after}");
     }

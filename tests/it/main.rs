@@ -1,4 +1,5 @@
 //! One binary for all integration tests: one link, one start.
+#![allow(clippy::print_stdout)] // Tables and skips are told on standard output.
 
 mod bad_input;
 mod clay;

@@ -42,10 +42,11 @@ impl Thickness {
         let mut seen = 0;
         self.surface.weld.iter().enumerate().filter_map(move |(i, &w)| {
             // Welded vertices are numbered by first appearance.
-            (w == seen).then(|| {
-                seen += 1;
-                (self.values[i], self.reasons[i], self.surface.positions[w as usize])
-            })
+            if w != seen {
+                return None;
+            }
+            seen += 1;
+            Some((self.values[i], self.reasons[i], self.surface.positions[w as usize]))
         })
     }
 
