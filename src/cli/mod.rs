@@ -22,6 +22,11 @@ pub mod measure;
 mod memory;
 #[cfg(feature = "viewer")]
 pub mod render;
+pub mod distance;
+pub mod hollow;
+pub mod offset;
+pub mod project;
+pub mod remesh;
 pub mod replay;
 pub mod run;
 pub mod subdivide;
@@ -79,6 +84,16 @@ pub enum Command {
     Thickness(thickness::ThicknessArgs),
     /// Volume, area, dimensions, projected areas and thickness of a part.
     Measure(measure::MeasureArgs),
+    /// Signed distance to a solid, at points or on a grid.
+    Distance(distance::DistanceArgs),
+    /// A part's shadow along a direction: area, outline, drawing.
+    Project(project::ProjectArgs),
+    /// One closed surface of even triangles out of any mesh.
+    Remesh(remesh::RemeshArgs),
+    /// Grow or shrink a solid, or melt it together with another.
+    Offset(offset::OffsetArgs),
+    /// Hollow a part to a wall of stated thickness.
+    Hollow(hollow::HollowArgs),
     /// Print completions for a shell.
     Completions { shell: clap_complete::Shell },
     /// Print the manual page.
@@ -176,6 +191,11 @@ pub fn run() -> u8 {
         Some(Command::Subdivide(args)) => subdivide::run(&args, cli.json),
         Some(Command::Decimate(args)) => decimate::run(&args, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
+        Some(Command::Distance(args)) => distance::run(&args, cli.json),
+        Some(Command::Project(args)) => project::run(&args, cli.json),
+        Some(Command::Remesh(args)) => remesh::run(&args, cli.json),
+        Some(Command::Offset(args)) => offset::run(&args, cli.json),
+        Some(Command::Hollow(args)) => hollow::run(&args, cli.json),
         Some(Command::Man) => clap_mangen::Man::new(Cli::command())
             .render(&mut std::io::stdout())
             .map_err(|e| Fail::Input(e.to_string())),

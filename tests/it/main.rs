@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod clay;
+mod field;
 mod hands;
 mod io;
 mod io_files;

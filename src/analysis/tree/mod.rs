@@ -9,6 +9,7 @@
 //! reinsertion (Meister and Bittner 2017), then collapsed: each wide node opens its largest child until it holds eight.
 
 mod build;
+mod closest;
 mod traverse;
 
 use glam::Vec3;
@@ -19,6 +20,7 @@ use crate::simd::wide;
 pub use traverse::Stack;
 
 pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};
+pub use closest::{Feature, Nearest, nearest_on_triangle};
 
 /// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <= t_max` count.
 #[derive(Debug, Clone, Copy)]

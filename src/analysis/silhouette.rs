@@ -1,0 +1,220 @@
+//! The outline of a mesh seen along a direction: a chain of directed edges, and the region that it goes around.
+//!
+//! The triangles that face the viewer cover each point of the plane as often as their common border goes around it. So the
+//! shadow is the region where the border's winding number is not zero, and only the border, the silhouette edges, needs to
+//! be resolved into polygons. Of an open mesh all triangles count, each turned to face the viewer.
+
+use glam::{DVec2, DVec3};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay::Overlay;
+use i_overlay::core::overlay::ShapeType::Subject;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::i_float::int::point::IntPoint;
+
+use super::distance::topology::{NO_PARTNER, Topology};
+
+/// Half the extent of a chain in whole numbers: about 4e-9 of the extent is the smallest step.
+const REACH: f64 = (1 << 28) as f64;
+
+/// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    pub u: DVec3,
+    pub v: DVec3,
+    pub towards: DVec3,
+}
+
+impl Plane {
+    /// Seen along `direction`, which is not zero, turned by `turn` radians about it. Along an axis, `u` and `v` are axes.
+    pub fn along(direction: DVec3, turn: f64) -> Option<Plane> {
+        let towards = -direction.try_normalize()?;
+        let up = if towards.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
+        let u = up.cross(towards).normalize();
+        let v = towards.cross(u);
+        let (s, c) = turn.sin_cos();
+        Some(Plane { u: u * c + v * s, v: v * c - u * s, towards })
+    }
+
+    pub fn flat(&self, p: DVec3) -> DVec2 {
+        DVec2::new(p.dot(self.u), p.dot(self.v))
+    }
+
+    pub fn solid(&self, p: DVec2) -> DVec3 {
+        self.u * p.x + self.v * p.y
+    }
+}
+
+/// A region of the plane: an outer loop, counter-clockwise, and holes, clockwise.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Polygon {
+    pub outer: Vec<DVec2>,
+    pub holes: Vec<Vec<DVec2>>,
+}
+
+/// Twice the area of a loop, positive counter-clockwise.
+fn twice(ring: &[DVec2]) -> f64 {
+    let Some(&o) = ring.first() else { return 0.0 };
+    ring.windows(2).map(|w| (w[0] - o).perp_dot(w[1] - o)).sum()
+}
+
+impl Polygon {
+    pub fn rings(&self) -> impl Iterator<Item = &Vec<DVec2>> {
+        std::iter::once(&self.outer).chain(&self.holes)
+    }
+
+    pub fn area(&self) -> f64 {
+        (twice(&self.outer).abs() - self.holes.iter().map(|h| twice(h).abs()).sum::<f64>()) * 0.5
+    }
+}
+
+/// Directed edges in a plane, in whole numbers, whose sum is closed.
+#[derive(Debug, Clone)]
+pub struct Chain {
+    centre: DVec2,
+    scale: f64,
+    edges: Vec<[[i32; 2]; 2]>,
+}
+
+impl Chain {
+    /// For points within the box from `lo` to `hi`.
+    pub fn new(lo: DVec2, hi: DVec2) -> Chain {
+        let half = ((hi - lo) * 0.5).max_element();
+        let scale = if half > 0.0 && half.is_finite() { REACH / half } else { 1.0 };
+        Chain { centre: (lo + hi) * 0.5, scale, edges: Vec::new() }
+    }
+
+    pub fn whole(&self, p: DVec2) -> [i32; 2] {
+        ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i32)
+    }
+
+    #[inline]
+    pub fn push(&mut self, a: [i32; 2], b: [i32; 2]) {
+        if a != b {
+            self.edges.push([a, b]);
+        }
+    }
+
+    /// An edge there and back is nothing. In a view along a part's walls nearly all are of this kind, and they are what
+    /// makes the resolution slow.
+    fn cancel(&mut self) {
+        let lower_first = |e: &[[i32; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
+        self.edges.sort_unstable_by_key(|e| lower_first(e).0);
+        let mut kept = Vec::with_capacity(self.edges.len());
+        for group in self.edges.chunk_by(|a, b| lower_first(a).0 == lower_first(b).0) {
+            let net: i32 = group.iter().map(|e| lower_first(e).1).sum();
+            let [a, b] = lower_first(&group[0]).0;
+            kept.extend((0..net).map(|_| [a, b]));
+            kept.extend((net..0).map(|_| [b, a]));
+        }
+        self.edges = kept;
+    }
+
+    /// The edges as loops. Every point has as many edges in as out, so a walk ends only where it began.
+    fn loops(&mut self) -> Vec<Vec<IntPoint>> {
+        self.cancel();
+        self.edges.sort_unstable();
+        let edges = &self.edges;
+        // The first edge from each point, and for each edge where the next begins.
+        let mut starts: Vec<u32> = Vec::new();
+        for i in 0..edges.len() {
+            if i == 0 || edges[i][0] != edges[i - 1][0] {
+                starts.push(i as u32);
+            }
+        }
+        let from = |p: [i32; 2]| starts.binary_search_by(|&i| edges[i as usize][0].cmp(&p));
+        let mut next = starts.clone();
+        let mut loops = Vec::new();
+        for s in 0..starts.len() {
+            loop {
+                let mut at = s;
+                let mut ring = Vec::new();
+                loop {
+                    let edge = next[at] as usize;
+                    let end = starts.get(at + 1).map_or(edges.len(), |&e| e as usize);
+                    if edge >= end {
+                        break;
+                    }
+                    next[at] += 1;
+                    let [a, b] = edges[edge];
+                    ring.push(IntPoint::new(a[0], a[1]));
+                    let Ok(to) = from(b) else { break };
+                    at = to;
+                }
+                if ring.is_empty() {
+                    break;
+                }
+                if ring.len() > 2 {
+                    loops.push(ring);
+                }
+            }
+        }
+        loops
+    }
+
+    /// The region that the chain goes around, as polygons with holes.
+    pub fn resolve(mut self) -> Vec<Polygon> {
+        let loops = self.loops();
+        let mut overlay = Overlay::<i32>::new(self.edges.len());
+        for l in &loops {
+            overlay.add_contour(l, Subject);
+        }
+        let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
+        let back = |p: &IntPoint| self.centre + DVec2::new(p.x as f64, p.y as f64) / self.scale;
+        shapes
+            .into_iter()
+            .filter_map(|shape| {
+                let mut rings = shape.iter().map(|r| {
+                    let mut ring: Vec<DVec2> = r.iter().map(back).collect();
+                    ring.extend(ring.first().copied());
+                    ring
+                });
+                Some(Polygon { outer: rings.next()?, holes: rings.collect() })
+            })
+            .collect()
+    }
+}
+
+/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent. Rings repeat their first point at the end.
+pub fn outline(topology: &Topology, plane: &Plane) -> Vec<Polygon> {
+    let flat: Vec<DVec2> = topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).collect();
+    let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for &p in &flat {
+        if p.is_finite() {
+            lo = lo.min(p);
+            hi = hi.max(p);
+        }
+    }
+    if lo.x > hi.x {
+        return Vec::new();
+    }
+    // By the flat corners, so that what counts as facing is what has area in the plane.
+    let facing: Vec<i8> = topology
+        .triangles
+        .iter()
+        .map(|t| {
+            if t[0] == u32::MAX {
+                return 0;
+            }
+            let [a, b, c] = t.map(|v| flat[v as usize]);
+            let area = (b - a).perp_dot(c - a);
+            (area > 0.0) as i8 - (area < 0.0) as i8
+        })
+        .collect();
+    let mut chain = Chain::new(lo, hi);
+    for (i, t) in topology.triangles.iter().enumerate() {
+        let side = facing[i];
+        if side == 0 || (topology.closed && side < 0) {
+            continue;
+        }
+        for k in 0..3 {
+            let other = topology.across[i][k];
+            if other != NO_PARTNER && facing[other as usize] == side {
+                continue;
+            }
+            let a = chain.whole(flat[t[k] as usize]);
+            let b = chain.whole(flat[t[(k + 1) % 3] as usize]);
+            if side > 0 { chain.push(a, b) } else { chain.push(b, a) }
+        }
+    }
+    chain.resolve()
+}

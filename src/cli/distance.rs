@@ -1,0 +1,179 @@
+//! `sculptd distance`: the signed distance at points, or sampled on a grid.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use sculptd_devices::Clock;
+use serde::Serialize;
+
+use super::{Fail, Outcome, answer};
+use crate::analysis::cancel::Job;
+use crate::analysis::distance::{Sign, Solid};
+use crate::analysis::grid::Grid;
+use crate::mesh::TriMesh;
+use crate::mesh::io::{read_mesh, write_beside};
+
+#[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["points", "grid"])))]
+pub struct DistanceArgs {
+    /// The mesh file.
+    pub mesh: PathBuf,
+    /// Points as text, three numbers a line, in the mesh's unit.
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Sample a grid of this many samples along the longest side, 2 to 1024.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1024))]
+    pub grid: Option<u64>,
+    /// Samples outside the mesh's box on each side of the grid.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub margin: usize,
+    /// How inside is told from outside.
+    #[arg(long, value_enum, default_value = "winding")]
+    pub sign: SignArg,
+    /// Where the grid goes, as .npy, or the points' distances, one a line.
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum SignArg {
+    /// The generalised winding number: right on crossed and broken meshes too.
+    Winding,
+    /// The normal at the nearest point: faster, for clean closed meshes.
+    Pseudonormal,
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    count: usize,
+    seconds: f64,
+    queries_per_second: f64,
+    /// Negative inside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distances: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grid: Option<GridFacts>,
+    closed: bool,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct GridFacts {
+    size: [usize; 3],
+    origin: [f64; 3],
+    spacing: f64,
+    min: f32,
+    max: f32,
+    file: Option<PathBuf>,
+}
+
+/// Reads a mesh as triangles and makes it ready; with the reader's warnings.
+pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fail> {
+    let loaded = read_mesh(path, job)?;
+    let (mesh, _) = loaded.mesh.triangulate();
+    if mesh.triangles.is_empty() {
+        return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
+    }
+    let solid = Solid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
+    let mut warnings = loaded.warnings;
+    if !solid.topology.closed {
+        warnings.push("the surface is not closed: inside is where its winding number is above a half".into());
+    }
+    Ok((mesh, solid, warnings))
+}
+
+/// Prints warnings on standard error.
+pub fn warn(path: &Path, warnings: &[String]) {
+    for w in warnings {
+        eprintln!("sculptd: warning: {}: {w}", path.display());
+    }
+}
+
+/// Runs `work` and says how many seconds it took.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let clock = Clock::monotonic();
+    let start = clock.now_us();
+    let out = work();
+    (out, (clock.now_us() - start) as f64 * 1e-6)
+}
+
+fn read_points(path: &Path) -> Result<Vec<DVec3>, Fail> {
+    let text = std::fs::read_to_string(path).map_err(|e| Fail::io(path, &e))?;
+    let mut out = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or("").trim();
+        if line.is_empty() {
+            continue;
+        }
+        let words = line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
+        let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => out.push(DVec3::new(x, y, z)),
+            _ => {
+                return Err(Fail::Input(format!(
+                    "{}: line {}: expected three numbers, found \"{line}\"",
+                    path.display(),
+                    i + 1
+                )));
+            }
+        }
+    }
+    Ok(out)
+}
+
+pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
+    let job = Job::default();
+    let points = args.points.as_deref().map(read_points).transpose()?;
+    let (_, solid, warnings) = solid(&args.mesh, &job)?;
+    let solid = solid.with_sign(match args.sign {
+        SignArg::Winding => Sign::Winding,
+        SignArg::Pseudonormal => Sign::Pseudonormal,
+    });
+    let cancelled = |e: crate::analysis::cancel::Cancelled| Fail::Input(e.to_string());
+    let closed = solid.topology.closed;
+    let mut out =
+        Answer { count: 0, seconds: 0.0, queries_per_second: 0.0, distances: None, grid: None, closed, warnings };
+    if let Some(points) = &points {
+        let (distances, seconds) = timed(|| solid.signed_distances(points, &job));
+        let distances = distances.map_err(cancelled)?;
+        (out.count, out.seconds) = (points.len(), seconds);
+        if let Some(file) = &args.out {
+            write_beside(file, |w| distances.iter().try_for_each(|d| writeln!(w, "{d}")))
+                .map_err(|e| Fail::io(file, &e))?;
+        }
+        out.distances = Some(distances);
+    } else {
+        let (lo, hi) = solid.tree.bounds();
+        let side = args.grid.unwrap_or(30) as usize;
+        let layout = Grid::layout((lo.as_dvec3(), hi.as_dvec3()), side, args.margin.min(side / 2 - 1));
+        let (grid, seconds) = timed(|| Grid::sample(&solid, layout, &job));
+        let grid = grid.map_err(cancelled)?;
+        if let Some(file) = &args.out {
+            write_beside(file, |w| grid.write_npy(w)).map_err(|e| Fail::io(file, &e))?;
+        }
+        (out.count, out.seconds) = (grid.values.len(), seconds);
+        let (min, max) =
+            grid.values.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
+        out.grid = Some(GridFacts {
+            size: grid.size,
+            origin: grid.origin.to_array(),
+            spacing: grid.spacing,
+            min,
+            max,
+            file: args.out.clone(),
+        });
+    }
+    out.queries_per_second = if out.seconds > 0.0 { out.count as f64 / out.seconds } else { 0.0 };
+    warn(&args.mesh, &out.warnings);
+    answer(json, &out, |w| {
+        if let Some(g) = &out.grid {
+            let [x, y, z] = g.size;
+            writeln!(w, "grid       {x} x {y} x {z}, spacing {}", g.spacing)?;
+            writeln!(w, "distances  {} to {}", g.min, g.max)?;
+        } else if args.out.is_none() {
+            out.distances.iter().flatten().try_for_each(|d| writeln!(w, "{d}"))?;
+        }
+        writeln!(w, "{} distances in {:.4} s", out.count, out.seconds)
+    });
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! `sculptd hollow`: a cavity inside a part, a wall of stated thickness around it.
+
+use std::path::PathBuf;
+
+use super::distance::{solid, timed, warn};
+use super::remesh::{How, finish};
+use super::{Fail, Outcome};
+use crate::analysis::cancel::Job;
+use crate::analysis::offset::hollow;
+use crate::mesh::io::writable_format;
+
+#[derive(Debug, clap::Args)]
+pub struct HollowArgs {
+    /// The mesh file.
+    pub mesh: PathBuf,
+    /// The wall's thickness.
+    #[arg(long, value_name = "MM")]
+    pub wall: f64,
+    /// Where the new mesh goes; the ending says the format.
+    #[arg(long, short, value_name = "FILE")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub how: How,
+}
+
+pub fn run(args: &HollowArgs, json: bool) -> Outcome {
+    let job = Job::default();
+    writable_format(&args.out)?;
+    if !(args.wall > 0.0 && args.wall.is_finite()) {
+        return Err(Fail::Usage("expected a wall thicker than nothing".into()));
+    }
+    let (mesh, solid, mut warnings) = solid(&args.mesh, &job)?;
+    let (made, seconds) = timed(|| hollow(&mesh, &solid, args.wall, args.how.side, &job));
+    let made = made?;
+    if made.spacing > args.wall * 0.5 {
+        warnings.push(format!(
+            "the wall is only {:.1} samples thick: a larger --side keeps it more exactly",
+            args.wall / made.spacing
+        ));
+    }
+    warn(&args.mesh, &warnings);
+    finish(&args.out, &made.mesh, seconds, warnings, json)
+}

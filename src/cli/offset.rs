@@ -1,0 +1,50 @@
+//! `sculptd offset`: a solid grown or shrunk, or melted together with another.
+
+use std::path::PathBuf;
+
+use super::distance::{solid, timed, warn};
+use super::remesh::{How, finish};
+use super::{Fail, Outcome};
+use crate::analysis::cancel::Job;
+use crate::analysis::offset::{offset, smooth_union};
+use crate::mesh::io::writable_format;
+
+#[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["distance", "unite"])))]
+pub struct OffsetArgs {
+    /// The mesh file.
+    pub mesh: PathBuf,
+    /// How far to move the surface: out, or in where negative.
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    pub distance: Option<f64>,
+    /// Instead: unite with the solid in this file, by a fillet of `--radius`.
+    #[arg(long, value_name = "MESH")]
+    pub unite: Option<PathBuf>,
+    /// The fillet's radius, for `--unite`.
+    #[arg(long, value_name = "MM", default_value_t = 0.0)]
+    pub radius: f64,
+    /// Where the new mesh goes; the ending says the format.
+    #[arg(long, short, value_name = "FILE")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub how: How,
+}
+
+pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
+    let job = Job::default();
+    writable_format(&args.out)?;
+    if !args.radius.is_finite() || !args.distance.unwrap_or(0.0).is_finite() {
+        return Err(Fail::Usage("expected lengths that are finite".into()));
+    }
+    let (_, a, mut warnings) = solid(&args.mesh, &job)?;
+    let (made, seconds) = match (&args.unite, args.distance) {
+        (Some(other), _) => {
+            let (_, b, more) = solid(other, &job)?;
+            warnings.extend(more);
+            timed(|| smooth_union(&a, &b, args.radius, args.how.side, &job))
+        }
+        (None, distance) => timed(|| offset(&a, distance.unwrap_or(0.0), args.how.side, &job)),
+    };
+    warn(&args.mesh, &warnings);
+    finish(&args.out, &made?, seconds, warnings, json)
+}

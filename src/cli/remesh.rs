@@ -1,0 +1,85 @@
+//! `sculptd remesh`: one closed surface of even triangles out of any mesh.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::distance::{solid, timed, warn};
+use super::{Fail, Outcome, answer};
+use crate::analysis::cancel::Job;
+use crate::analysis::remesh::{RemeshError, Settings, remesh};
+use crate::mesh::TriMesh;
+use crate::mesh::io::{writable_format, write_mesh};
+
+#[derive(Debug, clap::Args)]
+pub struct RemeshArgs {
+    /// The mesh file: closed or not, crossed or not, of any number of shells.
+    pub mesh: PathBuf,
+    /// Where the new mesh goes; the ending says the format.
+    #[arg(long, short, value_name = "FILE")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub how: How,
+    /// Keep sharp edges.
+    #[arg(long)]
+    pub sharp: bool,
+}
+
+/// How fine the field is sampled.
+#[derive(Debug, Clone, clap::Args)]
+pub struct How {
+    /// Samples along the longest side of the box, 8 to 1024.
+    #[arg(long, value_name = "N", default_value_t = 256)]
+    pub side: usize,
+}
+
+/// What came out; the same for every command that makes a mesh from the field.
+#[derive(Debug, Serialize)]
+pub struct Made {
+    pub file: PathBuf,
+    pub vertices: usize,
+    pub triangles: usize,
+    pub volume: f64,
+    pub area: f64,
+    pub seconds: f64,
+    pub warnings: Vec<String>,
+}
+
+impl From<RemeshError> for Fail {
+    fn from(e: RemeshError) -> Self {
+        match e {
+            RemeshError::Side(_) => Fail::Usage(e.to_string()),
+            _ => Fail::Input(e.to_string()),
+        }
+    }
+}
+
+/// Writes the mesh and prints what it is.
+pub fn finish(out: &Path, mesh: &TriMesh, seconds: f64, warnings: Vec<String>, json: bool) -> Outcome {
+    write_mesh(out, &mesh.to_poly())?;
+    let m = crate::analysis::measure::measures(mesh);
+    let made = Made {
+        file: out.into(),
+        vertices: mesh.positions.len(),
+        triangles: mesh.triangles.len(),
+        volume: m.volume,
+        area: m.area,
+        seconds,
+        warnings,
+    };
+    answer(json, &made, |w| {
+        writeln!(w, "{}: {} vertices, {} triangles", out.display(), made.vertices, made.triangles)?;
+        writeln!(w, "volume {:.4} mm3, area {:.4} mm2, {:.3} s", made.volume, made.area, seconds)
+    });
+    Ok(())
+}
+
+pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
+    let job = Job::default();
+    writable_format(&args.out)?;
+    let (mesh, solid, warnings) = solid(&args.mesh, &job)?;
+    let settings = Settings { side: args.how.side, sharp: args.sharp };
+    let (made, seconds) = timed(|| remesh(&mesh, &solid, settings, &job));
+    warn(&args.mesh, &warnings);
+    finish(&args.out, &made?, seconds, warnings, json)
+}
