@@ -1,5 +1,6 @@
 //! Rates of distance queries beside parry3d's, in the same run: `cargo bench --bench field [MESH...]`.
 //! One thread unless said. A line: what, ours, the peer's, per query or whole.
+#![allow(clippy::print_stdout)]
 
 use std::path::Path;
 use std::time::Instant;
@@ -11,6 +12,9 @@ use parry3d::shape::{TriMesh as Peer, TriMeshFlags};
 use sculptd::analysis::cancel::Job;
 use sculptd::analysis::distance::{Sign, Solid};
 use sculptd::analysis::grid::Grid;
+use sculptd::analysis::march::default_epsilon;
+use sculptd::analysis::projection::{By, Plane, outline, sample};
+use sculptd::analysis::remesh::{Settings, remesh};
 use sculptd::mesh::TriMesh;
 use sculptd::mesh::io::read_mesh;
 use sculptd::mesh::shapes::icosphere;
@@ -100,6 +104,25 @@ fn rates(name: &str, mesh: &TriMesh) {
     let [one, two] = [0, 1].map(|i| {
         median(|| pools[i].install(|| drop(std::hint::black_box(solid.nearest(&volume, &job).unwrap()))))
     });
+    let plane = Plane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
+    let field = Grid::sample(&solid, Grid::layout((lo, hi), 128, 1), &job).unwrap();
+    pools[0].install(|| {
+        for (what, plane) in [("turned", plane), ("along z", Plane::along(DVec3::NEG_Z, 0.0).unwrap())] {
+            let exact = median(|| drop(std::hint::black_box(outline(&solid.topology, &plane))));
+            println!("  exact silhouette, {what}: {:.3} ms", exact * 1e3);
+        }
+        let rays = median(|| drop(sample(&solid, &plane, 25_000, 1, By::Rays, &job).unwrap()));
+        let by = By::Marching(&field, default_epsilon(&field));
+        let march = median(|| drop(sample(&solid, &plane, 25_000, 1, by, &job).unwrap()));
+        println!("  25,000 points by rays {:.2} ms, by marching {:.2} ms", rays * 1e3, march * 1e3);
+    });
+    let new = median(|| {
+        pools[1].install(|| {
+            let solid = Solid::build(mesh, &job).unwrap();
+            let _ = std::hint::black_box(remesh(mesh, &solid, Settings::default(), &job));
+        })
+    });
+    println!("  remesh at 256 a side, two threads, tree included: {new:.2} s");
     println!("  10,000 nearest points on two threads: {:.2} times faster", one / two);
 }
 
@@ -108,6 +131,7 @@ fn main() {
     if files.is_empty() {
         rates("sphere", &icosphere(1.0, 25));
         rates("fine sphere", &icosphere(1.0, 81));
+        rates("clay", &icosphere(1.0, 224));
     }
     for f in files {
         match read_mesh(Path::new(&f), &Job::default()) {

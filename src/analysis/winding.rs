@@ -103,9 +103,10 @@ impl Winding {
         Winding { dipoles }
     }
 
-    /// How often the surface of `tree`, which this was built from, goes around `p`.
+    /// How often the surface of `tree`, which this was built from, goes around `p`; 0 out of range
+    /// ([`super::tree::REACH`]).
     pub fn at(&self, tree: &WideTree, p: DVec3) -> f64 {
-        if self.dipoles.is_empty() || !p.is_finite() {
+        if self.dipoles.is_empty() || tree.out_of_range(p) {
             return 0.0;
         }
         wide::dispatch(tree.scalar(), Walk { winding: self, tree, p })

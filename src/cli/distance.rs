@@ -10,6 +10,7 @@ use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::analysis::distance::{Sign, Solid};
 use crate::analysis::grid::Grid;
+use crate::analysis::tree::REACH;
 use crate::mesh::TriMesh;
 use crate::mesh::io::{read_mesh, write_beside};
 
@@ -73,6 +74,11 @@ pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fa
     let (mesh, _) = loaded.mesh.triangulate();
     if mesh.triangles.is_empty() {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
+    }
+    let (lo, hi) = mesh.bounds();
+    let most = lo.abs().max(hi.abs()).max_element();
+    if most as f64 > REACH {
+        return Err(Fail::Input(format!("{}: expected coordinates up to {REACH:e}, found {most:e}", path.display())));
     }
     let solid = Solid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
     let mut warnings = loaded.warnings;
@@ -145,7 +151,7 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     } else {
         let (lo, hi) = solid.tree.bounds();
         let side = args.grid.unwrap_or(30) as usize;
-        let layout = Grid::layout((lo.as_dvec3(), hi.as_dvec3()), side, args.margin.min(side / 2 - 1));
+        let layout = Grid::layout((lo.as_dvec3(), hi.as_dvec3()), side, args.margin.min((side / 2).saturating_sub(1)));
         let (grid, seconds) = timed(|| Grid::sample(&solid, layout, &job));
         let grid = grid.map_err(cancelled)?;
         if let Some(file) = &args.out {

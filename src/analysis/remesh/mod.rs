@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::cancel::{Cancelled, Job};
 use super::distance::Solid;
 use super::grid::{Grid, MAX_SAMPLES};
+use super::tree::REACH;
 use crate::mesh::TriMesh;
 
 /// How fine the new mesh is, and whether edges stay sharp.
@@ -49,6 +50,9 @@ pub(super) fn layout(solid: &Solid, more: f64, side: usize) -> Result<Grid, Reme
         return Err(RemeshError::Empty);
     }
     let (lo, hi) = solid.tree.bounds();
+    if !(lo.abs().max(hi.abs()).max_element() as f64 + more < REACH) {
+        return Err(RemeshError::Empty);
+    }
     let grid = Grid::layout((lo.as_dvec3() - more, hi.as_dvec3() + more), side, MARGIN);
     let [x, y, z] = grid.size;
     if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }

@@ -99,11 +99,19 @@ fn nearest_on_segments(p: DVec3, corners: [DVec3; 3]) -> (DVec3, Feature) {
 }
 
 impl WideTree {
+    /// Squares of lengths must fit single precision: neither the mesh nor `p` may reach beyond [`REACH`].
+    pub(crate) fn out_of_range(&self, p: DVec3) -> bool {
+        let (lo, hi) = self.bounds;
+        // Not a number is out of range too.
+        let within = p.abs().max_element() <= REACH && lo.abs().max(hi.abs()).max_element() as f64 <= REACH;
+        !within || p.is_nan() || self.nodes.is_empty()
+    }
+
     /// The nearest point of the mesh; `None` where nothing lies within `within` (a distance, infinity allowed), the mesh is
-    /// empty or `p` is not finite. A good bound makes the search faster, never different.
+    /// empty, or `p` or the mesh reach beyond [`REACH`]. A good bound makes the search faster, never different.
     #[inline]
     pub fn nearest(&self, p: DVec3, within: f64) -> Option<Nearest> {
-        if !p.is_finite() || self.nodes.is_empty() {
+        if self.out_of_range(p) {
             return None;
         }
         wide::dispatch(self.scalar, Search { tree: self, p, within })
@@ -119,6 +127,8 @@ struct Search<'a> {
 /// The filter's error, in units of the largest length that enters it: about 20 roundings of 6e-8.
 const SLACK: f32 = 1.5e-6;
 const INLINE: usize = 128;
+/// Largest coordinate of a mesh or a point that distances are asked of.
+pub const REACH: f64 = 1e15;
 
 /// Squared distances of the eight boxes from `p`; an unused box is infinitely far.
 #[inline(always)]

@@ -20,7 +20,7 @@ use crate::simd::wide;
 pub use traverse::Stack;
 
 pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};
-pub use closest::{Feature, Nearest, nearest_on_triangle};
+pub use closest::{Feature, Nearest, REACH, nearest_on_triangle};
 
 /// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <= t_max` count.
 #[derive(Debug, Clone, Copy)]

@@ -111,7 +111,15 @@ fn a_box_is_exact() {
         let found = solid.signed_distance(p);
         assert!((found - truth).abs() < 1e-14, "{p}: {found} not {truth}");
     }
-    assert!(solid.signed_distance(DVec3::NAN).is_infinite());
+    // Out of range is no panic.
+    for p in [DVec3::NAN, DVec3::NEG_INFINITY, DVec3::splat(-1e300), DVec3::splat(1e38), DVec3::splat(-1e16)] {
+        assert!(solid.signed_distance(p).is_infinite(), "{p}");
+        assert_eq!(solid.winding(p), 0.0);
+    }
+    let mut huge = icosphere(1.0, 2);
+    huge.positions.iter_mut().for_each(|p| *p = p.signum() * f32::MAX);
+    let solid = Solid::build(&huge, &Job::default()).unwrap();
+    assert!(solid.tree.nearest(DVec3::ZERO, f64::INFINITY).is_none());
 }
 
 #[test]
