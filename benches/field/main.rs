@@ -95,7 +95,9 @@ fn rates(name: &str, mesh: &TriMesh) {
         let [one, two] = [0, 1].map(|i| {
             median(|| {
                 pools[i].install(|| {
-                    std::hint::black_box(Grid::sample(&solid, Grid::layout((lo, hi), side, 1), &job).unwrap());
+                    std::hint::black_box(
+                        Grid::sample(&solid, Grid::layout((lo, hi), side, 1), &job).unwrap(),
+                    );
                 })
             })
         });

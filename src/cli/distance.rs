@@ -78,7 +78,10 @@ pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fa
     let (lo, hi) = mesh.bounds();
     let most = lo.abs().max(hi.abs()).max_element();
     if most as f64 > REACH {
-        return Err(Fail::Input(format!("{}: expected coordinates up to {REACH:e}, found {most:e}", path.display())));
+        return Err(Fail::Input(format!(
+            "{}: expected coordinates up to {REACH:e}, found {most:e}",
+            path.display()
+        )));
     }
     let solid = Solid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
     let mut warnings = loaded.warnings;
@@ -114,7 +117,9 @@ fn read_points(path: &Path) -> Result<Vec<DVec3>, Fail> {
         let words = line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
         let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
         match numbers.as_deref() {
-            Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => out.push(DVec3::new(x, y, z)),
+            Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
+                out.push(DVec3::new(x, y, z))
+            }
             _ => {
                 return Err(Fail::Input(format!(
                     "{}: line {}: expected three numbers, found \"{line}\"",
@@ -137,8 +142,15 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     });
     let cancelled = |e: crate::analysis::cancel::Cancelled| Fail::Input(e.to_string());
     let closed = solid.topology.closed;
-    let mut out =
-        Answer { count: 0, seconds: 0.0, queries_per_second: 0.0, distances: None, grid: None, closed, warnings };
+    let mut out = Answer {
+        count: 0,
+        seconds: 0.0,
+        queries_per_second: 0.0,
+        distances: None,
+        grid: None,
+        closed,
+        warnings,
+    };
     if let Some(points) = &points {
         let (distances, seconds) = timed(|| solid.signed_distances(points, &job));
         let distances = distances.map_err(cancelled)?;
@@ -151,7 +163,8 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     } else {
         let (lo, hi) = solid.tree.bounds();
         let side = args.grid.unwrap_or(30) as usize;
-        let layout = Grid::layout((lo.as_dvec3(), hi.as_dvec3()), side, args.margin.min((side / 2).saturating_sub(1)));
+        let layout =
+            Grid::layout((lo.as_dvec3(), hi.as_dvec3()), side, args.margin.min((side / 2).saturating_sub(1)));
         let (grid, seconds) = timed(|| Grid::sample(&solid, layout, &job));
         let grid = grid.map_err(cancelled)?;
         if let Some(file) = &args.out {

@@ -16,17 +16,17 @@ pub mod decimate;
 pub mod demo;
 pub mod devices;
 pub mod display;
+pub mod distance;
+pub mod hollow;
 pub mod info;
 pub mod live;
 pub mod measure;
 mod memory;
-#[cfg(feature = "viewer")]
-pub mod render;
-pub mod distance;
-pub mod hollow;
 pub mod offset;
 pub mod project;
 pub mod remesh;
+#[cfg(feature = "viewer")]
+pub mod render;
 pub mod replay;
 pub mod run;
 pub mod subdivide;

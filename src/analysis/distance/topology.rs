@@ -70,7 +70,8 @@ impl Topology {
             Feature::Edge(k) => {
                 let k = k as usize;
                 let other = self.across[t][k];
-                if other == NO_PARTNER || self.blunt[tri[k] as usize] && self.blunt[tri[(k + 1) % 3] as usize] {
+                if other == NO_PARTNER || self.blunt[tri[k] as usize] && self.blunt[tri[(k + 1) % 3] as usize]
+                {
                     return None;
                 }
                 let unit = |t: usize| self.face_normals[t].normalize_or_zero();

@@ -49,9 +49,9 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
             // A bound that rounding made too small would lose the nearest triangle.
             let found = solid.tree.nearest(p, within * (1.0 + 1e-9) + self.spacing * 1e-6);
             let d = found.map_or(f64::INFINITY, |n| n.distance());
-            let settled = near.iter().find(|n| {
-                self.closed && d + n[s].signed.abs() > p.distance(n[s].at) * (1.0 + 1e-9)
-            });
+            let settled = near
+                .iter()
+                .find(|n| self.closed && d + n[s].signed.abs() > p.distance(n[s].at) * (1.0 + 1e-9));
             let inside = match settled {
                 Some(n) => n[s].signed < 0.0,
                 None => solid.inside(p, found.as_ref()),

@@ -66,7 +66,8 @@ impl Grid {
                         continue;
                     };
                     let d = n.distance();
-                    let settled = |other: f64| carry && other.is_finite() && d + other.abs() > h * (1.0 + 1e-9);
+                    let settled =
+                        |other: f64| carry && other.is_finite() && d + other.abs() > h * (1.0 + 1e-9);
                     let inside = if settled(before) {
                         before < 0.0
                     } else if settled(above[i]) {
@@ -132,11 +133,7 @@ impl Grid {
         let (at, [x, y, z]) = self.cell(p);
         let c = self.corners(at);
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        mix(
-            mix(mix(c[0], c[1], x), mix(c[2], c[3], x), y),
-            mix(mix(c[4], c[5], x), mix(c[6], c[7], x), y),
-            z,
-        )
+        mix(mix(mix(c[0], c[1], x), mix(c[2], c[3], x), y), mix(mix(c[4], c[5], x), mix(c[6], c[7], x), y), z)
     }
 
     /// The interpolant's gradient: about of unit length, away from the solid.
@@ -144,9 +141,8 @@ impl Grid {
         let (at, [x, y, z]) = self.cell(p);
         let c = self.corners(at);
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        let face = |a: [usize; 4], s: f32, t: f32| {
-            mix(mix(c[a[0]], c[a[1]], s), mix(c[a[2]], c[a[3]], s), t) as f64
-        };
+        let face =
+            |a: [usize; 4], s: f32, t: f32| mix(mix(c[a[0]], c[a[1]], s), mix(c[a[2]], c[a[3]], s), t) as f64;
         let d = DVec3::new(
             face([1, 3, 5, 7], y, z) - face([0, 2, 4, 6], y, z),
             face([2, 3, 6, 7], x, z) - face([0, 1, 4, 5], x, z),

@@ -86,7 +86,8 @@ mod tests {
     #[test]
     fn a_grid_survives_the_file_and_noise_does_not_pass() {
         let values: Vec<f32> = (0..24).map(|i| (i as f32).sin()).collect();
-        let grid = Grid { origin: DVec3::new(0.1, -2.5e-7, 3e9), spacing: 1.0 / 3.0, size: [4, 3, 2], values };
+        let grid =
+            Grid { origin: DVec3::new(0.1, -2.5e-7, 3e9), spacing: 1.0 / 3.0, size: [4, 3, 2], values };
         let mut bytes = Vec::new();
         grid.write_npy(&mut bytes).unwrap();
         assert_eq!(parse(&bytes).unwrap(), grid);

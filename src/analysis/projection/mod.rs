@@ -59,7 +59,8 @@ pub fn area(polygons: &[Polygon]) -> f64 {
 
 /// The rectangle of the plane that holds the shadow.
 pub fn rectangle(solid: &Solid, plane: &Plane) -> Option<(DVec2, DVec2)> {
-    let mut used = solid.topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).filter(|p| p.is_finite());
+    let mut used =
+        solid.topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).filter(|p| p.is_finite());
     let first = used.next()?;
     Some(used.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
 }

@@ -70,7 +70,9 @@ static PATTERNS: LazyLock<[Pattern; 256]> = LazyLock::new(|| {
                 let hit: Vec<usize> = edges.into_iter().filter(|&e| crossed(e)).collect();
                 match hit[..] {
                     [a, b] => join(a, b),
-                    [_, _, _, _] => arcs(axis, side, case).iter().for_each(|&[a, b]| join(edges[a], edges[b])),
+                    [_, _, _, _] => {
+                        arcs(axis, side, case).iter().for_each(|&[a, b]| join(edges[a], edges[b]))
+                    }
                     _ => {}
                 }
             }

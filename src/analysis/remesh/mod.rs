@@ -105,7 +105,9 @@ fn colours(
     positions: &[Vec3],
     job: &Job,
 ) -> Result<Option<Vec<[u8; 4]>>, Cancelled> {
-    let Some(old) = mesh.colours.as_ref().filter(|c| c.len() == mesh.positions.len()) else { return Ok(None) };
+    let Some(old) = mesh.colours.as_ref().filter(|c| c.len() == mesh.positions.len()) else {
+        return Ok(None);
+    };
     let each = |p: &Vec3| -> Result<[u8; 4], Cancelled> {
         job.check()?;
         let Some(n) = solid.tree.nearest(p.as_dvec3(), f64::INFINITY) else { return Ok([255; 4]) };

@@ -7,8 +7,8 @@ use sculptd::analysis::distance::{Sign, Solid};
 use sculptd::analysis::grid::Grid;
 use sculptd::analysis::tree::nearest_on_triangle;
 use sculptd::analysis::winding::solid_angle;
-use sculptd::mesh::shapes::{cuboid, icosphere, torus};
 use sculptd::mesh::TriMesh;
+use sculptd::mesh::shapes::{cuboid, icosphere, torus};
 
 use super::{Random, bounds, long, meshes};
 
@@ -90,7 +90,11 @@ fn distances_and_signs_equal_an_exhaustive_search() {
             .collect();
         checked += n;
         if !wrong.is_empty() {
-            println!("{name}: the pseudonormal differs from the winding number at {} points: {}", wrong.len(), wrong[0]);
+            println!(
+                "{name}: the pseudonormal differs from the winding number at {} points: {}",
+                wrong.len(),
+                wrong[0]
+            );
         }
         if ["sphere", "box", "torus"].contains(&name.as_str()) {
             assert!(wrong.is_empty(), "{wrong:?}");
@@ -112,7 +116,8 @@ fn a_box_is_exact() {
         assert!((found - truth).abs() < 1e-14, "{p}: {found} not {truth}");
     }
     // Out of range is no panic.
-    for p in [DVec3::NAN, DVec3::NEG_INFINITY, DVec3::splat(-1e300), DVec3::splat(1e38), DVec3::splat(-1e16)] {
+    for p in [DVec3::NAN, DVec3::NEG_INFINITY, DVec3::splat(-1e300), DVec3::splat(1e38), DVec3::splat(-1e16)]
+    {
         assert!(solid.signed_distance(p).is_infinite(), "{p}");
         assert_eq!(solid.winding(p), 0.0);
     }

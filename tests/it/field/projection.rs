@@ -68,7 +68,12 @@ fn the_three_methods_agree() {
         let exact = area(&outline(&solid.topology, &plane));
         for by in [By::Rays, By::Marching(&grid, default_epsilon(&grid))] {
             let s = sample(&solid, &plane, 25_000, 5, by, &job).unwrap();
-            assert!((s.area - exact).abs() < 4.0 * s.standard_error, "{} {exact} {}", s.area, s.standard_error);
+            assert!(
+                (s.area - exact).abs() < 4.0 * s.standard_error,
+                "{} {exact} {}",
+                s.area,
+                s.standard_error
+            );
             let (polygons, alpha) = s.shape(s.alpha);
             assert!((alpha / exact - 1.0).abs() < 0.06, "{alpha} {exact}");
             assert_eq!(polygons.iter().map(|p| p.holes.len()).filter(|&h| h > 0).count(), 1);
@@ -85,8 +90,7 @@ fn marching_agrees_with_rays_but_next_to_the_outline() {
     let plane = Plane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
     let (lo, hi) = rectangle(&solid, &plane).unwrap();
     let mut r = Random(3);
-    let points: Vec<DVec2> =
-        (0..50_000).map(|_| lo + (hi - lo) * DVec2::new(r.unit(), r.unit())).collect();
+    let points: Vec<DVec2> = (0..50_000).map(|_| lo + (hi - lo) * DVec2::new(r.unit(), r.unit())).collect();
     let by_ray = classify(&solid, &plane, &points, By::Rays, &job).unwrap();
     let by_step =
         classify(&solid, &plane, &points, By::Marching(&grid, default_epsilon(&grid)), &job).unwrap();

@@ -82,14 +82,22 @@ fn shapes_are_remeshed_within_half_a_voxel() {
         let (lo, hi) = bounds(&mesh);
         let voxel = (hi - lo).max_element() / 57.0;
         let (there, back) = (apart(&new, &old), apart(&mesh, &solid(&new)));
-        println!("{name}: {} triangles, {there:.5} and {back:.5} apart, a voxel is {voxel:.5}", new.triangles.len());
+        println!(
+            "{name}: {} triangles, {there:.5} and {back:.5} apart, a voxel is {voxel:.5}",
+            new.triangles.len()
+        );
         assert!(there < voxel * 0.5 && back < voxel * 0.5, "{name} {there} {back} {voxel}");
         let (a, b) = (measures(&mesh).volume, measures(&new).volume);
         assert!((a / b - 1.0).abs() < 0.01, "{name} {a} {b}");
     }
     let mut coloured = icosphere(1.0, 20);
-    coloured.colours =
-        Some(coloured.positions.iter().map(|p| if p.x > 0.0 { [200, 0, 0, 255] } else { [0, 0, 90, 255] }).collect());
+    coloured.colours = Some(
+        coloured
+            .positions
+            .iter()
+            .map(|p| if p.x > 0.0 { [200, 0, 0, 255] } else { [0, 0, 90, 255] })
+            .collect(),
+    );
     let new = remesh(&coloured, &solid(&coloured), Settings { side: 32, sharp: false }, &job).unwrap();
     for (p, c) in new.positions.iter().zip(new.colours.as_ref().unwrap()) {
         assert!(p.x.abs() < 0.15 || (c[0] == 200) == (p.x > 0.0), "{p} {c:?}");
@@ -121,7 +129,9 @@ fn soups_and_crossed_meshes_become_one_solid() {
                 count += 1;
             }
             // A sheet has no inside.
-            Err(RemeshError::Empty) => assert!(!old.topology.closed || measures(&mesh).volume.abs() < 1.0, "{name}"),
+            Err(RemeshError::Empty) => {
+                assert!(!old.topology.closed || measures(&mesh).volume.abs() < 1.0, "{name}")
+            }
             Err(e) => panic!("{name}: {e}"),
         }
     }
