@@ -22,7 +22,8 @@ const PAD: f32 = 1e-6;
 pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
     let corners = |t: u32| -> Option<[Vec3; 3]> {
         let [a, b, c] = mesh.triangles[t as usize].map(|v| mesh.positions.get(v as usize).copied());
-        Some([a?, b?, c?]).filter(|c| c.iter().all(|p| p.is_finite()))
+        Some([a?, b?, c?])
+            .filter(|c| c.iter().all(|p| p.is_finite() && p.abs().max_element() <= super::REACH as f32))
     };
     let mut used = Vec::with_capacity(mesh.triangles.len());
     let mut boxes = Vec::with_capacity(mesh.triangles.len());

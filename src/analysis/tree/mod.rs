@@ -60,7 +60,7 @@ pub struct WideTree {
 }
 
 impl WideTree {
-    /// Builds the tree in about 0.35 us a triangle on one core. Triangles with a coordinate that is not finite, or with a
+    /// Builds the tree in about 0.35 us a triangle on one core. Triangles with a coordinate that is not finite or is beyond [`REACH`], or with a
     /// corner index past the end, are left out: no ray and no point meets them. `job` is looked at between the phases, of
     /// which none takes more than about 40 ms per 100,000 triangles.
     pub fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {

@@ -128,9 +128,12 @@ fn soups_and_crossed_meshes_become_one_solid() {
                 }
                 count += 1;
             }
-            // A sheet has no inside.
+            // A sheet has no inside, and walls thinner than a voxel may fall between the samples.
             Err(RemeshError::Empty) => {
-                assert!(!old.topology.closed || measures(&mesh).volume.abs() < 1.0, "{name}")
+                let (lo, hi) = bounds(&mesh);
+                let m = measures(&mesh);
+                let voxel = (hi - lo).max_element() / (side - 7) as f64;
+                assert!(!old.topology.closed || m.volume.abs() < m.area * voxel, "{name}");
             }
             Err(e) => panic!("{name}: {e}"),
         }
