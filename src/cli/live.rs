@@ -101,8 +101,12 @@ pub fn close_journal(thread: Option<WriterThread>) {
 #[cfg(unix)]
 fn control(live: &Live, stop: &Arc<AtomicBool>) -> Result<Option<crate::daemon::control::Server>, Fail> {
     use crate::daemon::control::{Host, Server, default_path, server::ServeError};
-    let host =
-        Host { commands: live.commands.clone(), published: live.published.clone(), stop: stop.clone() };
+    let host = Host {
+        commands: live.commands.clone(),
+        published: live.published.clone(),
+        stop: stop.clone(),
+        thickness: Arc::default(),
+    };
     match Server::start(&default_path(), host) {
         Ok(server) => Ok(Some(server)),
         // A second daemon sculpts all the same; `sculptd ctl` talks to the first.

@@ -13,6 +13,7 @@ mod tidy;
 use std::path::PathBuf;
 
 mod thickness;
+mod thickness_live;
 mod thickness_shapes;
 mod tree;
 

@@ -15,6 +15,7 @@ pub mod check;
 pub mod colour;
 pub mod cone;
 mod edges;
+pub mod live;
 pub mod preset;
 pub mod ray;
 pub mod refine;

@@ -259,7 +259,7 @@ impl Surface {
 }
 
 /// The angle at corner `c`, radians.
-fn corner_angle(p: [Vec3; 3], c: usize) -> f32 {
+pub(super) fn corner_angle(p: [Vec3; 3], c: usize) -> f32 {
     let (e, f) = (p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
     e.cross(f).length().atan2(e.dot(f))
 }

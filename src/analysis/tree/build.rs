@@ -17,7 +17,7 @@ const REINSERTION: f32 = 0.02;
 /// until they are full: a quarter faster than with a cost of 1, which leaves them half empty.
 const TRAVERSAL_COST: f32 = 8.0;
 /// Boxes grow by this share of the largest coordinate: the triangle test's shear rounds a corner by less.
-const PAD: f32 = 1e-6;
+pub(super) const PAD: f32 = 1e-6;
 
 pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
     let corners = |t: u32| -> Option<[Vec3; 3]> {

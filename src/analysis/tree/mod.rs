@@ -10,6 +10,7 @@
 
 mod build;
 mod closest;
+mod refit;
 mod traverse;
 
 use glam::Vec3;
@@ -17,6 +18,7 @@ use glam::Vec3;
 use super::cancel::{Cancelled, Job};
 use crate::mesh::TriMesh;
 use crate::simd::wide;
+pub use refit::Parents;
 pub use traverse::Stack;
 
 pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};

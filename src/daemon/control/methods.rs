@@ -11,8 +11,10 @@ use super::PROTOCOL;
 use super::protocol::{Code, RpcError};
 use super::server::Host;
 use crate::analysis::cancel::Job;
+use crate::analysis::thickness::live::LiveMap;
 use crate::command::{Command, NewClay};
 use crate::daemon::rig;
+use crate::mesh::Snapshot;
 use crate::mesh::io::write_mesh;
 
 /// Every method with its parameters, for `methods` and for the schema test.
@@ -29,6 +31,10 @@ pub const METHODS: &[(&str, &str)] = &[
     ("load", "{path}: another work from a file"),
     ("export", "{path}: writes the work; the name's ending says the format"),
     ("hash", "{}: one number for the whole clay"),
+    (
+        "thickness",
+        "{rays?, near?}: wall thickness of the work, measured again only where it may have changed, `near` first",
+    ),
     ("shutdown", "{}: ends the daemon as a signal would"),
 ];
 
@@ -42,6 +48,40 @@ struct PathParam {
 #[serde(deny_unknown_fields, default)]
 struct StatusParam {
     version: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct ThicknessParam {
+    rays: usize,
+    near: [f32; 3],
+}
+
+impl Default for ThicknessParam {
+    fn default() -> Self {
+        ThicknessParam { rays: 1, near: [0.0; 3] }
+    }
+}
+
+/// Brings the map that the host keeps up to this state of the clay and tells what it says. The first call measures all.
+fn thickness(host: &Host, mesh: &Snapshot, p: &ThicknessParam) -> Result<Value, String> {
+    let job = Job::default();
+    let mut kept = host.thickness.lock().map_err(|e| e.to_string())?;
+    let fits = kept.as_mut().is_some_and(|m| m.rays() == p.rays && m.advance(mesh).is_ok());
+    if !fits {
+        *kept = Some(LiveMap::new(mesh, p.rays, &job).map_err(|e| e.to_string())?);
+    }
+    let Some(map) = kept.as_mut() else { return Err("no map".into()) };
+    let measured = map.stale();
+    map.work(p.near.into(), usize::MAX, &job).map_err(|e| e.to_string())?;
+    let known: Vec<f32> = map.values().iter().copied().filter(|v| v.is_finite()).collect();
+    let least = known.iter().copied().reduce(f32::min);
+    let most = known.iter().copied().reduce(f32::max);
+    let mean = known.iter().map(|&v| f64::from(v)).sum::<f64>() / known.len().max(1) as f64;
+    Ok(json!({
+        "revision": map.revision(), "vertices": map.values().len(), "measured": measured, "valid": known.len(),
+        "min": least, "max": most, "mean": mean,
+    }))
 }
 
 #[derive(Deserialize, Default)]
@@ -150,6 +190,13 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "hash" => {
             read::<Nothing>(params)?;
             Ok(json!({ "tick": state.tick, "hash": format!("{:016x}", state.mesh.hash()) }))
+        }
+        "thickness" => {
+            let p: ThicknessParam = read(params)?;
+            if !(1..=1000).contains(&p.rays) || !p.near.iter().all(|x| x.is_finite()) {
+                return Err(RpcError::new(Code::BadParams, "expected 1 to 1000 rays and a finite place"));
+            }
+            thickness(host, &state.mesh, &p).map_err(failed)
         }
         "shutdown" => {
             read::<Nothing>(params)?;

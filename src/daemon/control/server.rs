@@ -23,6 +23,8 @@ use crate::devices::Clock;
 pub struct Host {
     pub commands: cc::Sender<Command>,
     pub published: Arc<ArcSwap<Published>>,
+    /// The wall thickness of the work, as last asked for.
+    pub thickness: Arc<std::sync::Mutex<Option<crate::analysis::thickness::live::LiveMap>>>,
     /// Raised by `shutdown`.
     pub stop: Arc<AtomicBool>,
 }
