@@ -1,6 +1,7 @@
 //! One binary for all integration tests: one link, one start.
 #![allow(clippy::print_stdout)] // Tables and skips are told on standard output.
 
+mod allocations;
 mod bad_input;
 mod clay;
 mod field;
