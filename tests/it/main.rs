@@ -5,6 +5,7 @@ mod allocations;
 mod bad_input;
 mod clay;
 mod field;
+mod golden;
 mod hands;
 mod io;
 mod io_files;
