@@ -52,11 +52,7 @@ fn reads(c: &mut Criterion) {
     let workers = Workers::new(1);
     c.bench_function("dab of 10,000 and snapshot", |b| {
         b.iter(|| {
-            mesh.dab(
-                &Reach::Sphere { centre: Vec3::Z, radius: r },
-                &Smooth::new(Vec3::Z, r, 0.5),
-                &workers,
-            );
+            mesh.dab(&Reach::Sphere { centre: Vec3::Z, radius: r }, &Smooth::new(Vec3::Z, r, 0.5), &workers);
             mesh.snapshot()
         });
     });
