@@ -48,7 +48,7 @@ pub struct PhaseTimes {
 }
 
 /// A page at work: what other pages' tasks may read.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Slot {
     index: u32,
     page: Arc<Page>,
@@ -65,7 +65,7 @@ struct Slot {
 }
 
 /// A page at work: what only its own task touches.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Side {
     /// Halo rows to take over, and the marks they come with.
     incoming: Vec<(u16, u8, Vec4)>,
@@ -80,15 +80,36 @@ pub(super) struct Bench {
     spare: Vec<(Slot, Side)>,
     /// For each page its slot in this dab plus one, or 0.
     slot_of: Vec<u32>,
+    /// What a spare slot holds: making an empty page would allocate.
+    blank: Arc<Page>,
+    /// Rows that a new slot gets room for.
+    rows: usize,
 }
 
 impl Bench {
-    pub(super) fn new(pages: usize) -> Self {
-        Bench { slot_of: vec![0; pages], ..Bench::default() }
+    /// `rows`: of the largest page.
+    pub(super) fn new(pages: usize, rows: usize) -> Self {
+        Bench { slot_of: vec![0; pages], rows, ..Bench::default() }
+    }
+
+    /// Room for any page at once, or slots would grow one by one, long into a stroke.
+    fn fresh(&self) -> (Slot, Side) {
+        let slot = Slot {
+            index: 0,
+            page: self.blank.clone(),
+            marks: Vec::with_capacity(self.rows),
+            any: 0,
+            moved: 0,
+            affected: 0,
+            complete: false,
+            normals_ns: 0,
+            bvh_ns: 0,
+        };
+        (slot, Side { incoming: Vec::with_capacity(self.rows), colours: Vec::new() })
     }
 
     fn add(&mut self, index: u32, page: Arc<Page>) {
-        let (mut slot, mut side) = self.spare.pop().unwrap_or_default();
+        let (mut slot, mut side) = self.spare.pop().unwrap_or_else(|| self.fresh());
         slot.index = index;
         slot.page = page;
         slot.marks.clear();
@@ -224,7 +245,7 @@ impl Mesh {
             report.moved += slot.moved;
             normals_ns += slot.normals_ns;
             bvh_ns += slot.bvh_ns;
-            let mut page = std::mem::take(&mut slot.page);
+            let mut page = std::mem::replace(&mut slot.page, bench.blank.clone());
             if slot.any == 0 {
                 pool.give_back(page);
             } else {

@@ -43,18 +43,19 @@ pub(super) struct Pool {
     free: Vec<Arc<Page>>,
     /// Replaced, oldest first; somebody may still read them.
     waiting: VecDeque<Arc<Page>>,
-    /// Rows that a new page gets room for.
+    /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
+    leaves: usize,
 }
 
 impl Pool {
-    /// `rows`: of the largest page. `count`: pages to have ready.
-    pub(super) fn new(rows: usize, nodes: usize, count: usize) -> Self {
-        let mut pool = Pool { free: Vec::with_capacity(KEPT), waiting: VecDeque::with_capacity(KEPT), rows };
+    /// `rows`, `leaves`: of the largest page. `count`: pages to have ready.
+    pub(super) fn new(rows: usize, leaves: usize, count: usize) -> Self {
+        let mut pool =
+            Pool { free: Vec::with_capacity(KEPT), waiting: VecDeque::with_capacity(KEPT), rows, leaves };
         for _ in 0..count {
             let mut page = pool.fresh();
             if let Some(page) = Arc::get_mut(&mut page) {
-                page.tree.reset(nodes);
                 // Touched now, or the first dab would meet the kernel's zero pages one by one.
                 page.points.resize(rows, glam::Vec4::ZERO);
                 page.normals.resize(rows, glam::Vec4::ZERO);
@@ -65,11 +66,13 @@ impl Pool {
     }
 
     fn fresh(&self) -> Arc<Page> {
-        Arc::new(Page {
+        let mut page = Page {
             points: Vec::with_capacity(self.rows),
             normals: Vec::with_capacity(self.rows),
             ..Page::default()
-        })
+        };
+        page.tree.reset(self.leaves);
+        Arc::new(page)
     }
 
     /// A page that nobody else holds; its contents are old.
