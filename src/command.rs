@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use serde::{Deserialize, Serialize};
 
 use crate::brush::BrushSettings;
+use crate::hand::ReachBox;
 use crate::mesh::{Mesh, TriMesh};
 use crate::stroke::Camera;
 
@@ -20,6 +21,14 @@ pub enum Command {
     LiftAll,
     /// Another work takes the place of this one: a file was loaded, a Boolean finished, the kiosk was reset.
     Replace(NewClay),
+    /// The hands take up a thing: a primitive or a loaded mesh, to carry it to its place.
+    TakeUp(Arc<TriMesh>),
+    /// The thing in the hands is gone: put away, or joined with the work.
+    PutDown,
+    /// The next five seconds of hands say what the person can reach.
+    CalibrateReach,
+    /// This part of the tracked space is laid over the work.
+    Reach(ReachBox),
 }
 
 /// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its own; a replay, which has

@@ -284,6 +284,8 @@ impl Config {
             ("appear_ramp_ms", h.appear_ramp_ms),
             ("bridge_ms", h.bridge_ms),
             ("view_rest_ms", h.view_rest_ms),
+            ("dwell_ms", h.dwell_ms),
+            ("ring_ms", h.ring_ms),
         ] {
             within(&format!("hand.{key}"), ms, 0.0, 5000.0)?;
         }
@@ -294,6 +296,8 @@ impl Config {
         ] {
             within(&format!("hand.{key}"), mm, 1.0, 200.0)?;
         }
+        within("hand.reach.half_mm", h.reach.half_mm, 30.0, 1000.0)?;
+        within("hand.reach.middle_mm", h.reach.middle_mm.abs().max_element(), 0.0, 1999.0)?;
         within("hand.dead_zone_mm", h.dead_zone_mm, 0.0, 50.0)?;
         within("hand.dwell_zone_mm", h.dwell_zone_mm, 0.0, 50.0)?;
         within("undo.bytes", self.undo.bytes, 1 << 20, 1 << 40)?;

@@ -6,13 +6,15 @@
 //!   bits, with any number of workers.
 //! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
 
-use glam::{Vec2, Vec3};
+use std::sync::Arc;
+
+use glam::{DVec3, Quat, Vec2, Vec3};
 
 use crate::brush::{BrushKind, BrushSettings, Gaussian, Smooth};
 use crate::command::Command;
 use crate::devices::{Body, DeviceId, Hands, Sample};
-use crate::hand::{Act, HandSettings, HandTools, Pose, Volume};
-use crate::mesh::{Hit, Kernel, Mesh, Ray, Reach, Workers};
+use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
+use crate::mesh::{Hit, Kernel, Mesh, PolyMesh, Ray, Reach, TriMesh, Workers, shapes};
 use crate::stroke::{Camera, Flow, PenPoint, PenTrack, Surface};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
@@ -29,6 +31,8 @@ pub struct StepReport {
     pub paused: bool,
     /// Samples of devices beyond [`MAX_PENS`].
     pub ignored: u64,
+    /// A hand asked for the thing that it holds to be joined with the work: for a worker, see [`World::thing`].
+    pub join: Option<Choice>,
 }
 
 /// Fixed for the life of a world.
@@ -54,6 +58,8 @@ pub struct World {
     pens: Vec<(DeviceId, PenTrack)>,
     hands: HandTools,
     last_hands: Option<Hands>,
+    /// What the hands hold.
+    thing: Option<Thing>,
     report: StepReport,
     /// Works that were replaced, for somebody else to drop.
     retired: Vec<Mesh>,
@@ -80,6 +86,7 @@ impl World {
             pens: Vec::with_capacity(MAX_PENS),
             hands: HandTools::new(options.hands),
             last_hands: None,
+            thing: None,
             report: StepReport::default(),
             retired: Vec::with_capacity(4),
         };
@@ -134,6 +141,10 @@ impl World {
                 self.mesh.redo();
             }
             Command::LiftAll => self.lift_all(),
+            Command::TakeUp(plain) => self.take_up(plain.clone()),
+            Command::PutDown => self.put_down(),
+            Command::CalibrateReach => self.hands.calibrate(),
+            Command::Reach(reach) => self.set_reach(*reach),
             Command::Replace(new) => {
                 self.lift_all();
                 let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());
@@ -159,6 +170,48 @@ impl World {
         self.mesh.end_step();
     }
 
+    /// A thing appears beside the work, a third as large as it, for the hands to carry.
+    fn take_up(&mut self, plain: Arc<TriMesh>) {
+        let (lo, hi) = plain.bounds();
+        let size = (hi - lo).length() * 0.5;
+        if !(size.is_finite() && size > 0.0) {
+            return;
+        }
+        let scale = self.extent / 3.0 / size;
+        let turn = Quat::from_rotation_y(self.camera.yaw);
+        let at = self.middle + turn * Vec3::new(self.extent * 1.2, self.extent * 0.4, 0.0);
+        let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
+        if place.is_sane() {
+            self.thing = Some(Thing { plain, place });
+            self.hands.carrying = true;
+        }
+    }
+
+    fn put_down(&mut self) {
+        self.thing = None;
+        self.hands.carrying = false;
+    }
+
+    fn set_reach(&mut self, reach: ReachBox) {
+        if reach.is_sane() {
+            self.hands.settings.reach = reach;
+            self.hands.lay(self.middle, self.extent, self.camera.yaw);
+        }
+    }
+
+    fn choose(&mut self, choice: Choice) {
+        let primitive = |solid: PolyMesh| Arc::new(solid.triangulate().0);
+        match choice {
+            Choice::Undo => self.obey(&Command::Undo),
+            Choice::Redo => self.obey(&Command::Redo),
+            Choice::PutAway => self.put_down(),
+            Choice::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
+            Choice::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
+            Choice::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
+            Choice::Add | Choice::Carve | Choice::Keep => self.report.join = Some(choice),
+        }
+    }
+
     fn hear(&mut self, sample: &Sample) {
         match &sample.body {
             Body::Pen(pen) => {
@@ -175,8 +228,15 @@ impl World {
             }
             Body::Hands(hands) => {
                 self.hands.follow(self.camera.target, self.camera.yaw);
+                let before = self.hands.settings.reach;
                 self.hands.take(sample.device, sample.t_us, hands);
                 self.last_hands = Some(*hands);
+                if let Some(choice) = self.hands.take_choice() {
+                    self.choose(choice);
+                }
+                if before != self.hands.settings.reach {
+                    self.set_reach(self.hands.settings.reach);
+                }
             }
             Body::Pad(_) => {}
         }
@@ -230,6 +290,11 @@ impl World {
                 let mm = before.turn.inverse() * (camera.target - before.origin) / before.scale;
                 camera.target = after.to_world(mm);
                 camera.distance = (camera.distance * after.scale / before.scale).clamp(1e-6, 1e9);
+            }
+            Act::Carry(by) => {
+                if let Some(thing) = &mut self.thing {
+                    thing.carry(by);
+                }
             }
             Act::Push(a) => return self.touch(&a.reach(), &a.kernel(), left),
             Act::Drag(a) => return self.touch(&a.reach(), &a.kernel(), left),
@@ -297,6 +362,15 @@ impl World {
     /// Where each pen is, over the view, while in range.
     pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
         self.pens.iter().filter_map(|(id, p)| p.seen.map(|s| (*id, s)))
+    }
+
+    /// What the hands hold, and where.
+    pub fn thing(&self) -> Option<&Thing> {
+        self.thing.as_ref()
+    }
+
+    pub fn hand_tools(&self) -> &HandTools {
+        &self.hands
     }
 
     pub fn hands(&self) -> Option<&Hands> {

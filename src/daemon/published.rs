@@ -10,8 +10,9 @@ use glam::Vec3;
 
 use super::figures::{Losses, Percentiles};
 use crate::brush::BrushSettings;
+use crate::devices::sample::MAX_HANDS;
 use crate::devices::{DeviceId, Hands};
-use crate::hand::Volume;
+use crate::hand::{Pose, Thing, Volume};
 use crate::mesh::Snapshot;
 use crate::stroke::{Camera, PenPoint};
 use crate::world::World;
@@ -36,6 +37,16 @@ pub struct Published {
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
     pub hands: Option<Hands>,
+    /// What each hand that is followed is doing.
+    pub poses: [Option<Pose>; MAX_HANDS],
+    /// What the hands hold, and where.
+    pub thing: Option<Thing>,
+    /// The ball of the hands' menu that a fingertip is in, and 0 to 1 how far its ring has closed.
+    pub menu: Option<(usize, f32)>,
+    /// 0 fresh to 1 spent; and whether a lower plane of work should be offered.
+    pub fatigue: (f32, bool),
+    /// The next hands are measured for their reach.
+    pub calibrating: bool,
     pub undo_steps: usize,
     pub redo_steps: usize,
     pub figures: PublishedFigures,
@@ -60,9 +71,15 @@ impl Published {
         for (slot, pen) in pens.iter_mut().zip(world.pens()) {
             *slot = Some(pen);
         }
+        let mut poses = [None; MAX_HANDS];
+        for (slot, (_, _, pose)) in poses.iter_mut().zip(world.poses()) {
+            *slot = Some(pose);
+        }
+        let mesh = world.snapshot();
+        let tools = world.hand_tools();
         Published {
             tick: world.tick(),
-            mesh: world.snapshot(),
+            mesh,
             camera: *world.camera(),
             brush: *world.brush(),
             brush_radius: world.brush_radius(),
@@ -71,6 +88,11 @@ impl Published {
             volume: *world.volume(),
             pens,
             hands: world.hands().copied(),
+            poses,
+            thing: world.thing().cloned(),
+            menu: tools.menu().showing(),
+            fatigue: (tools.fatigue().spent(), tools.fatigue().wants_lower()),
+            calibrating: tools.is_calibrating(),
             undo_steps: world.mesh().undo_steps(),
             redo_steps: world.mesh().redo_steps(),
             figures,

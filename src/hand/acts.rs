@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::Volume;
+use super::{Similarity, Volume};
 use crate::brush;
 use crate::mesh::Reach;
 
@@ -22,6 +22,8 @@ pub enum Act {
         before: Volume,
         after: Volume,
     },
+    /// The thing in the hands goes along.
+    Carry(Similarity),
 }
 
 impl Act {
@@ -35,6 +37,7 @@ impl Act {
             (Act::Move(a), Act::Move(b)) => *a += *b,
             (Act::Zoom(a), Act::Zoom(b)) => *a *= *b,
             (Act::Hold { after: a, .. }, Act::Hold { after: b, .. }) => *a = *b,
+            (Act::Carry(a), Act::Carry(b)) => *a = a.then(b),
             _ => return false,
         }
         true

@@ -1,6 +1,6 @@
 //! One hand over time: its pose with hold and hysteresis, and how strongly it may act.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::pose::{Features, Pose};
 use super::settings::HandSettings;
@@ -23,6 +23,7 @@ pub struct Track {
     pub seen_us: u64,
     pub palm: Vec3,
     pub palm_normal: Option<Vec3>,
+    pub orientation: Option<Quat>,
     pub index_tip: Option<Vec3>,
     /// Midway between thumb and index tips.
     pub pinch_point: Option<Vec3>,
@@ -47,6 +48,7 @@ impl Track {
             seen_us: t_us,
             palm: hand.palm,
             palm_normal: None,
+            orientation: None,
             index_tip: None,
             pinch_point: None,
             confidence: 0.0,
@@ -61,6 +63,7 @@ impl Track {
         self.left = hand.left.or(self.left);
         self.palm = hand.palm;
         self.palm_normal = hand.palm_normal;
+        self.orientation = hand.orientation;
         self.index_tip = tip(1);
         self.pinch_point = tip(0).zip(tip(1)).map(|(a, b)| (a + b) * 0.5);
         self.confidence = hand.confidence.unwrap_or(1.0).clamp(0.0, 1.0);

@@ -9,20 +9,26 @@
 //! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
 
 pub mod acts;
+pub mod comfort;
 pub mod machine;
+pub mod menu;
 pub mod pose;
 pub mod settings;
+pub mod thing;
 mod volume;
 
 pub use acts::{Act, Drag, PalmPress, Push};
+pub use comfort::{Calibrated, Fatigue, Reach, ReachBox};
 pub use machine::Track;
+pub use menu::{Choice, Menu};
 pub use pose::Pose;
 pub use settings::HandSettings;
+pub use thing::{Similarity, Thing};
 pub use volume::Volume;
 
 use std::collections::VecDeque;
 
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use crate::devices::filter::HandsFilter;
 use crate::devices::{DeviceId, Hands};
@@ -38,6 +44,8 @@ struct Held {
     track: Track,
     /// Where the tool was; `None` just after the pose began.
     tool: Option<Vec3>,
+    /// How the hand was turned then.
+    turn: Option<Quat>,
     /// The palm when it last rested, mm: motion counts from here once it left the dead zone.
     anchor_mm: Vec3,
     free: bool,
@@ -57,6 +65,12 @@ pub struct HandTools {
     pair: Option<[Vec3; 2]>,
     /// Distance of two open hands one frame ago, mm.
     apart_mm: Option<f32>,
+    /// A thing is in the hands: pinches carry it and not the clay.
+    pub carrying: bool,
+    menu: Menu,
+    chosen: Option<Choice>,
+    fatigue: Fatigue,
+    reach: Option<Reach>,
     sculpted_us: Option<u64>,
     now_us: u64,
     /// One for each tracker.
@@ -69,10 +83,15 @@ impl HandTools {
             settings,
             held: Vec::with_capacity(MAX_TRACKS),
             waiting: VecDeque::with_capacity(MAX_WAITING),
-            volume: Volume::over(Vec3::ZERO, 1.0, 0.0),
+            volume: Volume::over(Vec3::ZERO, 1.0, 0.0, &settings.reach),
             yaw: 0.0,
             pair: None,
             apart_mm: None,
+            carrying: false,
+            menu: Menu::default(),
+            chosen: None,
+            fatigue: Fatigue::default(),
+            reach: None,
             sculpted_us: None,
             now_us: 0,
             steady: Vec::new(),
@@ -81,7 +100,7 @@ impl HandTools {
 
     /// Lays the tracked volume over a work anew.
     pub fn lay(&mut self, middle: Vec3, extent: f32, yaw: f32) {
-        self.volume = Volume::over(middle, extent, yaw);
+        self.volume = Volume::over(middle, extent, yaw, &self.settings.reach);
         self.yaw = yaw;
     }
 
@@ -98,7 +117,7 @@ impl HandTools {
     pub fn follow(&mut self, target: Vec3, yaw: f32) {
         let by = yaw - self.yaw;
         if by != 0.0 {
-            let turn = glam::Quat::from_rotation_y(by);
+            let turn = Quat::from_rotation_y(by);
             self.volume.origin = target + turn * (self.volume.origin - target);
             self.volume.turn = (turn * self.volume.turn).normalize();
             self.yaw = yaw;
@@ -124,6 +143,14 @@ impl HandTools {
         let hands = &self.steadied(device, t_us, hands);
         self.now_us = t_us;
         self.forget(t_us);
+        self.fatigue.take(t_us, hands.as_slice());
+        if let Some(reach) = &mut self.reach {
+            match reach.take(t_us, hands.as_slice()) {
+                Calibrated::Listening(_) => return,
+                Calibrated::TooLittle => self.reach = None,
+                Calibrated::Done(found) => (self.settings.reach, self.reach) = (found, None),
+            }
+        }
         for hand in hands.as_slice() {
             let known =
                 self.held.iter().position(|h| h.track.device == device && h.track.id == hand.id).or_else(
@@ -142,12 +169,14 @@ impl HandTools {
                     let held = &mut self.held[i];
                     let changed = held.track.take(t_us, hand, &s);
                     if changed {
-                        (held.tool, held.free, held.anchor_mm) = (None, false, hand.palm);
+                        (held.tool, held.turn) = (None, None);
+                        (held.free, held.anchor_mm) = (false, hand.palm);
                     }
                 }
                 None if self.held.len() < MAX_TRACKS => self.held.push(Held {
                     track: Track::new(device, t_us, hand),
                     tool: None,
+                    turn: None,
                     anchor_mm: hand.palm,
                     free: false,
                     moved_us: t_us,
@@ -155,7 +184,35 @@ impl HandTools {
                 None => {}
             }
         }
+        let tip = self.held.iter().find(|h| h.track.seen_us == t_us && h.track.pose == Pose::Point);
+        let tip = tip.and_then(|h| h.track.index_tip);
+        if let Some(choice) = self.menu.take(tip, t_us, self.carrying, &s) {
+            self.chosen = Some(choice);
+        }
         self.act(t_us);
+    }
+
+    /// What was chosen from the menu since the last call.
+    pub fn take_choice(&mut self) -> Option<Choice> {
+        self.chosen.take()
+    }
+
+    pub fn menu(&self) -> &Menu {
+        &self.menu
+    }
+
+    pub fn fatigue(&self) -> &Fatigue {
+        &self.fatigue
+    }
+
+    /// From now on the hands' movement says what the person can reach, for five seconds; they do nothing else meanwhile.
+    pub fn calibrate(&mut self) {
+        self.lift();
+        self.reach = Some(Reach::default());
+    }
+
+    pub fn is_calibrating(&self) -> bool {
+        self.reach.is_some()
     }
 
     /// Lets go of hands that were not seen for longer than is bridged.
@@ -188,7 +245,18 @@ impl HandTools {
     /// Two pinches hold two points of the world: move, turn, scale.
     fn hold_between(&mut self, a: Track, b: Track) {
         let Some((pa, pb)) = a.pinch_point.zip(b.pinch_point) else { return };
-        let held = *self.pair.get_or_insert([self.volume.to_world(pa), self.volume.to_world(pb)]);
+        let fingers = [self.volume.to_world(pa), self.volume.to_world(pb)];
+        let held = *self.pair.get_or_insert(fingers);
+        if self.carrying {
+            self.pair = Some(fingers);
+            for held in &mut self.held {
+                (held.tool, held.turn) = (None, None);
+            }
+            if let Some(by) = Similarity::between(held, fingers) {
+                self.wait(Act::Carry(by));
+            }
+            return;
+        }
         if let Some(volume) = self.volume.holding(held, [pa, pb]) {
             let before = self.volume;
             self.volume = volume;
@@ -213,8 +281,18 @@ impl HandTools {
 
     fn one_hand(&mut self, i: usize, t_us: u64) {
         let s = self.settings;
-        let Held { track, tool, .. } = self.held[i];
+        let Held { track, tool, turn, .. } = self.held[i];
         let v = self.volume;
+        if self.carrying && track.pose == Pose::Pinch {
+            let now = track.orientation.map(|q| (v.turn * q).normalize());
+            let to = track.pinch_point.map(|p| v.to_world(p));
+            if let Some((from, to)) = tool.zip(to) {
+                let turned = turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
+                self.wait(Act::Carry(Similarity::carried(from, to, turned)));
+            }
+            (self.held[i].tool, self.held[i].turn) = (to, now);
+            return;
+        }
         let strength = track.strength(t_us, &s);
         let at_mm = match track.pose {
             Pose::Point => track.index_tip,

@@ -38,6 +38,8 @@ pub struct Features {
     pub grab: f32,
     /// Index, middle, ring, little finger stretched out.
     pub extended: [bool; 4],
+    /// How many of those four the tracker did not see.
+    pub hidden: usize,
     /// Index tip to little finger's tip over the palm's width.
     pub spread: Option<f32>,
 }
@@ -62,6 +64,7 @@ impl Features {
             pinch_mm: between(tip(0), tip(1)),
             grab: hand.grab.unwrap_or_else(curled),
             extended,
+            hidden: (1..5).filter(|&i| hand.fingers[i].is_none()).count(),
             spread: between(tip(1), tip(4)).map(|d| d / width),
         }
     }
@@ -87,7 +90,9 @@ impl Features {
         if index && !middle && !ring && !little {
             return Pose::Point;
         }
-        if out == 4 && self.grab < 0.3 {
+        // One finger may be hidden behind the others: a hand that was flat or open stays so.
+        let hidden = self.hidden;
+        if out + hidden == 4 && hidden <= 1 && self.grab < 0.3 {
             // A tenth of hysteresis on the boundary between lying together and being apart.
             let lean = match now {
                 Pose::Flat => 0.1,
@@ -97,6 +102,7 @@ impl Features {
             return match self.spread {
                 Some(w) if w > s.spread + lean => Pose::Open,
                 Some(_) => Pose::Flat,
+                None if matches!(now, Pose::Flat | Pose::Open) => now,
                 None => Pose::Neutral,
             };
         }

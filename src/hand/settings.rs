@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::comfort::ReachBox;
 use crate::devices::filter::OneEuro;
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -37,6 +38,12 @@ pub struct HandSettings {
     pub dwell_zone_mm: f32,
     /// After sculpting the view stays still this long, ms, whatever the hand does.
     pub view_rest_ms: f32,
+    /// A fingertip in a menu's ball for so long opens a ring, ms, ...
+    pub dwell_ms: f32,
+    /// ... which closes in so long: time to see it and to leave.
+    pub ring_ms: f32,
+    /// The part of the tracked space that is laid over the work; a calibration finds a person's own.
+    pub reach: ReachBox,
     /// How joints are steadied.
     pub steady: OneEuro,
 }
@@ -60,6 +67,9 @@ impl Default for HandSettings {
             dead_zone_mm: 3.0,
             dwell_zone_mm: 5.0,
             view_rest_ms: 500.0,
+            dwell_ms: 500.0,
+            ring_ms: 600.0,
+            reach: ReachBox::default(),
             steady: OneEuro::default(),
         }
     }

@@ -3,10 +3,12 @@
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::comfort::ReachBox;
+
 /// The middle of a Leap's interaction box, mm over the device (protocol v6 `interactionBox.center`).
 pub const BOX_MIDDLE_MM: Vec3 = Vec3::new(0.0, 200.0, 0.0);
 /// Half the side of the tracked cube that is mapped, mm: the box is 235 x 235 x 148 mm.
-const BOX_HALF_MM: f32 = 117.6;
+pub const BOX_HALF_MM: f32 = 117.6;
 /// The work's bounding sphere takes this share of the cube, so that a hand can come from outside.
 const WORK_SHARE: f32 = 0.6;
 /// The tool fades out over the last 30 mm before the edge of what a Leap tracks well (about 250 mm from the middle).
@@ -22,11 +24,12 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Over a work with this middle and bounding radius, seen from `yaw`: "toward the user" is toward the camera.
-    pub fn over(middle: Vec3, extent: f32, yaw: f32) -> Self {
-        let scale = extent / (BOX_HALF_MM * WORK_SHARE);
+    /// Over a work with this middle and bounding radius, seen from `yaw`: "toward the user" is toward the camera. `reach` is
+    /// the part of the tracked space that is used.
+    pub fn over(middle: Vec3, extent: f32, yaw: f32, reach: &ReachBox) -> Self {
+        let scale = extent / (reach.half_mm * WORK_SHARE);
         let turn = Quat::from_rotation_y(yaw);
-        Volume { origin: middle - turn * (BOX_MIDDLE_MM * scale), turn, scale }
+        Volume { origin: middle - turn * (reach.middle_mm * scale), turn, scale }
     }
 
     pub fn to_world(&self, mm: Vec3) -> Vec3 {
@@ -67,7 +70,7 @@ mod tests {
 
     #[test]
     fn what_two_fingers_hold_stays_under_them_to_half_a_millimetre() {
-        let mut volume = Volume::over(Vec3::new(3.0, 1.0, -2.0), 5.0, 0.7);
+        let mut volume = Volume::over(Vec3::new(3.0, 1.0, -2.0), 5.0, 0.7, &ReachBox::default());
         let start = [Vec3::new(-60.0, 210.0, 5.0), Vec3::new(55.0, 190.0, -10.0)];
         let held = start.map(|p| volume.to_world(p));
         for i in 0..600 {

@@ -10,6 +10,7 @@ mod hands;
 mod io;
 mod io_files;
 mod recovery;
+mod synthetic_hands;
 mod tidy;
 
 use std::path::PathBuf;

@@ -40,12 +40,22 @@ pub struct HandKey {
     pub curl: [f32; 5],
     /// 0 to 1: thumb and index finger meet, whatever their curl.
     pub pinch: f32,
+    /// 0 fingers together to 1 as far apart as they go.
+    pub spread: f32,
 }
 
 impl HandKey {
     /// A flat hand, palm down, fingers away from the user.
     pub fn flat(t_us: u64, palm: Vec3) -> Self {
-        HandKey { t_us, present: true, palm, yaw_pitch_roll: [0.0; 3], curl: [0.1; 5], pinch: 0.0 }
+        HandKey {
+            t_us,
+            present: true,
+            palm,
+            yaw_pitch_roll: [0.0; 3],
+            curl: [0.1; 5],
+            pinch: 0.0,
+            spread: 0.0,
+        }
     }
 
     /// The hand closes; 1 is a fist.
@@ -55,6 +65,11 @@ impl HandKey {
 
     pub fn pinched(self, pinch: f32) -> Self {
         HandKey { pinch, ..self }
+    }
+
+    /// The fingers stretched out, this far apart.
+    pub fn spread(self, spread: f32) -> Self {
+        HandKey { curl: [0.05; 5], spread, ..self }
     }
 
     pub fn turned(self, yaw: f32, pitch: f32, roll: f32) -> Self {
@@ -82,6 +97,7 @@ impl HandKey {
             out.curl[i] = f(self.curl[i], to.curl[i]);
         }
         out.pinch = f(self.pinch, to.pinch);
+        out.spread = f(self.spread, to.spread);
         out
     }
 }
@@ -146,7 +162,7 @@ pub fn skeleton(pose: &HandKey, left: bool) -> Hand {
     // In the hand's own axes the fingers run along -z and the back looks along +y; a left hand is the mirror image.
     let place = |v: Vec3| pose.palm + turn * vec3(side * v.x, v.y, v.z);
     let aim = |v: Vec3| turn * vec3(side * v.x, v.y, v.z);
-    let mut own = [0, 1, 2, 3, 4].map(|f| chain(f, pose.curl[f]));
+    let mut own = [0, 1, 2, 3, 4].map(|f| chain(f, pose.curl[f], pose.spread));
     if pose.pinch > 0.0 {
         pinch(&mut own, pose.pinch);
     }
@@ -182,9 +198,12 @@ pub fn skeleton(pose: &HandKey, left: bool) -> Hand {
 }
 
 /// The five joints of one finger of a right hand, in the hand's own axes about the palm's middle.
-fn chain(finger: usize, curl: f32) -> [Vec3; 5] {
+fn chain(finger: usize, curl: f32, spread: f32) -> [Vec3; 5] {
     let thumb = finger == 0;
-    let yaw = Quat::from_rotation_y(-SPREAD[finger].to_radians() * (1.0 - 0.6 * curl));
+    // Spread on purpose, fingers stand two and a half times as far apart as at rest.
+    let apart = (1.0 + 1.5 * spread) * (1.0 - 0.6 * curl);
+    let yaw =
+        Quat::from_rotation_y(-SPREAD[finger].to_radians() * if thumb { 1.0 - 0.6 * curl } else { apart });
     // A thumb closes across the palm, the fingers into it.
     let axis = if thumb { vec3(0.35, 0.85, 0.0).normalize() } else { Vec3::X };
     let bend = if thumb { [0.0, -0.5, -0.6, -0.7] } else { [0.0, -1.45, -1.7, -1.15] };

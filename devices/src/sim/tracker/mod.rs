@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use self::server::Server;
 use super::faults::{Event, Faults, Line};
 use super::hand::HandScript;
+use super::tremble::{Tremble, Trembling};
 use crate::Clock;
 use crate::lifeline::{self, Lifeline};
 use crate::sample::Hands;
@@ -35,6 +36,8 @@ pub struct TrackerConfig {
     /// The script begins again after so long; `None` ends with it: no hands from then on.
     pub repeat_us: Option<u64>,
     pub faults: Faults,
+    /// How well it sees.
+    pub tremble: Tremble,
 }
 
 impl Default for TrackerConfig {
@@ -45,6 +48,7 @@ impl Default for TrackerConfig {
             origins: Vec::new(),
             repeat_us: None,
             faults: Faults::default(),
+            tremble: Tremble::default(),
         }
     }
 }
@@ -56,6 +60,7 @@ pub struct Tracker {
     script: HandScript,
     server: Server,
     line: Line<Packet>,
+    trembling: Trembling,
     next_us: u64,
     frame: i64,
     /// By which the device's clock is off.
@@ -105,11 +110,13 @@ impl Tracker {
     pub fn new(script: HandScript, config: TrackerConfig) -> std::io::Result<Self> {
         let server = Server::bind(config.port, config.origins.clone())?;
         let line = Line::new(config.faults);
+        let trembling = Trembling::new(config.tremble);
         Ok(Tracker {
             config,
             script,
             server,
             line,
+            trembling,
             next_us: 0,
             frame: 0,
             jumped_us: 0,
@@ -169,7 +176,7 @@ impl Tracker {
             let at = self.next_us;
             self.next_us += step;
             self.frame += 1;
-            let stamp = (CLOCK_ORIGIN_US + at).saturating_add_signed(self.jumped_us);
+            let stamp = (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
             let hands = self.hands_at(at);
             let text = frame_json(&hands, stamp, self.config.rate);
             let packet = Packet { text, frame: self.frame, stamp, hands: hands.count };
@@ -186,9 +193,9 @@ impl Tracker {
         expected
     }
 
-    fn hands_at(&self, at: u64) -> Hands {
+    fn hands_at(&mut self, at: u64) -> Hands {
         let at = self.config.repeat_us.filter(|p| *p > 0).map_or(at, |p| at % p);
-        self.script.at(at, self.frame)
+        self.trembling.apply(&self.script.at(at, self.frame))
     }
 
     fn happen(&mut self, event: Event<Packet>, at: u64) -> u32 {

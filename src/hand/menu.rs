@@ -1,0 +1,137 @@
+//! A menu for hands that hold no button: balls in the air at the left, out of the work's way. A pointing fingertip that stays
+//! in one for a while sees a ring; when the ring has closed, the ball is chosen.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::settings::HandSettings;
+
+/// What may be chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Choice {
+    /// The thing in the hands becomes one with the work.
+    Add,
+    /// It is cut out of the work.
+    Carve,
+    /// Only what both have in common stays.
+    Keep,
+    /// The thing is gone, the work as it was.
+    PutAway,
+    /// Take up a ball, a box, a cylinder.
+    Ball,
+    Box,
+    Cylinder,
+    Undo,
+    Redo,
+}
+
+impl Choice {
+    /// With empty hands.
+    pub const EMPTY: [Choice; 5] = [Choice::Undo, Choice::Redo, Choice::Ball, Choice::Box, Choice::Cylinder];
+    /// With a thing in the hands.
+    pub const HOLDING: [Choice; 4] = [Choice::Add, Choice::Carve, Choice::Keep, Choice::PutAway];
+
+    /// What a person reads.
+    pub fn label(self) -> &'static str {
+        match self {
+            Choice::Add => "add",
+            Choice::Carve => "carve",
+            Choice::Keep => "keep common",
+            Choice::PutAway => "put away",
+            Choice::Ball => "ball",
+            Choice::Box => "box",
+            Choice::Cylinder => "cylinder",
+            Choice::Undo => "undo",
+            Choice::Redo => "redo",
+        }
+    }
+}
+
+/// Where the lowest ball is, mm over the tracker: left of the work, within what a Leap tracks well.
+const FIRST_MM: Vec3 = Vec3::new(-165.0, 110.0, 0.0);
+/// From ball to ball, and a ball's radius, mm: a fingertip drifts by up to 15 mm while it dwells.
+const STEP_MM: f32 = 48.0;
+pub const RADIUS_MM: f32 = 20.0;
+
+/// Where the ball of the `i`th choice is, in the tracker's mm.
+pub fn ball_mm(i: usize) -> Vec3 {
+    FIRST_MM + Vec3::Y * (STEP_MM * i as f32)
+}
+
+/// Which ball a fingertip is in, and how far its ring has closed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Menu {
+    over: Option<(usize, u64)>,
+    /// A choice was just made: the finger must leave before it can choose again.
+    spent: bool,
+    ring: f32,
+}
+
+impl Menu {
+    pub fn choices(holding: bool) -> &'static [Choice] {
+        if holding { &Choice::HOLDING } else { &Choice::EMPTY }
+    }
+
+    /// The ball that a fingertip is in, and 0 to 1 how far its ring has closed.
+    pub fn showing(&self) -> Option<(usize, f32)> {
+        self.over.map(|(i, _)| (i, self.ring))
+    }
+
+    /// Takes where a pointing fingertip is, if there is one.
+    pub fn take(
+        &mut self,
+        tip_mm: Option<Vec3>,
+        t_us: u64,
+        holding: bool,
+        s: &HandSettings,
+    ) -> Option<Choice> {
+        let choices = Menu::choices(holding);
+        let inside =
+            |i: &usize, slack: f32| tip_mm.is_some_and(|p| p.distance(ball_mm(*i)) < RADIUS_MM + slack);
+        let kept = self.over.map(|(i, _)| i).filter(|i| *i < choices.len() && inside(i, 4.0));
+        let now = kept.or_else(|| (0..choices.len()).find(|i| inside(i, 0.0)));
+        let Some(i) = now else {
+            *self = Menu::default();
+            return None;
+        };
+        let since = match self.over {
+            Some((before, since)) if before == i => since,
+            _ => t_us,
+        };
+        self.over = Some((i, since));
+        let ms = t_us.saturating_sub(since) as f32 * 1e-3;
+        self.ring = ((ms - s.dwell_ms) / s.ring_ms.max(1.0)).clamp(0.0, 1.0);
+        if self.ring >= 1.0 && !self.spent {
+            (self.spent, self.ring) = (true, 0.0);
+            return Some(choices[i]);
+        }
+        if self.spent {
+            self.ring = 0.0;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten milliseconds a frame; what was chosen, and when.
+    fn watch(path: impl Fn(u64) -> Option<Vec3>, ms: u64) -> Vec<(u64, Choice)> {
+        let (mut menu, s) = (Menu::default(), HandSettings::default());
+        (0..ms / 10)
+            .filter_map(|i| menu.take(path(i * 10), i * 10_000, false, &s).map(|c| (i * 10, c)))
+            .collect()
+    }
+
+    #[test]
+    fn a_finger_that_dwells_chooses_once_and_one_that_passes_never() {
+        let dwelling = watch(|_| Some(ball_mm(1) + Vec3::new(5.0, -6.0, 3.0)), 4000);
+        assert_eq!(dwelling, [(1100, Choice::Redo)]);
+        let passing = watch(|ms| Some(ball_mm(0) + Vec3::Y * (ms as f32 * 0.1 - 100.0)), 4000);
+        assert_eq!(passing, []);
+        let away_and_back = watch(|ms| (!(1500..1600).contains(&ms)).then(|| ball_mm(2)), 3000);
+        assert_eq!(away_and_back, [(1100, Choice::Ball), (2700, Choice::Ball)]);
+    }
+}
