@@ -10,6 +10,7 @@ use crate::analysis::cancel::Job;
 use crate::config::CameraConfig;
 use crate::daemon::rig;
 use crate::mesh::io::write_beside;
+use crate::viewer::look::{Look, MATERIALS};
 use crate::viewer::picture::Painter;
 use crate::viewer::renderer::Scene;
 
@@ -28,6 +29,18 @@ pub struct RenderArgs {
     /// No perspective.
     #[arg(long)]
     pub orthographic: bool,
+    #[arg(long, default_value = "clay", value_parser = materials())]
+    pub matcap: String,
+    /// One tone a triangle.
+    #[arg(long)]
+    pub flat: bool,
+    /// How strongly hollows are darkened and ridges lightened, 0 to 2.
+    #[arg(long, default_value_t = 1.0)]
+    pub cavity: f32,
+}
+
+fn materials() -> clap::builder::PossibleValuesParser {
+    MATERIALS.map(|m| m.name).into()
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -83,7 +96,12 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
     camera.frame(lo, hi);
     let no_adapter = |e: crate::viewer::NoViewer| Fail::Device(e.to_string());
     let mut painter = Painter::new().map_err(no_adapter)?;
-    let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[] };
+    let look = Look {
+        material: MATERIALS.iter().position(|m| m.name == args.matcap).unwrap_or(0),
+        flat: args.flat,
+        cavity: args.cavity,
+    };
+    let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look };
     let picture = painter.paint(&scene, width, height).map_err(no_adapter)?;
     write_beside(&args.output, |out| {
         image::codecs::png::PngEncoder::new(out)

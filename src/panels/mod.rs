@@ -2,11 +2,13 @@
 
 pub mod brush;
 pub mod hints;
+pub mod look;
 pub mod theme;
 pub mod timing;
 
 use crate::command::Command;
 use crate::daemon::Published;
+use crate::viewer::look::Look;
 
 /// What panels see.
 #[derive(Debug)]
@@ -22,12 +24,14 @@ pub struct View<'a> {
 }
 
 /// Everything on the left side.
-pub fn side(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Command>) {
+pub fn side(ui: &mut egui::Ui, view: &View<'_>, look: &mut Look, out: &mut Vec<Command>) {
     egui::ScrollArea::vertical().show(ui, |ui| {
         ui.add_space(6.0);
         ui.heading("sculptd");
         ui.add_space(8.0);
         brush::ui(ui, view, out);
+        ui.add_space(10.0);
+        look::ui(ui, look);
         ui.add_space(10.0);
         timing::ui(ui, view);
     });

@@ -8,6 +8,10 @@ struct Frame {
     back: vec4<f32>,
     // xyz: the brush's place; w: its radius, 0 for none.
     brush: vec4<f32>,
+    // xyz: the material's colour; w: 1 for facets.
+    base: vec4<f32>,
+    // Highlight's strength and exponent, light at the rim, strength of cavities.
+    finish: vec4<f32>,
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -42,18 +46,26 @@ fn lit(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
     let sky = 0.5 + 0.5 * n.y;
     let rim = pow(1.0 - clamp(n.z, 0.0, 1.0), 3.0);
     let half_way = normalize(normalize(vec3<f32>(-0.45, 0.65, 0.62)) + vec3<f32>(0.0, 0.0, 1.0));
-    let shine = pow(max(dot(n, half_way), 0.0), 40.0) * 0.22;
+    let shine = pow(max(dot(n, half_way), 0.0), frame.finish.y) * frame.finish.x;
     let warm = vec3<f32>(1.0, 0.95, 0.88) * key * 0.85;
     let cool = vec3<f32>(0.55, 0.68, 0.95) * fill * 0.28;
     let ambient = mix(vec3<f32>(0.13, 0.11, 0.11), vec3<f32>(0.26, 0.29, 0.34), sky);
-    return base * (warm + cool + ambient) + vec3<f32>(shine) + vec3<f32>(0.35, 0.42, 0.5) * rim * 0.25;
+    return base * (warm + cool + ambient) + vec3<f32>(shine) + vec3<f32>(0.35, 0.42, 0.5) * rim * frame.finish.z;
 }
 
 @fragment
 fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    // How the surface bends across the screen: how fast the normal turns along either axis.
+    let bend = dot(dpdx(in.normal), frame.right.xyz) - dot(dpdy(in.normal), frame.up.xyz);
+    let facet = cross(dpdy(in.place), dpdx(in.place));
     var n = normalize(in.normal);
+    if (frame.base.w > 0.5 && dot(facet, facet) > 0.0) {
+        n = normalize(facet);
+        // Derivatives know no front: the corners' normals do.
+        n = select(n, -n, dot(n, in.normal) < 0.0);
+    }
     var view = vec3<f32>(dot(n, frame.right.xyz), dot(n, frame.up.xyz), dot(n, frame.back.xyz));
-    var base = vec3<f32>(0.52, 0.25, 0.165) * mix(vec3<f32>(1.0), in.colour.rgb, frame.right.w);
+    var base = frame.base.xyz * mix(vec3<f32>(1.0), in.colour.rgb, frame.right.w);
     if (frame.right.w < 0.5) {
         base = base * in.colour.rgb;
     }
@@ -62,6 +74,7 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
         base = vec3<f32>(0.28, 0.30, 0.36);
     }
     var colour = lit(view, mix(base, base * 0.35, in.masked));
+    colour *= 1.0 + clamp(bend * 4.0, -0.4, 0.4) * frame.finish.w;
     // The falloff inside the brush: strongest in the middle.
     if (frame.brush.w > 0.0) {
         let x = distance(in.place, frame.brush.xyz) / frame.brush.w;

@@ -2,6 +2,7 @@
 //! stalls or dies costs the sculpture nothing.
 
 pub mod gpu;
+pub mod look;
 pub mod overlay;
 mod pages;
 pub mod picture;

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
 use super::gpu::Gpu;
+use super::look::Look;
 use super::pages::{Pages, VERTEX_LAYOUT};
 use crate::mesh::{Page, Snapshot};
 use crate::stroke::Camera;
@@ -29,6 +30,8 @@ struct Frame {
     up: [f32; 4],
     back: [f32; 4],
     brush: [f32; 4],
+    base: [f32; 4],
+    finish: [f32; 4],
 }
 
 /// What is drawn.
@@ -39,6 +42,7 @@ pub struct Scene<'a> {
     /// The brush's place and radius, for the falloff on the surface.
     pub brush: Option<(Vec3, f32)>,
     pub lines: &'a [LineEnd],
+    pub look: Look,
 }
 
 #[derive(Debug)]
@@ -205,12 +209,15 @@ impl Renderer {
         };
         let matrix = scene.camera.view_projection(radius);
         let (right, up) = scene.camera.axes();
+        let m = scene.look.material();
         let frame = Frame {
             view_projection: matrix.to_cols_array_2d(),
             right: right.extend(0.0).to_array(),
             up: up.extend(0.0).to_array(),
             back: scene.camera.backward().extend(0.0).to_array(),
             brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
+            base: [m.base[0], m.base[1], m.base[2], f32::from(scene.look.flat)],
+            finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];

@@ -14,6 +14,7 @@ use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
 use winit::window::{Window, WindowId};
 
 use super::gpu::{Gpu, NoViewer, instance};
+use super::look::Look;
 use super::overlay;
 use super::renderer::{LineEnd, Renderer, Scene};
 use crate::brush::{BrushKind, BrushSettings};
@@ -98,6 +99,7 @@ struct Open {
     asked_us: u64,
     shown: Option<(u64, u64)>,
     uploaded: u64,
+    look: Look,
 }
 
 impl ApplicationHandler for App {
@@ -228,6 +230,7 @@ impl Open {
             asked_us: 0,
             shown: None,
             uploaded: 0,
+            look: Look::default(),
         };
         open.send_camera(wiring);
         Ok(open)
@@ -437,7 +440,7 @@ impl Open {
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let size = (self.config.width, self.config.height);
-        let scene = Scene { mesh: &state.mesh, camera: &self.camera, brush, lines: &lines };
+        let scene = Scene { mesh: &state.mesh, camera: &self.camera, brush, lines: &lines, look: self.look };
         self.renderer.draw(&self.gpu, &mut encoder, &view, size, &scene);
         self.uploaded = self.renderer.uploaded;
         let commands = self.panels(&state, wiring, &mut encoder, &view);
@@ -471,9 +474,12 @@ impl Open {
         };
         let ghosts = wiring.clock.now_us() < wiring.ghosts_until_us;
         let done = self.done;
+        let look = &mut self.look;
         let context = self.egui.egui_ctx().clone();
         let out = context.run_ui(input, |ui| {
-            egui::Panel::left("side").exact_size(PANEL).show(ui, |ui| panels::side(ui, &view, &mut commands));
+            egui::Panel::left("side").exact_size(PANEL).show(ui, |ui| {
+                panels::side(ui, &view, look, &mut commands);
+            });
             hints::ui(ui.ctx(), &done, ghosts);
         });
         self.egui.handle_platform_output(&self.window, out.platform_output);
