@@ -1,1 +1,375 @@
-//! Union, intersection and both differences of polygon solids.
+//! Booleans of polygon meshes: union, intersection and both differences from one arrangement.
+//!
+//! The way: both surfaces are brought over common points (places within the tolerance are one point), so that faces that a
+//! person means to be coplanar *are*, by the identity of their points; then each point where an edge of one meets an edge or a
+//! face of the other is found once (signs decided exactly, Shewchuk 1997) and known to every triangle around it; each crossed
+//! triangle is cut into the cells of its plane graph; the parts of each surface between cuts are placed by one winding
+//! number each; contact is found by equal borders. Cells of one face with one fate are joined again, so that a face that
+//! is not crossed comes out as it went in. Every result is checked before it is given: closed, and volumes that add up.
+//!
+//! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the tolerance.
+
+mod emit;
+mod meet;
+mod merge;
+mod pieces;
+mod planar;
+mod points;
+mod tree;
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+pub use emit::{Facts, Origin};
+use merge::Polygon;
+use pieces::{Piece, Place, Shape};
+use points::Points;
+use tree::{Span, Tree};
+
+use super::cancel::{Cancelled, Job};
+use crate::mesh::PolyMesh;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operation {
+    Union,
+    Intersection,
+    Difference,
+    /// B minus A.
+    ReverseDifference,
+}
+
+impl Operation {
+    pub const ALL: [Operation; 4] =
+        [Operation::Union, Operation::Intersection, Operation::Difference, Operation::ReverseDifference];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Operation::Union => "union",
+            Operation::Intersection => "intersection",
+            Operation::Difference => "difference",
+            Operation::ReverseDifference => "reverse-difference",
+        }
+    }
+
+    /// Whether a piece of an operand (0 or 1) is in the result, and whether it is turned.
+    fn takes(self, operand: usize, place: Place, contact: bool) -> Option<bool> {
+        use Operation::*;
+        use Place::*;
+        match (self, operand, place) {
+            (Union, _, Outside) | (Union, 0, Same) => Some(false),
+            (Intersection, _, Inside) | (Intersection, 0, Same) => Some(false),
+            (Intersection, _, Against) if contact => Some(false),
+            (Difference, 0, Outside | Against) | (ReverseDifference, 1, Outside | Against) => Some(false),
+            (Difference, 1, Inside) | (ReverseDifference, 0, Inside) => Some(true),
+            _ => None,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Length under which contact is contact. `None`: from the operands' own rounding, about 4e-12 of the largest
+    /// coordinate. 0: only what rounding of computed points needs.
+    pub tolerance: Option<f64>,
+    /// Faces in which the solids only touch belong to the intersection too, both sides of them.
+    pub keep_contact: bool,
+}
+
+/// One of the four results.
+#[derive(Debug, Clone)]
+pub struct Solid {
+    pub operation: Operation,
+    pub mesh: PolyMesh,
+    /// One a face.
+    pub origins: Vec<Origin>,
+    pub facts: Facts,
+}
+
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    #[error("{operand} is open: {edges} edges lack a partner; mend it first")]
+    Open { operand: &'static str, edges: usize },
+    #[error("{operand} is inside out: its volume is {volume}")]
+    InsideOut { operand: &'static str, volume: f64 },
+    #[error("{operand} has a coordinate that is not finite")]
+    NotFinite { operand: &'static str },
+    #[error("no consistent result: {0}. Do the operands cross themselves?")]
+    Inconsistent(String),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// What was done besides the results.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// The tolerance that was used.
+    pub tolerance: f64,
+    pub warnings: Vec<String>,
+    /// The cut as polylines: places where both surfaces are, in pairs of ends.
+    pub cut: Vec<[DVec3; 2]>,
+    /// Phase names, called as each ends.
+    pub phases: Vec<(&'static str, f64)>,
+}
+
+const NAMES: [&str; 2] = ["A", "B"];
+
+/// The asked operations on A and B, from one arrangement. `now` gives seconds (any origin), for the phases only.
+pub fn compute(
+    operands: [&PolyMesh; 2],
+    operations: &[Operation],
+    options: &Options,
+    job: &Job,
+    now: impl Fn() -> f64,
+) -> Result<(Vec<Solid>, Report), Error> {
+    let mut report = Report::default();
+    let mut volumes = [0.0; 2];
+    let start = now();
+    for s in 0..2 {
+        volumes[s] = check(operands[s], NAMES[s])?;
+    }
+    report.phases.push(("check", now() - start));
+    let reach = operands
+        .iter()
+        .flat_map(|m| m.positions.iter())
+        .fold(0.0f64, |r, p| r.max(p.abs().max_element()));
+    let floor = reach * 2f64.powi(-49);
+    let wanted = options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
+    let mut why = String::new();
+    // Where the first tolerance falls between what is and is not in contact, another does not.
+    for factor in [1.0, 0.125, 16.0, 1.0 / 64.0, 512.0] {
+        let eps = (wanted * factor).max(floor);
+        match attempt(operands, volumes, operations, options, eps, job, &now, &mut report)? {
+            Ok(solids) => {
+                report.tolerance = eps;
+                if factor != 1.0 {
+                    report.warnings.push(format!("tolerance {eps:.3e} taken instead of {wanted:.3e}: {why}"));
+                }
+                return Ok((solids, report));
+            }
+            Err(reason) => {
+                if why.is_empty() {
+                    why = reason;
+                }
+            }
+        }
+    }
+    Err(Error::Inconsistent(why))
+}
+
+/// Closed, oriented outwards, finite: the volume, or what is wrong.
+fn check(mesh: &PolyMesh, operand: &'static str) -> Result<f64, Error> {
+    if !mesh.positions.iter().all(|p| p.is_finite()) {
+        return Err(Error::NotFinite { operand });
+    }
+    let mut half: Vec<(u32, u32, i32)> = Vec::with_capacity(mesh.corners.len());
+    for f in mesh.faces() {
+        for (i, &a) in f.iter().enumerate() {
+            let b = f[(i + 1) % f.len()];
+            half.push((a.min(b), a.max(b), if a < b { 1 } else { -1 }));
+        }
+    }
+    rayon::slice::ParallelSliceMut::par_sort_unstable(&mut half[..]);
+    let edges = half
+        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
+        .filter(|g| g[0].0 != g[0].1 && g.iter().map(|h| h.2).sum::<i32>() != 0)
+        .count();
+    if edges > 0 {
+        return Err(Error::Open { operand, edges });
+    }
+    let (volume, _) = emit::measure(mesh);
+    if volume < 0.0 { Err(Error::InsideOut { operand, volume }) } else { Ok(volume) }
+}
+
+/// With one tolerance. The inner error says why the arrangement is not consistent.
+fn attempt(
+    operands: [&PolyMesh; 2],
+    volumes: [f64; 2],
+    operations: &[Operation],
+    options: &Options,
+    eps: f64,
+    job: &Job,
+    now: &impl Fn() -> f64,
+    report: &mut Report,
+) -> Result<Result<Vec<Solid>, String>, Error> {
+    let mut clock = now();
+    let mut lap = |report: &mut Report, name| {
+        let t = now();
+        report.phases.push((name, t - clock));
+        clock = t;
+    };
+    let split = operands[0].positions.len();
+    let mut points = Points::new(
+        operands.iter().flat_map(|m| m.positions.iter().copied()).collect(),
+        eps,
+    );
+    let meshes = common(operands, &mut points, eps);
+    lap(report, "weld");
+    let mut starts: [Vec<u32>; 2] = Default::default();
+    let sides = [0, 1].map(|s| {
+        let (side, first) = side(&meshes[s], &points.at);
+        starts[s] = first;
+        side
+    });
+    lap(report, "tree");
+    job.progress(0.2);
+    let m = meet::meet(&sides, &mut points, eps, job)?;
+    lap(report, "meet");
+    job.progress(0.5);
+    let mut pieces: [Vec<Piece>; 2] = [Vec::new(), Vec::new()];
+    for s in 0..2 {
+        let flat = |f: usize| merge::is_flat(&meshes[s], f, &points.at, eps);
+        pieces[s] = pieces::cut(&meshes[s], s, &sides[s], &starts[s], &m, &points.at, flat, job)?;
+    }
+    lap(report, "cut");
+    pieces::place(&meshes, &sides, &mut pieces, &m, &points, job)?;
+    lap(report, "place");
+    job.progress(0.8);
+    // Cells of one face and place, joined once for all results.
+    let mut joined: Vec<(Place, Polygon)> = Vec::new();
+    for s in 0..2 {
+        let mut groups: BTreeMap<(u32, Place), Vec<&Piece>> = BTreeMap::new();
+        for p in pieces[s].iter().filter(|p| !matches!(p.shape, Shape::Whole)) {
+            groups.entry((p.face, p.place)).or_default().push(p);
+        }
+        for ((face, place), group) in groups {
+            let flat = merge::is_flat(&meshes[s], face as usize, &points.at, eps);
+            let made = merge::polygons(s as u8, face, &group, flat, &points.at);
+            joined.extend(made.into_iter().map(|p| (place, p)));
+        }
+    }
+    let mut solids = Vec::new();
+    for &operation in operations {
+        job.check()?;
+        let takes = |s: usize, place| operation.takes(s, place, options.keep_contact);
+        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
+        let mut used = vec![false; split + operands[1].positions.len()];
+        let mut reversed = Vec::new();
+        for s in 0..2 {
+            for p in pieces[s].iter().filter(|p| matches!(p.shape, Shape::Whole)) {
+                let Some(turned) = takes(s, p.place) else { continue };
+                let corners = meshes[s].face(p.face as usize);
+                corners.iter().for_each(|&v| used[v as usize] = true);
+                push(&mut mesh, corners, turned, &mut reversed);
+                origins.push(Origin { operand: s as u8, face: p.face });
+            }
+        }
+        let mut cut: Vec<Polygon> = Vec::new();
+        let mut turns = Vec::new();
+        for (place, p) in &joined {
+            if let Some(turned) = takes(p.side as usize, *place) {
+                cut.push(p.clone());
+                turns.push(turned);
+            }
+        }
+        let kept = |v: u32| used.get(v as usize).copied().unwrap_or(false);
+        merge::straighten(&mut cut, &meshes, kept, &points.at, eps);
+        for (p, turned) in cut.iter().zip(turns) {
+            push(&mut mesh, &p.corners, turned, &mut reversed);
+            origins.push(Origin { operand: p.side, face: p.face });
+        }
+        let (closed, components) = emit::separate(&mut mesh, &points.at);
+        let (volume, area) = emit::measure(&mesh);
+        if !closed {
+            return Ok(Err(format!("the {} is not closed", operation.name())));
+        }
+        let facts = Facts { volume, area, components, closed, manifold: closed };
+        solids.push(Solid { operation, mesh, origins, facts });
+    }
+    lap(report, "emit");
+    if let Some(why) = doubt(&solids, volumes, eps, &points.at) {
+        return Ok(Err(why));
+    }
+    job.progress(1.0);
+    Ok(Ok(solids))
+}
+
+fn push(mesh: &mut PolyMesh, corners: &[u32], turned: bool, scratch: &mut Vec<u32>) {
+    if turned {
+        scratch.clear();
+        scratch.extend(corners.iter().rev());
+        mesh.push_face(scratch);
+    } else {
+        mesh.push_face(corners);
+    }
+}
+
+/// What the volumes say against the results.
+fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<String> {
+    let of = |o| solids.iter().find(|s| s.operation == o).map(|s| s.facts.volume);
+    let area: f64 = solids.iter().map(|s| s.facts.area).sum();
+    let span = Span::of(at.iter().copied());
+    let slack = (a + b) * 1e-11 + area * eps * 8.0 + (span.hi - span.lo).length().powi(3) * 1e-14;
+    let (u, i) = (of(Operation::Union), of(Operation::Intersection));
+    let (d, r) = (of(Operation::Difference), of(Operation::ReverseDifference));
+    let sums = [
+        (u.zip(i).map(|(u, i)| u + i - a - b), "union and intersection"),
+        (d.zip(i).map(|(d, i)| d + i - a), "difference and intersection"),
+        (r.zip(i).map(|(r, i)| r + i - b), "reverse difference and intersection"),
+    ];
+    for (off, what) in sums {
+        if off.is_some_and(|x| x.abs() > slack) {
+            return Some(format!("the volumes of {what} do not add up, by {:.3e}", off.unwrap_or(0.0)));
+        }
+    }
+    solids
+        .iter()
+        .find(|s| s.facts.volume < -slack)
+        .map(|s| format!("the {} has the volume {:.3e}", s.operation.name(), s.facts.volume))
+}
+
+/// Both operands over one list of points; those of either that are near the other's box are met by identity.
+fn common(operands: [&PolyMesh; 2], points: &mut Points, eps: f64) -> [PolyMesh; 2] {
+    let spans = operands.map(|m| Span::of(m.positions.iter().copied()));
+    let both = Span { lo: spans[0].lo.max(spans[1].lo), hi: spans[0].hi.min(spans[1].hi) }.grown(4.0 * eps);
+    let mut base = 0u32;
+    operands.map(|m| {
+        let names: Vec<u32> = (0..m.positions.len() as u32)
+            .map(|i| {
+                let p = m.positions[i as usize];
+                let near = both.lo.cmple(p).all() && p.cmple(both.hi).all();
+                if near { points.list(base + i) } else { base + i }
+            })
+            .collect();
+        base += m.positions.len() as u32;
+        let mut out = PolyMesh::new();
+        out.corners.reserve(m.corners.len());
+        let mut ring: Vec<u32> = Vec::new();
+        for f in m.faces() {
+            ring.clear();
+            for &c in f {
+                let v = names[c as usize];
+                if ring.last() != Some(&v) {
+                    ring.push(v);
+                }
+            }
+            while ring.len() > 1 && ring.first() == ring.last() {
+                ring.pop();
+            }
+            // A face that shrank to an edge keeps its number and has no corners.
+            if ring.len() < 3 {
+                ring.clear();
+            }
+            out.push_face(&ring);
+        }
+        out
+    })
+}
+
+/// Triangles, boxes and the tree of one operand, and the first triangle of each face.
+fn side(mesh: &PolyMesh, at: &[DVec3]) -> (meet::Side, Vec<u32>) {
+    let mut triangles = Vec::with_capacity(mesh.corners.len());
+    let mut starts = Vec::with_capacity(mesh.face_count() + 1);
+    starts.push(0);
+    for f in mesh.faces() {
+        match *f {
+            [] => {}
+            [a, b, c] => triangles.push([a, b, c]),
+            _ => crate::mesh::triangulate::face(at, f, &mut triangles),
+        }
+        starts.push(triangles.len() as u32);
+    }
+    let spans: Vec<Span> = triangles.iter().map(|t| Span::of(t.map(|i| at[i as usize]))).collect();
+    let tree = Tree::build(&spans);
+    (meet::Side { triangles, spans, tree }, starts)
+}

@@ -1,0 +1,200 @@
+//! A triangle cut by segments: the cells of the plane graph, each with its holes. Angles are compared exactly.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use robust::{Coord, orient2d};
+
+use super::points::{Map, Sets};
+
+/// A cell: counter-clockwise border, clockwise holes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Cell {
+    pub outer: Vec<u32>,
+    pub holes: Vec<Vec<u32>>,
+}
+
+/// Drops the axis along which the normal is longest, so that what is counter-clockwise stays so.
+pub fn flatten(n: DVec3) -> impl Fn(DVec3) -> Coord<f64> + Copy {
+    let a = n.abs();
+    let axis = if a.x >= a.y && a.x >= a.z { 0 } else if a.y >= a.z { 1 } else { 2 };
+    let flip = n[axis] < 0.0;
+    move |p: DVec3| {
+        let (x, y) = match axis {
+            0 => (p.y, p.z),
+            1 => (p.z, p.x),
+            _ => (p.x, p.y),
+        };
+        if flip { Coord { x: y, y: x } } else { Coord { x, y } }
+    }
+}
+
+/// Cells of the polygon `ring` (counter-clockwise) cut by `segments`; both over global points placed by `at`.
+/// Segments that separate nothing are left out.
+pub fn cells(ring: &[u32], segments: &[(u32, u32)], at: impl Fn(u32) -> Coord<f64>) -> Vec<Cell> {
+    let mut ids: Map<u32, usize> = Map::default();
+    let mut names: Vec<u32> = Vec::new();
+    let mut id = |v: u32| {
+        *ids.entry(v).or_insert_with(|| {
+            names.push(v);
+            names.len() - 1
+        })
+    };
+    let mut edges: Vec<(usize, usize)> = Vec::new();
+    for (i, &v) in ring.iter().enumerate() {
+        edges.push((id(v), id(ring[(i + 1) % ring.len()])));
+    }
+    let border = edges.len();
+    let mut known: Map<(usize, usize), ()> = Map::default();
+    known.extend(edges.iter().map(|&(a, b)| ((a.min(b), a.max(b)), ())));
+    for &(p, q) in segments {
+        let (a, b) = (id(p), id(q));
+        if a != b && known.insert((a.min(b), a.max(b)), ()).is_none() {
+            edges.push((a, b));
+        }
+    }
+    let spots: Vec<Coord<f64>> = names.iter().map(|&v| at(v)).collect();
+    let mut alive = vec![true; edges.len()];
+    loop {
+        let loops = trace(&edges, &alive, &spots);
+        let mut of = vec![usize::MAX; edges.len() * 2];
+        for (l, hs) in loops.iter().enumerate() {
+            hs.iter().for_each(|&h| of[h] = l);
+        }
+        let mut again = false;
+        for e in border..edges.len() {
+            if alive[e] && of[2 * e] == of[2 * e + 1] {
+                alive[e] = false;
+                again = true;
+            }
+        }
+        if !again {
+            return assemble(&edges, &loops, &of, &spots, &names, border);
+        }
+    }
+}
+
+/// Half-edge `2 e` runs as edge `e` does, `2 e + 1` against it. Each loop has its cell on the left.
+fn trace(edges: &[(usize, usize)], alive: &[bool], spots: &[Coord<f64>]) -> Vec<Vec<usize>> {
+    let tail = |h: usize| if h % 2 == 0 { edges[h / 2].0 } else { edges[h / 2].1 };
+    let mut out: Vec<Vec<usize>> = vec![Vec::new(); spots.len()];
+    for e in (0..edges.len()).filter(|&e| alive[e]) {
+        out[edges[e].0].push(2 * e);
+        out[edges[e].1].push(2 * e + 1);
+    }
+    let mut place = vec![0usize; edges.len() * 2];
+    for (v, hs) in out.iter_mut().enumerate() {
+        hs.sort_by(|&g, &h| angle(spots[v], spots[tail(g ^ 1)], spots[tail(h ^ 1)]).then(g.cmp(&h)));
+        hs.iter().enumerate().for_each(|(i, &h)| place[h] = i);
+    }
+    let mut seen = vec![false; edges.len() * 2];
+    let mut loops = Vec::new();
+    for start in 0..edges.len() * 2 {
+        if seen[start] || !alive[start / 2] {
+            continue;
+        }
+        let (mut one, mut h) = (Vec::new(), start);
+        while !seen[h] {
+            seen[h] = true;
+            one.push(h);
+            // At the head: the next one clockwise from the way back.
+            let around = &out[tail(h ^ 1)];
+            let i = place[h ^ 1];
+            h = around[(i + around.len() - 1) % around.len()];
+        }
+        loops.push(one);
+    }
+    loops
+}
+
+/// Order of two directions around `o`, from the positive x axis on counter-clockwise.
+fn angle(o: Coord<f64>, p: Coord<f64>, q: Coord<f64>) -> Ordering {
+    let upper = |p: Coord<f64>| p.y > o.y || (p.y == o.y && p.x > o.x);
+    upper(q).cmp(&upper(p)).then_with(|| 0.0f64.total_cmp(&orient2d(o, p, q)))
+}
+
+fn assemble(
+    edges: &[(usize, usize)],
+    loops: &[Vec<usize>],
+    of: &[usize],
+    spots: &[Coord<f64>],
+    names: &[u32],
+    border: usize,
+) -> Vec<Cell> {
+    let tail = |h: usize| if h % 2 == 0 { edges[h / 2].0 } else { edges[h / 2].1 };
+    let area = |l: &[usize]| {
+        let o = spots[tail(l[0])];
+        l.iter()
+            .map(|&h| (spots[tail(h)], spots[tail(h ^ 1)]))
+            .map(|(p, q)| (p.x - o.x) * (q.y - o.y) - (p.y - o.y) * (q.x - o.x))
+            .sum::<f64>()
+    };
+    let outside = of[1];
+    // Connected parts, so that a hole is looked for only in other parts.
+    let mut parts = Sets::new(spots.len());
+    for (e, &(a, b)) in edges.iter().enumerate() {
+        if of[2 * e] != usize::MAX {
+            parts.join(a as u32, b as u32);
+        }
+    }
+    let main = parts.root(edges[0].0 as u32);
+    let name = |l: &[usize]| l.iter().map(|&h| names[tail(h)]).collect::<Vec<u32>>();
+    let mut out: Vec<(Cell, f64, usize, u32)> = Vec::new();
+    let mut holes = Vec::new();
+    for (i, l) in loops.iter().enumerate() {
+        if i == outside {
+            continue;
+        }
+        let a = area(l);
+        let part = parts.root(tail(l[0]) as u32);
+        if a > 0.0 || part == main {
+            out.push((Cell { outer: name(l), holes: Vec::new() }, a, i, part));
+        } else {
+            holes.push((l, part));
+        }
+    }
+    debug_assert!(border >= 3);
+    for (l, part) in holes {
+        let p = spots[tail(l[0])];
+        let inside = |i: usize| {
+            let mut odd = false;
+            for &h in &loops[i] {
+                let (a, b) = (spots[tail(h)], spots[tail(h ^ 1)]);
+                if (a.y > p.y) != (b.y > p.y) {
+                    let side = orient2d(a, b, p);
+                    odd ^= if b.y > a.y { side > 0.0 } else { side < 0.0 };
+                }
+            }
+            odd
+        };
+        let best = out
+            .iter_mut()
+            .filter(|c| c.3 != part && inside(c.2))
+            .min_by(|x, y| x.1.total_cmp(&y.1));
+        if let Some(c) = best {
+            c.0.holes.push(name(l));
+        }
+    }
+    out.into_iter().map(|c| c.0).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_with_a_cut_a_hole_and_a_loose_end() {
+        let spots = [
+            (0., 0.), (4., 0.), (4., 4.), (0., 4.), // ring
+            (2., 0.), (2., 4.), // the cut
+            (0.5, 0.5), (1.5, 0.5), (1., 1.), // a hole in the left half
+            (3., 3.), // a loose end
+        ];
+        let at = |i: u32| Coord { x: spots[i as usize].0, y: spots[i as usize].1 };
+        let c = cells(&[0, 4, 1, 2, 5, 3], &[(4, 5), (6, 7), (7, 8), (8, 6), (2, 9)], at);
+        assert_eq!(c.len(), 3);
+        let mut shape: Vec<(usize, usize)> = c.iter().map(|c| (c.outer.len(), c.holes.len())).collect();
+        shape.sort_unstable();
+        assert_eq!(shape, [(3, 0), (4, 0), (4, 1)]);
+    }
+}
