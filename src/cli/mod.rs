@@ -8,6 +8,7 @@ use crate::mesh::io::{ReadError, WriteError};
 use clap::{CommandFactory, Parser, Subcommand};
 
 pub mod bench;
+pub mod boolean;
 pub mod config;
 pub mod convert;
 #[cfg(unix)]
@@ -80,6 +81,8 @@ pub enum Command {
         #[command(subcommand)]
         command: config::ConfigCommand,
     },
+    /// Union, intersection and differences of solids.
+    Boolean(boolean::BooleanArgs),
     /// Wall thickness: of every vertex, against limits, as numbers, map and report.
     Thickness(thickness::ThicknessArgs),
     /// Volume, area, dimensions, projected areas and thickness of a part.
@@ -184,6 +187,7 @@ pub fn run() -> u8 {
         #[cfg(unix)]
         Some(Command::Ctl(args)) => ctl::run(&args, cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),
+        Some(Command::Boolean(args)) => boolean::run(&args, cli.json),
         Some(Command::Thickness(args)) => thickness::run(&args, cli.json),
         Some(Command::Measure(args)) => measure::run(&args, cli.json),
         Some(Command::Info(args)) => info::run(&args, cli.json),

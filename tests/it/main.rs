@@ -3,6 +3,7 @@
 
 mod allocations;
 mod bad_input;
+mod boolean;
 mod clay;
 mod field;
 mod golden;

@@ -29,9 +29,25 @@ pub struct Facts {
     pub manifold: bool,
 }
 
-/// Drops unused points, doubles vertices at non-manifold places. Corners of `mesh` index `at`. Returns whether each
-/// edge found its partner, and the number of shells.
-pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> (bool, usize) {
+/// Makes the chosen faces, whose corners index `at`, a mesh of its own, and says what it is.
+pub fn finish(mesh: &mut PolyMesh, at: &[DVec3]) -> Facts {
+    let closed = separate(mesh, at);
+    let mut shells = Sets::new(mesh.positions.len());
+    for f in 0..mesh.face_count() {
+        let c = mesh.face(f);
+        for k in 1..c.len() {
+            shells.join(c[0], c[k]);
+        }
+    }
+    let components = (0..mesh.positions.len() as u32).filter(|&v| shells.root(v) == v).count();
+    let (volume, area) = measure(mesh);
+    Facts { volume, area, components, closed, manifold: closed }
+}
+
+/// Drops unused points, doubles vertices where the surface touches itself, and where that leaves one edge between two pairs of
+/// faces, gives one pair a corner in the middle. Corners of `mesh` index `at`. Returns whether each edge found its partner:
+/// then the mesh is closed, oriented and manifold.
+pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> bool {
     let n = mesh.corners.len();
     let mut face_of = vec![0u32; n];
     let mut next = vec![0u32; n];
@@ -51,6 +67,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> (bool, usize) {
         .collect();
     half.par_sort_unstable();
     let mut closed = true;
+    let mut several: Vec<(u32, u32)> = Vec::new();
     let mut sets = Sets::new(n);
     let mut i = 0;
     while i < n {
@@ -69,7 +86,10 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> (bool, usize) {
         } else if group.iter().filter(|h| forward(h.1)).count() * 2 != group.len() {
             closed = false;
         } else {
-            around(mesh, at, group, &face_of).into_iter().for_each(|(g, h)| pair(g, h));
+            for (g, h) in around(mesh, at, group, &face_of) {
+                pair(g, h);
+                several.push((g, h));
+            }
         }
         i = j;
     }
@@ -86,15 +106,43 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> (bool, usize) {
         corners[c as usize] = id[r];
     }
     mesh.corners = corners;
-    let mut shells = Sets::new(mesh.positions.len());
-    for f in 0..mesh.face_count() {
-        let c = mesh.face(f);
-        for k in 1..c.len() {
-            shells.join(c[0], c[k]);
+    // Pairs at one edge that found the same ends by other ways.
+    several.sort_unstable_by_key(|&(g, _)| {
+        let (a, b) = (mesh.corners[g as usize], mesh.corners[next[g as usize] as usize]);
+        (a.min(b), a.max(b), g)
+    });
+    let mut middles: Vec<(u32, u32)> = Vec::new();
+    let ends = |g: u32| {
+        let (a, b) = (mesh.corners[g as usize], mesh.corners[next[g as usize] as usize]);
+        (a.min(b), a.max(b))
+    };
+    for w in several.windows(2) {
+        if ends(w[0].0) == ends(w[1].0) {
+            let (a, b) = ends(w[1].0);
+            let v = mesh.positions.len() as u32;
+            let middle = (mesh.positions[a as usize] + mesh.positions[b as usize]) * 0.5;
+            mesh.positions.push(middle);
+            middles.extend([(w[1].0, v), (w[1].1, v)]);
         }
     }
-    let components = (0..mesh.positions.len() as u32).filter(|&v| shells.root(v) == v).count();
-    (closed, components)
+    if !middles.is_empty() {
+        middles.sort_unstable();
+        let old = std::mem::replace(mesh, PolyMesh::new());
+        mesh.positions.clone_from(&old.positions);
+        let (mut face, mut m) = (Vec::new(), 0);
+        for f in 0..old.face_count() {
+            face.clear();
+            for c in old.face_starts[f]..old.face_starts[f + 1] {
+                face.push(old.corners[c as usize]);
+                if middles.get(m).is_some_and(|x| x.0 == c) {
+                    face.push(middles[m].1);
+                    m += 1;
+                }
+            }
+            mesh.push_face(&face);
+        }
+    }
+    closed
 }
 
 /// Partners around an edge with more than two faces: those with the solid between them, as Requicha's regularised boundary
@@ -138,10 +186,8 @@ fn around(mesh: &PolyMesh, at: &[DVec3], group: &[(u64, u32)], face_of: &[u32]) 
 
 /// Volume and area, about the box's centre; faces in the triangles that [`PolyMesh::triangles`] gives.
 pub fn measure(mesh: &PolyMesh) -> (f64, f64) {
-    let (lo, hi) = mesh
-        .positions
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let (lo, hi) =
+        mesh.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
     let centre = (lo + hi) * 0.5;
     let (triangles, _) = mesh.triangles();
     let part = |t: &[[u32; 3]]| {

@@ -67,13 +67,8 @@ pub fn meet(sides: &[Side; 2], points: &mut Points, eps: f64, job: &Job) -> Resu
     });
     pairs.sort_unstable();
     job.check()?;
-    let mut f = Finder {
-        points,
-        eps,
-        m: Meeting::default(),
-        crossings: Map::default(),
-        piercings: Map::default(),
-    };
+    let mut f =
+        Finder { points, eps, m: Meeting::default(), crossings: Map::default(), piercings: Map::default() };
     for (n, &(i, j)) in pairs.iter().enumerate() {
         if n % 1024 == 0 {
             job.check()?;

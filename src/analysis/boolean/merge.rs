@@ -21,9 +21,14 @@ pub fn polygons(side: u8, face: u32, group: &[&Piece], flat: bool, at: &[DVec3])
     for p in group {
         match &p.shape {
             Shape::Cell(c) if !c.holes.is_empty() => {
-                let loops: Vec<&[u32]> = std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect();
+                let loops: Vec<&[u32]> =
+                    std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect();
                 let n: DVec3 = loops.iter().map(|l| area_vector(at, l)).sum();
                 rings.extend(triangles(&loops, n, at).into_iter().map(|t| t.to_vec()));
+            }
+            // A border that touches itself at a point is no simple polygon.
+            Shape::Cell(c) if repeats(&c.outer) => {
+                rings.extend(triangles(&[&c.outer], DVec3::ZERO, at).into_iter().map(|t| t.to_vec()));
             }
             Shape::Cell(c) => rings.push(c.outer.clone()),
             Shape::Border(b) => rings.push(b.clone()),
@@ -31,13 +36,19 @@ pub fn polygons(side: u8, face: u32, group: &[&Piece], flat: bool, at: &[DVec3])
         }
     }
     if flat && rings.len() > 1 {
-        rings = join(rings);
+        rings = joined_rings(rings);
     }
     rings.into_iter().map(|corners| Polygon { side, face, corners }).collect()
 }
 
+fn repeats(ring: &[u32]) -> bool {
+    let mut sorted = ring.to_vec();
+    sorted.sort_unstable();
+    sorted.windows(2).any(|w| w[0] == w[1])
+}
+
 /// Joins polygons that share one chain of edges and touch nowhere else, until none do.
-fn join(rings: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+pub fn joined_rings(rings: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
     let mut rings: Vec<Option<Vec<u32>>> = rings.into_iter().map(Some).collect();
     let mut owner: Map<(u32, u32), usize> = Map::default();
     let edges = |r: &[u32]| (0..r.len()).map(|i| (r[i], r[(i + 1) % r.len()])).collect::<Vec<_>>();
@@ -104,7 +115,13 @@ pub fn is_flat(mesh: &PolyMesh, f: usize, at: &[DVec3], eps: f64) -> bool {
 }
 
 /// Drops corners that only subdivide a straight edge between two polygons, unless an input face has them there.
-pub fn straighten(polygons: &mut [Polygon], meshes: &[PolyMesh; 2], kept: impl Fn(u32) -> bool, at: &[DVec3], eps: f64) {
+pub fn straighten(
+    polygons: &mut [Polygon],
+    meshes: &[PolyMesh; 2],
+    kept: impl Fn(u32) -> bool,
+    at: &[DVec3],
+    eps: f64,
+) {
     let mut uses: Map<u32, Vec<usize>> = Map::default();
     let mut order = Vec::new();
     for (i, p) in polygons.iter().enumerate() {
@@ -118,7 +135,10 @@ pub fn straighten(polygons: &mut [Polygon], meshes: &[PolyMesh; 2], kept: impl F
     }
     for v in order {
         let users = &uses[&v];
-        if kept(v) || users.iter().any(|&i| meshes[polygons[i].side as usize].face(polygons[i].face as usize).contains(&v))
+        if kept(v)
+            || users
+                .iter()
+                .any(|&i| meshes[polygons[i].side as usize].face(polygons[i].face as usize).contains(&v))
         {
             continue;
         }

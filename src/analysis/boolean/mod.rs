@@ -10,14 +10,13 @@
 //! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the tolerance.
 
 mod emit;
+mod global;
 mod meet;
 mod merge;
 mod pieces;
 mod planar;
 mod points;
 mod tree;
-
-use std::collections::BTreeMap;
 
 use glam::DVec3;
 
@@ -129,10 +128,8 @@ pub fn compute(
         volumes[s] = check(operands[s], NAMES[s])?;
     }
     report.phases.push(("check", now() - start));
-    let reach = operands
-        .iter()
-        .flat_map(|m| m.positions.iter())
-        .fold(0.0f64, |r, p| r.max(p.abs().max_element()));
+    let reach =
+        operands.iter().flat_map(|m| m.positions.iter()).fold(0.0f64, |r, p| r.max(p.abs().max_element()));
     let floor = reach * 2f64.powi(-49);
     let wanted = options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
     let mut why = String::new();
@@ -154,7 +151,42 @@ pub fn compute(
             }
         }
     }
-    Err(Error::Inconsistent(why))
+    report.warnings.push(format!("no consistent result within the tolerance ({why}): global engine taken"));
+    report.tolerance = wanted;
+    let solids = globally(operands, volumes, operations, wanted, job, &now, &mut report)?;
+    Ok((solids, report))
+}
+
+/// The four results by the global engine, held against each other as the others are.
+fn globally(
+    operands: [&PolyMesh; 2],
+    volumes: [f64; 2],
+    operations: &[Operation],
+    eps: f64,
+    job: &Job,
+    now: &impl Fn() -> f64,
+    report: &mut Report,
+) -> Result<Vec<Solid>, Error> {
+    let start = now();
+    let engine = global::Engine::new(operands, eps, job)?.map_err(Error::Inconsistent)?;
+    let mut solids = Vec::new();
+    for &operation in operations {
+        let (mesh, origins, facts) = engine.run(operation, job)?.map_err(Error::Inconsistent)?;
+        if !facts.closed {
+            return Err(Error::Inconsistent(format!("the {} is not closed", operation.name())));
+        }
+        solids.push(Solid { operation, mesh, origins, facts });
+    }
+    report.phases.push(("global", now() - start));
+    match doubt(&solids, volumes, eps, &operands[0].positions) {
+        Some(why) => Err(Error::Inconsistent(why)),
+        None => Ok(solids),
+    }
+}
+
+/// A surface that crosses itself as the solid of all places that it goes around: for operands that [`compute`] refuses.
+pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Error> {
+    global::solve(mesh, job)?.map_err(Error::Inconsistent)
 }
 
 /// Closed, oriented outwards, finite: the volume, or what is wrong.
@@ -199,10 +231,7 @@ fn attempt(
         clock = t;
     };
     let split = operands[0].positions.len();
-    let mut points = Points::new(
-        operands.iter().flat_map(|m| m.positions.iter().copied()).collect(),
-        eps,
-    );
+    let mut points = Points::new(operands.iter().flat_map(|m| m.positions.iter().copied()).collect(), eps);
     let meshes = common(operands, &mut points, eps);
     lap(report, "weld");
     let mut starts: [Vec<u32>; 2] = Default::default();
@@ -225,17 +254,14 @@ fn attempt(
     pieces::place(&meshes, &sides, &mut pieces, &m, &points, job)?;
     lap(report, "place");
     job.progress(0.8);
-    // Cells of one face and place, joined once for all results.
-    let mut joined: Vec<(Place, Polygon)> = Vec::new();
-    for s in 0..2 {
-        let mut groups: BTreeMap<(u32, Place), Vec<&Piece>> = BTreeMap::new();
-        for p in pieces[s].iter().filter(|p| !matches!(p.shape, Shape::Whole)) {
-            groups.entry((p.face, p.place)).or_default().push(p);
-        }
-        for ((face, place), group) in groups {
-            let flat = merge::is_flat(&meshes[s], face as usize, &points.at, eps);
-            let made = merge::polygons(s as u8, face, &group, flat, &points.at);
-            joined.extend(made.into_iter().map(|p| (place, p)));
+    // The cells of each face that was cut.
+    let mut groups: Vec<(u8, u32, Vec<&Piece>)> = Vec::new();
+    for s in 0..2u8 {
+        for p in pieces[s as usize].iter().filter(|p| !matches!(p.shape, Shape::Whole)) {
+            match groups.last_mut() {
+                Some(g) if (g.0, g.1) == (s, p.face) => g.2.push(p),
+                _ => groups.push((s, p.face, vec![p])),
+            }
         }
     }
     let mut solids = Vec::new();
@@ -256,10 +282,17 @@ fn attempt(
         }
         let mut cut: Vec<Polygon> = Vec::new();
         let mut turns = Vec::new();
-        for (place, p) in &joined {
-            if let Some(turned) = takes(p.side as usize, *place) {
-                cut.push(p.clone());
-                turns.push(turned);
+        for (s, face, cells) in &groups {
+            for side in [false, true] {
+                let own: Vec<&Piece> =
+                    cells.iter().copied().filter(|p| takes(*s as usize, p.place) == Some(side)).collect();
+                if own.is_empty() {
+                    continue;
+                }
+                let flat = merge::is_flat(&meshes[*s as usize], *face as usize, &points.at, eps);
+                let made = merge::polygons(*s, *face, &own, flat, &points.at);
+                turns.resize(turns.len() + made.len(), side);
+                cut.extend(made);
             }
         }
         let kept = |v: u32| used.get(v as usize).copied().unwrap_or(false);
@@ -268,12 +301,10 @@ fn attempt(
             push(&mut mesh, &p.corners, turned, &mut reversed);
             origins.push(Origin { operand: p.side, face: p.face });
         }
-        let (closed, components) = emit::separate(&mut mesh, &points.at);
-        let (volume, area) = emit::measure(&mesh);
-        if !closed {
+        let facts = emit::finish(&mut mesh, &points.at);
+        if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }
-        let facts = Facts { volume, area, components, closed, manifold: closed };
         solids.push(Solid { operation, mesh, origins, facts });
     }
     lap(report, "emit");

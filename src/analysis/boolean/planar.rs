@@ -17,7 +17,13 @@ pub struct Cell {
 /// Drops the axis along which the normal is longest, so that what is counter-clockwise stays so.
 pub fn flatten(n: DVec3) -> impl Fn(DVec3) -> Coord<f64> + Copy {
     let a = n.abs();
-    let axis = if a.x >= a.y && a.x >= a.z { 0 } else if a.y >= a.z { 1 } else { 2 };
+    let axis = if a.x >= a.y && a.x >= a.z {
+        0
+    } else if a.y >= a.z {
+        1
+    } else {
+        2
+    };
     let flip = n[axis] < 0.0;
     move |p: DVec3| {
         let (x, y) = match axis {
@@ -167,10 +173,7 @@ fn assemble(
             }
             odd
         };
-        let best = out
-            .iter_mut()
-            .filter(|c| c.3 != part && inside(c.2))
-            .min_by(|x, y| x.1.total_cmp(&y.1));
+        let best = out.iter_mut().filter(|c| c.3 != part && inside(c.2)).min_by(|x, y| x.1.total_cmp(&y.1));
         if let Some(c) = best {
             c.0.holes.push(name(l));
         }
@@ -185,9 +188,15 @@ mod tests {
     #[test]
     fn a_square_with_a_cut_a_hole_and_a_loose_end() {
         let spots = [
-            (0., 0.), (4., 0.), (4., 4.), (0., 4.), // ring
-            (2., 0.), (2., 4.), // the cut
-            (0.5, 0.5), (1.5, 0.5), (1., 1.), // a hole in the left half
+            (0., 0.),
+            (4., 0.),
+            (4., 4.),
+            (0., 4.), // ring
+            (2., 0.),
+            (2., 4.), // the cut
+            (0.5, 0.5),
+            (1.5, 0.5),
+            (1., 1.), // a hole in the left half
             (3., 3.), // a loose end
         ];
         let at = |i: u32| Coord { x: spots[i as usize].0, y: spots[i as usize].1 };

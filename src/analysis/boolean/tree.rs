@@ -62,7 +62,14 @@ impl Tree {
     }
 
     /// Calls `f(item of self, item of other)` for all pairs whose boxes, grown by `slack`, meet.
-    pub fn pairs(&self, own: &[Span], other: &Tree, others: &[Span], slack: f64, mut f: impl FnMut(u32, u32)) {
+    pub fn pairs(
+        &self,
+        own: &[Span],
+        other: &Tree,
+        others: &[Span],
+        slack: f64,
+        mut f: impl FnMut(u32, u32),
+    ) {
         if self.nodes.is_empty() || other.nodes.is_empty() {
             return;
         }
@@ -124,7 +131,13 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span]) -> Vec<Node> {
     }
     let c = Span::of(items.iter().map(|i| i.1));
     let d = c.hi - c.lo;
-    let axis = if d.x >= d.y && d.x >= d.z { 0 } else if d.y >= d.z { 1 } else { 2 };
+    let axis = if d.x >= d.y && d.x >= d.z {
+        0
+    } else if d.y >= d.z {
+        1
+    } else {
+        2
+    };
     let half = items.len() / 2;
     items.select_nth_unstable_by(half, |a, b| a.1[axis].total_cmp(&b.1[axis]).then(a.0.cmp(&b.0)));
     let large = items.len() > FORK;

@@ -1,0 +1,139 @@
+//! The other route: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always gives a closed manifold.
+//! It knows no tolerance and leaves sheets where faces only nearly touch, so it is asked only where the first route found no
+//! consistent answer. Its *Exact* engine alone keeps what is not cut; its status is read, for it drops bad operands silently.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use manifold_rust::manifold::Manifold;
+use manifold_rust::types::{BooleanEngine, Error as Status, MeshGL64, OpType, WindingRule};
+
+use super::Operation;
+use super::emit::{Facts, Origin, finish, separate};
+use super::merge::{is_flat, joined_rings};
+use super::points::Map;
+use crate::analysis::cancel::{Cancelled, Job};
+use crate::mesh::PolyMesh;
+
+/// A result: its mesh, the origin of each face, its facts.
+pub type Made = (PolyMesh, Vec<Origin>, Facts);
+
+/// Both operands as the crate holds them.
+pub struct Engine {
+    operands: [Manifold; 2],
+    ids: [u32; 2],
+    meshes: [PolyMesh; 2],
+    eps: f64,
+}
+
+impl Engine {
+    /// Takes closed operands; the inner error says why the crate refuses one.
+    pub fn new(operands: [&PolyMesh; 2], eps: f64, job: &Job) -> Result<Result<Engine, String>, Cancelled> {
+        let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
+        let mut made = Vec::new();
+        for s in 0..2 {
+            job.check()?;
+            let m = Manifold::from_mesh_gl64(&plain(operands[s], ids[s]));
+            if m.status() != Status::NoError {
+                return Ok(Err(format!("{:?}", m.status())));
+            }
+            made.push(m);
+        }
+        let [a, b] = <[Manifold; 2]>::try_from(made).unwrap_or_default();
+        Ok(Ok(Engine { operands: [a, b], ids, meshes: operands.map(PolyMesh::clone), eps }))
+    }
+
+    pub fn run(&self, operation: Operation, job: &Job) -> Result<Result<Made, String>, Cancelled> {
+        job.check()?;
+        let [a, b] = &self.operands;
+        let out = match operation {
+            Operation::Union => a.boolean_with_engine(b, OpType::Add, BooleanEngine::Exact),
+            Operation::Intersection => a.boolean_with_engine(b, OpType::Intersect, BooleanEngine::Exact),
+            Operation::Difference => a.boolean_with_engine(b, OpType::Subtract, BooleanEngine::Exact),
+            Operation::ReverseDifference => b.boolean_with_engine(a, OpType::Subtract, BooleanEngine::Exact),
+        };
+        job.check()?;
+        if out.status() != Status::NoError {
+            return Ok(Err(format!("{:?}", out.status())));
+        }
+        Ok(Ok(self.polygons(&out.get_mesh_gl64(-1))))
+    }
+
+    /// Triangles of one input face as that face again, or in as few polygons as join.
+    fn polygons(&self, gl: &MeshGL64) -> Made {
+        let at = points(gl);
+        let mut names: Vec<u32> = (0..at.len() as u32).collect();
+        for (&from, &to) in gl.merge_from_vert.iter().zip(&gl.merge_to_vert) {
+            names[from as usize] = to as u32;
+        }
+        let mut groups: BTreeMap<(u8, u32, bool), Vec<Vec<u32>>> = BTreeMap::new();
+        for run in 0..gl.run_original_id.len() {
+            let operand = u8::from(gl.run_original_id[run] != self.ids[0]);
+            let turned = gl.run_flags.get(run).is_some_and(|&f| f & 1 == 1);
+            for t in gl.run_index[run] as usize / 3..gl.run_index[run + 1] as usize / 3 {
+                let face = gl.face_id.get(t).map_or(0, |&f| f as u32);
+                let corners = (0..3).map(|k| names[gl.tri_verts[3 * t + k] as usize]).collect();
+                groups.entry((operand, face, turned)).or_default().push(corners);
+            }
+        }
+        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
+        for ((operand, face, _), rings) in groups {
+            let source = &self.meshes[operand as usize];
+            let flat = rings.len() > 1 && is_flat(source, face as usize, &source.positions, self.eps);
+            let rings = if flat { joined_rings(rings) } else { rings };
+            for r in rings {
+                mesh.push_face(&r);
+                origins.push(Origin { operand, face });
+            }
+        }
+        let facts = finish(&mut mesh, &at);
+        (mesh, origins, facts)
+    }
+}
+
+fn points(gl: &MeshGL64) -> Vec<DVec3> {
+    let n = gl.num_prop as usize;
+    gl.vert_properties.chunks_exact(n.max(3)).map(|c| DVec3::new(c[0], c[1], c[2])).collect()
+}
+
+/// As the crate takes it: manifold triangles, each with its face's number.
+fn plain(mesh: &PolyMesh, id: u32) -> MeshGL64 {
+    let mut own =
+        PolyMesh { face_starts: mesh.face_starts.clone(), corners: mesh.corners.clone(), ..PolyMesh::new() };
+    separate(&mut own, &mesh.positions);
+    let (triangles, of) = own.triangles();
+    MeshGL64 {
+        num_prop: 3,
+        vert_properties: own.positions.iter().flat_map(|p| p.to_array()).collect(),
+        tri_verts: triangles.iter().flatten().map(|&v| u64::from(v)).collect(),
+        run_index: vec![0, 3 * triangles.len() as u64],
+        run_original_id: vec![id],
+        face_id: of.iter().map(|&f| u64::from(f)).collect(),
+        ..MeshGL64::default()
+    }
+}
+
+/// A surface that crosses itself as the solid of all places that it goes around (positively): what `--solve winding` asks for.
+/// Faces come in triangles.
+pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Cancelled> {
+    job.check()?;
+    let raw = Manifold::from_mesh_gl64_robust(&plain(mesh, Manifold::reserve_ids(1)));
+    if raw.status() != Status::NoError {
+        return Ok(Err(format!("{:?}", raw.status())));
+    }
+    let solid = raw.rebuild_solid(WindingRule::Positive);
+    job.check()?;
+    if solid.status() != Status::NoError {
+        return Ok(Err(format!("{:?}", solid.status())));
+    }
+    let gl = solid.get_mesh_gl64(-1);
+    let at = points(&gl);
+    let mut merged: Map<u32, u32> = Map::default();
+    merged.extend(gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)));
+    let mut out = PolyMesh::new();
+    for t in gl.tri_verts.chunks_exact(3) {
+        let t = [0, 1, 2].map(|k| merged.get(&(t[k] as u32)).copied().unwrap_or(t[k] as u32));
+        out.push_face(&t);
+    }
+    Ok(if separate(&mut out, &at) { Ok(out) } else { Err("the solved surface is not closed".into()) })
+}
