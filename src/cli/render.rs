@@ -2,16 +2,14 @@
 
 use std::path::PathBuf;
 
-use image::{ExtendedColorType, ImageEncoder};
 use serde_json::json;
 
 use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::CameraConfig;
 use crate::daemon::rig;
-use crate::mesh::io::write_beside;
 use crate::viewer::look::{Look, MATERIALS};
-use crate::viewer::picture::Painter;
+use crate::viewer::picture::{Painter, write_png};
 use crate::viewer::renderer::Scene;
 
 #[derive(Debug, clap::Args)]
@@ -37,6 +35,9 @@ pub struct RenderArgs {
     /// How strongly hollows are darkened and ridges lightened, 0 to 2.
     #[arg(long, default_value_t = 1.0)]
     pub cavity: f32,
+    /// Edges of triangles over the clay.
+    #[arg(long)]
+    pub wireframe: bool,
 }
 
 fn materials() -> clap::builder::PossibleValuesParser {
@@ -100,15 +101,12 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
         material: MATERIALS.iter().position(|m| m.name == args.matcap).unwrap_or(0),
         flat: args.flat,
         cavity: args.cavity,
+        wireframe: args.wireframe,
+        ..Default::default()
     };
-    let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look };
+    let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
     let picture = painter.paint(&scene, width, height).map_err(no_adapter)?;
-    write_beside(&args.output, |out| {
-        image::codecs::png::PngEncoder::new(out)
-            .write_image(picture.as_raw(), width, height, ExtendedColorType::Rgba8)
-            .map_err(std::io::Error::other)
-    })
-    .map_err(|e| Fail::io(&args.output, &e))?;
+    write_png(&args.output, &picture).map_err(|e| Fail::io(&args.output, &e))?;
     let said = json!({ "file": args.output, "width": width, "height": height, "adapter": painter.adapter() });
     answer(as_json, &said, |out| {
         writeln!(out, "{} ({width}x{height}, {})", args.output.display(), painter.adapter())

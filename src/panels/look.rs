@@ -1,15 +1,64 @@
 //! How the clay is shown.
 
-use crate::viewer::look::{Look, MATERIALS};
+use super::action::Action;
+use super::{Ask, Desk, View};
+use crate::viewer::look::{MATERIALS, Map};
 
-pub fn ui(ui: &mut egui::Ui, look: &mut Look) {
-    ui.strong("Display");
-    egui::ComboBox::from_label("Material").selected_text(look.material().name).show_ui(ui, |ui| {
+pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_>) {
+    let look = &mut desk.look;
+    ui.strong("Material");
+    ui.horizontal_wrapped(|ui| {
         for (i, m) in MATERIALS.iter().enumerate() {
-            ui.selectable_value(&mut look.material, i, m.name);
+            let [r, g, b] = m.base.map(|c| (c.powf(1.0 / 2.2) * 255.0) as u8);
+            let (rect, response) = ui.allocate_exact_size(egui::vec2(26.0, 26.0), egui::Sense::click());
+            response.widget_info(|| {
+                egui::WidgetInfo::selected(egui::Role::RadioButton, true, look.material == i, m.name)
+            });
+            let colour = egui::Color32::from_rgb(r, g, b);
+            ui.painter().circle_filled(rect.center(), 11.0, colour);
+            ui.painter().circle_filled(rect.center() - egui::vec2(4.0, 4.0), 2.5, egui::Color32::from_white_alpha(110));
+            if look.material == i || response.hovered() || response.has_focus() {
+                let stroke = egui::Stroke::new(2.0, ui.visuals().text_color());
+                ui.painter().circle_stroke(rect.center(), 12.0, stroke);
+            }
+            if response.on_hover_text(m.name).clicked() {
+                look.material = i;
+            }
         }
     });
-    ui.checkbox(&mut look.flat, "Facets").on_hover_text("One tone a triangle");
+    ui.add_space(4.0);
+    ui.checkbox(&mut look.flat, "Facets").on_hover_text(Action::Facets.tip());
     ui.add(egui::Slider::new(&mut look.cavity, 0.0..=2.0).text("Cavity"))
         .on_hover_text("Hollows darker, ridges lighter");
+    ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(Action::Wireframe.tip());
+    ui.checkbox(&mut look.grid, "Grid").on_hover_text(Action::Grid.tip());
+    ui.checkbox(&mut desk.prefs.smooth_edges, "Smooth edges")
+        .on_hover_text("Four samples a pixel; costs time where no graphics card draws");
+    ui.add_space(8.0);
+    ui.strong("Map");
+    ui.horizontal(|ui| {
+        for (map, name, tip) in [
+            (Map::None, "None", "The clay itself".to_owned()),
+            (Map::Mask, "Mask", Action::Mask.tip()),
+            (Map::Thickness, "Thickness", Action::Thickness.tip()),
+        ] {
+            ui.selectable_value(&mut desk.look.map, map, name).on_hover_text(tip);
+        }
+    });
+    ui.add_space(8.0);
+    ui.strong("Camera");
+    let mut camera = view.camera;
+    ui.checkbox(&mut camera.orthographic, "Orthographic").on_hover_text(Action::Perspective.tip());
+    let mut degrees = camera.fov_y.to_degrees();
+    ui.add_enabled(!camera.orthographic, egui::Slider::new(&mut degrees, 10.0..=100.0).text("Angle"))
+        .on_hover_text("Field of view, degrees");
+    if (degrees - camera.fov_y.to_degrees()).abs() > 0.01 {
+        camera.fov_y = degrees.to_radians();
+    }
+    if ui.button("Frame the work").on_hover_text(Action::Frame.tip()).clicked() {
+        super::act(Action::Frame, &ui.ctx().clone(), view, desk, out);
+    }
+    if camera != view.camera {
+        out.push(Ask::Camera(camera));
+    }
 }

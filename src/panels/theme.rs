@@ -1,18 +1,59 @@
 //! Colours and sizes of the panels.
 
-use egui::{Color32, Visuals};
+use egui::{Color32, CornerRadius, Stroke, Visuals};
 
-/// Quiet greys that leave the clay the strongest colour of the screen; text at least 7:1 on its ground.
-pub fn apply(ctx: &egui::Context) {
-    let mut v = Visuals::dark();
-    v.panel_fill = Color32::from_rgb(27, 29, 34);
-    v.window_fill = Color32::from_rgb(32, 34, 40);
-    v.override_text_color = Some(Color32::from_rgb(226, 228, 232));
-    v.selection.bg_fill = Color32::from_rgb(160, 92, 62);
-    v.widgets.inactive.weak_bg_fill = Color32::from_rgb(48, 51, 59);
-    v.widgets.inactive.bg_fill = Color32::from_rgb(58, 61, 70);
+/// Quiet greys that leave the clay the strongest colour of the screen; text at least 4.5:1 on its ground, held by a test.
+pub fn apply(ctx: &egui::Context, light: bool) {
+    let grey = |v: u8| Color32::from_rgb(v, v.saturating_add(1), v.saturating_add(5));
+    let mut v = if light { Visuals::light() } else { Visuals::dark() };
+    let tone = |dark: u8, pale: u8| grey(if light { pale } else { dark });
+    v.panel_fill = tone(27, 240);
+    v.window_fill = tone(32, 246);
+    v.extreme_bg_color = tone(18, 250);
+    v.faint_bg_color = tone(35, 232);
+    v.override_text_color = None;
+    v.selection.bg_fill = if light { Color32::from_rgb(236, 190, 164) } else { Color32::from_rgb(140, 76, 48) };
+    v.selection.stroke = Stroke::new(1.0, tone(250, 10));
+    v.weak_text_color = Some(quiet_of(light));
+    v.hyperlink_color = if light { Color32::from_rgb(20, 80, 150) } else { Color32::from_rgb(140, 190, 255) };
+    let w = &mut v.widgets;
+    let text = tone(226, 24);
+    for (state, fill, weak) in [
+        (&mut w.noninteractive, tone(27, 240), tone(27, 240)),
+        (&mut w.inactive, tone(60, 206), tone(48, 220)),
+        (&mut w.hovered, tone(74, 196), tone(64, 208)),
+        (&mut w.active, tone(88, 184), tone(80, 196)),
+        (&mut w.open, tone(54, 214), tone(44, 224)),
+    ] {
+        state.bg_fill = fill;
+        state.weak_bg_fill = weak;
+        state.fg_stroke = Stroke::new(1.0, text);
+        state.corner_radius = CornerRadius::same(4);
+    }
+    w.noninteractive.bg_stroke = Stroke::new(1.0, tone(48, 210));
     ctx.set_visuals(v);
+    ctx.global_style_mut(|s| {
+        s.spacing.slider_width = 92.0;
+        s.spacing.item_spacing = egui::vec2(6.0, 5.0);
+        s.interaction.tooltip_delay = 0.4;
+    });
+}
+
+fn quiet_of(light: bool) -> Color32 {
+    if light { Color32::from_rgb(84, 88, 98) } else { Color32::from_rgb(164, 168, 178) }
 }
 
 /// Text that explains, still 4.5:1 on the panel.
-pub const QUIET: Color32 = Color32::from_rgb(164, 168, 178);
+pub fn quiet(ui: &egui::Ui) -> Color32 {
+    quiet_of(!ui.visuals().dark_mode)
+}
+
+/// Something is wrong.
+pub fn alarm(ui: &egui::Ui) -> Color32 {
+    if ui.visuals().dark_mode { Color32::from_rgb(255, 150, 120) } else { Color32::from_rgb(160, 40, 16) }
+}
+
+/// The accent of curves and live values.
+pub fn accent(ui: &egui::Ui) -> Color32 {
+    if ui.visuals().dark_mode { Color32::from_rgb(224, 140, 96) } else { Color32::from_rgb(170, 84, 44) }
+}

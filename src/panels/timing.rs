@@ -1,18 +1,37 @@
-//! The loop's live figures, the work, the devices.
+//! The loop's live figures, the work, and what this window costs.
 
-use super::View;
-use super::theme::QUIET;
+use super::{View, theme};
+
+/// What the window measured of itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FrameFigures {
+    /// Of the last frames, our own work on the processor, ms: without waiting for the card.
+    pub cpu_ms: f64,
+    pub worst_cpu_ms: f64,
+    /// From a pointer's sample to the state that holds it, ms.
+    pub input_to_snapshot_ms: f64,
+    /// From a pointer's sample to the frame that shows it being handed to the card, ms.
+    pub input_to_submit_ms: f64,
+    /// Pages in view, of all.
+    pub drawn: (usize, usize),
+    /// Samples of this window's pointer sent.
+    pub sent: u64,
+    /// Time of the newest sample that a frame has shown, on the clock.
+    pub newest_us: u64,
+}
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     let s = view.state;
     let f = &s.figures;
+    let quiet = theme::quiet(ui);
     let row = |ui: &mut egui::Ui, name: &str, value: String| {
-        ui.colored_label(QUIET, name);
+        ui.colored_label(quiet, name);
         ui.monospace(value);
         ui.end_row();
     };
+    let grid = |name: &str| egui::Grid::new(name.to_owned()).num_columns(2).spacing([10.0, 3.0]);
     ui.strong("Loop");
-    egui::Grid::new("loop").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+    grid("loop").show(ui, |ui| {
         row(ui, "tick", format!("{}", s.tick));
         row(ui, "p50", format!("{:.3} ms", f.tick_ms.p50));
         row(ui, "p99", format!("{:.3} ms", f.tick_ms.p99));
@@ -20,26 +39,30 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
         row(ui, "late", format!("{}", f.overruns));
         row(ui, "samples", format!("{}", f.samples));
         row(ui, "dabs", format!("{}", f.dabs));
-        row(ui, "lost", format!("{} + {}", f.losses.motion, f.losses.transition))
+        row(ui, "lost", format!("{} + {}", f.losses.motion, f.losses.transition));
     });
-    ui.add_space(10.0);
+    ui.colored_label(quiet, "lost: motion + contacts; the second is always 0");
+    ui.add_space(8.0);
+    ui.strong("This window");
+    let w = &view.frame;
+    grid("frame").show(ui, |ui| {
+        row(ui, "frame", format!("{:.2} ms", w.cpu_ms));
+        row(ui, "worst", format!("{:.2} ms", w.worst_cpu_ms));
+        row(ui, "to clay", format!("{:.1} ms", w.input_to_snapshot_ms));
+        row(ui, "to screen", format!("{:.1} ms", w.input_to_submit_ms));
+        row(ui, "in view", format!("{} of {}", w.drawn.0, w.drawn.1));
+        row(ui, "uploaded", format!("{:.1} kB", view.uploaded as f64 / 1024.0));
+    });
+    ui.colored_label(quiet, "to clay, to screen: from the pointer's last sample");
+    ui.add_space(8.0);
     ui.strong("Work");
-    egui::Grid::new("work").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+    grid("work").show(ui, |ui| {
         row(ui, "vertices", format!("{}", s.mesh.vertex_count()));
         row(ui, "triangles", format!("{}", s.mesh.triangle_count()));
-        row(ui, "uploaded", format!("{:.1} kB a frame", view.uploaded as f64 / 1024.0));
-        if let Some(session) = view.session {
-            row(ui, "session", session.to_owned());
-        }
     });
-    ui.add_space(10.0);
-    ui.strong("Devices");
-    if view.devices.is_empty() {
-        ui.colored_label(QUIET, "No tablet found: plug one in, nothing to restart. The mouse sculpts too.");
+    if let Some(session) = view.session {
+        ui.colored_label(quiet, format!("saved as you go: {session}"));
     }
-    for line in view.devices {
-        ui.colored_label(QUIET, line);
-    }
-    ui.add_space(10.0);
-    ui.colored_label(QUIET, view.adapter);
+    ui.add_space(8.0);
+    ui.colored_label(quiet, view.adapter);
 }

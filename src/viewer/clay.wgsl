@@ -12,6 +12,12 @@ struct Frame {
     base: vec4<f32>,
     // Highlight's strength and exponent, light at the rim, strength of cavities.
     finish: vec4<f32>,
+    // A map's lowest value, one over its span, and which: 0 none, 1 mask, 2 values.
+    map: vec4<f32>,
+    scale: array<vec4<f32>, 8>,
+    // The ground's lower and upper colour.
+    low: vec4<f32>,
+    high: vec4<f32>,
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -22,6 +28,8 @@ struct Corner {
     @location(1) colour: vec4<f32>,
     @location(2) place: vec3<f32>,
     @location(3) masked: f32,
+    @location(4) value: f32,
+    @location(5) known: f32,
 };
 
 @vertex
@@ -29,6 +37,7 @@ fn clay_vertex(
     @location(0) place: vec3<f32>,
     @location(1) normal: vec4<f32>,
     @location(2) colour: vec4<f32>,
+    @location(3) value: f32,
 ) -> Corner {
     var out: Corner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
@@ -36,7 +45,18 @@ fn clay_vertex(
     out.masked = normal.w;
     out.colour = colour;
     out.place = place;
+    // A value that is not a number is not known; it would spread over the triangle.
+    let bits = bitcast<u32>(value) & 0x7fffffffu;
+    let known = bits < 0x7f800000u;
+    out.value = select(0.0, value, known);
+    out.known = select(0.0, 1.0, known);
     return out;
+}
+
+fn scaled(value: f32) -> vec3<f32> {
+    let at = clamp((value - frame.map.x) * frame.map.y, 0.0, 1.0) * 7.0;
+    let i = min(u32(at), 6u);
+    return mix(frame.scale[i].rgb, frame.scale[i + 1u].rgb, at - f32(i));
 }
 
 // Two soft lights, a rim and a sky, in the frame of the view.
@@ -73,13 +93,27 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
         view = -view;
         base = vec3<f32>(0.28, 0.30, 0.36);
     }
-    var colour = lit(view, mix(base, base * 0.35, in.masked));
+    var held = in.masked;
+    if (frame.map.z > 0.5) {
+        held = 0.0;
+        base = vec3<f32>(0.22, 0.24, 0.28);
+        if (frame.map.z < 1.5) {
+            base = scaled(in.masked);
+        } else if (in.known > 0.999) {
+            base = scaled(in.value);
+        }
+        base *= 0.8;
+    }
+    var colour = lit(view, mix(base, base * 0.35, held));
     colour *= 1.0 + clamp(bend * 4.0, -0.4, 0.4) * frame.finish.w;
     // The falloff inside the brush: strongest in the middle.
     if (frame.brush.w > 0.0) {
         let x = distance(in.place, frame.brush.xyz) / frame.brush.w;
+        let width = max(fwidth(x), 1e-4);
         if (x < 1.0) {
-            colour += vec3<f32>(0.10, 0.13, 0.16) * exp(-x * x * 12.5);
+            colour += vec3<f32>(0.07, 0.085, 0.10) * exp(-x * x * 12.5);
+            // Where the bell is at half its height.
+            colour += vec3<f32>(0.10, 0.11, 0.12) * (1.0 - smoothstep(0.0, 1.5 * width, abs(x - 0.2355)));
         }
     }
     return vec4<f32>(colour, 1.0);
@@ -105,6 +139,20 @@ fn line_fragment(in: LineCorner) -> @location(0) vec4<f32> {
     return in.colour;
 }
 
+@vertex
+fn edge_vertex(@location(0) place: vec3<f32>) -> LineCorner {
+    var out: LineCorner;
+    out.clip = frame.view_projection * vec4<f32>(place, 1.0);
+    out.clip.z -= 0.0002 * out.clip.w;
+    out.colour = vec4<f32>(0.0, 0.0, 0.0, 0.42);
+    return out;
+}
+
+@fragment
+fn edge_fragment(in: LineCorner) -> @location(0) vec4<f32> {
+    return in.colour;
+}
+
 struct Sky {
     @builtin(position) clip: vec4<f32>,
     @location(0) height: f32,
@@ -121,5 +169,5 @@ fn sky_vertex(@builtin(vertex_index) i: u32) -> Sky {
 
 @fragment
 fn sky_fragment(in: Sky) -> @location(0) vec4<f32> {
-    return vec4<f32>(mix(vec3<f32>(0.012, 0.013, 0.016), vec3<f32>(0.05, 0.054, 0.064), in.height), 1.0);
+    return vec4<f32>(mix(frame.low.rgb, frame.high.rgb, in.height), 1.0);
 }

@@ -19,7 +19,7 @@ pub struct Gpu {
     pub adapter: wgpu::Adapter,
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// A software adapter: no multisampling, redraw only when something changed.
+    /// A software adapter: one sample a pixel unless asked, redraw only when something changed.
     pub software: bool,
 }
 
@@ -50,9 +50,9 @@ impl Gpu {
         Ok(Gpu { instance, adapter, device, queue, software })
     }
 
-    /// Samples a pixel: four, or one where a processor draws.
-    pub fn samples(&self) -> u32 {
-        if self.software { 1 } else { 4 }
+    /// Samples a pixel: four, or one where a processor draws and nobody asked for more.
+    pub fn samples(&self, smooth: bool) -> u32 {
+        if self.software && !smooth { 1 } else { 4 }
     }
 
     pub fn name(&self) -> String {

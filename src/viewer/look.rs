@@ -27,7 +27,63 @@ pub const MATERIALS: [Material; 7] = [
     material("graphite", [0.09, 0.095, 0.11], 0.55, 28.0, 0.40),
 ];
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What the clay's own colours give way to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Map {
+    #[default]
+    None,
+    /// 0 free to 1 held fast.
+    Mask,
+    /// Wall thickness in the mesh's unit.
+    Thickness,
+}
+
+/// Stops of the mask's scale, sRGB: free is pale, held is deep blue.
+const MASK: [[u8; 3]; 2] = [[232, 226, 214], [28, 52, 110]];
+/// Entries of a scale on the card; between them colours are mixed.
+pub const SCALE: usize = 8;
+
+impl Map {
+    /// The colour of a value between the scale's ends; sRGB.
+    pub fn colour(self, value: f32, low: f32, high: f32) -> [u8; 3] {
+        match self {
+            Map::None | Map::Thickness => crate::analysis::thickness::colour::colour(value, low, high),
+            Map::Mask => {
+                let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
+                std::array::from_fn(|k| {
+                    let (a, b) = (f32::from(MASK[0][k]), f32::from(MASK[1][k]));
+                    (a + (b - a) * x).round() as u8
+                })
+            }
+        }
+    }
+
+    /// The scale for the card, linear.
+    pub fn scale(self) -> [[f32; 4]; SCALE] {
+        std::array::from_fn(|i| linear(self.colour(i as f32 / (SCALE - 1) as f32, 0.0, 1.0)))
+    }
+
+    pub fn title(self) -> &'static str {
+        match self {
+            Map::None => "",
+            Map::Mask => "Mask",
+            Map::Thickness => "Thickness",
+        }
+    }
+}
+
+/// From sRGB bytes to linear light.
+pub fn linear(c: [u8; 3]) -> [f32; 4] {
+    let one = |v: u8| {
+        let v = f32::from(v) / 255.0;
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    };
+    [one(c[0]), one(c[1]), one(c[2]), 1.0]
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct Look {
     /// Index into [`MATERIALS`]; beyond them, the last.
     pub material: usize,
@@ -35,16 +91,50 @@ pub struct Look {
     pub flat: bool,
     /// How strongly hollows are darkened and ridges lightened, 0 none to 2.
     pub cavity: f32,
+    /// Edges of triangles over the clay.
+    pub wireframe: bool,
+    /// The floor under the work.
+    pub grid: bool,
+    pub map: Map,
+    /// A pale ground instead of a dark one.
+    pub pale: bool,
+    /// The ends of the map's scale.
+    #[serde(skip)]
+    pub scale: (f32, f32),
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Look { material: 0, flat: false, cavity: 1.0 }
+        Look {
+            material: 0,
+            flat: false,
+            cavity: 1.0,
+            wireframe: false,
+            grid: false,
+            map: Map::None,
+            pale: false,
+            scale: (0.0, 1.0),
+        }
     }
 }
 
 impl Look {
     pub fn material(&self) -> &'static Material {
         &MATERIALS[self.material.min(MATERIALS.len() - 1)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scale_runs_from_its_low_to_its_high_colour() {
+        for map in [Map::Mask, Map::Thickness] {
+            assert_eq!(map.scale()[0], linear(map.colour(0.0, 0.0, 1.0)));
+            assert_eq!(map.scale()[SCALE - 1], linear(map.colour(1.0, 0.0, 1.0)));
+            assert_ne!(map.scale()[0], map.scale()[SCALE - 1]);
+        }
+        assert!((linear([188, 0, 255])[0] - 0.503).abs() < 2e-3);
     }
 }

@@ -6,8 +6,10 @@ use super::renderer::LineEnd;
 use crate::devices::Hands;
 use crate::hand::Volume;
 use crate::mesh::{Ray, Snapshot};
+use crate::stroke::Camera;
 
 const RING: [u8; 4] = [255, 236, 190, 255];
+const CARVING: [u8; 4] = [150, 190, 255, 255];
 const MIRRORED: [u8; 4] = [150, 205, 255, 190];
 const BONE: [u8; 4] = [190, 225, 255, 200];
 /// Corners of a ring: smooth to the eye at any size.
@@ -18,17 +20,30 @@ fn segment(out: &mut Vec<LineEnd>, a: Vec3, b: Vec3, colour: [u8; 4]) {
     out.push(LineEnd { place: b.to_array(), colour });
 }
 
+/// How a ring is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Ring {
+    /// Mesh units.
+    pub radius: f32,
+    /// The brush takes clay away.
+    pub carve: bool,
+    pub mirrored: bool,
+    /// The pen touches; before contact the ring is fainter.
+    pub down: bool,
+}
+
 /// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped along the normal onto
 /// the clay, and where there is none within reach it stays in the tangent plane.
-pub fn ring(
-    out: &mut Vec<LineEnd>,
-    mesh: &Snapshot,
-    centre: Vec3,
-    normal: Vec3,
-    radius: f32,
-    mirrored: bool,
-) {
-    let colour = if mirrored { MIRRORED } else { RING };
+pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3, ring: &Ring) {
+    let radius = ring.radius;
+    let mut colour = match (ring.mirrored, ring.carve) {
+        (true, _) => MIRRORED,
+        (false, true) => CARVING,
+        (false, false) => RING,
+    };
+    if !ring.down {
+        colour[3] = colour[3] / 4 * 3;
+    }
     let (u, v) = normal.any_orthonormal_pair();
     let corner = |i: usize| {
         let (s, c) = (i as f32 / CORNERS as f32 * std::f32::consts::TAU).sin_cos();
@@ -46,6 +61,39 @@ pub fn ring(
         last = next;
     }
     segment(out, centre, centre + normal * radius * 0.4, colour);
+}
+
+/// The pen itself as it leans: from its tip along its barrel. `tilt` in radians, x to the right and y towards the person.
+pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, radius: f32) {
+    let (right, up) = camera.axes();
+    let along = camera.backward() + right * tilt.x.clamp(-1.4, 1.4).tan() - up * tilt.y.clamp(-1.4, 1.4).tan();
+    segment(out, tip, tip + along.normalize_or_zero() * radius * 2.0, BONE);
+}
+
+/// The floor: squares of a round number of units, ten times as far as the work is wide at most.
+pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, extent: f32, pale: bool) {
+    const HALF: i32 = 10;
+    let step = 10f32.powf((extent * 0.3).max(1e-30).log10().floor());
+    let step = if extent * 0.3 / step >= 5.0 { step * 5.0 } else if extent * 0.3 / step >= 2.0 { step * 2.0 } else { step };
+    let floor = middle.y - extent;
+    let centre = (middle / step).round() * step;
+    let ink = if pale { 60 } else { 190 };
+    let reach = HALF as f32 * step;
+    for i in -HALF..=HALF {
+        let at = i as f32 * step;
+        for (from, to, axis) in [
+            (Vec3::new(at, 0.0, -reach), Vec3::new(at, 0.0, reach), centre.x + at),
+            (Vec3::new(-reach, 0.0, at), Vec3::new(reach, 0.0, at), centre.z + at),
+        ] {
+            let colour = match (axis.abs() < step * 0.01, from.x == to.x) {
+                (true, true) => [70, 110, 210, 190],
+                (true, false) => [200, 70, 70, 190],
+                _ => [ink, ink, ink, 70],
+            };
+            let base = Vec3::new(centre.x, floor, centre.z);
+            segment(out, base + from, base + to, colour);
+        }
+    }
 }
 
 /// A hand's bones, in the world.

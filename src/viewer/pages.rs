@@ -22,13 +22,31 @@ pub const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferL
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Unorm8x4],
 };
 
+/// A value a vertex, in a buffer of its own: maps come and go while the clay stays.
+pub const VALUE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<f32>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![3 => Float32],
+};
+
+/// A number for each page's own vertices; a page that did not change is the same `Arc` as before. NaN: not known.
+#[derive(Debug, Clone, Default)]
+pub struct MapValues {
+    pub pages: Vec<Arc<[f32]>>,
+}
+
 /// Most bytes sent a frame; what is left follows with the next frames, so that a whole-mesh undo does not stop the window.
 const BUDGET: u64 = 24 << 20;
 
 #[derive(Debug)]
 pub struct Pages {
     vertices: wgpu::Buffer,
+    values: wgpu::Buffer,
     indices: wgpu::Buffer,
+    /// Ends of edges, made when a wireframe is first asked for, and the range of each page.
+    edges: Option<(wgpu::Buffer, Vec<std::ops::Range<u32>>)>,
+    /// The map that was sent last.
+    map: Vec<Arc<[f32]>>,
     /// Index range of each page.
     ranges: Vec<std::ops::Range<u32>>,
     /// The newest clay that was looked at.
@@ -57,18 +75,7 @@ impl Pages {
         let mut ranges = Vec::with_capacity(mesh.page_count());
         for (p, page) in mesh.pages().enumerate() {
             let start = indices.len() as u32;
-            // A halo vertex is drawn from its home's slot: every vertex is on the card once.
-            indices.extend(page.triangles().iter().flatten().map(|&v| {
-                let v = v as usize;
-                let (home, local) = match v.checked_sub(page.own()) {
-                    None => (p, v),
-                    Some(k) => {
-                        let (home, local) = page.topology().halo_home(k);
-                        (home as usize, local as usize)
-                    }
-                };
-                (home * slot + local) as u32
-            }));
+            indices.extend(page.triangles().iter().flatten().map(|&v| place(page, p, slot, v)));
             ranges.push(start..indices.len() as u32);
         }
         let index_buffer = buffer(indices.len() * 4, wgpu::BufferUsages::INDEX);
@@ -76,7 +83,10 @@ impl Pages {
         let count = mesh.page_count();
         Pages {
             vertices: buffer(count * slot * size_of::<Vertex>(), wgpu::BufferUsages::VERTEX),
+            values: buffer(count * slot * size_of::<f32>(), wgpu::BufferUsages::VERTEX),
             indices: index_buffer,
+            edges: None,
+            map: Vec::new(),
             ranges,
             seen: None,
             queue: (0..count as u32).collect(),
@@ -137,14 +147,79 @@ impl Pages {
         self.queue.drain(..sent);
     }
 
-    /// Draws every page whose bounds `visible` accepts.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(&Page) -> bool) {
-        let Some(mesh) = &self.seen else { return };
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
+    /// Sends the values of pages whose map changed; returns the bytes.
+    pub fn set_map(&mut self, queue: &wgpu::Queue, map: &MapValues) -> u64 {
+        let mut sent = 0;
+        for (i, values) in map.pages.iter().enumerate().take(self.ranges.len()) {
+            if values.len() > self.slot || self.map.get(i).is_some_and(|old| Arc::ptr_eq(old, values)) {
+                continue;
+            }
+            let at = (i * self.slot * size_of::<f32>()) as u64;
+            queue.write_buffer(&self.values, at, bytemuck::cast_slice(values));
+            sent += (values.len() * size_of::<f32>()) as u64;
+        }
+        self.map.clone_from(&map.pages);
+        sent
+    }
+
+    /// Makes the edges for [`Pages::draw_edges`]; costs as much as the clay is large, once.
+    pub fn need_edges(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) {
+        let Some(mesh) = self.seen.as_ref().filter(|_| self.edges.is_none()) else { return };
+        let mut ends: Vec<u32> = Vec::with_capacity(mesh.triangle_count() * 3);
+        let mut ranges = Vec::with_capacity(mesh.page_count());
+        for (p, page) in mesh.pages().enumerate() {
+            let start = ends.len() as u32;
+            for t in page.triangles() {
+                let [a, b, c] = t.map(|v| place(page, p, self.slot, v));
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    // The other triangle has the edge the other way; a border's edge may be left out by this, which a
+                    // sculptor does not miss.
+                    if from < to {
+                        ends.extend([from, to]);
+                    }
+                }
+            }
+            ranges.push(start..ends.len() as u32);
+        }
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("edges"),
+            size: (ends.len().max(1) * 4) as u64,
+            usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&ends));
+        self.edges = Some((buffer, ranges));
+    }
+
+    /// Draws every page whose bounds `visible` accepts; returns how many.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(&Page) -> bool) -> usize {
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        self.runs(pass, &self.ranges, visible)
+    }
+
+    /// The edges of every page whose bounds `visible` accepts, if there are edges.
+    pub fn draw_edges(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(&Page) -> bool) {
+        if let Some((edges, ranges)) = &self.edges {
+            pass.set_index_buffer(edges.slice(..), wgpu::IndexFormat::Uint32);
+            self.runs(pass, ranges, visible);
+        }
+    }
+
+    /// Neighbouring visible pages are drawn by one call.
+    fn runs(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        ranges: &[std::ops::Range<u32>],
+        visible: impl Fn(&Page) -> bool,
+    ) -> usize {
+        let Some(mesh) = &self.seen else { return 0 };
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_vertex_buffer(1, self.values.slice(..));
+        let mut drawn = 0;
         let mut run: Option<std::ops::Range<u32>> = None;
-        for (range, page) in self.ranges.iter().zip(mesh.pages()) {
+        for (range, page) in ranges.iter().zip(mesh.pages()) {
             let shown = visible(page);
+            drawn += usize::from(shown);
             run = match run {
                 Some(r) if shown => Some(r.start..range.end),
                 Some(r) => {
@@ -157,5 +232,19 @@ impl Pages {
         if let Some(r) = run {
             pass.draw_indexed(r, 0, 0..1);
         }
+        drawn
     }
+}
+
+/// Where a page's vertex lies on the card. A halo vertex is drawn from its home's slot: every vertex is there once.
+fn place(page: &Page, p: usize, slot: usize, v: impl Into<u64>) -> u32 {
+    let v = v.into() as usize;
+    let (home, local) = match v.checked_sub(page.own()) {
+        None => (p, v),
+        Some(k) => {
+            let (home, local) = page.topology().halo_home(k);
+            (home as usize, local as usize)
+        }
+    };
+    (home * slot + local) as u32
 }

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
 use super::gpu::Gpu;
-use super::look::Look;
-use super::pages::{Pages, VERTEX_LAYOUT};
+use super::look::{Look, Map, SCALE, linear};
+use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use crate::mesh::{Page, Snapshot};
 use crate::stroke::Camera;
 
@@ -32,6 +32,10 @@ struct Frame {
     brush: [f32; 4],
     base: [f32; 4],
     finish: [f32; 4],
+    map: [f32; 4],
+    scale: [[f32; 4]; SCALE],
+    low: [f32; 4],
+    high: [f32; 4],
 }
 
 /// What is drawn.
@@ -43,6 +47,8 @@ pub struct Scene<'a> {
     pub brush: Option<(Vec3, f32)>,
     pub lines: &'a [LineEnd],
     pub look: Look,
+    /// The map that `look` may ask for.
+    pub values: Option<&'a MapValues>,
 }
 
 #[derive(Debug)]
@@ -52,6 +58,7 @@ pub struct Renderer {
     sky: wgpu::RenderPipeline,
     clay: wgpu::RenderPipeline,
     line: wgpu::RenderPipeline,
+    edge: wgpu::RenderPipeline,
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
     samples: u32,
@@ -60,12 +67,14 @@ pub struct Renderer {
     /// Bytes of pages sent with the last frame, and pages that still wait.
     pub uploaded: u64,
     pub waiting: usize,
+    /// Pages that were in view, of all.
+    pub drawn: (usize, usize),
 }
 
 impl Renderer {
-    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Renderer {
+    /// `samples` a pixel: 1 or 4.
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Renderer {
         let device = &gpu.device;
-        let samples = gpu.samples();
         let shader = device.create_shader_module(wgpu::include_wgsl!("clay.wgsl"));
         let buffer = |label, size, usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
@@ -153,8 +162,9 @@ impl Renderer {
             };
         Renderer {
             sky: pipeline("sky", &[], false, false),
-            clay: pipeline("clay", &[Some(VERTEX_LAYOUT)], false, true),
+            clay: pipeline("clay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             line: pipeline("line", &[Some(line_layout)], true, true),
+            edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
             frame,
             group,
             line_ends,
@@ -164,7 +174,12 @@ impl Renderer {
             targets: None,
             uploaded: 0,
             waiting: 0,
+            drawn: (0, 0),
         }
+    }
+
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.format
     }
 
     /// Depth and multisampling targets of the right size.
@@ -210,6 +225,14 @@ impl Renderer {
         let matrix = scene.camera.view_projection(radius);
         let (right, up) = scene.camera.axes();
         let m = scene.look.material();
+        let kind = match (scene.look.map, scene.values) {
+            (Map::None, _) | (Map::Thickness, None) => 0.0,
+            (Map::Mask, _) => 1.0,
+            (Map::Thickness, Some(_)) => 2.0,
+        };
+        let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
+        // The ground: a quiet dusk, or paper.
+        let ground = if scene.look.pale { [[196, 199, 205], [228, 230, 234]] } else { [[28, 29, 33], [63, 65, 71]] };
         let frame = Frame {
             view_projection: matrix.to_cols_array_2d(),
             right: right.extend(0.0).to_array(),
@@ -218,6 +241,10 @@ impl Renderer {
             brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
             base: [m.base[0], m.base[1], m.base[2], f32::from(scene.look.flat)],
             finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
+            map: [low, 1.0 / (high - low).max(1e-12), kind, 0.0],
+            scale: scene.look.map.scale(),
+            low: linear(ground[0]),
+            high: linear(ground[1]),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];
@@ -225,6 +252,12 @@ impl Renderer {
         if let Some(pages) = &mut self.pages {
             pages.update(&gpu.queue, scene.mesh);
             (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting());
+            if let Some(values) = scene.values.filter(|_| kind == 2.0) {
+                pages.set_map(&gpu.queue, values);
+            }
+            if scene.look.wireframe {
+                pages.need_edges(&gpu.device, &gpu.queue);
+            }
         }
         let Some((depth, smooth, _)) = &self.targets else { return };
         let (view, resolve) = match smooth {
@@ -257,7 +290,12 @@ impl Renderer {
         pass.draw(0..3, 0..1);
         if let Some(pages) = &self.pages {
             pass.set_pipeline(&self.clay);
-            pages.draw(&mut pass, |page| in_view(&matrix, page));
+            let drawn = pages.draw(&mut pass, |page| in_view(&matrix, page));
+            self.drawn = (drawn, scene.mesh.page_count());
+            if scene.look.wireframe {
+                pass.set_pipeline(&self.edge);
+                pages.draw_edges(&mut pass, |page| in_view(&matrix, page));
+            }
         }
         if !lines.is_empty() {
             pass.set_pipeline(&self.line);

@@ -8,21 +8,23 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec2;
 use winit::application::ApplicationHandler;
-use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event::{ElementState, MouseScrollDelta, Touch, TouchPhase, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
-use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
+use winit::keyboard::ModifiersState;
 use winit::window::{Window, WindowId};
 
+use super::flight::Flight;
 use super::gpu::{Gpu, NoViewer, instance};
-use super::look::Look;
-use super::overlay;
-use super::renderer::{LineEnd, Renderer, Scene};
-use crate::brush::{BrushKind, BrushSettings};
+use super::pages::MapValues;
+use super::pointer::Pointer;
+use super::remember::Remembered;
+use super::renderer::Renderer;
+use super::work::Work;
 use crate::command::Command;
 use crate::daemon::Published;
 use crate::devices::queue::Sender;
-use crate::devices::{Body, Clock, DeviceId, Pen, Sample, Tool};
-use crate::panels::{self, View, hints};
+use crate::devices::{Clock, DeviceId};
+use crate::panels::{Desk, timing::FrameFigures};
 use crate::stroke::Camera;
 
 /// Everything that joins the window to the daemon.
@@ -52,14 +54,15 @@ impl std::fmt::Debug for Wiring {
 /// How often the published state is looked at: 60 times a second on a card, 20 where a processor draws, which would
 /// otherwise starve the loop.
 const FRAME: [Duration; 2] = [Duration::from_micros(16_667), Duration::from_millis(50)];
-/// Width of the panel, points.
-const PANEL: f32 = 236.0;
 
 /// Opens the window and runs until it is closed or `stop` is raised.
 pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
     let events = EventLoop::new().map_err(|e| NoViewer::Window(e.to_string()))?;
     let mut app = App { wiring, open: None, failed: None };
     events.run_app(&mut app).map_err(|e| NoViewer::Window(e.to_string()))?;
+    if let Some(mut open) = app.open {
+        open.remembered.keep(&open.desk);
+    }
     app.failed.map_or(Ok(()), Err)
 }
 
@@ -69,37 +72,36 @@ struct App {
     failed: Option<NoViewer>,
 }
 
-/// What a pressed button drags.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Drag {
-    None,
-    Sculpt,
-    Orbit,
-    Pan,
-}
-
-struct Open {
-    window: Arc<Window>,
-    surface: wgpu::Surface<'static>,
-    config: wgpu::SurfaceConfiguration,
-    gpu: Gpu,
-    adapter: String,
-    renderer: Renderer,
-    egui: egui_winit::State,
-    paint: egui_wgpu::Renderer,
-    pointer: Vec2,
-    drag: Drag,
-    mods: ModifiersState,
+/// An open window and all that it draws with.
+pub(super) struct Open {
+    pub(super) window: Arc<Window>,
+    pub(super) surface: wgpu::Surface<'static>,
+    pub(super) config: wgpu::SurfaceConfiguration,
+    pub(super) gpu: Gpu,
+    pub(super) adapter: String,
+    pub(super) renderer: Renderer,
+    pub(super) samples: u32,
+    pub(super) egui: egui_winit::State,
+    pub(super) paint: egui_wgpu::Renderer,
+    pub(super) pointer: Pointer,
+    pub(super) mods: ModifiersState,
     /// The camera as this window last wanted it; the world's own follows a tick later.
-    camera: Camera,
-    /// The brush as it was before Shift or Ctrl changed it for one stroke.
-    lent: Option<BrushSettings>,
-    done: hints::Done,
-    devices: Vec<String>,
-    asked_us: u64,
-    shown: Option<(u64, u64)>,
-    uploaded: u64,
-    look: Look,
+    pub(super) camera: Camera,
+    pub(super) flight: Option<Flight>,
+    pub(super) desk: Desk,
+    pub(super) work: Work,
+    pub(super) remembered: Remembered,
+    pub(super) values: Option<MapValues>,
+    /// The revision and limit that a thickness map was last asked for.
+    pub(super) asked_map: Option<(u64, f32)>,
+    pub(super) devices: Vec<String>,
+    pub(super) asked_us: u64,
+    pub(super) shown: Option<(u64, u64)>,
+    pub(super) uploaded: u64,
+    pub(super) figures: FrameFigures,
+    /// A turntable under way.
+    pub(super) turning: Option<super::shots::Turntable>,
+    pub(super) screenshot: bool,
 }
 
 impl ApplicationHandler for App {
@@ -125,7 +127,7 @@ impl ApplicationHandler for App {
         // Redraw when the clay or a ghost moved, and a few times a second for the figures.
         let now = (state.mesh.revision(), state.tick / 12);
         let ghosts = self.wiring.clock.now_us() < self.wiring.ghosts_until_us;
-        if open.shown != Some(now) || ghosts {
+        if open.shown != Some(now) || ghosts || open.flight.is_some() || !open.work.done.is_empty() {
             open.shown = Some(now);
             open.window.request_redraw();
         }
@@ -141,22 +143,27 @@ impl ApplicationHandler for App {
         if response.repaint {
             open.window.request_redraw();
         }
+        let wiring = &mut self.wiring;
         match event {
             WindowEvent::CloseRequested => {
-                self.wiring.stop.store(true, Relaxed);
+                wiring.stop.store(true, Relaxed);
                 events.exit();
             }
-            WindowEvent::Resized(size) => open.resize(size.width, size.height, &self.wiring),
-            WindowEvent::RedrawRequested => open.redraw(&self.wiring),
+            WindowEvent::Resized(size) => open.resize(size.width, size.height, wiring),
+            WindowEvent::RedrawRequested => open.redraw(wiring),
             WindowEvent::ModifiersChanged(m) => open.mods = m.state(),
             WindowEvent::CursorMoved { position, .. } => {
-                open.moved(Vec2::new(position.x as f32, position.y as f32), &mut self.wiring);
+                open.moved(Vec2::new(position.x as f32, position.y as f32), wiring);
             }
+            WindowEvent::CursorLeft { .. } => open.left(wiring),
             WindowEvent::MouseInput { state, button, .. } => {
                 let down = state == ElementState::Pressed;
                 if !down || !response.consumed {
-                    open.button(button, down, &mut self.wiring);
+                    open.button(button, down, wiring);
                 }
+            }
+            WindowEvent::Touch(touch) if !response.consumed || touch.phase != TouchPhase::Started => {
+                open.touched(&touch, wiring);
             }
             WindowEvent::MouseWheel { delta, .. } if !response.consumed => {
                 let steps = match delta {
@@ -164,15 +171,13 @@ impl ApplicationHandler for App {
                     MouseScrollDelta::PixelDelta(p) => p.y as f32 / 40.0,
                 };
                 open.camera.zoom(1.12f32.powf(steps));
-                open.send_camera(&self.wiring);
+                open.send_camera(wiring);
             }
-            WindowEvent::KeyboardInput { event, .. }
-                if event.state == ElementState::Pressed && !response.consumed =>
-            {
-                if let PhysicalKey::Code(key) = event.physical_key {
-                    open.key(key, &self.wiring);
-                }
+            WindowEvent::PinchGesture { delta, .. } => {
+                open.camera.zoom(1.0 + delta as f32);
+                open.send_camera(wiring);
             }
+            WindowEvent::DroppedFile(path) => open.work.load(path, wiring.commands.clone()),
             _ => {}
         }
     }
@@ -188,7 +193,13 @@ impl Open {
             (true, Some(m)) => wanted
                 .with_inner_size(m.size())
                 .with_fullscreen(Some(winit::window::Fullscreen::Borderless(Some(m)))),
-            _ => wanted.with_inner_size(winit::dpi::LogicalSize::new(1280.0, 800.0)),
+            // Never larger than the screen.
+            (false, Some(m)) => {
+                let screen = m.size().to_logical::<f64>(m.scale_factor());
+                let size = (screen.width.clamp(320.0, 1440.0), screen.height.clamp(240.0, 900.0));
+                wanted.with_inner_size(winit::dpi::LogicalSize::new(size.0, size.1))
+            }
+            _ => wanted.with_inner_size(winit::dpi::LogicalSize::new(1280.0, 720.0)),
         };
         let window = Arc::new(events.create_window(wanted).map_err(|e| no_window(e.to_string()))?);
         let instance = instance();
@@ -203,9 +214,10 @@ impl Open {
             config.format = *srgb;
         }
         surface.configure(&gpu.device, &config);
-        let renderer = Renderer::new(&gpu, config.format);
+        let (remembered, desk) = Remembered::load();
+        let samples = gpu.samples(desk.prefs.smooth_edges);
+        let renderer = Renderer::new(&gpu, config.format, samples);
         let context = egui::Context::default();
-        panels::theme::apply(&context);
         let scale = window.scale_factor() as f32;
         let egui = egui_winit::State::new(context, egui::ViewportId::ROOT, &window, Some(scale), None, None);
         let paint = egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
@@ -218,29 +230,35 @@ impl Open {
             config,
             gpu,
             renderer,
+            samples,
             egui,
             paint,
-            pointer: Vec2::ZERO,
-            drag: Drag::None,
+            pointer: Pointer::default(),
             mods: ModifiersState::empty(),
             camera,
-            lent: None,
-            done: hints::Done::default(),
+            flight: None,
+            desk,
+            work: Work::default(),
+            remembered,
+            values: None,
+            asked_map: None,
             devices: Vec::new(),
             asked_us: 0,
             shown: None,
             uploaded: 0,
-            look: Look::default(),
+            figures: FrameFigures::default(),
+            turning: None,
+            screenshot: false,
         };
         open.send_camera(wiring);
         Ok(open)
     }
 
-    fn size(&self) -> Vec2 {
+    pub(super) fn size(&self) -> Vec2 {
         Vec2::new(self.config.width as f32, self.config.height as f32)
     }
 
-    fn send_camera(&self, wiring: &Wiring) {
+    pub(super) fn send_camera(&self, wiring: &Wiring) {
         let _ = wiring.commands.try_send(Command::Camera(self.camera));
         self.window.request_redraw();
     }
@@ -252,267 +270,25 @@ impl Open {
         self.send_camera(wiring);
     }
 
-    /// The pointer as a pen: it says all that a pen says.
-    fn sample(&self, tip: bool, wiring: &mut Wiring) {
-        let pen = Pen {
-            tool: Tool::Touch,
-            in_range: true,
-            tip,
-            pos_mm: self.pointer,
-            area_mm: self.size(),
-            raw: self.pointer.as_ivec2().to_array(),
-            // A mouse has no pressure: two thirds, so that a pen can press harder and softer than it.
-            pressure: Some(0.66),
-            ..Default::default()
-        };
-        let sample = Sample {
-            device: wiring.pointer_id,
-            t_us: wiring.clock.now_us(),
-            device_t_us: None,
-            body: Body::Pen(pen),
-        };
-        wiring.pointer.push(sample);
-        wiring.pointer.flush();
-    }
-
-    fn moved(&mut self, to: Vec2, wiring: &mut Wiring) {
-        let by = (to - self.pointer) / self.size();
-        self.pointer = to;
-        match self.drag {
-            Drag::Sculpt => self.sample(true, wiring),
-            Drag::Orbit => {
-                self.camera.orbit(by);
-                self.done.turned = true;
-                self.send_camera(wiring);
-            }
-            Drag::Pan => {
-                self.camera.pan(by);
-                self.send_camera(wiring);
-            }
-            Drag::None => self.sample(false, wiring),
-        }
-        self.window.request_redraw();
-    }
-
-    fn button(&mut self, button: MouseButton, down: bool, wiring: &mut Wiring) {
-        if !down {
-            if self.drag == Drag::Sculpt {
-                self.sample(false, wiring);
-                if let Some(brush) = self.lent.take() {
-                    let _ = wiring.commands.try_send(Command::Brush(brush));
-                }
-            }
-            self.drag = Drag::None;
+    /// A finger is a pointer that is in range only while it touches, and may know how hard.
+    fn touched(&mut self, touch: &Touch, wiring: &mut Wiring) {
+        let to = Vec2::new(touch.location.x as f32, touch.location.y as f32);
+        if self.pointer.finger.is_some_and(|f| f != touch.id) {
             return;
         }
-        let state = wiring.published.load();
-        let on_clay =
-            || state.mesh.pick(self.camera.ray(overlay::view_point(self.pointer, self.size()))).is_some();
-        self.drag = match button {
-            MouseButton::Left if !self.mods.alt_key() && on_clay() => Drag::Sculpt,
-            MouseButton::Left | MouseButton::Right => Drag::Orbit,
-            MouseButton::Middle if self.mods.shift_key() => Drag::Orbit,
-            MouseButton::Middle => Drag::Pan,
-            _ => Drag::None,
-        };
-        if self.drag == Drag::Sculpt {
-            self.done.touched = true;
-            let brush = state.brush;
-            let mut now = brush;
-            if self.mods.shift_key() {
-                (now.kind, now.strength) = (BrushKind::Smooth, 0.6);
+        self.pointer.force = touch.force.map(|f| f.normalized() as f32);
+        match touch.phase {
+            TouchPhase::Started => {
+                self.pointer.finger = Some(touch.id);
+                self.pointer.at = to;
+                self.button(winit::event::MouseButton::Left, true, wiring);
             }
-            now.negative ^= self.mods.control_key();
-            if now != brush {
-                self.lent = Some(brush);
-                let _ = wiring.commands.try_send(Command::Brush(now));
-            }
-            self.sample(true, wiring);
-        }
-    }
-
-    fn key(&mut self, key: KeyCode, wiring: &Wiring) {
-        let mut brush = wiring.published.load().brush;
-        let before = brush;
-        let (ctrl, shift) = (self.mods.control_key(), self.mods.shift_key());
-        let command = match key {
-            KeyCode::KeyZ if ctrl && shift => Some(Command::Redo),
-            KeyCode::KeyY if ctrl => Some(Command::Redo),
-            KeyCode::KeyZ if ctrl => {
-                self.done.undone = true;
-                Some(Command::Undo)
-            }
-            KeyCode::Digit1 => {
-                brush.kind = BrushKind::Gaussian;
-                None
-            }
-            KeyCode::Digit2 => {
-                brush.kind = BrushKind::Smooth;
-                None
-            }
-            KeyCode::BracketLeft if shift => {
-                brush.strength *= 0.9;
-                None
-            }
-            KeyCode::BracketRight if shift => {
-                brush.strength *= 1.1;
-                None
-            }
-            KeyCode::BracketLeft => {
-                brush.radius *= 0.9;
-                None
-            }
-            KeyCode::BracketRight => {
-                brush.radius *= 1.1;
-                None
-            }
-            KeyCode::KeyX => {
-                brush.negative = !brush.negative;
-                None
-            }
-            KeyCode::Home => {
-                let mesh = &wiring.published.load().mesh;
-                let (lo, hi) = mesh.bounds();
-                self.camera.frame(lo, hi);
-                self.send_camera(wiring);
-                None
-            }
-            _ => return,
-        };
-        if let Some(command) = command.or((brush != before).then_some(Command::Brush(brush.clamped()))) {
-            let _ = wiring.commands.try_send(command);
-        }
-        self.window.request_redraw();
-    }
-
-    /// The brush ring under the newest pointer place, its mirror images, and ghost hands.
-    fn lines(&self, state: &Published) -> (Vec<LineEnd>, Option<(glam::Vec3, f32)>) {
-        let mut lines = Vec::new();
-        let mut brush = None;
-        let mut ring_at = |view: Vec2, pressure: f32| {
-            let ray = self.camera.ray(view);
-            let radius = state.brush_radius * state.brush.pressure_radius.factor(pressure);
-            if let Some(hit) = state.mesh.pick(ray) {
-                overlay::ring(&mut lines, &state.mesh, hit.position, hit.normal, radius, false);
-                brush.get_or_insert((hit.position, radius));
-            }
-            for m in overlay::mirrors(state.brush.symmetry) {
-                let origin = state.middle + (ray.origin - state.middle) * m;
-                if let Some(hit) = state.mesh.pick(crate::mesh::Ray { origin, dir: ray.dir * m }) {
-                    overlay::ring(&mut lines, &state.mesh, hit.position, hit.normal, radius, true);
-                }
-            }
-        };
-        if matches!(self.drag, Drag::None | Drag::Sculpt) && self.pointer.x > PANEL {
-            ring_at(overlay::view_point(self.pointer, self.size()), 0.66);
-        }
-        for (_, pen) in
-            state.pens.iter().flatten().filter(|(id, _)| *id != crate::daemon::adaptors::POINTER_ID)
-        {
-            ring_at(pen.view, pen.pressure);
-        }
-        if let Some(hands) = &state.hands {
-            overlay::hands(&mut lines, hands, &state.volume);
-        }
-        (lines, brush)
-    }
-
-    fn redraw(&mut self, wiring: &Wiring) {
-        let texture = match self.surface.get_current_texture() {
-            wgpu::CurrentSurfaceTexture::Success(t) | wgpu::CurrentSurfaceTexture::Suboptimal(t) => t,
-            wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
-                self.surface.configure(&self.gpu.device, &self.config);
-                self.window.request_redraw();
-                return;
-            }
-            _ => return,
-        };
-        let state = wiring.published.load_full();
-        // Somebody else (a hand, the control socket) may have turned the work.
-        if self.drag == Drag::None {
-            self.camera = Camera { aspect: self.camera.aspect, ..state.camera };
-        }
-        let now = wiring.clock.now_us();
-        if now.saturating_sub(self.asked_us) > 1_000_000 || self.asked_us == 0 {
-            (self.devices, self.asked_us) = ((wiring.devices)(), now);
-        }
-        let (lines, brush) = self.lines(&state);
-        let view = texture.texture.create_view(&Default::default());
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let size = (self.config.width, self.config.height);
-        let scene = Scene { mesh: &state.mesh, camera: &self.camera, brush, lines: &lines, look: self.look };
-        self.renderer.draw(&self.gpu, &mut encoder, &view, size, &scene);
-        self.uploaded = self.renderer.uploaded;
-        let commands = self.panels(&state, wiring, &mut encoder, &view);
-        self.gpu.queue.submit([encoder.finish()]);
-        self.window.pre_present_notify();
-        self.gpu.queue.present(texture);
-        for command in commands {
-            self.done.undone |= matches!(command, Command::Undo);
-            let _ = wiring.commands.try_send(command);
-        }
-        if self.renderer.waiting > 0 {
-            self.window.request_redraw();
-        }
-    }
-
-    fn panels(
-        &mut self,
-        state: &Published,
-        wiring: &Wiring,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::TextureView,
-    ) -> Vec<Command> {
-        let mut commands = Vec::new();
-        let input = self.egui.take_egui_input(&self.window);
-        let view = View {
-            state,
-            devices: &self.devices,
-            session: wiring.session.as_deref(),
-            uploaded: self.uploaded,
-            adapter: &self.adapter,
-        };
-        let ghosts = wiring.clock.now_us() < wiring.ghosts_until_us;
-        let done = self.done;
-        let look = &mut self.look;
-        let context = self.egui.egui_ctx().clone();
-        let out = context.run_ui(input, |ui| {
-            egui::Panel::left("side").exact_size(PANEL).show(ui, |ui| {
-                panels::side(ui, &view, look, &mut commands);
-            });
-            hints::ui(ui.ctx(), &done, ghosts);
-        });
-        self.egui.handle_platform_output(&self.window, out.platform_output);
-        let scale = out.pixels_per_point;
-        let jobs = context.tessellate(out.shapes, scale);
-        let screen = egui_wgpu::ScreenDescriptor {
-            size_in_pixels: [self.config.width, self.config.height],
-            pixels_per_point: scale,
-        };
-        for (id, deltas) in &out.textures_delta.set {
-            for delta in deltas {
-                self.paint.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
+            TouchPhase::Moved => self.moved(to, wiring),
+            TouchPhase::Ended | TouchPhase::Cancelled => {
+                self.button(winit::event::MouseButton::Left, false, wiring);
+                (self.pointer.finger, self.pointer.force) = (None, None);
+                self.left(wiring);
             }
         }
-        let mut buffers =
-            self.paint.update_buffers(&self.gpu.device, &self.gpu.queue, encoder, &jobs, &screen);
-        if !buffers.is_empty() {
-            self.gpu.queue.submit(buffers.drain(..));
-        }
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("panels"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        self.paint.render(&mut pass.forget_lifetime(), &jobs, &screen);
-        for id in &out.textures_delta.free {
-            self.paint.free_texture(id);
-        }
-        commands
     }
 }

@@ -1,0 +1,51 @@
+//! The scale of the map that the clay shows, with its unit.
+
+use egui::{Color32, Mesh, Rect, pos2, vec2};
+
+use super::Desk;
+use crate::viewer::look::Map;
+
+pub fn ui(ctx: &egui::Context, desk: &Desk, free: Rect) {
+    let map = desk.look.map;
+    if map == Map::None || free.width() < 120.0 {
+        return;
+    }
+    let ((low, high), unit) = match map {
+        Map::Mask => ((0.0, 1.0), ""),
+        _ => (desk.look.scale, " mm"),
+    };
+    let area = egui::Area::new(egui::Id::unique("legend"))
+        .fixed_pos(free.left_top() + vec2(12.0, 12.0))
+        .interactable(false);
+    area.show(ctx, |ui| {
+        egui::Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {
+            ui.strong(map.title());
+            let (rect, _) = ui.allocate_exact_size(vec2(92.0, 120.0), egui::Sense::hover());
+            let bar = Rect::from_min_size(rect.min + vec2(0.0, 6.0), vec2(16.0, 108.0));
+            let mut mesh = Mesh::default();
+            const STEPS: u32 = 32;
+            for i in 0..=STEPS {
+                let x = i as f32 / STEPS as f32;
+                let [r, g, b] = map.colour(x, 0.0, 1.0);
+                let y = bar.bottom() - x * bar.height();
+                for side in [bar.left(), bar.right()] {
+                    mesh.colored_vertex(pos2(side, y), Color32::from_rgb(r, g, b));
+                }
+                if i > 0 {
+                    let k = i * 2;
+                    mesh.add_triangle(k - 2, k - 1, k);
+                    mesh.add_triangle(k - 1, k, k + 1);
+                }
+            }
+            ui.painter().add(mesh);
+            let font = egui::FontId::proportional(12.0);
+            let colour = ui.visuals().text_color();
+            for i in 0..=2 {
+                let x = i as f32 / 2.0;
+                let text = format!("{:.2}{unit}", low + (high - low) * x);
+                let at = pos2(bar.right() + 6.0, bar.bottom() - x * bar.height());
+                ui.painter().text(at, egui::Align2::LEFT_CENTER, text, font.clone(), colour);
+            }
+        });
+    });
+}

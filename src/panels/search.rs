@@ -1,0 +1,72 @@
+//! Every action by name: Ctrl+K, a few letters, Enter.
+
+use egui::Key;
+
+use super::action::{self, Action};
+use super::{Desk, theme};
+
+#[derive(Debug, Default)]
+pub struct Search {
+    pub text: String,
+    at: usize,
+    begun: bool,
+}
+
+/// Shown at a time.
+const MOST: usize = 9;
+
+pub fn ui(ctx: &egui::Context, desk: &mut Desk) -> Option<Action> {
+    let search = desk.search.as_mut()?;
+    let (up, down, enter, escape) = ctx.input(|i| {
+        let p = |k| i.key_pressed(k);
+        (p(Key::ArrowUp), p(Key::ArrowDown), p(Key::Enter), p(Key::Escape))
+    });
+    let found = action::search(&search.text);
+    let shown = found.len().min(MOST);
+    if down {
+        search.at += 1;
+    }
+    if up {
+        search.at = search.at.saturating_sub(1);
+    }
+    search.at = search.at.min(shown.saturating_sub(1));
+    let mut chosen = (enter && search.begun).then(|| found.get(search.at).map(|e| e.action)).flatten();
+    let screen = ctx.content_rect();
+    let area = egui::Area::new(egui::Id::unique("search"))
+        .fixed_pos(screen.center_top() + egui::vec2(0.0, screen.height() * 0.12))
+        .pivot(egui::Align2::CENTER_TOP)
+        .order(egui::Order::Foreground);
+    area.show(ctx, |ui| {
+        egui::Frame::window(ui.style()).show(ui, |ui| {
+            ui.set_width(320.0f32.min(screen.width() - 40.0));
+            let label = ui.label("Search actions");
+            let edit = egui::TextEdit::singleline(&mut search.text).desired_width(f32::INFINITY);
+            let response = ui.add(edit).labelled_by(label.id);
+            if !search.begun || !response.has_focus() {
+                response.request_focus();
+                search.begun = true;
+            }
+            if response.changed() {
+                search.at = 0;
+            }
+            for (i, entry) in found.iter().take(MOST).enumerate() {
+                let keys = entry.keys.map_or(String::new(), |k| k.to_string());
+                ui.horizontal(|ui| {
+                    if ui.selectable_label(i == search.at, entry.name).clicked() {
+                        chosen = Some(entry.action);
+                    }
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        ui.colored_label(theme::quiet(ui), keys);
+                    });
+                });
+            }
+            if found.is_empty() {
+                ui.colored_label(theme::quiet(ui), "nothing is called that");
+            }
+        });
+    });
+    if escape || chosen.is_some() {
+        desk.search = None;
+    }
+    chosen
+}
