@@ -145,7 +145,9 @@ pub fn pressed(ctx: &egui::Context) -> Vec<Action> {
     ctx.input(|i| {
         let mut out = Vec::new();
         for event in &i.events {
-            let egui::Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { continue };
+            let egui::Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else {
+                continue;
+            };
             let (ctrl, shift) = (modifiers.command || modifiers.ctrl, modifiers.shift);
             let is = |k: Key| *key == k || *physical_key == Some(k);
             // Some keyboards say "=" where "+" is meant.

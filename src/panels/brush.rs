@@ -49,9 +49,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
 /// A button with the profile that the brush leaves.
 fn picture(ui: &mut egui::Ui, kind: BrushKind, name: &str, chosen: bool) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(96.0, 50.0), Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::RadioButton, ui.is_enabled(), chosen, name)
-    });
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, ui.is_enabled(), chosen, name));
     let style = ui.style().interact_selectable(&response, chosen);
     let fill = if chosen { style.bg_fill } else { style.weak_bg_fill };
     ui.painter().rect(rect, 5.0, fill, style.bg_stroke, egui::StrokeKind::Inside);

@@ -58,9 +58,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<Ask>) 
         for ((_, letter, action, colour), depth, at) in sides {
             let ball = Rect::from_center_size(at, vec2(BALL, BALL) * 2.0);
             let response = ui.interact(ball, ui.scope_id().with(action.entry().name), Sense::click());
-            response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name)
-            });
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name));
             let fade = 0.55 + 0.45 * (depth * 0.5 + 0.5);
             let colour = colour.gamma_multiply(if response.hovered() { 1.0 } else { fade });
             if !letter.is_empty() {

@@ -11,9 +11,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>)
     egui::CollapsingHeader::new("Pressure").default_open(false).show(ui, |ui| {
         let curve = &mut brush.pressure_strength;
         let (rect, response) = ui.allocate_exact_size(vec2(196.0, 92.0), Sense::click_and_drag());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Pressure curve")
-        });
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Pressure curve"));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
         let at = |p: f32, f: f32| place(rect, p, f);
@@ -23,8 +21,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>)
             let colour = theme::accent(ui).gamma_multiply(fade * 0.6);
             painter.circle_filled(at(p, curve.factor(p)), 2.0 + 2.0 * fade, colour);
         }
-        let line: Vec<Pos2> =
-            (0..=48).map(|i| i as f32 / 48.0).map(|p| at(p, curve.factor(p))).collect();
+        let line: Vec<Pos2> = (0..=48).map(|i| i as f32 / 48.0).map(|p| at(p, curve.factor(p))).collect();
         painter.add(egui::Shape::line(line, Stroke::new(2.0, ui.visuals().text_color())));
         if let Some(p) = trace.recent().next() {
             painter.circle_filled(at(p, curve.factor(p)), 5.0, theme::accent(ui));

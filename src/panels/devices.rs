@@ -64,7 +64,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace) {
     }
     if let Some(hands) = view.state.hands.as_ref().filter(|h| h.count > 0) {
         none = false;
-        ui.label(format!("{} tracked", if hands.count == 1 { "one hand".into() } else { format!("{} hands", hands.count) }));
+        ui.label(format!(
+            "{} tracked",
+            if hands.count == 1 { "one hand".into() } else { format!("{} hands", hands.count) }
+        ));
         for pose in view.state.poses.iter().flatten() {
             ui.colored_label(quiet, format!("{pose:?}"));
         }

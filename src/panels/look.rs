@@ -16,7 +16,11 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_
             });
             let colour = egui::Color32::from_rgb(r, g, b);
             ui.painter().circle_filled(rect.center(), 11.0, colour);
-            ui.painter().circle_filled(rect.center() - egui::vec2(4.0, 4.0), 2.5, egui::Color32::from_white_alpha(110));
+            ui.painter().circle_filled(
+                rect.center() - egui::vec2(4.0, 4.0),
+                2.5,
+                egui::Color32::from_white_alpha(110),
+            );
             if look.material == i || response.hovered() || response.has_focus() {
                 let stroke = egui::Stroke::new(2.0, ui.visuals().text_color());
                 ui.painter().circle_stroke(rect.center(), 12.0, stroke);

@@ -12,7 +12,8 @@ pub fn apply(ctx: &egui::Context, light: bool) {
     v.extreme_bg_color = tone(18, 250);
     v.faint_bg_color = tone(35, 232);
     v.override_text_color = None;
-    v.selection.bg_fill = if light { Color32::from_rgb(236, 190, 164) } else { Color32::from_rgb(140, 76, 48) };
+    v.selection.bg_fill =
+        if light { Color32::from_rgb(236, 190, 164) } else { Color32::from_rgb(140, 76, 48) };
     v.selection.stroke = Stroke::new(1.0, tone(250, 10));
     v.weak_text_color = Some(quiet_of(light));
     v.hyperlink_color = if light { Color32::from_rgb(20, 80, 150) } else { Color32::from_rgb(140, 190, 255) };

@@ -66,7 +66,8 @@ pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3,
 /// The pen itself as it leans: from its tip along its barrel. `tilt` in radians, x to the right and y towards the person.
 pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, radius: f32) {
     let (right, up) = camera.axes();
-    let along = camera.backward() + right * tilt.x.clamp(-1.4, 1.4).tan() - up * tilt.y.clamp(-1.4, 1.4).tan();
+    let along =
+        camera.backward() + right * tilt.x.clamp(-1.4, 1.4).tan() - up * tilt.y.clamp(-1.4, 1.4).tan();
     segment(out, tip, tip + along.normalize_or_zero() * radius * 2.0, BONE);
 }
 
@@ -74,7 +75,13 @@ pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, ra
 pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, extent: f32, pale: bool) {
     const HALF: i32 = 10;
     let step = 10f32.powf((extent * 0.3).max(1e-30).log10().floor());
-    let step = if extent * 0.3 / step >= 5.0 { step * 5.0 } else if extent * 0.3 / step >= 2.0 { step * 2.0 } else { step };
+    let step = if extent * 0.3 / step >= 5.0 {
+        step * 5.0
+    } else if extent * 0.3 / step >= 2.0 {
+        step * 2.0
+    } else {
+        step
+    };
     let floor = middle.y - extent;
     let centre = (middle / step).round() * step;
     let ink = if pale { 60 } else { 190 };

@@ -15,7 +15,8 @@ pub struct Remembered {
 impl Remembered {
     /// A desk as the person left it.
     pub fn load() -> (Remembered, Desk) {
-        let path = directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("viewer.toml"));
+        let path =
+            directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("viewer.toml"));
         let text = path.as_ref().and_then(|p| std::fs::read_to_string(p).ok()).unwrap_or_default();
         let prefs = Preferences::parse(&text);
         let desk = Desk { look: prefs.look, prefs: prefs.clone(), ..Default::default() };

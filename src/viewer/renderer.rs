@@ -232,7 +232,8 @@ impl Renderer {
         };
         let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
         // The ground: a quiet dusk, or paper.
-        let ground = if scene.look.pale { [[196, 199, 205], [228, 230, 234]] } else { [[28, 29, 33], [63, 65, 71]] };
+        let ground =
+            if scene.look.pale { [[196, 199, 205], [228, 230, 234]] } else { [[28, 29, 33], [63, 65, 71]] };
         let frame = Frame {
             view_projection: matrix.to_cols_array_2d(),
             right: right.extend(0.0).to_array(),
