@@ -1,5 +1,6 @@
 //! Brushes: one kernel a file. A kernel sees one page at a time and says where its own vertices go.
 
+pub(crate) mod cotangent;
 mod drag;
 pub mod gaussian;
 mod palm;
