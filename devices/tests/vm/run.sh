@@ -1,6 +1,7 @@
 #!/bin/sh
-# The real kernel path, without hardware: Debian's kernel in software emulation, a uhid tablet in it, the daemon's own binary
-# reading /dev/hidraw*, and the kernel's wacom driver as an oracle. Run from anywhere; needs a Debian with root or with the
+# The real kernel path, without hardware: Debian's kernel in software emulation, a uhid tablet and serial lines in it, the
+# daemon's own binary reading /dev/hidraw*, and the kernel's wacom drivers as oracles. Run from anywhere; needs a Debian with root or with
+# the
 # packages named below already installed. About two minutes on two cores. Prints "skipped: ..." and exits 0 where it cannot run.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -16,7 +17,7 @@ skip() {
 [ "$(uname -m)" = x86_64 ] || skip "written for x86_64, this is $(uname -m)"
 command -v apt-get >/dev/null || skip "no apt-get: the kernel is Debian's"
 missing=
-for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio depmod:kmod; do
+for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio depmod:kmod inputattach:inputattach; do
     command -v "${tool%%:*}" >/dev/null || missing="$missing ${tool##*:}"
 done
 if [ -n "$missing" ]; then
@@ -44,7 +45,7 @@ initrd=$work/initrd
 rm -rf "$initrd"
 mkdir -p "$initrd/bin" "$initrd/modules" "$initrd/proc" "$initrd/sys" "$initrd/dev" "$initrd/tmp"
 cp "$(command -v busybox)" "$initrd/bin/busybox"
-for binary in "$daemon" "$root/target/release/examples/vm_guest"; do
+for binary in "$daemon" "$root/target/release/examples/vm_guest" "$(command -v inputattach)"; do
     strip -o "$initrd/bin/$(basename "$binary")" "$binary"
     ldd "$binary" | grep -o '/[^ ]*' | while read -r library; do
         mkdir -p "$initrd$(dirname "$library")"
@@ -52,7 +53,7 @@ for binary in "$daemon" "$root/target/release/examples/vm_guest"; do
     done
 done
 # In the order in which they need each other.
-for module in hid hid-generic uhid evdev usb-common usbcore usbhid wacom; do
+for module in hid hid-generic uhid evdev usb-common usbcore usbhid wacom serio serport wacom_w8001 wacom_serial4; do
     file=$(find "$work/kernel/lib/modules/$version" -name "$module.ko*" | head -1)
     [ -z "$file" ] || cp "$file" "$initrd/modules/"
 done
@@ -62,7 +63,9 @@ cat >"$initrd/init" <<'INIT'
 /bin/busybox mount -t sysfs sys /sys
 /bin/busybox mount -t devtmpfs dev /dev
 /bin/busybox mount -t tmpfs tmp /tmp
-for m in hid hid-generic uhid evdev usb-common usbcore usbhid wacom; do
+/bin/busybox mkdir -p /dev/pts
+/bin/busybox mount -t devpts devpts /dev/pts
+for m in hid hid-generic uhid evdev usb-common usbcore usbhid wacom serio serport wacom_w8001 wacom_serial4; do
     [ -e "/modules/$m.ko" ] && /bin/busybox insmod "/modules/$m.ko"
 done
 RUST_LOG=warn /bin/vm_guest

@@ -1,8 +1,10 @@
 //! Runs inside the virtual machine of `tests/vm/run.sh`: a uhid tablet is plugged in, the daemon's own binary records it from
 //! /dev/hidraw*, the kernel's wacom driver decodes it, and both are compared with what was sent and with our decoder. Then the
-//! plug is pulled in mid-stroke and put back. Prints one `VM ok` or `VM FAIL` line for each thing shown.
+//! plug is pulled in mid-stroke and put back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing shown.
 #![cfg(target_os = "linux")]
 #![allow(clippy::print_stdout, clippy::disallowed_methods)] // A test program: it prints its findings and waits for a kernel.
+
+mod serial;
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
@@ -16,6 +18,7 @@ use sculptd_devices::catalogue::{Catalogue, Found, Identification, Identity};
 use sculptd_devices::hid::decoder::Decoder;
 use sculptd_devices::hid::transport::Transport;
 use sculptd_devices::recording::raw;
+use sculptd_devices::serial::Protocol;
 use sculptd_devices::sim::{Tablet, TabletConfig, journal};
 use sculptd_devices::{Body, DeviceId, Pen, Tool};
 
@@ -279,7 +282,12 @@ fn run() -> io::Result<bool> {
 }
 
 fn main() -> ExitCode {
-    match run() {
+    let both = run().and_then(|tablet| {
+        let isdv4 = serial::compare(Protocol::Isdv4, "--w8001", 255.0)?;
+        let wacom_iv = serial::compare(Protocol::WacomIv, "--wacom_iv", 255.0)?;
+        Ok(tablet && isdv4 && wacom_iv)
+    });
+    match both {
         Ok(true) => {
             println!("VM PASSED");
             ExitCode::SUCCESS
