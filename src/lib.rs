@@ -58,6 +58,7 @@ pub mod simd;
 pub mod stroke;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+mod works;
 pub mod world;
 
 pub use sculptd_devices as devices;

@@ -16,6 +16,7 @@ use crate::devices::{Body, DeviceId, Hands, Sample};
 use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
 use crate::mesh::{Hit, Kernel, Mesh, PolyMesh, Ray, Reach, TriMesh, Workers, shapes};
 use crate::stroke::{Camera, Flow, PenPoint, PenTrack, Surface};
+use crate::works::Works;
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
 pub const MAX_PENS: usize = 16;
@@ -61,6 +62,8 @@ pub struct World {
     /// What the hands hold.
     thing: Option<Thing>,
     report: StepReport,
+    /// Works before and after this one, for undo.
+    works: Works,
     /// Works that were replaced, for somebody else to drop.
     retired: Vec<Mesh>,
 }
@@ -88,7 +91,8 @@ impl World {
             last_hands: None,
             thing: None,
             report: StepReport::default(),
-            retired: Vec::with_capacity(4),
+            works: Works::default(),
+            retired: Vec::with_capacity(16),
         };
         world.measure();
         world.frame();
@@ -121,6 +125,10 @@ impl World {
             self.hear(sample);
         }
         self.sculpt();
+        if self.report.vertices_moved > 0 {
+            let retired = &mut self.retired;
+            self.works.forget_future(|m| retired.push(m));
+        }
         &self.report
     }
 
@@ -134,11 +142,15 @@ impl World {
             }
             Command::Undo => {
                 self.lift_all();
-                self.mesh.undo();
+                if !self.mesh.undo() {
+                    self.works.back(&mut self.mesh);
+                }
             }
             Command::Redo => {
                 self.lift_all();
-                self.mesh.redo();
+                if !self.mesh.redo() {
+                    self.works.forth(&mut self.mesh);
+                }
             }
             Command::LiftAll => self.lift_all(),
             Command::TakeUp(plain) => self.take_up(plain.clone()),
@@ -150,8 +162,12 @@ impl World {
                 let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());
                 if let Some(mut mesh) = built {
                     mesh.set_undo_bytes(self.options.undo_bytes);
-                    self.retired.push(std::mem::replace(&mut self.mesh, mesh));
-                    if !new.keep_camera {
+                    let World { works, retired, mesh: now, options, .. } = self;
+                    if new.keep_camera {
+                        works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));
+                    } else {
+                        works.forget(|m| retired.push(m));
+                        retired.push(std::mem::replace(now, mesh));
                         self.measure();
                         self.frame();
                     }
@@ -325,6 +341,15 @@ impl World {
 
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// Steps that undo can take back, replaced works included.
+    pub fn undo_steps(&self) -> usize {
+        self.mesh.undo_steps() + self.works.past()
+    }
+
+    pub fn redo_steps(&self) -> usize {
+        self.mesh.redo_steps() + self.works.future()
     }
 
     /// For publishing only: nothing of the clay changes.

@@ -132,6 +132,24 @@ pub fn stepped(clock: &Clock, factory: &SenderFactory) -> Result<(Vec<Box<dyn Fe
     Ok((feeds, g.adaptors))
 }
 
+/// A tracker alone, stepped, and the adaptor that reads it: for lessons and tests with a hand of one's own making.
+pub fn tracker(
+    script: sim::HandScript,
+    config: sim::TrackerConfig,
+    clock: &Clock,
+    factory: &SenderFactory,
+) -> Result<(Box<dyn Feed>, leap::Handle), GhostError> {
+    let start = |source| GhostError::Start { device: "tracker", source };
+    let end_us = script.end_us() + AFTER_US;
+    let tracker = sim::Tracker::new(script, config).map_err(start)?;
+    let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
+    let handle = leap::start(config, clock.clone(), factory.sender()).map_err(start)?;
+    if !tracker.wait_for_client(PATIENCE) {
+        return Err(GhostError::NotFound("tracker"));
+    }
+    Ok((Box::new(SimFeed::new(tracker, sim::Tracker::advance, end_us)), handle))
+}
+
 /// Ghosts that play by themselves; they are gone when this is dropped.
 #[derive(Debug)]
 pub struct Playing {

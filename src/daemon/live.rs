@@ -10,6 +10,7 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::figures::Figures;
+use super::joiner::Joiner;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
 use super::stepped::{in_order_of_time, published_figures};
@@ -80,6 +81,8 @@ impl Live {
             rate_hz: config.rate_hz,
             drain_per_tick,
             journal,
+            // Without its thread the hands' menu cannot join: that is said when it is asked to.
+            joiner: Joiner::start(published.clone(), commands.clone()).ok(),
         };
         let thread = std::thread::Builder::new()
             .name("sculptd-tick".into())
@@ -109,6 +112,7 @@ struct Ticking {
     rate_hz: u32,
     drain_per_tick: usize,
     journal: Option<Box<dyn Journal>>,
+    joiner: Option<Joiner>,
 }
 
 impl Ticking {
@@ -137,6 +141,11 @@ impl Ticking {
             let report = *self.world.step(tick, &samples, &commands);
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, &self.world);
+            }
+            if let Some(choice) = report.join
+                && !self.joiner.as_ref().is_some_and(|j| j.ask(choice))
+            {
+                tracing::warn!("{}: another join is under way", choice.label());
             }
             while let Some(mesh) = self.world.take_retired() {
                 let _ = garbage.try_send(mesh);

@@ -5,6 +5,7 @@ pub mod adaptors;
 pub mod control;
 pub mod figures;
 pub mod ghost;
+pub mod joiner;
 pub mod live;
 pub mod pacer;
 pub mod published;

@@ -97,8 +97,8 @@ impl Published {
             menu: tools.menu().showing(),
             fatigue: (tools.fatigue().spent(), tools.fatigue().wants_lower()),
             calibrating: tools.is_calibrating(),
-            undo_steps: world.mesh().undo_steps(),
-            redo_steps: world.mesh().redo_steps(),
+            undo_steps: world.undo_steps(),
+            redo_steps: world.redo_steps(),
             figures,
         }
     }

@@ -7,9 +7,11 @@
 use std::time::Duration;
 
 use super::figures::{Figures, Losses, Summary};
+use super::joiner;
 use super::live::Journal;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
+use crate::analysis::cancel::Job;
 use crate::command::Command;
 use crate::devices::queue::Receiver;
 use crate::devices::{Clock, Sample};
@@ -86,6 +88,8 @@ impl Stepped<'_> {
         let mut figures = Figures::default();
         let mut samples: Vec<Sample> = Vec::with_capacity(options.drain_per_tick);
         let mut commands = Vec::new();
+        // What a hand's wish to join gave: put in place at the next tick, so that a stepped run has no race in it.
+        let mut joined: Vec<Command> = Vec::new();
         let mut script = self.script.iter().peekable();
         let first = self.world.tick();
         let mut tick = first;
@@ -105,12 +109,21 @@ impl Stepped<'_> {
             while let Some((_, command)) = script.next_if(|(at, _)| *at <= tick) {
                 commands.push(command.clone());
             }
+            commands.append(&mut joined);
             let begun = wall.now_ns();
             let report = *self.world.step(tick, &samples, &commands);
             let took = wall.now_ns() - begun;
             figures.tick(&report, took);
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, self.world);
+            }
+            if let Some(operation) = report.join.and_then(joiner::operation)
+                && let Some(thing) = self.world.thing().cloned()
+            {
+                match joiner::join(&self.world.snapshot(), &thing, operation, &Job::default()) {
+                    Ok(done) => joined = done,
+                    Err(e) => tracing::warn!("{}: {e}", operation.name()),
+                }
             }
             if options.verify {
                 self.world.verify_invariants().map_err(|text| SteppedError::Broken { tick, text })?;
@@ -121,7 +134,11 @@ impl Stepped<'_> {
                 figures.overruns = pacer.overruns;
             }
             let ended = self.feeds.iter().all(|f| f.finished()) && script.peek().is_none();
-            quiet = if ended && samples.is_empty() && !report.paused { quiet + 1 } else { 0 };
+            quiet = if ended && samples.is_empty() && joined.is_empty() && !report.paused {
+                quiet + 1
+            } else {
+                0
+            };
             // Two ticks of silence after the end: the last pen-up was walked, the last hand has let go.
             if quiet >= 2 {
                 break;

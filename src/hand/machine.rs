@@ -27,6 +27,8 @@ pub struct Track {
     pub index_tip: Option<Vec3>,
     /// Midway between thumb and index tips.
     pub pinch_point: Option<Vec3>,
+    /// Thumb tip to index tip, mm.
+    pub pinch_mm: Option<f32>,
     pub confidence: f32,
 }
 
@@ -51,6 +53,7 @@ impl Track {
             orientation: None,
             index_tip: None,
             pinch_point: None,
+            pinch_mm: None,
             confidence: 0.0,
         };
         track.place(hand);
@@ -66,6 +69,7 @@ impl Track {
         self.orientation = hand.orientation;
         self.index_tip = tip(1);
         self.pinch_point = tip(0).zip(tip(1)).map(|(a, b)| (a + b) * 0.5);
+        self.pinch_mm = tip(0).zip(tip(1)).map(|(a, b)| (a - b).length());
         self.confidence = hand.confidence.unwrap_or(1.0).clamp(0.0, 1.0);
     }
 
@@ -92,6 +96,11 @@ impl Track {
         let far = 60.0 + gap * 1.3;
         let sides = self.left.zip(hand.left).is_none_or(|(a, b)| a == b);
         gap <= s.bridge_ms && sides && (self.palm - hand.palm).length() <= far
+    }
+
+    /// The fingers of a pinch are parting: what they held stays where it is.
+    pub fn lets_go(&self, s: &HandSettings) -> bool {
+        self.pinch_mm.is_none_or(|gap| gap > s.pinch_on_mm + (s.pinch_off_mm - s.pinch_on_mm) / 3.0)
     }
 
     /// 0 to 1: how strongly the hand may act now.

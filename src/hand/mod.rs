@@ -46,6 +46,8 @@ struct Held {
     tool: Option<Vec3>,
     /// How the hand was turned then.
     turn: Option<Quat>,
+    /// From the palm to the pinch when the pinch began, in the hand's own axes, mm.
+    grip: Option<Vec3>,
     /// The palm when it last rested, mm: motion counts from here once it left the dead zone.
     anchor_mm: Vec3,
     free: bool,
@@ -169,7 +171,7 @@ impl HandTools {
                     let held = &mut self.held[i];
                     let changed = held.track.take(t_us, hand, &s);
                     if changed {
-                        (held.tool, held.turn) = (None, None);
+                        (held.tool, held.turn, held.grip) = (None, None, None);
                         (held.free, held.anchor_mm) = (false, hand.palm);
                     }
                 }
@@ -177,6 +179,7 @@ impl HandTools {
                     track: Track::new(device, t_us, hand),
                     tool: None,
                     turn: None,
+                    grip: None,
                     anchor_mm: hand.palm,
                     free: false,
                     moved_us: t_us,
@@ -244,24 +247,49 @@ impl HandTools {
 
     /// Two pinches hold two points of the world: move, turn, scale.
     fn hold_between(&mut self, a: Track, b: Track) {
+        if self.carrying {
+            self.carry_between(a, b);
+            return;
+        }
+        if a.lets_go(&self.settings) || b.lets_go(&self.settings) {
+            self.pair = None;
+            return;
+        }
         let Some((pa, pb)) = a.pinch_point.zip(b.pinch_point) else { return };
         let fingers = [self.volume.to_world(pa), self.volume.to_world(pb)];
         let held = *self.pair.get_or_insert(fingers);
-        if self.carrying {
-            self.pair = Some(fingers);
-            for held in &mut self.held {
-                (held.tool, held.turn) = (None, None);
-            }
-            if let Some(by) = Similarity::between(held, fingers) {
-                self.wait(Act::Carry(by));
-            }
-            return;
-        }
         if let Some(volume) = self.volume.holding(held, [pa, pb]) {
             let before = self.volume;
             self.volume = volume;
             self.wait(Act::Hold { before, after: volume });
         }
+    }
+
+    /// Two pinches carry a thing: by their grips, so that fingers that open leave it where it is.
+    fn carry_between(&mut self, a: Track, b: Track) {
+        let index =
+            |t: Track| self.held.iter().position(|h| (h.track.device, h.track.id) == (t.device, t.id));
+        let Some((i, j)) = index(a).zip(index(b)) else { return };
+        let Some((pa, pb)) = self.grip_mm(i).zip(self.grip_mm(j)) else { return };
+        let now = [self.volume.to_world(pa), self.volume.to_world(pb)];
+        let before = self.pair.replace(now);
+        for held in &mut self.held {
+            (held.tool, held.turn) = (None, None);
+        }
+        if let Some(by) = before.and_then(|before| Similarity::between(before, now)) {
+            self.wait(Act::Carry(by));
+        }
+    }
+
+    /// Where the pinch would be if the fingers had kept still since it began: what is carried goes with the palm.
+    fn grip_mm(&mut self, i: usize) -> Option<Vec3> {
+        let held = &mut self.held[i];
+        let (track, turn) = (held.track, held.track.orientation.unwrap_or(Quat::IDENTITY));
+        let grip = match held.grip {
+            Some(grip) => grip,
+            None => *held.grip.insert(turn.inverse() * (track.pinch_point? - track.palm)),
+        };
+        Some(track.palm + turn * grip)
     }
 
     fn zoom_between(&mut self, a: Track, b: Track, t_us: u64) {
@@ -285,7 +313,7 @@ impl HandTools {
         let v = self.volume;
         if self.carrying && track.pose == Pose::Pinch {
             let now = track.orientation.map(|q| (v.turn * q).normalize());
-            let to = track.pinch_point.map(|p| v.to_world(p));
+            let to = self.grip_mm(i).map(|p| v.to_world(p));
             if let Some((from, to)) = tool.zip(to) {
                 let turned = turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
                 self.wait(Act::Carry(Similarity::carried(from, to, turned)));
@@ -296,6 +324,7 @@ impl HandTools {
         let strength = track.strength(t_us, &s);
         let at_mm = match track.pose {
             Pose::Point => track.index_tip,
+            Pose::Pinch if track.lets_go(&s) => None,
             Pose::Pinch => track.pinch_point,
             Pose::Flat => Some(track.palm),
             Pose::Neutral | Pose::Grab | Pose::Open => None,

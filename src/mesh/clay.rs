@@ -213,6 +213,11 @@ impl Mesh {
         done
     }
 
+    /// What was taken back can no longer be done again.
+    pub fn forget_redo(&mut self) {
+        self.history.forget_redo();
+    }
+
     pub fn undo_steps(&self) -> usize {
         self.history.undo_steps()
     }

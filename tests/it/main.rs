@@ -10,6 +10,7 @@ mod golden;
 mod hands;
 mod io;
 mod io_files;
+mod mesh_craft;
 mod recovery;
 mod synthetic_hands;
 mod tidy;

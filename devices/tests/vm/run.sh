@@ -1,8 +1,8 @@
 #!/bin/sh
 # The real kernel path, without hardware: Debian's kernel in software emulation, a uhid tablet and serial lines in it, the
-# daemon's own binary reading /dev/hidraw*, and the kernel's wacom drivers as oracles. Run from anywhere; needs a Debian with root or with
-# the
-# packages named below already installed. About two minutes on two cores. Prints "skipped: ..." and exits 0 where it cannot run.
+# daemon's own binary reading /dev/hidraw*, and the kernel's wacom drivers as oracles. Run from anywhere; needs a Debian
+# with root or with the packages named below already installed. About two minutes on two cores.
+# Prints "skipped: ..." and exits 0 where it cannot run.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../.." && pwd)

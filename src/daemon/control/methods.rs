@@ -13,7 +13,8 @@ use super::server::Host;
 use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
 use crate::command::{Command, NewClay};
-use crate::daemon::rig;
+use crate::daemon::{joiner, rig};
+use crate::hand::{Choice, ReachBox};
 use crate::mesh::Snapshot;
 use crate::mesh::io::write_mesh;
 
@@ -34,6 +35,13 @@ pub const METHODS: &[(&str, &str)] = &[
     (
         "thickness",
         "{rays?, near?}: wall thickness of the work, measured again only where it may have changed, `near` first",
+    ),
+    ("take-up", "{path}: the hands take up a mesh from a file, to carry it to its place"),
+    ("put-down", "{}: the thing in the hands is gone"),
+    ("join", "{operation}: add, carve or keep: the thing in the hands and the work become one"),
+    (
+        "reach",
+        "{middle_mm, half_mm} lays this part of the tracked space over the work; {} measures it for five seconds",
     ),
     ("shutdown", "{}: ends the daemon as a signal would"),
 ];
@@ -82,6 +90,12 @@ fn thickness(host: &Host, mesh: &Snapshot, p: &ThicknessParam) -> Result<Value, 
         "revision": map.revision(), "vertices": map.values().len(), "measured": measured, "valid": known.len(),
         "min": least, "max": most, "mean": mean,
     }))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JoinParam {
+    operation: Choice,
 }
 
 #[derive(Deserialize, Default)]
@@ -186,6 +200,37 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let mesh = state.mesh.to_tri().to_poly();
             write_mesh(&p.path, &mesh).map_err(|e| failed(e.to_string()))?;
             Ok(json!({ "path": p.path, "tick": state.tick, "vertices": mesh.positions.len() }))
+        }
+        "take-up" => {
+            let p: PathParam = read(params)?;
+            safe(&p.path)?;
+            let loaded = rig::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
+            let triangles = loaded.plain.triangles.len();
+            send(Command::TakeUp(Arc::new(loaded.plain)))?;
+            Ok(json!({ "triangles": triangles, "warnings": loaded.warnings }))
+        }
+        "put-down" => {
+            read::<Nothing>(params)?;
+            send(Command::PutDown)?;
+            Ok(json!({ "sent": true }))
+        }
+        "join" => {
+            let p: JoinParam = read(params)?;
+            let done = joiner::at_rest(&host.published, p.operation).map_err(|e| failed(e.to_string()))?;
+            done.into_iter().try_for_each(send)?;
+            Ok(json!({ "sent": true }))
+        }
+        "reach" => {
+            let reach =
+                if params.is_null() || params == json!({}) { None } else { Some(read::<ReachBox>(params)?) };
+            if reach.is_some_and(|r| !r.is_sane()) {
+                return Err(RpcError::new(
+                    Code::BadParams,
+                    "expected a place within 2 m and half a side of 30 to 1000 mm",
+                ));
+            }
+            send(reach.map_or(Command::CalibrateReach, Command::Reach))?;
+            Ok(json!({ "measuring": reach.is_none() }))
         }
         "hash" => {
             read::<Nothing>(params)?;
