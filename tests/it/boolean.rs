@@ -1,5 +1,7 @@
 //! Booleans: the scenes of touching and coplanar faces, as they stand and turned by an arbitrary angle.
 
+mod oracle;
+mod random;
 mod solids;
 
 use glam::{DMat3, DVec3};

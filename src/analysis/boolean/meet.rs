@@ -40,6 +40,8 @@ pub struct Meeting {
     /// Triangle to its marks, a side each.
     pub marks: [Map<u32, Marks>; 2],
     pub pairs: Vec<(u32, u32)>,
+    /// Pieces of the curve in which the surfaces meet, lesser end first: between two points that both have, and nothing between.
+    pub curve: Map<(u32, u32), ()>,
     /// Points on both surfaces.
     pub shared: Map<u32, ()>,
 }
@@ -131,6 +133,7 @@ impl Finder<'_> {
     fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2]) {
         let edges = tris.map(|t| [self.edge(t[0], t[1]), self.edge(t[1], t[2]), self.edge(t[2], t[0])]);
         let mut touch = [[[false; 3]; 3]; 2];
+        let mut lies = [[false; 3]; 2];
         for s in 0..2 {
             self.m.marks[s].entry(ids[s]).or_default();
             let o = 1 - s;
@@ -147,7 +150,8 @@ impl Finder<'_> {
                         any = true;
                     }
                 }
-                if !any && self.in_face(p, tris[o]) {
+                lies[s][v] = any || self.in_face(p, tris[o]);
+                if lies[s][v] && !any {
                     self.m.marks[o].entry(ids[o]).or_default().inner.push(p);
                 }
             }
@@ -176,7 +180,7 @@ impl Finder<'_> {
             let o = 1 - s;
             for i in 0..3 {
                 let met = (0..3).any(|j| if s == 0 { crossed[i][j] } else { crossed[j][i] });
-                if !met {
+                if !met && !lies[s][i] && !lies[s][(i + 1) % 3] {
                     self.pierce(s, edges[s][i], ids[o], tris[o]);
                 }
             }
@@ -225,10 +229,11 @@ impl Finder<'_> {
             None => {
                 let [a, b, c] = t.map(|i| self.p(i));
                 let (p, q) = (self.p(ends[0]), self.p(ends[1]));
-                let n = (b - a).cross(c - a).normalize_or_zero();
-                let (x, y) = ((p - a).dot(n), (q - a).dot(n));
-                let through = (x > self.eps && y < -self.eps) || (x < -self.eps && y > self.eps);
+                let height = |x: DVec3| orient3d(c3(a), c3(b), c3(c), c3(x));
                 let turn = |i: DVec3, j: DVec3| orient3d(c3(p), c3(q), c3(i), c3(j));
+                let (x, y) = (height(p), height(q));
+                // An end that lies on the triangle is known to; all else is as the numbers say, exactly.
+                let through = (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0);
                 let inside = through && {
                     let w = [turn(a, b), turn(b, c), turn(c, a)];
                     w.iter().all(|&x| x > 0.0) || w.iter().all(|&x| x < 0.0)
@@ -333,6 +338,7 @@ impl Meeting {
         }
         for s in 0..2 {
             for (p, q) in std::mem::take(&mut found[s]) {
+                self.curve.insert((p.min(q), p.max(q)), ());
                 if !self.on_one_edge(tris[s], p, q) {
                     self.marks[s].entry(ids[s]).or_default().segments.push((p.min(q), p.max(q)));
                 }

@@ -93,7 +93,7 @@ fn joined(p: &[u32], q: &[u32]) -> Option<Vec<u32>> {
     };
     let start = (0..n).find(|&i| back(i) && !back(i + n - 1))?;
     let length = (0..n).take_while(|&k| back(start + k)).count();
-    if common != length + 1 {
+    if common != length + 1 || length >= n.min(m) {
         return None;
     }
     // p from the chain's end around to its start, then q from there on.

@@ -74,7 +74,9 @@ pub fn cut(
             push(Shape::Whole);
             continue;
         }
-        let split = range.clone().any(|t| marks.get(&t).is_some_and(|k| k.flat || !k.segments.is_empty()));
+        let split = range.clone().any(|t| marks.get(&t).is_some_and(|k| k.flat || !k.segments.is_empty()))
+            || (range.len() > 1
+                && along_diagonal(mesh.face(f), &s.triangles[range.start as usize..range.end as usize], m));
         if !split {
             let border = ring(mesh.face(f), m);
             if border.len() == mesh.face(f).len() {
@@ -103,6 +105,26 @@ pub fn cut(
         }
     }
     Ok(out)
+}
+
+/// Whether the cut runs along a diagonal by which the face came in triangles.
+fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Meeting) -> bool {
+    let side = |a: u32, b: u32| {
+        (0..corners.len()).any(|i| {
+            let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
+            (p, q) == (a, b) || (q, p) == (a, b)
+        })
+    };
+    triangles.iter().any(|t| {
+        (0..3).any(|k| {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            !side(a, b) && {
+                let line = ring(&[a, b], m);
+                // There and back: the second half repeats the first.
+                line.windows(2).any(|w| m.curve.contains_key(&(w[0].min(w[1]), w[0].max(w[1]))))
+            }
+        })
+    })
 }
 
 /// A loop with the points that the meeting found on its edges.
@@ -199,7 +221,7 @@ pub fn place(
             }
         }
         for (edge, around) in &borders[s] {
-            if !borders[1 - s].contains_key(edge) {
+            if !m.curve.contains_key(edge) {
                 let free: Vec<u32> = around.iter().copied().filter(|&i| !settled[s][i as usize]).collect();
                 free.windows(2).for_each(|w| sets.join(w[0], w[1]));
             }
