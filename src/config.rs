@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::brush::BrushSettings;
+use crate::brush::{BrushKind, BrushSettings};
 use crate::devices::calibration::Calibrations;
 use crate::hand::HandSettings;
 use crate::stroke::Camera;
@@ -226,7 +226,22 @@ impl Resolver {
         }
     }
 
-    fn finish(self) -> Resolved {
+    /// The brush's own file lies under what a person wrote, over the defaults.
+    fn lay_brush(&mut self) {
+        let kind = self.table.get("brush").and_then(|b| b.get("kind")).and_then(|k| k.as_str());
+        let Some(kind) = kind.and_then(|k| k.parse::<BrushKind>().ok()) else { return };
+        let Some(toml::Value::Table(brush)) = self.table.get_mut("brush") else { return };
+        for (key, value) in kind.preset().table() {
+            let origin = self.origins.entry(format!("brush.{key}")).or_insert_with(|| "default".into());
+            if origin == "default" {
+                *origin = format!("brush {kind}");
+                brush.insert(key.clone(), value.clone());
+            }
+        }
+    }
+
+    fn finish(mut self) -> Resolved {
+        self.lay_brush();
         // Every layer was read alone before it was laid; keys do not depend on each other.
         Resolved { config: self.table.try_into().unwrap_or_default(), origins: self.origins }
     }
@@ -251,16 +266,7 @@ impl Config {
         within("loop.dab_budget", self.r#loop.dab_budget, 1000, 1_000_000_000)?;
         within("channel.capacity", self.channel.capacity, 16, 1 << 20)?;
         within("channel.drain_per_tick", self.channel.drain_per_tick, 1, 1 << 20)?;
-        within("brush.radius", self.brush.radius, 0.001, 1.0)?;
-        within("brush.strength", self.brush.strength, 0.0, 1.0)?;
-        within("brush.spacing", self.brush.spacing, 0.02, 1.0)?;
-        for (key, curve) in [
-            ("brush.pressure_strength", self.brush.pressure_strength),
-            ("brush.pressure_radius", self.brush.pressure_radius),
-        ] {
-            within(&format!("{key}.at_zero"), curve.at_zero, 0.0, 1.0)?;
-            within(&format!("{key}.gamma"), curve.gamma, 0.1, 10.0)?;
-        }
+        self.brush.check()?;
         within("camera.fov_degrees", self.camera.fov_degrees, 5.0, 120.0)?;
         within("camera.aspect", self.camera.aspect, 0.1, 10.0)?;
         within("camera.yaw_degrees", self.camera.yaw_degrees, -360.0, 360.0)?;

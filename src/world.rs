@@ -6,16 +6,19 @@
 //!   bits, with any number of workers.
 //! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
 
+mod clay;
+
 use std::sync::Arc;
 
-use glam::{DVec3, Quat, Vec2, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
-use crate::brush::{BrushKind, BrushSettings, Gaussian, Smooth};
+use self::clay::{Clay, Stroke};
+use crate::brush::{BrushSettings, Grip, Method, Scratch};
 use crate::command::Command;
 use crate::devices::{Body, DeviceId, Hands, Sample};
 use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
-use crate::mesh::{Hit, Kernel, Mesh, PolyMesh, Ray, Reach, TriMesh, Workers, shapes};
-use crate::stroke::{Camera, Flow, PenPoint, PenTrack, Surface};
+use crate::mesh::{Kernel, Mesh, PolyMesh, Reach, TriMesh, Workers, shapes};
+use crate::stroke::{Camera, PenPoint, PenTrack};
 use crate::works::Works;
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
@@ -30,6 +33,8 @@ pub struct StepReport {
     pub vertices_moved: u64,
     /// Path points still waiting because the budget was spent.
     pub paused: bool,
+    /// A pen rests on the clay and its brush goes on by time: ticks without input matter.
+    pub resting: bool,
     /// Samples of devices beyond [`MAX_PENS`].
     pub ignored: u64,
     /// A hand asked for the thing that it holds to be joined with the work: for a worker, see [`World::thing`].
@@ -45,6 +50,14 @@ pub struct WorldOptions {
     pub hands: HandSettings,
 }
 
+/// One pen at work.
+#[derive(Debug)]
+struct Seat {
+    device: DeviceId,
+    track: PenTrack,
+    stroke: Stroke,
+}
+
 #[derive(Debug)]
 pub struct World {
     tick: u64,
@@ -56,7 +69,10 @@ pub struct World {
     /// Middle and bounding radius of the work when it was put in place: the measure of brushes, mirrors and hands.
     middle: Vec3,
     extent: f32,
-    pens: Vec<(DeviceId, PenTrack)>,
+    pens: Vec<Seat>,
+    scratch: Scratch,
+    /// Strokes begun.
+    strokes: u32,
     hands: HandTools,
     last_hands: Option<Hands>,
     /// What the hands hold.
@@ -87,6 +103,8 @@ impl World {
             middle: Vec3::ZERO,
             extent: 1.0,
             pens: Vec::with_capacity(MAX_PENS),
+            scratch: Scratch::default(),
+            strokes: 0,
             hands: HandTools::new(options.hands),
             last_hands: None,
             thing: None,
@@ -178,8 +196,8 @@ impl World {
 
     /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must see the strokes ended.
     fn lift_all(&mut self) {
-        for (_, pen) in &mut self.pens {
-            pen.lift();
+        for seat in &mut self.pens {
+            seat.track.lift(&self.brush.path);
         }
         self.hands.lift();
         self.walk(u64::MAX);
@@ -231,14 +249,18 @@ impl World {
     fn hear(&mut self, sample: &Sample) {
         match &sample.body {
             Body::Pen(pen) => {
-                let index = self.pens.iter().position(|(id, _)| *id == sample.device).or_else(|| {
+                let index = self.pens.iter().position(|s| s.device == sample.device).or_else(|| {
                     (self.pens.len() < MAX_PENS).then(|| {
-                        self.pens.push((sample.device, PenTrack::default()));
+                        self.pens.push(Seat {
+                            device: sample.device,
+                            track: PenTrack::default(),
+                            stroke: Stroke::default(),
+                        });
                         self.pens.len() - 1
                     })
                 });
                 match index {
-                    Some(i) => self.pens[i].1.take(pen),
+                    Some(i) => self.pens[i].track.take(pen, &self.brush.path, self.camera.aspect),
                     None => self.report.ignored += 1,
                 }
             }
@@ -260,7 +282,8 @@ impl World {
 
     fn sculpt(&mut self) {
         self.walk(self.options.dab_budget);
-        let active = self.pens.iter().any(|(_, p)| p.is_open() || !p.is_idle()) || self.hands.is_touching();
+        let active =
+            self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle()) || self.hands.is_touching();
         if !active {
             self.mesh.end_step();
         }
@@ -268,9 +291,13 @@ impl World {
 
     /// Walks what waits on every pen in turn, then the hands, until `budget` vertices were visited.
     fn walk(&mut self, budget: u64) {
+        let goes_on = self.goes_on_by_time();
+        let every = self.brush.path.every_ticks as u32;
         let mut clay = Clay {
             mesh: &mut self.mesh,
             workers: &self.workers,
+            scratch: &mut self.scratch,
+            stroke: Stroke::default(),
             camera: &self.camera,
             brush: &self.brush,
             middle: self.middle,
@@ -278,13 +305,30 @@ impl World {
             report: &mut self.report,
             left: budget,
         };
-        for (_, pen) in &mut self.pens {
-            while let Some(walked) = pen.walk_one(clay.camera.aspect, &mut clay) {
+        for seat in &mut self.pens {
+            if seat.track.begins() {
+                self.strokes = self.strokes.wrapping_add(1);
+                seat.stroke.begin(self.strokes);
+            }
+            clay.stroke = seat.stroke;
+            clay.stroke.rested += 1;
+            while let Some(walked) = seat.track.walk_one(clay.camera.aspect, &mut clay) {
                 if walked.paused {
                     clay.report.paused = true;
                     break;
                 }
+                if walked.ended && seat.track.begins() {
+                    self.strokes = self.strokes.wrapping_add(1);
+                    clay.stroke.begin(self.strokes);
+                }
             }
+            if goes_on && seat.track.is_open() {
+                clay.report.resting = true;
+                if seat.track.is_idle() && clay.stroke.rested >= every {
+                    seat.track.rest(&mut clay);
+                }
+            }
+            seat.stroke = clay.stroke;
         }
         let mut left = clay.left;
         while left > 0 {
@@ -292,6 +336,15 @@ impl World {
             left = self.by_hand(&act, left);
         }
         self.report.paused |= self.hands.has_waiting();
+    }
+
+    /// Whether dabs go on while a pen rests.
+    fn goes_on_by_time(&self) -> bool {
+        let path = &self.brush.path;
+        let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);
+        self.brush.kind.grip() == Grip::Surface
+            && spaced
+            && (path.continuous || path.method == Method::Airbrush)
     }
 
     /// One act of a hand; returns what is left of the budget.
@@ -386,7 +439,7 @@ impl World {
 
     /// Where each pen is, over the view, while in range.
     pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
-        self.pens.iter().filter_map(|(id, p)| p.seen.map(|s| (*id, s)))
+        self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
     }
 
     /// What the hands hold, and where.
@@ -417,84 +470,5 @@ impl World {
             return Err(format!("the camera is not sane: {:?}", self.camera));
         }
         self.mesh.verify_invariants()
-    }
-}
-
-/// The clay as a stroke sees it.
-struct Clay<'a> {
-    mesh: &'a mut Mesh,
-    workers: &'a Workers,
-    camera: &'a Camera,
-    brush: &'a BrushSettings,
-    middle: Vec3,
-    extent: f32,
-    report: &'a mut StepReport,
-    left: u64,
-}
-
-impl Clay<'_> {
-    fn radius(&self, pressure: f32) -> f32 {
-        self.brush.radius * self.extent * self.brush.pressure_radius.factor(pressure)
-    }
-
-    /// The mirror images of a dab, itself first: every combination of the chosen planes.
-    fn mirrors(&self) -> impl Iterator<Item = Vec3> + use<> {
-        let on = self.brush.symmetry;
-        (0..8u32).filter(move |m| (0..3).all(|axis| m >> axis & 1 == 0 || on[axis])).map(|m| {
-            let sign = |axis: u32| if m >> axis & 1 == 1 { -1.0 } else { 1.0 };
-            Vec3::new(sign(0), sign(1), sign(2))
-        })
-    }
-
-    fn one_dab(&mut self, hit: &Hit, radius: f32, strength: f32, inverted: bool) {
-        self.mesh.begin_step();
-        let reach = Reach::Sphere { centre: hit.position, radius };
-        let moved = match self.brush.kind {
-            BrushKind::Gaussian => {
-                let height = strength * radius * if self.brush.negative != inverted { -1.0 } else { 1.0 };
-                let kernel = Gaussian::new(hit.position, radius, hit.normal, height);
-                self.mesh.dab(&reach, &kernel, self.workers)
-            }
-            BrushKind::Smooth => {
-                let kernel = Smooth::new(hit.position, radius, strength);
-                self.mesh.dab(&reach, &kernel, self.workers)
-            }
-        };
-        self.report.dabs += 1;
-        self.report.vertices_moved += moved.moved as u64;
-        self.left = self.left.saturating_sub(moved.affected as u64 + 1);
-    }
-}
-
-impl Surface for Clay<'_> {
-    fn pick(&mut self, view: Vec2) -> Option<Hit> {
-        self.mesh.pick(self.camera.ray(view))
-    }
-
-    fn spacing(&self, at: &PenPoint) -> f32 {
-        self.radius(at.pressure) * self.brush.spacing
-    }
-
-    fn world_per_view(&self, hit: &Hit) -> f32 {
-        let depth = (self.camera.eye() - hit.position).dot(self.camera.backward());
-        self.camera.world_per_view(depth.max(1e-6))
-    }
-
-    fn dab(&mut self, at: &PenPoint, hit: &Hit, _along: Option<Vec3>) -> Flow {
-        let radius = self.radius(at.pressure);
-        let strength = self.brush.strength * self.brush.pressure_strength.factor(at.pressure);
-        let ray = self.camera.ray(at.view);
-        for mirror in self.mirrors() {
-            if mirror == Vec3::ONE {
-                self.one_dab(hit, radius, strength, at.inverted);
-                continue;
-            }
-            // The same view from the mirrored eye: on a symmetric work it lands on the mirrored point exactly.
-            let origin = self.middle + (ray.origin - self.middle) * mirror;
-            if let Some(image) = self.mesh.pick(Ray { origin, dir: ray.dir * mirror }) {
-                self.one_dab(&image, radius, strength, at.inverted);
-            }
-        }
-        if self.left == 0 { Flow::Pause } else { Flow::Go }
     }
 }

@@ -57,9 +57,10 @@ pub fn closed(page: &PageIn<'_>, v: usize) -> (Vec3, f32) {
     let (b_low, c_low) = cotangents(bb_low, bc_low, cc_low);
     let (b_high, c_high) = cotangents(bb_high, bc_high, cc_high);
     // What weighs neighbour i is of triangle i and of the one before; the last triangle's second corner is the first one.
-    let c = [0.0, c_low.x, c_low.y, c_low.z, c_low.w, c_high.x, c_high.y, c_high.z, c_high.w];
+    let mut c = [0.0, c_low.x, c_low.y, c_low.z, c_low.w, c_high.x, c_high.y, c_high.z, c_high.w];
+    (c[0], c[n]) = (c[n], 0.0);
     let own = |lanes: [f32; 4]| Vec4::from_array(lanes);
-    let w_low = (b_low + own([c[n], c[1], c[2], c[3]])).max(Vec4::ZERO);
+    let w_low = (b_low + own([c[0], c[1], c[2], c[3]])).max(Vec4::ZERO);
     let w_high = (b_high + own([c[4], c[5], c[6], c[7]])).max(Vec4::ZERO);
     let (w_low, w_high) = (w_low.to_array(), w_high.to_array());
     // A row past the ring is zero, but for the one that repeats the first: it has been weighed.

@@ -6,6 +6,9 @@
 
 use glam::Vec3;
 
+use super::dab::{Brush, Change, Dab, Spot};
+use super::ground::Ground;
+use super::tool::Tool;
 use super::weights::{Weights, exp};
 use crate::mesh::{Kernel, PageIn, PageOut};
 
@@ -41,5 +44,26 @@ impl Kernel for Gaussian {
             out.visit_many(w.sphere(page, self.centre, self.radius2, |d2| exp(d2 * self.fall)));
             out.push_all(self.offset, w.of(page));
         });
+    }
+}
+
+impl Brush for Gaussian {
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Gaussian::new(dab.centre, dab.radius, dab.normal, dab.height())
+    }
+
+    #[inline(always)]
+    fn share(&self, _: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
+        let d2 = (p - self.centre).length_squared();
+        if d2 < self.radius2 { exp(d2 * self.fall) } else { 0.0 }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::by(self.offset * spot.weight)
+    }
+
+    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
+        tool.run(&Self::reach(dab), &Gaussian::new(dab.centre, dab.radius, dab.normal, dab.height()));
+        true
     }
 }

@@ -1,17 +1,125 @@
-//! Brushes: one kernel a file. A kernel sees one page at a time and says where its own vertices go.
+//! Brushes. A brush is one file here (a type that is a [`Brush`]), one file of settings (`config/brushes/NAME.toml`), and one
+//! line in the table below; nothing else knows how many there are.
+//!
+//! * [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`ground`]: what a brush may ask first.
+//! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
+//! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
 
+pub mod auto;
+pub mod dab;
 pub(crate) mod cotangent;
 mod drag;
-pub mod gaussian;
+pub mod falloff;
+pub mod ground;
+pub mod options;
 mod palm;
+pub mod preset;
 mod push;
+pub mod restore;
 pub mod settings;
-mod smooth;
+pub mod tool;
+pub mod walk;
 pub mod weights;
 
+use serde::{Deserialize, Serialize};
+
+pub use dab::{Brush, Dab, Grip};
 pub use drag::Drag;
+pub use falloff::Falloff;
 pub use gaussian::Gaussian;
+pub use ground::Scratch;
+pub use options::{AutoMask, Method, Mirror, PathSettings};
 pub use palm::Palm;
 pub use push::Push;
-pub use settings::{BrushKind, BrushSettings, PressureCurve};
+pub use settings::{BrushSettings, PressureCurve};
 pub use smooth::Smooth;
+pub use tool::Tool;
+
+/// Declares the brushes: name, variant, module.
+macro_rules! brushes {
+    ($($name:literal $variant:ident $module:ident,)*) => {
+        $(pub mod $module;)*
+
+        /// Which brush a dab is of.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum BrushKind {
+            $(#[serde(rename = $name)] $variant,)*
+        }
+
+        impl BrushKind {
+            pub const ALL: &[BrushKind] = &[$(BrushKind::$variant,)*];
+
+            /// As it is written in files and on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $(BrushKind::$variant => $name,)* }
+            }
+
+            /// The text of its settings' file.
+            fn file(self) -> &'static str {
+                match self {
+                    $(BrushKind::$variant => include_str!(concat!("../../config/brushes/", $name, ".toml")),)*
+                }
+            }
+
+            pub fn grip(self) -> Grip {
+                match self { $(BrushKind::$variant => <$module::$variant as Brush>::GRIP,)* }
+            }
+
+            /// One dab of this brush, and its images.
+            pub fn apply(self, dabs: &[Dab<'_>], tool: &mut Tool<'_>) {
+                match self { $(BrushKind::$variant => tool.apply::<$module::$variant>(dabs),)* }
+            }
+        }
+    };
+}
+
+brushes! {
+    "gaussian" Gaussian gaussian,
+    "smooth" Smooth smooth,
+    "draw" Draw draw,
+    "clay" Clay clay,
+    "clay-strips" ClayStrips clay_strips,
+    "inflate" Inflate inflate,
+    "layer" Layer layer,
+    "crease" Crease crease,
+    "pinch" Pinch pinch,
+    "blob" Blob blob,
+    "flatten" Flatten flatten,
+    "fill" Fill fill,
+    "scrape" Scrape scrape,
+    "trim" Trim trim,
+    "grab" Grab grab,
+    "elastic" Elastic elastic,
+    "topological" Topological topological,
+    "snake-hook" SnakeHook snake_hook,
+    "twist" Twist twist,
+    "thumb" Thumb thumb,
+    "nudge" Nudge nudge,
+    "relax" Relax relax,
+    "mask" Mask mask,
+    "mask-blur" MaskBlur mask_blur,
+    "paint" Paint paint,
+}
+
+impl Default for BrushKind {
+    fn default() -> Self {
+        BrushKind::Gaussian
+    }
+}
+
+impl std::str::FromStr for BrushKind {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        BrushKind::ALL.iter().copied().find(|k| k.name() == text).ok_or_else(|| {
+            let names: Vec<_> = BrushKind::ALL.iter().map(|k| k.name()).collect();
+            format!("no brush '{text}'; there are {}", names.join(", "))
+        })
+    }
+}
+
+impl std::fmt::Display for BrushKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,6 +1,13 @@
 //! What a person sets on a brush. Plain data: it travels in a [`crate::command::Command`] and is part of the world.
+//!
+//! What each brush begins with stands in `config/brushes/NAME.toml`; see [`super::preset`].
 
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
+
+use super::BrushKind;
+use super::falloff::{CURVE, Falloff};
+use super::options::{AutoMask, Mirror, PathSettings};
 
 /// How pressure (0 to 1) becomes a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -27,16 +34,8 @@ impl PressureCurve {
     }
 }
 
-/// Which kernel a dab runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum BrushKind {
-    /// A bell along the surface normal (Cipollini 2020).
-    #[default]
-    Gaussian,
-    /// Cotangent-weighted Laplacian.
-    Smooth,
-}
+/// Numbers that only some brushes have; each brush's file names its own.
+pub const EXTRAS: usize = 4;
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -47,7 +46,7 @@ pub struct BrushSettings {
     pub radius: f32,
     /// 0 to 1. Gaussian: the height of one full dab is `strength * radius`.
     pub strength: f32,
-    /// Carve instead of raise.
+    /// Carve instead of raise: what the brush does, the other way round.
     pub negative: bool,
     /// Distance between dabs as a share of the radius; 0.02 to 1.
     pub spacing: f32,
@@ -55,6 +54,24 @@ pub struct BrushSettings {
     pub pressure_radius: PressureCurve,
     /// Mirror over the planes x = 0, y = 0, z = 0 through the work's own middle at load.
     pub symmetry: [bool; 3],
+    /// Any plane, and turns about an axis.
+    pub mirror: Mirror,
+    pub falloff: Falloff,
+    /// Of a custom falloff: values at x = 0, 1/8, ... 1, each 0 to 1.
+    pub curve: [f32; CURVE],
+    /// The budget of a vertex over one stroke: how far it may get from where the stroke found it, in heights of one full
+    /// dab (`strength * radius`). 0: no bound; else 1 to 1000. 1 is what others call "accumulate off".
+    pub saturation: f32,
+    /// The share of the radius over which brushes that need a plane average the surface; 0.05 to 2.
+    pub normal_radius: f32,
+    /// How much the dab's direction leans from the surface normal to the pen's own, 0 to 1. Without a tilt: not at all.
+    pub tilt: f32,
+    /// RGBA, sRGB: for brushes that paint.
+    pub colour: [u8; 4],
+    pub auto: AutoMask,
+    pub path: PathSettings,
+    /// The brush's own numbers, as its file names them.
+    pub extra: [f32; EXTRAS],
 }
 
 impl Default for BrushSettings {
@@ -68,6 +85,16 @@ impl Default for BrushSettings {
             pressure_strength: PressureCurve::default(),
             pressure_radius: PressureCurve { at_zero: 0.5, gamma: 1.0 },
             symmetry: [false; 3],
+            mirror: Mirror::default(),
+            falloff: Falloff::Smooth,
+            curve: [1.0, 0.95, 0.85, 0.7, 0.5, 0.3, 0.15, 0.05, 0.0],
+            saturation: 0.0,
+            normal_radius: 0.5,
+            tilt: 0.0,
+            colour: [200, 90, 60, 255],
+            auto: AutoMask::default(),
+            path: PathSettings::default(),
+            extra: [0.0; EXTRAS],
         }
     }
 }
@@ -77,18 +104,75 @@ impl BrushSettings {
     #[must_use]
     pub fn clamped(mut self) -> Self {
         let d = BrushSettings::default();
-        let keep =
-            |v: f32, lo: f32, hi: f32, default: f32| if v.is_finite() { v.clamp(lo, hi) } else { default };
-        self.radius = keep(self.radius, 0.001, 1.0, d.radius);
-        self.strength = keep(self.strength, 0.0, 1.0, d.strength);
-        self.spacing = keep(self.spacing, 0.02, 1.0, d.spacing);
-        for (curve, default) in [
-            (&mut self.pressure_strength, d.pressure_strength),
-            (&mut self.pressure_radius, d.pressure_radius),
-        ] {
-            curve.at_zero = keep(curve.at_zero, 0.0, 1.0, default.at_zero);
-            curve.gamma = keep(curve.gamma, 0.1, 10.0, default.gamma);
+        self.each_number(|_, v, lo, hi, default| *v = if v.is_finite() { v.clamp(lo, hi) } else { default });
+        if self.saturation < 1.0 {
+            self.saturation = if self.saturation > 0.0 { 1.0 } else { 0.0 };
+        }
+        if !Vec3::from(self.mirror.plane).is_finite() {
+            self.mirror.plane = d.mirror.plane;
+        }
+        self.mirror.radial = self.mirror.radial.clamp(1, 16);
+        self.mirror.axis = self.mirror.axis.min(2);
+        self.path.average = self.path.average.min(64);
+        let extras = self.kind.preset().extras();
+        for (v, e) in self.extra.iter_mut().zip(extras) {
+            *v = if v.is_finite() { v.clamp(e.min, e.max) } else { e.value };
+        }
+        for v in &mut self.extra[extras.len().min(EXTRAS)..] {
+            *v = 0.0;
         }
         self
+    }
+
+    /// What is out of range, in words: the key, the value, the range.
+    pub fn check(&self) -> Result<(), String> {
+        let mut wrong = None;
+        let mut copy = *self;
+        copy.each_number(|key, v, lo, hi, _| {
+            if !(*v >= lo && *v <= hi) && wrong.is_none() {
+                wrong = Some(format!("brush.{key} = {v}: expected a number from {lo} to {hi}"));
+            }
+        });
+        for (v, e) in self.extra.iter().zip(self.kind.preset().extras()) {
+            if !(*v >= e.min && *v <= e.max) && wrong.is_none() {
+                wrong = Some(format!("brush.extra ({}) = {v}: expected {} to {}", e.name, e.min, e.max));
+            }
+        }
+        let count = |key: &str, v: u32, lo: u32, hi: u32| {
+            (v < lo || v > hi)
+                .then(|| format!("brush.{key} = {v}: expected a whole number from {lo} to {hi}"))
+        };
+        let wrong = wrong
+            .or_else(|| count("mirror.radial", self.mirror.radial.into(), 1, 16))
+            .or_else(|| count("mirror.axis", self.mirror.axis.into(), 0, 2))
+            .or_else(|| count("path.average", self.path.average.into(), 0, 64));
+        wrong.map_or(Ok(()), Err)
+    }
+
+    /// Calls `f(key, value, least, most, default)` for each number with a plain range.
+    fn each_number(&mut self, mut f: impl FnMut(&str, &mut f32, f32, f32, f32)) {
+        let d = BrushSettings::default();
+        f("radius", &mut self.radius, 0.001, 1.0, d.radius);
+        f("strength", &mut self.strength, 0.0, 1.0, d.strength);
+        f("spacing", &mut self.spacing, 0.02, 1.0, d.spacing);
+        for (name, curve, default) in [
+            ("strength", &mut self.pressure_strength, d.pressure_strength),
+            ("radius", &mut self.pressure_radius, d.pressure_radius),
+        ] {
+            f(&format!("pressure_{name}.at_zero"), &mut curve.at_zero, 0.0, 1.0, default.at_zero);
+            f(&format!("pressure_{name}.gamma"), &mut curve.gamma, 0.1, 10.0, default.gamma);
+        }
+        for (v, default) in self.curve.iter_mut().zip(d.curve) {
+            f("curve", v, 0.0, 1.0, default);
+        }
+        f("saturation", &mut self.saturation, 0.0, 1000.0, 0.0);
+        f("normal_radius", &mut self.normal_radius, 0.05, 2.0, d.normal_radius);
+        f("tilt", &mut self.tilt, 0.0, 1.0, 0.0);
+        f("mirror.offset", &mut self.mirror.offset, -10.0, 10.0, 0.0);
+        f("auto.normal_degrees", &mut self.auto.normal_degrees, 0.0, 180.0, 0.0);
+        f("auto.cavity", &mut self.auto.cavity, -1.0, 1.0, 0.0);
+        f("path.rope", &mut self.path.rope, 0.0, 0.5, 0.0);
+        f("path.jitter", &mut self.path.jitter, 0.0, 2.0, 0.0);
+        f("path.every_ticks", &mut self.path.every_ticks, 1.0, 1000.0, d.path.every_ticks);
     }
 }

@@ -7,10 +7,11 @@
 
 use glam::Vec3;
 
+use super::cotangent::{LANES, MAX_COT, closed};
+use super::dab::{Brush, Change, Dab, Spot};
+use super::ground::Ground;
+use super::tool::Tool;
 use crate::mesh::{Kernel, PageIn, PageOut};
-
-/// Cotangents beyond 20 belong to angles under 3 degrees: needles, whose weights would rule the ring.
-const MAX_COT: f32 = 20.0;
 
 #[derive(Debug, Clone, Copy)]
 pub struct Smooth {
@@ -25,9 +26,6 @@ impl Smooth {
         Smooth { centre, radius, lambda: lambda.clamp(0.0, 1.0) }
     }
 }
-
-/// Neighbours that are weighed together.
-const LANES: usize = 8;
 
 /// The same for any ring.
 fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
@@ -45,6 +43,11 @@ fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
     (sum, weights)
 }
 
+#[inline(always)]
+fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
+    if page.is_closed(v) && page.ring(v).len() <= LANES { closed(page, v) } else { any(page, v, p) }
+}
+
 impl Kernel for Smooth {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
@@ -56,12 +59,37 @@ impl Kernel for Smooth {
                 continue;
             }
             out.visit();
-            let short = page.is_closed(i) && page.ring(i).len() <= LANES;
-            let (sum, weights) = if short { super::cotangent::closed(page, i) } else { any(page, i, p) };
+            let (sum, weights) = around(page, i, p);
             if weights > 0.0 {
                 let fade = 1.0 - d2 / radius2;
                 out.set(i, p + sum * (self.lambda * fade * fade * (1.0 - page.mask(i)) / weights));
             }
         }
+    }
+}
+
+impl Brush for Smooth {
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Smooth::new(dab.centre, dab.radius, dab.strength)
+    }
+
+    #[inline(always)]
+    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
+        let fade = 1.0 - (p - self.centre).length_squared() / (dab.radius * dab.radius);
+        if fade > 0.0 { fade * fade } else { 0.0 }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let (sum, weights) = around(spot.page, spot.v, spot.p);
+        if weights > 0.0 {
+            Change::by(sum * (self.lambda * spot.weight / weights))
+        } else {
+            Change::default()
+        }
+    }
+
+    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
+        tool.run(&Self::reach(dab), &Smooth::new(dab.centre, dab.radius, dab.strength));
+        true
     }
 }

@@ -270,7 +270,7 @@ fn single_dabs(mesh: &mut Mesh, args: &BenchArgs, radius: f32, workers: &Workers
         let reach = Reach::Sphere { centre: hit.position, radius };
         let report = match args.brush.kind(i / STROKE) {
             BrushKind::Smooth => mesh.dab(&reach, &Smooth::new(hit.position, radius, 0.5), workers),
-            BrushKind::Gaussian => {
+            _ => {
                 // Out and in by turns, so that the form lasts however long the measurement.
                 let height = radius * if i % 2 == 0 { 0.02 } else { -0.02 };
                 mesh.dab(&reach, &Gaussian::new(hit.position, radius, hit.normal, height), workers)

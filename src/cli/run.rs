@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 use super::live::{self, LiveRun, close_journal};
 use super::{Fail, Outcome, answer, display};
 use crate::analysis::cancel::Job;
+use crate::brush::BrushKind;
 use crate::config::{Config, ConfigError, Resolved};
 use crate::daemon::Summary;
 use crate::daemon::live::Journal;
@@ -30,6 +31,9 @@ pub struct RunArgs {
     /// More settings, laid over the system's and the user's.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
+    /// The brush to begin with; `sculptd ctl brushes` lists them.
+    #[arg(long, value_name = "NAME")]
+    pub brush: Option<BrushKind>,
     /// No window, even where there is a display.
     #[arg(long)]
     pub headless: bool,
@@ -74,7 +78,10 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(args: &RunArgs, json: bool) -> Outcome {
-    let config = load_config(args.config.as_deref())?;
+    let mut config = load_config(args.config.as_deref())?;
+    if let Some(kind) = args.brush.filter(|k| *k != config.brush.kind) {
+        config.brush = config.brush.switched(kind);
+    }
     if let Some(path) = &args.export {
         crate::mesh::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }

@@ -130,6 +130,28 @@ impl Mesh {
         &self.pages[index as usize]
     }
 
+    /// A page as it was when the open step began; as it is, where the step has not touched it or has changed its topology.
+    ///
+    /// # Panics
+    /// When there is no such page.
+    pub fn before(&self, index: u32) -> &Arc<Page> {
+        let now = &self.pages[index as usize];
+        self.history.before(index).filter(|b| Arc::ptr_eq(&b.topology, &now.topology)).unwrap_or(now)
+    }
+
+    /// Calls `visit` with each page that the reach touches now or touched when the open step began, as it was then: those of
+    /// now in ascending order, then others in the order in which the step met them.
+    pub fn each_page_before(&self, reach: &Reach, mut visit: impl FnMut(u32, &Page)) {
+        self.each_page(reach, |i, _| visit(i, self.before(i)));
+        self.history.each_before(|i, page| {
+            let now = &self.pages[i as usize];
+            let there = |p: &Page| reach.touches(p.lo, p.hi);
+            if !there(now) && there(page) && Arc::ptr_eq(&page.topology, &now.topology) {
+                visit(i, page);
+            }
+        });
+    }
+
     fn totals(&self) -> Totals {
         Totals {
             revision: self.revision,

@@ -320,7 +320,7 @@ fn displace<K: Kernel>(slot: &mut Slot, side: &mut Side, old: &Page, before: Opt
         colours: &mut side.colours,
         affected: 0,
     };
-    kernel.page(&PageIn::new(old, before), &mut out);
+    kernel.page(&PageIn::new(slot.index, old, before), &mut out);
     slot.affected = out.affected;
     (slot.any, slot.moved) = tally(&slot.marks[..own]);
 }

@@ -16,6 +16,7 @@ pub trait Kernel: Sync {
 pub struct PageIn<'a> {
     page: &'a Page,
     before: &'a Page,
+    number: u32,
     /// Own, then halo.
     pub positions: Points<'a>,
     /// Own, then halo; zero where all triangles are degenerate.
@@ -24,12 +25,17 @@ pub struct PageIn<'a> {
 
 impl<'a> PageIn<'a> {
     /// `before`: the page when the stroke began, of the same topology.
-    pub(super) fn new(page: &'a Page, before: &'a Page) -> Self {
-        PageIn { page, before, positions: Points(&page.points), normals: Points(&page.normals) }
+    pub(super) fn new(number: u32, page: &'a Page, before: &'a Page) -> Self {
+        PageIn { page, before, number, positions: Points(&page.points), normals: Points(&page.normals) }
     }
 
     pub fn own(&self) -> usize {
         self.page.topology.own
+    }
+
+    /// Which page of the clay it is.
+    pub fn number(&self) -> u32 {
+        self.number
     }
 
     /// Own and halo vertices as rows of x, y, z, mask: for vectorised loops.
@@ -92,6 +98,13 @@ impl<'a> PageIn<'a> {
     #[inline(always)]
     pub fn is_border(&self, own: usize) -> bool {
         self.page.topology.kinds[own] != Ring::Closed
+    }
+
+    /// Whether an own vertex lies on the border of the surface, all its triangles in one open fan: its ring then begins and
+    /// ends on the border.
+    #[inline(always)]
+    pub fn is_open(&self, own: usize) -> bool {
+        self.page.topology.kinds[own] == Ring::Open
     }
 
     /// Whether all is regular about an own vertex: one closed fan.

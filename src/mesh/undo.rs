@@ -69,6 +69,11 @@ impl History {
         (stamp == self.stamp).then(|| &step[at as usize].1)
     }
 
+    /// Every page that the open step has touched, as it was when it began.
+    pub(super) fn each_before(&self, mut visit: impl FnMut(u32, &Page)) {
+        self.open.iter().flatten().for_each(|(i, page)| visit(*i, page));
+    }
+
     /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to the dropping thread.
     pub(super) fn end(&mut self) {
         let Some(step) = self.open.take() else { return };

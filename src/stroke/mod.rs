@@ -2,8 +2,10 @@
 
 pub mod camera;
 pub mod spacer;
+pub mod steady;
 pub mod track;
 
 pub use camera::Camera;
-pub use spacer::{Flow, PenPoint, Spacer, Surface};
+pub use spacer::{Flow, PenPoint, Spacer, Surface, Way};
+pub use steady::Steady;
 pub use track::{PenEvent, PenTrack};

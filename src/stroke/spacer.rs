@@ -48,6 +48,19 @@ pub enum Flow {
     Pause,
 }
 
+/// How a pen's path becomes dabs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// One a spacing.
+    Spaced,
+    /// One a report.
+    Each,
+    /// The brush is told where the pen is, and does the rest.
+    Held,
+    /// A straight line, once the pen lifts.
+    Line,
+}
+
 /// What a stroke is drawn on.
 pub trait Surface {
     fn pick(&mut self, view: Vec2) -> Option<Hit>;
@@ -55,6 +68,14 @@ pub trait Surface {
     fn spacing(&self, at: &PenPoint) -> f32;
     /// World length of a step of one view height at the hit's depth.
     fn world_per_view(&self, hit: &Hit) -> f32;
+    /// How the pen's path becomes dabs.
+    fn way(&self) -> Way {
+        Way::Spaced
+    }
+    /// A held brush: the pen came down here, or is here now.
+    fn hold(&mut self, _at: &PenPoint, _began: bool) -> Flow {
+        Flow::Go
+    }
     /// Applies a dab; `along` is the direction of the stroke on the surface where it has one.
     fn dab(&mut self, at: &PenPoint, hit: &Hit, along: Option<Vec3>) -> Flow;
 }

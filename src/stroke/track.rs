@@ -4,7 +4,9 @@ use std::collections::VecDeque;
 
 use glam::Vec2;
 
-use super::spacer::{Flow, PenPoint, Spacer, Surface};
+use super::spacer::{Flow, PenPoint, Spacer, Surface, Way};
+use super::steady::Steady;
+use crate::brush::PathSettings;
 use crate::devices::{Pen, Tool};
 
 /// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears; beyond that the newest
@@ -23,6 +25,11 @@ pub enum PenEvent {
 #[derive(Debug)]
 pub struct PenTrack {
     waiting: VecDeque<PenEvent>,
+    steady: Steady,
+    /// Where the pen came down: a straight line begins there.
+    start: PenPoint,
+    /// The line from there is being drawn.
+    drawing: bool,
     spacer: Spacer,
     /// Where the walk stands: the point reached, and the share of the segment to the first waiting point.
     from: PenPoint,
@@ -41,6 +48,9 @@ impl Default for PenTrack {
     fn default() -> Self {
         PenTrack {
             waiting: VecDeque::with_capacity(MAX_WAITING),
+            steady: Steady::default(),
+            start: PenPoint::default(),
+            drawing: false,
             spacer: Spacer::default(),
             from: PenPoint::default(),
             share: 0.0,
@@ -62,7 +72,7 @@ pub struct Walked {
 
 impl PenTrack {
     /// Takes one pen sample.
-    pub fn take(&mut self, pen: &Pen) {
+    pub fn take(&mut self, pen: &Pen, path: &PathSettings, aspect: f32) {
         let area = pen.area_mm.max(Vec2::splat(1e-3));
         let at = PenPoint {
             // Beyond the view by at most its own size: there is nothing to hit, and nothing to overflow.
@@ -73,18 +83,32 @@ impl PenTrack {
         };
         self.seen = pen.in_range.then_some(at);
         match (self.down, pen.tip && pen.in_range) {
-            (false, true) => self.push(PenEvent::Down(at)),
-            (true, true) => self.push(PenEvent::Move(at)),
-            (true, false) => self.push(PenEvent::Up),
+            (false, true) => {
+                self.steady.begin(&at);
+                self.push(PenEvent::Down(at));
+            }
+            (true, true) => {
+                if let Some(at) = self.steady.follow(&at, path, aspect) {
+                    self.push(PenEvent::Move(at));
+                }
+            }
+            (true, false) => self.up(path),
             (false, false) => {}
         }
         self.down = pen.tip && pen.in_range;
     }
 
+    fn up(&mut self, path: &PathSettings) {
+        if let Some(end) = self.steady.catch_up(path) {
+            self.push(PenEvent::Move(end));
+        }
+        self.push(PenEvent::Up);
+    }
+
     /// The pen is gone, without a word: the stroke ends as a lifted pen.
-    pub fn lift(&mut self) {
+    pub fn lift(&mut self, path: &PathSettings) {
         if self.down {
-            self.push(PenEvent::Up);
+            self.up(path);
             self.down = false;
         }
         self.seen = None;
@@ -110,6 +134,11 @@ impl PenTrack {
         self.open
     }
 
+    /// Whether the next thing to happen is that the pen comes down.
+    pub fn begins(&self) -> bool {
+        matches!(self.waiting.front(), Some(PenEvent::Down(_)))
+    }
+
     pub fn is_idle(&self) -> bool {
         self.waiting.is_empty()
     }
@@ -118,29 +147,63 @@ impl PenTrack {
     pub fn walk_one(&mut self, aspect: f32, on: &mut dyn Surface) -> Option<Walked> {
         let event = *self.waiting.front()?;
         let mut walked = Walked::default();
-        match event {
+        let flow = match event {
             PenEvent::Down(at) => {
                 walked.began = !self.open;
                 self.open = true;
                 self.spacer = Spacer::new(aspect);
-                self.from = at;
-                walked.paused = self.spacer.begin(&at, on) == Flow::Pause;
+                (self.from, self.start, self.drawing) = (at, at, false);
+                match on.way() {
+                    Way::Spaced | Way::Each => self.spacer.begin(&at, on),
+                    Way::Held => on.hold(&at, true),
+                    Way::Line => Flow::Go,
+                }
             }
             PenEvent::Move(to) => {
-                self.share = self.spacer.walk(&self.from, &to, self.share, on);
-                if self.share < 1.0 {
-                    walked.paused = true;
-                    return Some(walked);
-                }
+                let flow = match on.way() {
+                    Way::Spaced => {
+                        self.share = self.spacer.walk(&self.from, &to, self.share, on);
+                        if self.share < 1.0 {
+                            walked.paused = true;
+                            return Some(walked);
+                        }
+                        Flow::Go
+                    }
+                    Way::Each => self.spacer.begin(&to, on),
+                    // Only where it is now matters: what came between is passed over.
+                    Way::Held if matches!(self.waiting.get(1), Some(PenEvent::Move(_))) => Flow::Go,
+                    Way::Held => on.hold(&to, false),
+                    Way::Line => Flow::Go,
+                };
                 self.from = to;
+                flow
             }
             PenEvent::Up => {
+                if on.way() == Way::Line && self.open {
+                    if !self.drawing {
+                        self.drawing = true;
+                        self.spacer.begin(&self.start, on);
+                    }
+                    self.share = self.spacer.walk(&self.start, &self.from, self.share, on);
+                    if self.share < 1.0 {
+                        walked.paused = true;
+                        return Some(walked);
+                    }
+                }
                 walked.ended = self.open;
                 self.open = false;
+                Flow::Go
             }
-        }
+        };
+        walked.paused = flow == Flow::Pause;
         self.share = 0.0;
         self.waiting.pop_front();
         Some(walked)
+    }
+
+    /// One more dab where the pen rests. The stroke goes on from it as from any other.
+    pub fn rest(&mut self, on: &mut dyn Surface) {
+        let at = self.from;
+        self.spacer.begin(&at, on);
     }
 }

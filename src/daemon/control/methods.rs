@@ -12,6 +12,7 @@ use super::protocol::{Code, RpcError};
 use super::server::Host;
 use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
+use crate::brush::BrushKind;
 use crate::command::{Command, NewClay};
 use crate::daemon::{joiner, rig};
 use crate::hand::{Choice, ReachBox};
@@ -24,8 +25,9 @@ pub const METHODS: &[(&str, &str)] = &[
     ("status", "{version?}: the loop's figures, the work, the brush"),
     (
         "brush",
-        "{kind?, radius?, strength?, negative?, spacing?, pressure_strength?, pressure_radius?, symmetry?}: changes what is named, answers with all",
+        "{kind?, radius?, strength?, negative?, spacing?, ... as in the configuration's [brush]}: another kind comes with its own settings; changes what is named, answers with all",
     ),
+    ("brushes", "{}: every brush, what it does, its own numbers"),
     ("camera", "{target?, yaw?, pitch?, distance?, fov_y?, aspect?, orthographic?}: likewise"),
     ("undo", "{}: takes back one step"),
     ("redo", "{}: does it again"),
@@ -169,9 +171,29 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             }))
         }
         "brush" => {
-            let brush = merge(&state.brush, params)?.clamped();
+            let other = params.get("kind").and_then(|k| k.as_str()).map(str::parse::<BrushKind>);
+            let other = other.transpose().map_err(|e| RpcError::new(Code::BadParams, e))?;
+            // Another brush comes with its own settings; what else is said is laid over them.
+            let base = match other.filter(|k| *k != state.brush.kind) {
+                Some(kind) => state.brush.switched(kind),
+                None => state.brush,
+            };
+            let brush = merge(&base, params)?;
+            brush.check().map_err(|e| RpcError::new(Code::BadParams, e))?;
+            let brush = brush.clamped();
             send(Command::Brush(brush))?;
             Ok(json!(brush))
+        }
+        "brushes" => {
+            read::<Nothing>(params)?;
+            Ok(BrushKind::ALL
+                .iter()
+                .map(|k| {
+                    let p = k.preset();
+                    json!({ "name": k.name(), "about": p.about(), "settings": p.settings(), "extra": p.extras() })
+                })
+                .collect::<Vec<_>>()
+                .into())
         }
         "camera" => {
             let camera = merge(&state.camera, params)?;

@@ -27,7 +27,7 @@ pub fn replay(
     let mut world = World::new(mesh, s.camera, s.brush, workers, options);
     let until = until.unwrap_or(u64::MAX);
     let mut tick = 0;
-    let mut busy = false;
+    let (mut busy, mut waits) = (false, false);
     let total = opened.input.len().max(1) as f32;
     for (i, input) in opened.input.iter().enumerate() {
         if input.tick > until || job.cancelled() {
@@ -36,15 +36,18 @@ pub fn replay(
         // The ticks between two inputs: stepped while the last one left work, or while a hand may let go by time.
         while busy && tick + 1 < input.tick {
             tick += 1;
-            busy = world.step(tick, &[], &[]).paused;
+            let report = world.step(tick, &[], &[]);
+            busy = report.paused || report.resting;
         }
         tick = input.tick;
-        busy = world.step(tick, &input.samples, &input.commands).paused;
+        let report = world.step(tick, &input.samples, &input.commands);
+        busy = report.paused || report.resting;
+        waits = report.paused;
         job.progress(i as f32 / total);
     }
-    while busy && tick < until {
+    while waits && tick < until {
         tick += 1;
-        busy = world.step(tick, &[], &[]).paused;
+        waits = world.step(tick, &[], &[]).paused;
     }
     Ok(Replayed { world, ticks: tick })
 }

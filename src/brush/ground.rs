@@ -1,0 +1,93 @@
+//! What a brush may ask of the clay before it acts.
+
+use glam::{DVec3, Vec3};
+
+use super::dab::{Dab, IMAGES};
+use super::walk::Walk;
+use crate::mesh::{Mesh, Reach};
+
+/// Memory kept from dab to dab.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    walks: Vec<Walk>,
+}
+
+impl Scratch {
+    /// Whether the connected part of an image holds the vertex.
+    pub fn is_marked(&self, image: usize, page: u32, v: usize) -> bool {
+        self.walks.get(image).is_some_and(|w| w.distance(page, v).is_some())
+    }
+
+    pub fn walk(&self, image: usize) -> Option<&Walk> {
+        self.walks.get(image)
+    }
+
+    /// The walk of an image, to be begun anew.
+    pub fn walk_mut(&mut self, image: usize) -> &mut Walk {
+        let image = image.min(IMAGES - 1);
+        while self.walks.len() <= image {
+            self.walks.push(Walk::default());
+        }
+        &mut self.walks[image]
+    }
+}
+
+/// The clay before a dab.
+#[derive(Debug)]
+pub struct Ground<'a> {
+    pub mesh: &'a Mesh,
+    pub scratch: &'a mut Scratch,
+    /// Which of the images that act together this is.
+    pub image: usize,
+}
+
+/// A plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    pub point: Vec3,
+    /// Unit length.
+    pub normal: Vec3,
+}
+
+impl Plane {
+    /// Above the plane it is positive.
+    #[inline(always)]
+    pub fn height(&self, p: Vec3) -> f32 {
+        (p - self.point).dot(self.normal)
+    }
+}
+
+impl Ground<'_> {
+    /// The plane through the surface under a dab: middle and mean normal of the vertices within `normal_radius`, those near
+    /// the rim counted less, those that face away not at all; moved by `offset` radii along its normal. In double precision,
+    /// so that images of one dab agree to the last bits.
+    pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
+        let radius = dab.radius * dab.settings.normal_radius;
+        let (mut point, mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO, 0.0f64);
+        self.mesh.each_vertex(&Reach::Sphere { centre: dab.centre, radius }, |page, v, d2| {
+            let n = page.normal(v);
+            if n.dot(dab.normal) > 0.0 {
+                let w = f64::from((1.0 - d2 / (radius * radius)).max(0.0));
+                point += (page.point(v) - dab.centre).as_dvec3() * w;
+                normal += n.as_dvec3() * w;
+                sum += w;
+            }
+        });
+        let normal = normal.as_vec3().try_normalize().unwrap_or(dab.normal);
+        let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };
+        Plane { point: point + normal * (offset * dab.radius), normal }
+    }
+
+    /// Marks what hangs together with the dab's centre within its radius.
+    pub fn mark_connected(&mut self, dab: &Dab<'_>) {
+        let image = self.image;
+        self.scratch.walk_mut(image).flood(self.mesh, dab.centre, dab.normal, dab.radius);
+    }
+
+    /// Measures along the surface, as it was when the stroke began, how far each vertex is from the dab's centre: by Dijkstra
+    /// over the edges, no further than the radius.
+    pub fn measure_before(&mut self, dab: &Dab<'_>) {
+        let image = self.image;
+        self.scratch.walk_mut(image).measure(self.mesh, dab.centre, dab.normal, dab.radius);
+    }
+}
