@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize};
 
-use crate::brush::BrushSettings;
+use crate::brush::{BrushSettings, MaskAction, Picture};
 use crate::hand::ReachBox;
 use crate::mesh::{Mesh, TriMesh};
 use crate::stroke::Camera;
@@ -19,6 +19,10 @@ pub enum Command {
     Redo,
     /// Ends every open stroke as a lifted pen does.
     LiftAll,
+    /// Changes the mask of the whole work: one step of undo.
+    Mask(MaskAction),
+    /// The picture of heights that brushes with the alpha `picture` press.
+    Picture(Arc<Picture>),
     /// Another work takes the place of this one: a file was loaded, a Boolean finished, the kiosk was reset.
     Replace(NewClay),
     /// The hands take up a thing: a primitive or a loaded mesh, to carry it to its place.

@@ -13,7 +13,8 @@ use std::sync::Arc;
 use glam::{DVec3, Quat, Vec3};
 
 use self::clay::{Clay, Stroke};
-use crate::brush::{BrushSettings, Grip, Method, Scratch};
+use crate::brush::mask_all::MaskAll;
+use crate::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
 use crate::command::Command;
 use crate::devices::{Body, DeviceId, Hands, Sample};
 use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
@@ -175,6 +176,18 @@ impl World {
             Command::PutDown => self.put_down(),
             Command::CalibrateReach => self.hands.calibrate(),
             Command::Reach(reach) => self.set_reach(*reach),
+            Command::Picture(picture) => {
+                if picture.is_sane() {
+                    self.scratch.picture = Some(picture.clone());
+                }
+            }
+            Command::Mask(action) => {
+                self.lift_all();
+                self.mesh.begin_step();
+                let kernel = MaskAll { action: *action, extent: self.extent };
+                self.mesh.dab(&MaskAction::reach(), &kernel, &self.workers);
+                self.mesh.end_step();
+            }
             Command::Replace(new) => {
                 self.lift_all();
                 let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());

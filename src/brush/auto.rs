@@ -15,6 +15,7 @@ pub struct Auto {
     eye: Option<Vec3>,
     boundary: bool,
     normal: Option<(Vec3, f32)>,
+    /// Mesh units: what a bend of one in so much does.
     cavity: f32,
     /// The image whose connected part was marked.
     connected: Option<usize>,
@@ -31,7 +32,7 @@ impl Auto {
             eye: a.front_faces.then_some(dab.eye),
             boundary: a.boundary,
             normal: (a.normal_degrees > 0.0).then(|| (dab.normal, a.normal_degrees.to_radians())),
-            cavity: a.cavity,
+            cavity: a.cavity * dab.radius,
             connected: a.topology.then_some(on.image),
         }
     }
@@ -55,7 +56,7 @@ impl Auto {
             w *= ((most - angle) / (most / 3.0)).clamp(0.0, 1.0);
         }
         if self.cavity != 0.0 {
-            w *= (0.5 + hollow(page, v) * self.cavity * 4.0).clamp(0.0, 1.0);
+            w *= (0.5 + hollow(page, v) * self.cavity).clamp(0.0, 1.0);
         }
         if self.connected.is_some_and(|image| !scratch.is_marked(image, page.number(), v)) {
             return 0.0;
@@ -64,16 +65,16 @@ impl Auto {
     }
 }
 
-/// How hollow the surface is at a vertex: the mean height of its neighbours over its tangent plane, as a share of their
-/// distance. Above 0 in a hollow, below 0 on a ridge.
+/// How hollow the surface is at a vertex: its mean curvature by the heights of its neighbours over the tangent plane, in one
+/// over mesh units. Above 0 in a hollow, below 0 on a ridge; -1/r on a ball of radius r.
 pub fn hollow(page: &PageIn<'_>, v: usize) -> f32 {
     let (p, n) = (page.positions.get(v), page.normals.get(v));
     let (mut sum, mut count) = (0.0, 0.0f32);
     for k in page.ring(v) {
         let d = page.point(k) - p;
-        let length = d.length();
-        if length > 0.0 {
-            sum += d.dot(n) / length;
+        let length2 = d.length_squared();
+        if length2 > 0.0 {
+            sum += 2.0 * d.dot(n) / length2;
             count += 1.0;
         }
     }

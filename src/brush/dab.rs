@@ -46,6 +46,8 @@ pub struct Dab<'a> {
     pub right: Vec3,
     /// 1, or -1 in an image that is mirrored.
     pub hand: f32,
+    /// Which of the images it is; 0 the brush itself.
+    pub image: usize,
     /// Length of the stroke up to here, and a number that differs from stroke to stroke.
     pub travelled: f32,
     pub stroke: u32,
@@ -91,9 +93,8 @@ pub struct Spot<'a> {
     pub p: Vec3,
     /// How much the brush does here, 0 to 1: its fade, less what is masked.
     pub weight: f32,
-    /// What was found out while the brush was made ready, and for which image.
+    /// What was found out while the brush was made ready.
     pub scratch: &'a Scratch,
-    pub image: usize,
 }
 
 impl Spot<'_> {
@@ -131,6 +132,8 @@ impl Spot<'_> {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Change {
     pub by: Vec3,
+    /// Where it is to be from where the stroke found it, instead of where it is now.
+    pub held: Option<Vec3>,
     /// Added to the mask.
     pub mask: f32,
     /// The share of the brush's colour that is laid on, 0 to 1.
@@ -140,7 +143,11 @@ pub struct Change {
 impl Change {
     #[inline(always)]
     pub fn by(by: Vec3) -> Change {
-        Change { by, mask: 0.0, dye: 0.0 }
+        Change { by, ..Change::default() }
+    }
+
+    pub fn held(by: Vec3) -> Change {
+        Change { held: Some(by), ..Change::default() }
     }
 
     pub fn mask(mask: f32) -> Change {

@@ -78,6 +78,6 @@ impl Brush for Elastic {
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
         let before = spot.page.before(spot.v);
-        Change::by(before + self.at(before - dab.centre) * spot.weight - spot.p)
+        Change::held(self.at(before - dab.centre) * spot.weight)
     }
 }

@@ -20,7 +20,6 @@ impl Brush for Grab {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        let goal = spot.page.before(spot.v) + dab.motion * (dab.strength * dab.sign * spot.weight);
-        Change::by(goal - spot.p)
+        Change::held(dab.motion * (dab.strength * dab.sign * spot.weight))
     }
 }

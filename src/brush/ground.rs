@@ -1,8 +1,12 @@
 //! What a brush may ask of the clay before it acts.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
+use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
+use super::unroll::Unroll;
 use super::walk::Walk;
 use crate::mesh::{Mesh, Reach};
 
@@ -10,12 +14,23 @@ use crate::mesh::{Mesh, Reach};
 #[derive(Debug, Default)]
 pub struct Scratch {
     walks: Vec<Walk>,
+    unrolls: Vec<Unroll>,
+    /// The alpha that was loaded.
+    pub picture: Option<Arc<Picture>>,
 }
 
 impl Scratch {
     /// Whether the connected part of an image holds the vertex.
     pub fn is_marked(&self, image: usize, page: u32, v: usize) -> bool {
         self.walks.get(image).is_some_and(|w| w.distance(page, v).is_some())
+    }
+
+    pub fn picture(&self) -> Option<&Picture> {
+        self.picture.as_deref()
+    }
+
+    pub fn unrolled(&self, image: usize) -> Option<&Unroll> {
+        self.unrolls.get(image)
     }
 
     pub fn walk(&self, image: usize) -> Option<&Walk> {
@@ -89,5 +104,16 @@ impl Ground<'_> {
     pub fn measure_before(&mut self, dab: &Dab<'_>) {
         let image = self.image;
         self.scratch.walk_mut(image).measure(self.mesh, dab.centre, dab.normal, dab.radius);
+    }
+
+    /// Carries the stroke's own coordinates on to this dab. Answers which samples are new: the number of the newest, or 0.
+    pub fn unroll(&mut self, dab: &Dab<'_>) -> u32 {
+        let all = &mut self.scratch.unrolls;
+        let image = self.image.min(IMAGES - 1);
+        while all.len() <= image {
+            all.push(Unroll::default());
+        }
+        let one = &mut all[image];
+        if one.step(self.mesh, dab.stroke, dab.centre, dab.normal, dab.radius) { one.count() } else { 0 }
     }
 }

@@ -5,12 +5,14 @@
 //! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
 //! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
 
+pub mod alpha;
 pub mod auto;
 pub mod dab;
 pub(crate) mod cotangent;
 mod drag;
 pub mod falloff;
 pub mod ground;
+pub mod mask_all;
 pub mod options;
 mod palm;
 pub mod preset;
@@ -18,16 +20,19 @@ mod push;
 pub mod restore;
 pub mod settings;
 pub mod tool;
+pub mod unroll;
 pub mod walk;
 pub mod weights;
 
 use serde::{Deserialize, Serialize};
 
+pub use alpha::{Alpha, Picture};
 pub use dab::{Brush, Dab, Grip};
 pub use drag::Drag;
 pub use falloff::Falloff;
 pub use gaussian::Gaussian;
 pub use ground::Scratch;
+pub use mask_all::MaskAction;
 pub use options::{AutoMask, Method, Mirror, PathSettings};
 pub use palm::Palm;
 pub use push::Push;
@@ -99,6 +104,7 @@ brushes! {
     "mask" Mask mask,
     "mask-blur" MaskBlur mask_blur,
     "paint" Paint paint,
+    "texture" Texture texture,
 }
 
 impl Default for BrushKind {

@@ -6,6 +6,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::BrushKind;
+use super::alpha::Alpha;
 use super::falloff::{CURVE, Falloff};
 use super::options::{AutoMask, Mirror, PathSettings};
 
@@ -68,6 +69,8 @@ pub struct BrushSettings {
     pub tilt: f32,
     /// RGBA, sRGB: for brushes that paint.
     pub colour: [u8; 4],
+    /// For brushes that press a picture of heights.
+    pub alpha: Alpha,
     pub auto: AutoMask,
     pub path: PathSettings,
     /// The brush's own numbers, as its file names them.
@@ -92,6 +95,7 @@ impl Default for BrushSettings {
             normal_radius: 0.5,
             tilt: 0.0,
             colour: [200, 90, 60, 255],
+            alpha: Alpha::default(),
             auto: AutoMask::default(),
             path: PathSettings::default(),
             extra: [0.0; EXTRAS],

@@ -1,7 +1,8 @@
 //! The smooth brush: cotangent-weighted Laplacian, weights clamped, boundaries and needles safe.
 //!
 //! Each neighbour `b` of a vertex `p` weighs `cot` of the angles opposite the edge, in the two triangles beside it (Pinkall and
-//! Polthier 1993), clamped to 0 from below, where an obtuse angle would push instead of pull, and to [`MAX_COT`] from above.
+//! Polthier 1993), each clamped to [`MAX_COT`] either way, their sum to 0 from below: two obtuse
+//! angles would push instead of pull. Over a flat mesh that is Delaunay the sums are what leaves every vertex in its place.
 //! With `b` and `c` relative to `p`, the triangle's doubled area `|b x c|` is under both its cotangents:
 //! at `c` it is `(c.c - b.c) / |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
 
@@ -27,18 +28,43 @@ impl Smooth {
     }
 }
 
-/// The same for any ring.
+/// The same for any ring. About an open or a tangled one the two cotangents of an edge are met apart, where its triangles
+/// are; each edge's sum is clamped once both are known.
 fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
     let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-    for [b, c] in page.wedges(v) {
-        let (b, c) = (page.point(b) - p, page.point(c) - p);
+    let mut add = |d: Vec3, w: f32| {
+        let w = w.max(0.0);
+        sum += d * w;
+        weights += w;
+    };
+    // The edge that the last triangle ended at, its weight so far; the one that the first began at.
+    let mut open: Option<(u16, Vec3, f32)> = None;
+    let mut first: Option<(u16, Vec3, f32)> = None;
+    for [kb, kc] in page.wedges(v) {
+        let (b, c) = (page.point(kb) - p, page.point(kc) - p);
         let area = b.cross(c).length();
         let inverse = if area > 0.0 { 1.0 / area } else { 0.0 };
         let bc = b.dot(c);
-        let to_b = ((c.dot(c) - bc) * inverse).clamp(0.0, MAX_COT);
-        let to_c = ((b.dot(b) - bc) * inverse).clamp(0.0, MAX_COT);
-        sum += b * to_b + c * to_c;
-        weights += to_b + to_c;
+        let to_b = ((c.dot(c) - bc) * inverse).clamp(-MAX_COT, MAX_COT);
+        let to_c = ((b.dot(b) - bc) * inverse).clamp(-MAX_COT, MAX_COT);
+        match open.take() {
+            Some((k, d, w)) if k == kb => add(d, w + to_b),
+            before => {
+                if let Some((_, d, w)) = before {
+                    add(d, w);
+                }
+                if first.is_none() {
+                    first = Some((kb, b, to_b));
+                } else {
+                    add(b, to_b);
+                }
+            }
+        }
+        open = Some((kc, c, to_c));
+    }
+    match (open, first) {
+        (Some((k, d, w)), Some((f, _, wf))) if k == f => add(d, w + wf),
+        (end, start) => [end, start].into_iter().flatten().for_each(|(_, d, w)| add(d, w)),
     }
     (sum, weights)
 }

@@ -23,6 +23,6 @@ impl Brush for Thumb {
     }
 
     fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::by(spot.page.before(spot.v) + self.by * spot.weight - spot.p)
+        Change::held(self.by * spot.weight)
     }
 }

@@ -52,7 +52,7 @@ impl Tool<'_> {
             let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let mut n = 0;
             for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
-                let mut on = Ground { mesh: self.mesh, scratch: self.scratch, image: n };
+                let mut on = Ground { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
                 members[n] = Some((dabs[i], B::ready(&dabs[i], &mut on), Auto::ready(&dabs[i], &mut on)));
                 lo = lo.min(balls[i].0 - balls[i].1);
                 hi = hi.max(balls[i].0 + balls[i].1);
@@ -93,7 +93,7 @@ impl<B: Brush> Kernel for Each<'_, B> {
             let p = page.positions.get(v);
             let mut sum = Change::default();
             let mut within = false;
-            for (image, (dab, brush, auto)) in self.members.iter().flatten().enumerate() {
+            for (dab, brush, auto) in self.members.iter().flatten() {
                 let share = brush.share(dab, page, v, p);
                 if !(share > 0.0) {
                     continue;
@@ -101,10 +101,15 @@ impl<B: Brush> Kernel for Each<'_, B> {
                 within = true;
                 let free = if B::MASKED { 1.0 - page.mask(v) } else { 1.0 };
                 let weight = share * free * auto.share(page, v, self.scratch);
-                let scratch = self.scratch;
-                let spot = Spot { page, number: page.number(), v, p, weight, scratch, image };
+                if !(weight > 0.0) {
+                    continue;
+                }
+                let spot = Spot { page, number: page.number(), v, p, weight, scratch: self.scratch };
                 let c = brush.change(dab, &spot);
                 sum.by += c.by;
+                if let Some(by) = c.held {
+                    sum.held = Some(sum.held.unwrap_or(Vec3::ZERO) + by);
+                }
                 sum.mask += c.mask;
                 sum.dye += c.dye;
             }
@@ -112,6 +117,9 @@ impl<B: Brush> Kernel for Each<'_, B> {
                 continue;
             }
             out.visit();
+            if let Some(by) = sum.held {
+                sum.by += page.before(v) + by - p;
+            }
             if sum.by != Vec3::ZERO {
                 out.set(v, held(page.before(v), p, sum.by, self.limit, B::GRIP));
             }

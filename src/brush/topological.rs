@@ -27,9 +27,9 @@ impl Brush for Topological {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        let walk = spot.scratch.walk(spot.image);
+        let walk = spot.scratch.walk(dab.image);
         let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else { return Change::default() };
         let w = dab.fade(d * d) * spot.weight;
-        Change::by(spot.page.before(spot.v) + dab.motion * (dab.strength * dab.sign * w) - spot.p)
+        Change::held(dab.motion * (dab.strength * dab.sign * w))
     }
 }

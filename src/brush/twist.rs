@@ -27,6 +27,6 @@ impl Brush for Twist {
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
         let arm = spot.page.before(spot.v) - dab.centre;
         let turned = Quat::from_axis_angle(dab.normal, self.angle * spot.weight) * arm;
-        Change::by(dab.centre + turned - spot.p)
+        Change::held(turned - arm)
     }
 }

@@ -22,6 +22,8 @@ struct Block {
     place: Vec<[f32; 2]>,
     /// The surface's own directions carried along: `u` and normal.
     frame: Vec<[Vec3; 2]>,
+    /// Which source reached it, and which one it took its coordinates from; 0: none.
+    owner: Vec<[u32; 2]>,
 }
 
 /// One walk. Its memory is used again by the next.
@@ -71,6 +73,8 @@ impl Walk {
         block.place.resize(own, [f32::NAN; 2]);
         block.frame.clear();
         block.frame.resize(own, [Vec3::ZERO; 2]);
+        block.owner.clear();
+        block.owner.resize(own, [0; 2]);
         block
     }
 
@@ -92,19 +96,41 @@ impl Walk {
     }
 
     /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
-    pub fn offer(&mut self, mesh: &Mesh, key: Key, distance: f32) {
-        let old = &mut self.block(mesh, key.0).distance[key.1 as usize];
-        if distance < *old {
+    /// Says whether it was nearer.
+    pub fn offer(&mut self, mesh: &Mesh, key: Key, distance: f32, owner: u32) -> bool {
+        let block = self.block(mesh, key.0);
+        let old = &mut block.distance[key.1 as usize];
+        let nearer = distance < *old;
+        if nearer {
             *old = distance;
+            block.owner[key.1 as usize][0] = owner;
             // Distances are not negative: their bits order as they do.
             self.heap.push(Reverse((distance.to_bits(), key.0, key.1)));
         }
+        nearer
+    }
+
+    /// Whether the mesh has other pages than when the walk began.
+    pub fn is_stale(&self, mesh: &Mesh) -> bool {
+        self.block_of.len() != mesh.page_count()
+    }
+
+    /// Which source reached a vertex; 0: none.
+    pub fn owner(&self, page: u32, v: usize) -> u32 {
+        self.find(page).and_then(|b| b.owner.get(v)).map_or(0, |o| o[0])
+    }
+
+    /// Whether a vertex has its coordinates from this source.
+    pub fn is_settled(&self, (page, v): Key, owner: u32) -> bool {
+        self.find(page).and_then(|b| b.owner.get(v as usize)).is_some_and(|o| o[1] == owner)
     }
 
     pub fn settle(&mut self, mesh: &Mesh, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
         let block = self.block(mesh, key.0);
         block.place[key.1 as usize] = place;
         block.frame[key.1 as usize] = frame;
+        let owner = &mut block.owner[key.1 as usize];
+        owner[1] = owner[0];
     }
 
     /// The nearest vertex that was offered and not yet taken.
@@ -133,8 +159,14 @@ impl Walk {
         };
         mesh.each_page_before(&Reach::Sphere { centre, radius }, |number, page| look(number, page));
         let Some((d2, key)) = seed else { return };
-        self.offer(mesh, key, d2.sqrt());
-        ring(|i| mesh.before(i), key, |to, p| self.offer(mesh, to, (p - centre).length()));
+        self.offer(mesh, key, d2.sqrt(), 1);
+        ring(
+            |i| mesh.before(i),
+            key,
+            |to, p| {
+                self.offer(mesh, to, (p - centre).length(), 1);
+            },
+        );
         while let Some((key, d)) = self.take() {
             let from = mesh.before(key.0).point(key.1 as usize);
             ring(
@@ -143,7 +175,7 @@ impl Walk {
                 |to, p| {
                     let d = d + (p - from).length();
                     if d < radius {
-                        self.offer(mesh, to, d);
+                        self.offer(mesh, to, d, 1);
                     }
                 },
             );
@@ -163,7 +195,7 @@ impl Walk {
             }
         });
         let Some((d2, key)) = seed else { return };
-        self.offer(mesh, key, d2.sqrt());
+        self.offer(mesh, key, d2.sqrt(), 1);
         while let Some((key, _)) = self.take() {
             ring(
                 |i| mesh.page(i),
@@ -171,7 +203,7 @@ impl Walk {
                 |to, p| {
                     let d = (p - centre).length();
                     if d <= radius {
-                        self.offer(mesh, to, d);
+                        self.offer(mesh, to, d, 1);
                     }
                 },
             );

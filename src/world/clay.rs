@@ -191,12 +191,13 @@ impl Clay<'_> {
             eye: -ray.dir,
             right: self.camera.axes().0,
             hand: 1.0,
+            image: 0,
             travelled: self.stroke.travelled,
             stroke: self.stroke.number,
         };
         let mut dabs = [first; IMAGES];
         let mut count = 1;
-        for image in &Images::of(s, self.middle, self.extent).each()[1..] {
+        for (i, image) in Images::of(s, self.middle, self.extent).each().iter().enumerate().skip(1) {
             let (centre, normal) = (image.at(hit.position), image.m * normal);
             // The same view from the mirrored eye. On a symmetric work it lands on the mirrored point, which is then
             // taken as it is; else the brush lies on what is there.
@@ -209,6 +210,7 @@ impl Clay<'_> {
                 None => continue,
             };
             dabs[count] = Dab {
+                image: i,
                 centre,
                 normal,
                 motion: image.m * motion,
@@ -220,6 +222,11 @@ impl Clay<'_> {
             };
             count += 1;
         }
+        self.stroke.dabs += 1;
+        self.stroke.rested = 0;
+        if !(strength > 0.0) {
+            return;
+        }
         let mut tool = Tool {
             mesh: self.mesh,
             workers: self.workers,
@@ -227,8 +234,6 @@ impl Clay<'_> {
             report: DabReport::default(),
         };
         s.kind.apply(&dabs[..count], &mut tool);
-        self.stroke.dabs += 1;
-        self.stroke.rested = 0;
         let done = tool.report;
         self.report.dabs += count as u64;
         self.report.vertices_moved += done.moved as u64;

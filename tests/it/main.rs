@@ -4,6 +4,7 @@
 mod allocations;
 mod bad_input;
 mod boolean;
+mod brushes;
 mod clay;
 mod field;
 mod golden;

@@ -12,7 +12,7 @@ use super::protocol::{Code, RpcError};
 use super::server::Host;
 use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
-use crate::brush::BrushKind;
+use crate::brush::{BrushKind, MaskAction, Picture};
 use crate::command::{Command, NewClay};
 use crate::daemon::{joiner, rig};
 use crate::hand::{Choice, ReachBox};
@@ -28,6 +28,8 @@ pub const METHODS: &[(&str, &str)] = &[
         "{kind?, radius?, strength?, negative?, spacing?, ... as in the configuration's [brush]}: another kind comes with its own settings; changes what is named, answers with all",
     ),
     ("brushes", "{}: every brush, what it does, its own numbers"),
+    ("picture", "{path}: loads a picture of heights (PNG, TIFF, EXR) for brushes with the alpha picture"),
+    ("mask", "{action: clear|fill|invert|blur|sharpen|grow|shrink|{cavity: 0..1}}: the whole work's mask"),
     ("camera", "{target?, yaw?, pitch?, distance?, fov_y?, aspect?, orthographic?}: likewise"),
     ("undo", "{}: takes back one step"),
     ("redo", "{}: does it again"),
@@ -98,6 +100,12 @@ fn thickness(host: &Host, mesh: &Snapshot, p: &ThicknessParam) -> Result<Value, 
 #[serde(deny_unknown_fields)]
 struct JoinParam {
     operation: Choice,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaskParam {
+    action: MaskAction,
 }
 
 #[derive(Deserialize, Default)]
@@ -183,6 +191,20 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let brush = brush.clamped();
             send(Command::Brush(brush))?;
             Ok(json!(brush))
+        }
+        "picture" => {
+            let p: PathParam = read(params)?;
+            safe(&p.path)?;
+            let bytes = std::fs::read(&p.path).map_err(|e| failed(format!("{}: {e}", p.path.display())))?;
+            let picture =
+                Picture::decode(&bytes).map_err(|e| failed(format!("{}: {e}", p.path.display())))?;
+            let answer = json!({ "width": picture.width, "height": picture.height });
+            send(Command::Picture(Arc::new(picture)))?;
+            Ok(answer)
+        }
+        "mask" => {
+            send(Command::Mask(read::<MaskParam>(params)?.action))?;
+            Ok(json!({ "sent": true }))
         }
         "brushes" => {
             read::<Nothing>(params)?;

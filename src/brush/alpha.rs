@@ -1,0 +1,240 @@
+//! Alphas: pictures of heights, 0 to 1, that a brush presses along its stroke. Eight are made here; one is loaded.
+//!
+//! `s` runs along the stroke and repeats after 1, `t` across it from edge to edge, 0 to 1 with the axis at 1/2.
+
+use std::f32::consts::{PI, TAU};
+
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Alpha {
+    /// Round studs in a row.
+    Studs,
+    /// Overlapping scales in three rows, each set off by half.
+    #[default]
+    Scales,
+    /// Two strands wound about each other.
+    Rope,
+    /// Oblique stitches along a seam.
+    Stitches,
+    /// Ripples across the stroke.
+    Waves,
+    /// Courses of bricks with joints.
+    Bricks,
+    /// Rough stone: three octaves of smooth noise.
+    Stone,
+    /// A cracked skin: the borders of random cells.
+    Cracks,
+    /// The picture that was loaded; flat while there is none.
+    Picture,
+}
+
+/// A loaded picture of heights, rows from the top.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    /// 0 lowest to 65535 highest; `width * height` of them.
+    pub heights: Vec<u16>,
+}
+
+/// Pixels of a picture at most: a square of 4096.
+const MOST: u64 = 1 << 24;
+
+impl Picture {
+    /// Whether the sizes and the heights agree.
+    pub fn is_sane(&self) -> bool {
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        pixels > 0 && pixels <= MOST && self.heights.len() as u64 == pixels
+    }
+
+    /// Reads PNG, TIFF or OpenEXR, 8 or 16 bits or float; colours become their brightness. The error says what is wrong.
+    pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
+        let reader = image::ImageReader::new(std::io::Cursor::new(bytes))
+            .with_guessed_format()
+            .map_err(|e| format!("not a picture: {e}"))?;
+        let (width, height) = reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
+        if u64::from(width) * u64::from(height) > MOST {
+            return Err(format!("{width} x {height} pixels; at most {MOST} are taken"));
+        }
+        let luma = image::load_from_memory(bytes).map_err(|e| e.to_string())?.into_luma16();
+        let picture = Picture { width, height, heights: luma.into_raw() };
+        if picture.is_sane() { Ok(picture) } else { Err("an empty picture".into()) }
+    }
+
+    /// Height at `s`, `t`, between four pixels; repeats along `s`, ends at the edges of `t`.
+    pub fn at(&self, s: f32, t: f32) -> f32 {
+        let (w, h) = (self.width as usize, self.height as usize);
+        let x = (s - s.floor()) * w as f32 - 0.5;
+        let y = (1.0 - t.clamp(0.0, 1.0)) * h as f32 - 0.5;
+        let (i, j) = (x.floor(), y.floor());
+        let (fx, fy) = (x - i, y - j);
+        let pixel = |i: f32, j: f32| {
+            let column = (i as i64).rem_euclid(w as i64) as usize;
+            let row = (j as i64).clamp(0, h as i64 - 1) as usize;
+            f32::from(self.heights[row * w + column]) / 65535.0
+        };
+        let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        mix(mix(pixel(i, j), pixel(i + 1.0, j), fx), mix(pixel(i, j + 1.0), pixel(i + 1.0, j + 1.0), fx), fy)
+    }
+}
+
+impl Alpha {
+    /// Those that the program makes.
+    pub const MADE: [Alpha; 8] = [
+        Alpha::Studs,
+        Alpha::Scales,
+        Alpha::Rope,
+        Alpha::Stitches,
+        Alpha::Waves,
+        Alpha::Bricks,
+        Alpha::Stone,
+        Alpha::Cracks,
+    ];
+
+    /// The height at `s`, `t`: 0 to 1.
+    pub fn at(self, s: f32, t: f32, picture: Option<&Picture>) -> f32 {
+        let s = s - s.floor();
+        let h = match self {
+            Alpha::Studs => {
+                let d2 = (s - 0.5) * (s - 0.5) + (t - 0.5) * (t - 0.5);
+                (1.0 - d2 * 9.0).max(0.0).sqrt()
+            }
+            Alpha::Scales => scales(s, t),
+            Alpha::Rope => {
+                // Each strand is a half round that goes from one side to the other in half a turn.
+                let strand = |phase: f32| {
+                    let c = 0.5 + 0.22 * ((s + phase) * TAU).cos();
+                    let d = (t - c) / 0.2;
+                    (1.0 - d * d).max(0.0).sqrt() * (0.75 + 0.25 * ((s + phase) * TAU).sin())
+                };
+                strand(0.0).max(strand(0.5))
+            }
+            Alpha::Stitches => {
+                let (x, y) = ((s - 0.5) - (t - 0.5) * 0.6, t - 0.5);
+                let (a, b) = (x / 0.16, y / 0.28);
+                let seam = 0.25 * (1.0 - (y / 0.06) * (y / 0.06)).max(0.0);
+                (1.0 - a * a - b * b * b * b).max(0.0).sqrt().max(seam)
+            }
+            Alpha::Waves => 0.5 - 0.5 * (s * TAU * 2.0).cos(),
+            Alpha::Bricks => {
+                let row = (t * 4.0).floor();
+                let x = (s * 2.0 + row * 0.5).rem_euclid(1.0);
+                let y = t * 4.0 - row;
+                let joint = |v: f32, w: f32| ((0.5 - (v - 0.5).abs()) / w).clamp(0.0, 1.0);
+                joint(x, 0.08).min(joint(y, 0.14))
+            }
+            Alpha::Stone => (noise(s, t, 4, 1) * 4.0 + noise(s, t, 8, 2) * 2.0 + noise(s, t, 16, 3)) / 7.0,
+            Alpha::Cracks => cracks(s, t),
+            Alpha::Picture => picture.map_or(0.0, |p| p.at(s, t)),
+        };
+        h.clamp(0.0, 1.0)
+    }
+}
+
+/// The highest of the scales that lie over a point, each a leaf whose tip points back along the stroke.
+fn scales(s: f32, t: f32) -> f32 {
+    let mut best = 0.0f32;
+    for row in 0..4 {
+        let mid = row as f32 / 3.0;
+        let shift = if row % 2 == 0 { 0.0 } else { 0.25 };
+        for k in -1..3 {
+            let x = (s - shift - k as f32 * 0.5) / 0.55;
+            let y = (t - mid) / 0.24;
+            if (0.0..1.0).contains(&x) && y.abs() < 1.0 {
+                let edge = 1.0 - y * y - (1.0 - x).powi(4);
+                let rise = 0.35 + 0.65 * (1.0 - x);
+                best = best.max(rise * (edge * 6.0).clamp(0.0, 1.0));
+            }
+        }
+    }
+    best
+}
+
+/// A number from 0 to 1 for a cell.
+fn hash(i: i32, j: i32, seed: u32) -> f32 {
+    let mut x = (i as u32).wrapping_mul(0x85eb_ca6b)
+        ^ (j as u32).wrapping_mul(0xc2b2_ae35)
+        ^ seed.wrapping_mul(0x27d4_eb2f);
+    x = (x ^ x >> 15).wrapping_mul(0x2c1b_3c6d);
+    x = (x ^ x >> 12).wrapping_mul(0x297a_2d39);
+    ((x ^ x >> 15) >> 8) as f32 / (1u32 << 24) as f32
+}
+
+/// Smooth noise of so many cells, repeating along `s`.
+fn noise(s: f32, t: f32, cells: i32, seed: u32) -> f32 {
+    let (x, y) = (s * cells as f32, t * cells as f32);
+    let (i, j) = (x.floor(), y.floor());
+    let ease = |f: f32| f * f * (3.0 - 2.0 * f);
+    let (fx, fy) = (ease(x - i), ease(y - j));
+    let at = |di: i32, dj: i32| hash((i as i32 + di).rem_euclid(cells), j as i32 + dj, seed);
+    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    mix(mix(at(0, 0), at(1, 0), fx), mix(at(0, 1), at(1, 1), fx), fy)
+}
+
+/// High within random cells, low on their borders: the second nearest seed's distance less the nearest one's.
+fn cracks(s: f32, t: f32) -> f32 {
+    const CELLS: i32 = 5;
+    let (x, y) = (s * CELLS as f32, t * CELLS as f32);
+    let (i, j) = (x.floor() as i32, y.floor() as i32);
+    let (mut first, mut second) = (f32::INFINITY, f32::INFINITY);
+    for dj in -1..=1 {
+        for di in -1..=1 {
+            let (ci, cj) = (i + di, j + dj);
+            let seed = |k| hash(ci.rem_euclid(CELLS), cj, k);
+            let (sx, sy) = (ci as f32 + seed(7), cj as f32 + seed(8));
+            let d = ((x - sx) * (x - sx) + (y - sy) * (y - sy)).sqrt();
+            if d < first {
+                (second, first) = (first, d);
+            } else if d < second {
+                second = d;
+            }
+        }
+    }
+    let gap = ((second - first) / 0.18).clamp(0.0, 1.0);
+    0.5 - 0.5 * (gap * PI).cos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_made_alpha_has_relief_repeats_and_stays_within_bounds() {
+        for a in Alpha::MADE {
+            let (mut lo, mut hi) = (1.0f32, 0.0f32);
+            for i in 0..100 {
+                for j in 0..=50 {
+                    let (s, t) = (i as f32 / 100.0, j as f32 / 50.0);
+                    let h = a.at(s, t, None);
+                    assert!((0.0..=1.0).contains(&h), "{a:?}");
+                    assert!((h - a.at(s + 3.0, t, None)).abs() < 2e-2, "{a:?} repeats at {s}, {t}");
+                    (lo, hi) = (lo.min(h), hi.max(h));
+                }
+            }
+            assert!(hi - lo > 0.5, "{a:?}: {lo} to {hi}");
+            let seam = (0..=50).map(|j| j as f32 / 50.0);
+            let step = seam.map(|t| (a.at(0.0, t, None) - a.at(0.9999, t, None)).abs()).fold(0.0, f32::max);
+            assert!(step < 0.7, "{a:?}: a step of {step} where it repeats");
+        }
+    }
+
+    #[test]
+    fn a_sixteen_bit_picture_keeps_its_steps() {
+        let mut png = Vec::new();
+        let pixels: Vec<u16> = (0..16u16).map(|i| i * 4369 / 16 + 30_000).collect();
+        let picture =
+            image::ImageBuffer::<image::Luma<u16>, _>::from_raw(4, 4, pixels.clone()).expect("fits");
+        for format in [image::ImageFormat::Png, image::ImageFormat::Tiff] {
+            png.clear();
+            picture.write_to(&mut std::io::Cursor::new(&mut png), format).expect("written");
+            let read = Picture::decode(&png).expect("read");
+            assert_eq!((read.width, read.height, &read.heights), (4, 4, &pixels));
+            let corner = read.at(0.125, 0.875);
+            assert!((corner - f32::from(pixels[0]) / 65535.0).abs() < 1e-6);
+        }
+        assert!(Picture::decode(b"not a picture").is_err());
+        assert!(Picture::decode(&png[..png.len() / 2]).is_err());
+    }
+}

@@ -1,0 +1,103 @@
+//! Brushes: golden strokes, formulas, properties.
+
+mod formulas;
+mod golden;
+mod properties;
+mod texture;
+
+use glam::{Vec2, Vec3};
+use sculptd::analysis::cancel::Job;
+use sculptd::brush::BrushSettings;
+use sculptd::command::Command;
+use sculptd::devices::{Body, DeviceId, Pen, Sample};
+use sculptd::hand::HandSettings;
+use sculptd::mesh::{Mesh, TriMesh, Workers, shapes};
+use sculptd::stroke::Camera;
+use sculptd::world::{World, WorldOptions};
+
+/// A work, a pen, and a hand that guides it.
+pub struct Studio {
+    pub world: World,
+    tick: u64,
+}
+
+impl Studio {
+    pub fn new(mesh: &TriMesh, brush: BrushSettings, workers: usize) -> Studio {
+        let mesh = Mesh::build(mesh, &Job::default()).expect("builds");
+        let options =
+            WorldOptions { dab_budget: 400_000, undo_bytes: 1 << 30, hands: HandSettings::default() };
+        // Straight from the front, so that the view's left and right are the work's.
+        let camera = Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() };
+        Studio { world: World::new(mesh, camera, brush, Workers::new(workers), options), tick: 0 }
+    }
+
+    pub fn tell(&mut self, command: Command) {
+        self.tick += 1;
+        self.world.step(self.tick, &[], &[command]);
+    }
+
+    pub fn sample(&mut self, view: Vec2, pressure: f32, tip: bool) -> u64 {
+        self.tick += 1;
+        let area_mm = Vec2::new(self.world.camera().aspect, 1.0) * 100.0;
+        let pen = Pen {
+            in_range: true,
+            tip,
+            pos_mm: view * area_mm,
+            area_mm,
+            pressure: Some(pressure),
+            ..Pen::default()
+        };
+        let sample =
+            Sample { device: DeviceId(1), t_us: self.tick * 8000, device_t_us: None, body: Body::Pen(pen) };
+        self.world.step(self.tick, &[sample], &[]).dabs
+    }
+
+    pub fn rest(&mut self, ticks: u32) -> u64 {
+        (0..ticks)
+            .map(|_| {
+                self.tick += 1;
+                self.world.step(self.tick, &[], &[]).dabs
+            })
+            .sum()
+    }
+
+    /// One stroke through the points, each with its pressure; the dabs it made.
+    pub fn stroke(&mut self, points: &[(Vec2, f32)]) -> u64 {
+        let mut dabs = 0;
+        for &(view, pressure) in points {
+            dabs += self.sample(view, pressure, true);
+        }
+        let (last, _) = points[points.len() - 1];
+        dabs + self.sample(last, 0.0, false) + self.rest(2)
+    }
+
+    pub fn positions(&self) -> Vec<Vec3> {
+        self.world.mesh().to_tri().positions
+    }
+
+    /// Where a point of the work is seen.
+    pub fn view(&self, p: Vec3) -> Vec2 {
+        self.world.camera().project(p).expect("before the eye")
+    }
+}
+
+/// A ball with a little relief, so that what evens, fills and scrapes has something to do. Symmetric about no plane.
+pub fn form(vertices: usize) -> TriMesh {
+    let mut mesh = shapes::sphere_of_about(vertices);
+    for p in &mut mesh.positions {
+        let relief = (p.x * 9.0).sin() * (p.y * 8.0 + 0.7).sin() * (p.z * 10.0 + 0.3).sin();
+        *p *= 1.0 + 0.03 * relief;
+    }
+    mesh
+}
+
+/// An S over the middle of the view, as a hand draws it: soft, firm, soft.
+pub fn s_curve() -> Vec<(Vec2, f32)> {
+    (0..=24)
+        .map(|i| {
+            let t = i as f32 / 24.0;
+            let x = 0.5 + 0.09 * (t * 5.0).sin();
+            (Vec2::new(x, 0.3 + 0.4 * t), 0.2 + 0.8 * (t * std::f32::consts::PI).sin())
+        })
+        .collect()
+}
