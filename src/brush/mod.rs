@@ -7,8 +7,8 @@
 
 pub mod alpha;
 pub mod auto;
-pub mod dab;
 pub(crate) mod cotangent;
+pub mod dab;
 mod drag;
 pub mod falloff;
 pub mod ground;
