@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use serde::{Deserialize, Serialize};
 
 use crate::brush::{BrushSettings, MaskAction, Picture};
-use crate::hand::ReachBox;
+use crate::hand::{ReachBox, Similarity};
 use crate::mesh::{Mesh, TriMesh};
 use crate::stroke::Camera;
 
@@ -33,6 +33,8 @@ pub enum Command {
     CalibrateReach,
     /// This part of the tracked space is laid over the work.
     Reach(ReachBox),
+    /// The thing in the hands stands here.
+    Place(Similarity),
 }
 
 /// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its own; a replay, which has

@@ -188,6 +188,11 @@ impl World {
                 self.mesh.dab(&MaskAction::reach(), &kernel, &self.workers);
                 self.mesh.end_step();
             }
+            Command::Place(place) => {
+                if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {
+                    thing.place = *place;
+                }
+            }
             Command::Replace(new) => {
                 self.lift_all();
                 let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());

@@ -11,10 +11,12 @@ pub mod hints;
 pub mod history;
 pub mod legend;
 pub mod look;
+pub mod masks;
 pub mod messages;
 pub mod modal;
 pub mod preferences;
 pub mod radial;
+pub mod scene;
 pub mod search;
 pub mod symmetry;
 pub mod theme;
@@ -26,6 +28,7 @@ use glam::Vec3;
 
 use crate::command::Command;
 use crate::daemon::Published;
+use crate::hand::Choice;
 use crate::stroke::Camera;
 use crate::viewer::look::{Look, MATERIALS, Map};
 use action::Action;
@@ -58,6 +61,8 @@ pub enum Ask {
     FlyTo(Vec3),
     Open(PathBuf),
     Export(PathBuf),
+    /// The thing is joined with the work.
+    Join(Choice),
     /// For the window: dialogs and pictures.
     Do(Action),
 }
@@ -67,6 +72,7 @@ pub enum Ask {
 pub enum Tab {
     #[default]
     Look,
+    Scene,
     Walls,
     Files,
     Devices,
@@ -74,8 +80,9 @@ pub enum Tab {
     More,
 }
 
-const TABS: [(Tab, &str, &str); 6] = [
+const TABS: [(Tab, &str, &str); 7] = [
     (Tab::Look, "Look", "How the clay is shown"),
+    (Tab::Scene, "Scene", "A second thing, and joining it with the work"),
     (Tab::Walls, "Walls", "Wall thickness and thin spots"),
     (Tab::Files, "Files", "Open, export, pictures"),
     (Tab::Devices, "Pens", "Devices and their live values"),
@@ -97,6 +104,8 @@ pub struct Desk {
     pub messages: Vec<messages::Message>,
     pub walls: analysis::Walls,
     pub devices: devices::Trace,
+    /// A Boolean is under way.
+    pub joining: bool,
     /// A theme and scale that are in force, so that they are set once.
     pub applied: Option<(bool, u32)>,
 }
@@ -166,17 +175,19 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
     ui.add_space(8.0);
     curve::ui(ui, view, &desk.devices, out);
     ui.add_space(8.0);
+    masks::ui(ui, out);
+    ui.add_space(8.0);
     history::ui(ui, view, out);
 }
 
 fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
-    egui::Grid::new("tabs").num_columns(3).spacing([4.0, 4.0]).show(ui, |ui| {
+    egui::Grid::new("tabs").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
         for (i, (tab, name, tip)) in TABS.into_iter().enumerate() {
-            let button = egui::Button::selectable(desk.tab == tab, name).min_size([66.0, 22.0].into());
+            let button = egui::Button::selectable(desk.tab == tab, name).min_size([47.0, 22.0].into());
             if ui.add(button).on_hover_text(tip).clicked() {
                 desk.tab = tab;
             }
-            if i % 3 == 2 {
+            if i % 4 == 3 {
                 ui.end_row();
             }
         }
@@ -184,6 +195,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
     ui.separator();
     match desk.tab {
         Tab::Look => look::ui(ui, desk, out, view),
+        Tab::Scene => scene::ui(ui, view, desk.joining, out),
         Tab::Walls => analysis::ui(ui, view, desk, out),
         Tab::Files => files::ui(ui, view, desk, out),
         Tab::Devices => devices::ui(ui, view, &desk.devices),

@@ -21,16 +21,7 @@ pub fn ui(ctx: &egui::Context, desk: &mut Desk) -> Option<Action> {
         let p = |k| i.key_pressed(k);
         (p(Key::ArrowUp), p(Key::ArrowDown), p(Key::Enter), p(Key::Escape))
     });
-    let found = action::search(&search.text);
-    let shown = found.len().min(MOST);
-    if down {
-        search.at += 1;
-    }
-    if up {
-        search.at = search.at.saturating_sub(1);
-    }
-    search.at = search.at.min(shown.saturating_sub(1));
-    let mut chosen = (enter && search.begun).then(|| found.get(search.at).map(|e| e.action)).flatten();
+    let mut chosen = None;
     let screen = ctx.content_rect();
     let area = egui::Area::new(egui::Id::unique("search"))
         .fixed_pos(screen.center_top() + egui::vec2(0.0, screen.height() * 0.12))
@@ -42,12 +33,19 @@ pub fn ui(ctx: &egui::Context, desk: &mut Desk) -> Option<Action> {
             let label = ui.label("Search actions");
             let edit = egui::TextEdit::singleline(&mut search.text).desired_width(f32::INFINITY);
             let response = ui.add(edit).labelled_by(label.id);
+            let ready = search.begun;
             if !search.begun || !response.has_focus() {
                 response.request_focus();
                 search.begun = true;
             }
+            let found = action::search(&search.text);
             if response.changed() {
                 search.at = 0;
+            }
+            search.at = (search.at + usize::from(down)).saturating_sub(usize::from(up));
+            search.at = search.at.min(found.len().min(MOST).saturating_sub(1));
+            if enter && ready {
+                chosen = found.get(search.at).map(|e| e.action);
             }
             for (i, entry) in found.iter().take(MOST).enumerate() {
                 let keys = entry.keys.map_or(String::new(), |k| k.to_string());

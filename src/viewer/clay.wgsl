@@ -144,7 +144,7 @@ fn edge_vertex(@location(0) place: vec3<f32>) -> LineCorner {
     var out: LineCorner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
     out.clip.z -= 0.0002 * out.clip.w;
-    out.colour = vec4<f32>(0.0, 0.0, 0.0, 0.42);
+    out.colour = vec4<f32>(0.0, 0.0, 0.0, 0.3);
     return out;
 }
 

@@ -60,6 +60,9 @@ impl Open {
                 ring_at(pen.view, if down { pen.pressure } else { 1.0 }, pen.tilt, down);
             }
         }
+        if let Some(thing) = &state.thing {
+            overlay::thing(&mut lines, thing);
+        }
         if let Some(hands) = &state.hands {
             overlay::hands(&mut lines, hands, &state.volume);
         }
@@ -147,6 +150,7 @@ impl Open {
         while let Ok(done) = self.work.done.try_recv() {
             match done {
                 Done::Said(text, wrong) => self.desk.say(text, wrong),
+                Done::Joined => self.desk.joining = false,
                 Done::Used(path) => self.desk.prefs.used(path),
                 Done::Map(values, about) => {
                     self.desk.look.scale = (about.min, about.high);
@@ -191,6 +195,10 @@ impl Open {
             Ask::Export(path) => {
                 let (factor, unit) = self.desk.files.factor();
                 self.work.export(path, state.mesh.clone(), factor, unit);
+            }
+            Ask::Join(choice) => {
+                self.desk.joining = true;
+                self.work.join(choice, wiring.published.clone(), wiring.commands.clone());
             }
             Ask::Do(Action::Open) => self.work.ask(Purpose::Open),
             Ask::Do(Action::Export) => self.work.ask(Purpose::Export),

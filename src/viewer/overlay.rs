@@ -4,13 +4,14 @@ use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
 use crate::devices::Hands;
-use crate::hand::Volume;
+use crate::hand::{Thing, Volume};
 use crate::mesh::{Ray, Snapshot};
 use crate::stroke::Camera;
 
 const RING: [u8; 4] = [255, 236, 190, 255];
 const CARVING: [u8; 4] = [150, 190, 255, 255];
 const MIRRORED: [u8; 4] = [150, 205, 255, 190];
+const THING: [u8; 4] = [255, 214, 140, 200];
 const BONE: [u8; 4] = [190, 225, 255, 200];
 /// Corners of a ring: smooth to the eye at any size.
 const CORNERS: usize = 72;
@@ -50,7 +51,7 @@ pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3,
         let flat = centre + (u * c + v * s) * radius;
         let above = Ray { origin: flat + normal * radius, dir: -normal };
         match mesh.pick(above) {
-            Some(hit) if hit.t < 2.0 * radius => hit.position + normal * (radius * 0.01),
+            Some(hit) if (hit.t - radius).abs() < 0.6 * radius => hit.position + normal * (radius * 0.01),
             _ => flat,
         }
     };
@@ -128,6 +129,22 @@ pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
         if let (Some(wrist), Some(first), Some(last)) = (hand.wrist, knuckles.first(), knuckles.last()) {
             segment(out, volume.to_world(wrist), *first, BONE);
             segment(out, volume.to_world(wrist), *last, BONE);
+        }
+    }
+}
+
+/// A thing in the hands as its edges: what it would cut shows through it.
+pub fn thing(out: &mut Vec<LineEnd>, thing: &Thing) {
+    // Of a large one, some: it is its place that counts.
+    const MOST: usize = 2600;
+    let triangles = &thing.plain.triangles;
+    let step = triangles.len().div_ceil(MOST).max(1);
+    for t in triangles.iter().step_by(step) {
+        let [a, b, c] = t.map(|v| thing.place.apply(thing.plain.positions[v as usize]));
+        for (from, to, lower) in [(a, b, t[0] < t[1]), (b, c, t[1] < t[2]), (c, a, t[2] < t[0])] {
+            if lower || step > 1 {
+                segment(out, from, to, THING);
+            }
         }
     }
 }

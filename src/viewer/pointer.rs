@@ -153,7 +153,7 @@ impl Open {
             let brush = state.brush;
             let mut now = brush;
             if self.mods.shift_key() {
-                (now.kind, now.strength) = (BrushKind::Smooth, 0.6);
+                now = brush.switched(BrushKind::Smooth);
             }
             now.negative ^= self.mods.control_key() || self.mods.alt_key();
             if now != brush {

@@ -19,8 +19,8 @@ pub struct LineEnd {
     pub colour: [u8; 4],
 }
 
-/// Ends of lines a frame at most: a dozen rings and four hands.
-const MAX_LINE_ENDS: usize = 8192;
+/// Ends of lines a frame at most: a dozen rings, four hands and a thing.
+const MAX_LINE_ENDS: usize = 16_384;
 
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
+use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec3;
 
@@ -12,7 +13,8 @@ use super::pages::MapValues;
 use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
 use crate::command::{Command, NewClay};
-use crate::daemon::rig;
+use crate::daemon::{Published, joiner, rig};
+use crate::hand::Choice;
 use crate::mesh::Snapshot;
 use crate::mesh::io::write_mesh;
 use crate::panels::analysis::{Spot, Thickness};
@@ -25,6 +27,8 @@ pub enum Done {
     /// A file was loaded or written: it goes to the recent ones.
     Used(PathBuf),
     Map(MapValues, Box<Thickness>),
+    /// A Boolean has ended, well or not.
+    Joined,
     /// A dialog's answer.
     Chosen(Purpose, PathBuf),
 }
@@ -115,6 +119,22 @@ impl Work {
                 Err(e) => Done::Said(e.to_string(), true),
             };
             let _ = say.send(said);
+        });
+    }
+
+    /// Joins the thing in the hands with the work; the result takes the work's place, and undo brings the work back.
+    pub fn join(&self, choice: Choice, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+        let say = self.say.clone();
+        thread("sculptd-boolean", move || {
+            let (text, wrong) = match joiner::at_rest(&shown, choice) {
+                Ok(done) => match done.into_iter().all(|c| commands.send(c).is_ok()) {
+                    true => (format!("{}: done", choice.label()), false),
+                    false => ("the loop has ended".into(), true),
+                },
+                Err(e) => (e.to_string(), true),
+            };
+            let _ = say.send(Done::Said(text, wrong));
+            let _ = say.send(Done::Joined);
         });
     }
 

@@ -22,6 +22,8 @@ mod thickness;
 mod thickness_live;
 mod thickness_shapes;
 mod tree;
+#[cfg(feature = "viewer")]
+mod viewer;
 
 /// The folder of real recordings and meshes, where the environment names one.
 pub fn corpus() -> Option<PathBuf> {

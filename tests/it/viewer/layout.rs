@@ -1,0 +1,171 @@
+//! Every page on every screen: nothing cut at its sides, no text on another, text at least 4.5:1 on what lies under it.
+//!
+//! Read from the shapes that the panels paint, so it needs no adapter.
+
+use egui::epaint::{ClippedShape, Shape};
+use egui::{Color32, Rect};
+use egui_kittest::Harness;
+use sculptd::panels::Tab;
+
+use super::panels::{State, show, state};
+
+const SCREENS: [(f32, f32); 3] = [(1280.0, 720.0), (1920.0, 1080.0), (3840.0, 2160.0)];
+const TABS: [Tab; 7] = [Tab::Look, Tab::Scene, Tab::Walls, Tab::Files, Tab::Devices, Tab::Loop, Tab::More];
+
+/// A piece of text as it is painted.
+#[derive(Debug)]
+struct Text {
+    what: String,
+    rect: Rect,
+    clip: Rect,
+    colour: Color32,
+    ground: Color32,
+}
+
+/// Relative luminance as WCAG 2 has it.
+fn luminance(c: Color32) -> f32 {
+    let one = |v: u8| {
+        let v = f32::from(v) / 255.0;
+        if v <= 0.03928 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    };
+    0.2126 * one(c.r()) + 0.7152 * one(c.g()) + 0.0722 * one(c.b())
+}
+
+fn contrast(a: Color32, b: Color32) -> f32 {
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+/// `over` laid on `under`; egui's colours are premultiplied.
+fn blend(over: Color32, under: Color32) -> Color32 {
+    let keep = 1.0 - f32::from(over.a()) / 255.0;
+    let mix = |o: u8, u: u8| (f32::from(o) + f32::from(u) * keep).min(255.0) as u8;
+    Color32::from_rgb(mix(over.r(), under.r()), mix(over.g(), under.g()), mix(over.b(), under.b()))
+}
+
+fn walk(shape: &Shape, clip: Rect, opaque: &mut Vec<(Rect, Color32)>, out: &mut Vec<Text>, clay: Color32) {
+    match shape {
+        Shape::Vec(all) => all.iter().for_each(|s| walk(s, clip, opaque, out, clay)),
+        Shape::Rect(r) if r.fill.a() > 0 && r.blur_width == 0.0 => opaque.push((r.rect.intersect(clip), r.fill)),
+        Shape::Circle(c) if c.fill.a() > 0 => {
+            let rect = Rect::from_center_size(c.center, egui::Vec2::splat(c.radius * 1.4));
+            opaque.push((rect.intersect(clip), c.fill));
+        }
+        Shape::Text(t) => {
+            let rect = t.galley.mesh_bounds.translate(t.pos.to_vec2());
+            let centre = rect.center();
+            let under = opaque.iter().filter(|(r, _)| r.contains(centre));
+            let ground = under.fold(clay, |ground, (_, fill)| blend(*fill, ground));
+            let written = t.override_text_color.unwrap_or_else(|| {
+                let colour = t.galley.job.sections.first().map_or(Color32::PLACEHOLDER, |s| s.format.color);
+                if colour == Color32::PLACEHOLDER { t.fallback_color } else { colour }
+            });
+            let colour = blend(written.gamma_multiply(t.opacity_factor), ground);
+            let what = t.galley.text().to_owned();
+            if !what.trim().is_empty() && clip.intersects(rect) {
+                out.push(Text { what, rect, clip, colour, ground });
+            }
+        }
+        _ => {}
+    }
+}
+
+fn texts(shapes: &[ClippedShape], clay: Color32) -> Vec<Text> {
+    let (mut opaque, mut out) = (Vec::new(), Vec::new());
+    for s in shapes {
+        walk(&s.shape, s.clip_rect, &mut opaque, &mut out, clay);
+    }
+    out
+}
+
+/// What is wrong on one screen, and the least contrast.
+fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<String>, f32) {
+    let all = texts(&h.output().shapes, clay);
+    assert!(all.len() > 15, "only {} texts are painted", all.len());
+    let mut wrong = Vec::new();
+    let mut least = f32::INFINITY;
+    for (i, t) in all.iter().enumerate() {
+        // Below or above the part that a page scrolls to is no cut; at the sides it is.
+        let (l, r) = (t.rect.left() - t.clip.left(), t.clip.right() - t.rect.right());
+        if l < -0.5 || r < -0.5 {
+            wrong.push(format!("'{}' is cut at a side: {l:.1}, {r:.1}", t.what));
+        }
+        let ratio = contrast(t.colour, t.ground);
+        // A button that cannot be pressed says so by being faint (WCAG 2 asks nothing of it).
+        if !(disabled_ok && ["Undo", "Redo", "Open"].contains(&t.what.as_str())) {
+            least = least.min(ratio);
+            if ratio < 4.5 {
+                wrong.push(format!("'{}' has {ratio:.2}:1, {:?} on {:?}", t.what, t.colour, t.ground));
+            }
+        }
+        for other in &all[i + 1..] {
+            let (a, b) = (t.rect.intersect(t.clip), other.rect.intersect(other.clip));
+            let both = a.intersect(b);
+            if both.width() > 1.0 && both.height() > 1.0 {
+                wrong.push(format!("'{}' lies on '{}'", t.what, other.what));
+            }
+        }
+    }
+    (wrong, least)
+}
+
+#[test]
+fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
+    let mut table = Vec::new();
+    for (w, h) in SCREENS {
+        for scale in [1.0, 2.0] {
+            for light in [false, true] {
+                let mut least = f32::INFINITY;
+                for tab in TABS {
+                    let mut s = state(tab);
+                    s.desk.prefs.light = light;
+                    s.devices = vec!["A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: connected".into()];
+                    s.published.undo_steps = 4;
+                    s.published.redo_steps = 2;
+                    let mut harness = Harness::builder()
+                        .with_size([w / scale, h / scale])
+                        .with_pixels_per_point(scale)
+                        .build_ui_state(show, s);
+                    harness.run_steps(4);
+                    // The dimmest and the palest clay that a cursor's text may lie on does not matter: text over the clay
+                    // has a ground of its own; this is what would be under it.
+                    let clay = Color32::from_rgb(150, 100, 80);
+                    let (wrong, ratio) = look_at(&harness, clay, true);
+                    assert!(wrong.is_empty(), "{w}x{h} at {scale}, light {light}, {tab:?}: {wrong:#?}");
+                    least = least.min(ratio);
+                }
+                table.push(format!("{w}x{h} scale {scale} {}: least contrast {least:.2}:1", if light { "light" } else { "dark" }));
+            }
+        }
+    }
+    table.iter().for_each(|line| println!("{line}"));
+}
+
+#[test]
+fn the_search_the_ring_and_a_message_fit_the_smallest_screen() {
+    for light in [false, true] {
+        for which in 0..3 {
+            let mut s = state(Tab::Look);
+            s.desk.prefs.light = light;
+            match which {
+                0 => s.desk.search = Some(Default::default()),
+                1 => s.desk.hidden = true,
+                _ => s.desk.say("/a/rather/long/path/to/a/file/that/was/not/there.stl: no such file or directory", true),
+            }
+            let mut harness =
+                Harness::builder().with_size([640.0, 360.0]).with_pixels_per_point(2.0).build_ui_state(show, s);
+            if which == 1 {
+                harness.hover_at(egui::pos2(320.0, 180.0));
+                harness.key_down(egui::Key::Space);
+            }
+            harness.run_steps(4);
+            let clay = Color32::from_rgb(150, 100, 80);
+            let all = texts(&harness.output().shapes, clay);
+            let screen = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 360.0));
+            for t in all.iter().filter(|t| t.clip.contains(t.rect.center())) {
+                let inside = screen.expand(0.5).contains_rect(t.rect);
+                assert!(inside || t.rect.bottom() > 340.0, "'{}' leaves the screen: {:?}", t.what, t.rect);
+            }
+        }
+    }
+}

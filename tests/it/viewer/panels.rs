@@ -1,0 +1,252 @@
+//! Panels through AccessKit: what a screen reader finds, a keyboard and a pointer can do.
+
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use sculptd::brush::BrushKind;
+use sculptd::command::Command;
+use sculptd::daemon::Published;
+use sculptd::panels::action::Action;
+use sculptd::panels::{Ask, Desk, Tab, View, all, timing::FrameFigures};
+use sculptd::viewer::look::Map;
+
+pub(super) struct State {
+    pub published: Published,
+    pub desk: Desk,
+    pub asked: Vec<Ask>,
+    pub devices: Vec<String>,
+    pub ghosts: bool,
+}
+
+pub(super) fn state(tab: Tab) -> State {
+    let mut world = super::world(2_000);
+    State {
+        published: super::published(&mut world),
+        desk: Desk { tab, ..Default::default() },
+        asked: Vec::new(),
+        devices: Vec::new(),
+        ghosts: false,
+    }
+}
+
+pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
+    let view = View {
+        state: &s.published,
+        camera: s.published.camera,
+        devices: &s.devices,
+        session: None,
+        uploaded: 0,
+        adapter: "an adapter",
+        frame: FrameFigures::default(),
+        ghosts: s.ghosts,
+    };
+    all(ui, &view, &mut s.desk, &mut s.asked);
+}
+
+fn harness(tab: Tab) -> Harness<'static, State> {
+    let mut h = Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).build_ui_state(show, state(tab));
+    h.run_steps(3);
+    h
+}
+
+fn brushes(h: &Harness<'_, State>) -> Vec<sculptd::brush::BrushSettings> {
+    let of = |a: &Ask| match a {
+        Ask::World(Command::Brush(b)) => Some(*b),
+        _ => None,
+    };
+    h.state().asked.iter().filter_map(of).collect()
+}
+
+#[test]
+fn a_brush_is_chosen_by_its_name_and_a_mirror_by_its_axis() {
+    let mut h = harness(Tab::Look);
+    h.get_by_label("Smooth").click();
+    h.run_steps(2);
+    assert_eq!(brushes(&h).last().map(|b| b.kind), Some(BrushKind::Smooth));
+    h.get_by_label("y").click();
+    h.run_steps(2);
+    assert_eq!(brushes(&h).last().map(|b| b.symmetry), Some([false, true, false]));
+}
+
+#[test]
+fn undo_waits_until_there_is_something_to_take_back() {
+    let mut h = harness(Tab::Look);
+    h.get_by_label("Undo").click();
+    h.run_steps(2);
+    assert!(h.state().asked.is_empty());
+    h.state_mut().published.undo_steps = 3;
+    h.run_steps(2);
+    h.get_by_label("Undo").click();
+    h.run_steps(2);
+    assert!(matches!(h.state().asked[..], [Ask::World(Command::Undo)]), "{:?}", h.state().asked);
+}
+
+#[test]
+fn keys_do_what_the_tooltips_say() {
+    let mut h = harness(Tab::Look);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(2);
+    h.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    h.run_steps(2);
+    let s = h.state();
+    assert!(matches!(s.asked[..], [Ask::World(Command::Undo), Ask::World(Command::Redo)]), "{:?}", s.asked);
+    assert!(s.desk.prefs.done.undone);
+    h.state_mut().asked.clear();
+    h.key_press(Key::CloseBracket);
+    h.run_steps(2);
+    let before = h.state().published.brush.radius;
+    assert!((brushes(&h)[0].radius - before * 1.1).abs() < 1e-6);
+    h.key_press(Key::T);
+    h.run_steps(2);
+    assert_eq!(h.state().desk.look.map, Map::Thickness);
+    // The legend is there, with its unit.
+    h.state_mut().desk.look.scale = (0.5, 2.5);
+    h.run_steps(2);
+    h.key_press(Key::T);
+    h.run_steps(2);
+    assert_eq!(h.state().desk.look.map, Map::None);
+}
+
+#[test]
+fn the_search_finds_an_action_and_enter_does_it() {
+    let mut h = harness(Tab::Look);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    h.run_steps(3);
+    h.get_by_label("Search actions").type_text("wirefr");
+    h.run_steps(3);
+    // Letters that are typed are not shortcuts.
+    assert!(!h.state().desk.look.wireframe);
+    h.key_press(Key::Enter);
+    h.run_steps(3);
+    assert!(h.state().desk.look.wireframe);
+    assert!(h.state().desk.search.is_none());
+}
+
+#[test]
+fn the_radius_is_dragged_with_the_pointer_alone_and_escape_leaves_it() {
+    let mut h = harness(Tab::Look);
+    h.hover_at(egui::pos2(600.0, 300.0));
+    h.run_steps(2);
+    h.key_press(Key::F);
+    h.run_steps(2);
+    assert!(h.state().desk.modal.is_some());
+    h.hover_at(egui::pos2(720.0, 300.0));
+    h.run_steps(2);
+    let before = h.state().published.brush.radius;
+    let asked = brushes(&h).last().expect("asked for").radius;
+    assert!((asked - before * 2.0).abs() < 0.01 * before, "{before} to {asked}");
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    assert!(h.state().desk.modal.is_none());
+}
+
+#[test]
+fn holding_space_opens_the_ring_and_letting_go_chooses() {
+    let mut h = harness(Tab::Look);
+    h.hover_at(egui::pos2(640.0, 360.0));
+    h.run_steps(2);
+    h.key_down(Key::Space);
+    h.run_steps(2);
+    assert!(h.state().desk.radial.is_some());
+    // Straight down: the thickness map.
+    h.hover_at(egui::pos2(640.0, 440.0));
+    h.run_steps(2);
+    h.key_up(Key::Space);
+    h.run_steps(2);
+    assert_eq!(h.state().desk.look.map, Map::Thickness);
+    assert!(h.state().desk.radial.is_none());
+}
+
+#[test]
+fn hints_are_gone_for_good_once_followed() {
+    let mut h = harness(Tab::Look);
+    assert!(h.query_by_label_contains("Touch the clay").is_some());
+    h.state_mut().desk.prefs.done.touched = true;
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("Touch the clay").is_none());
+    assert!(h.query_by_label_contains("Drag beside the form").is_some());
+    h.state_mut().desk.prefs.done.turned = true;
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    assert_eq!(h.state().desk.prefs.done.hint(), None);
+    assert!(h.query_by_label_contains("Shift smooths, Ctrl carves").is_none());
+    // Kept from day to day.
+    let kept = toml::to_string(&h.state().desk.prefs).expect("plain data");
+    assert_eq!(sculptd::panels::preferences::Preferences::parse(&kept).done.hint(), None);
+}
+
+#[test]
+fn the_device_page_says_what_is_there() {
+    let mut h = harness(Tab::Devices);
+    assert!(h.query_by_label_contains("No tablet found: plug one in, nothing to restart").is_some());
+    h.state_mut().devices = vec!["A tablet on /dev/hidraw0: connected".into()];
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("No tablet found").is_none());
+    assert!(h.query_by_label_contains("hidraw0: connected").is_some());
+}
+
+#[test]
+fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
+    let mut h = harness(Tab::Files);
+    h.state_mut().desk.files.open = "/some/mesh.obj".into();
+    h.state_mut().desk.files.scale = 2.0;
+    h.state_mut().desk.files.unit = 1;
+    h.run_steps(2);
+    // A ball of radius 1, twice as large, in centimetres.
+    assert!(h.query_by_label_contains("0.400 x 0.400 x 0.400 cm").is_some());
+    h.get_by_label("Open").click();
+    h.run_steps(2);
+    h.get_by_label("Export").click();
+    h.run_steps(2);
+    let asked = &h.state().asked;
+    assert!(matches!(&asked[0], Ask::Open(p) if p.ends_with("mesh.obj")), "{asked:?}");
+    assert!(matches!(&asked[1], Ask::Export(p) if p.ends_with("sculpture.stl")), "{asked:?}");
+}
+
+#[test]
+fn a_thing_is_taken_up_placed_and_joined() {
+    let mut world = super::world(2_000);
+    let mut h = harness(Tab::Scene);
+    h.get_by_label("Ball").click();
+    h.run_steps(2);
+    let asked = std::mem::take(&mut h.state_mut().asked);
+    let [Ask::World(take)] = &asked[..] else { panic!("{asked:?}") };
+    world.step(1, &[], &[take.clone()]);
+    h.state_mut().published = super::published(&mut world);
+    assert!(h.state().published.thing.is_some());
+    h.run_steps(2);
+    h.get_by_label("Cut").click();
+    h.run_steps(2);
+    assert!(matches!(h.state().asked[..], [Ask::Join(_)]), "{:?}", h.state().asked);
+}
+
+#[test]
+fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
+    let mut h = harness(Tab::Walls);
+    h.state_mut().desk.look.map = Map::Thickness;
+    let place = glam::Vec3::new(0.1, 0.9, 0.0);
+    h.state_mut().desk.walls.found = Some(Box::new(sculptd::panels::analysis::Thickness {
+        min: 0.4,
+        max: 3.0,
+        median: 1.5,
+        high: 2.5,
+        measured: 90,
+        vertices: 100,
+        below: 0.07,
+        histogram: vec![3; 48],
+        spots: vec![sculptd::panels::analysis::Spot { place, thickness: 0.4 }],
+    }));
+    h.run_steps(2);
+    h.get_by_label("1: 0.400 mm").click();
+    h.run_steps(2);
+    assert!(matches!(h.state().asked[..], [Ask::FlyTo(p)] if p == place), "{:?}", h.state().asked);
+}
+
+#[test]
+fn the_cube_looks_along_an_axis() {
+    let mut h = harness(Tab::Look);
+    h.get_by_label(Action::Front.entry().name).click();
+    h.run_steps(2);
+    let Some(Ask::Camera(c)) = h.state().asked.last() else { panic!("{:?}", h.state().asked) };
+    assert_eq!((c.yaw, c.pitch), (0.0, 0.0));
+}
