@@ -9,7 +9,18 @@ use crate::command::Command;
 
 /// Those that are shown first; the others stand under "more".
 const FIRST: [&str; 12] = [
-    "draw", "clay", "clay-strips", "smooth", "crease", "inflate", "grab", "pinch", "flatten", "layer", "mask", "gaussian",
+    "draw",
+    "clay",
+    "clay-strips",
+    "smooth",
+    "crease",
+    "inflate",
+    "grab",
+    "pinch",
+    "flatten",
+    "layer",
+    "mask",
+    "gaussian",
 ];
 
 /// What a button says: `clay-strips` becomes `Clay strips`.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DVec3, EulerRot, Quat};
 
 use super::{Ask, View, theme};
-use crate::hand::Choice;
 use crate::command::Command;
+use crate::hand::Choice;
 use crate::mesh::{PolyMesh, shapes};
 
 /// What can be taken up without a file.

@@ -46,7 +46,9 @@ fn blend(over: Color32, under: Color32) -> Color32 {
 fn walk(shape: &Shape, clip: Rect, opaque: &mut Vec<(Rect, Color32)>, out: &mut Vec<Text>, clay: Color32) {
     match shape {
         Shape::Vec(all) => all.iter().for_each(|s| walk(s, clip, opaque, out, clay)),
-        Shape::Rect(r) if r.fill.a() > 0 && r.blur_width == 0.0 => opaque.push((r.rect.intersect(clip), r.fill)),
+        Shape::Rect(r) if r.fill.a() > 0 && r.blur_width == 0.0 => {
+            opaque.push((r.rect.intersect(clip), r.fill))
+        }
         Shape::Circle(c) if c.fill.a() > 0 => {
             let rect = Rect::from_center_size(c.center, egui::Vec2::splat(c.radius * 1.4));
             opaque.push((rect.intersect(clip), c.fill));
@@ -119,7 +121,10 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                 for tab in TABS {
                     let mut s = state(tab);
                     s.desk.prefs.light = light;
-                    s.devices = vec!["A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: connected".into()];
+                    s.devices = vec![
+                        "A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: connected"
+                            .into(),
+                    ];
                     s.published.undo_steps = 4;
                     s.published.redo_steps = 2;
                     let mut harness = Harness::builder()
@@ -134,7 +139,10 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                     assert!(wrong.is_empty(), "{w}x{h} at {scale}, light {light}, {tab:?}: {wrong:#?}");
                     least = least.min(ratio);
                 }
-                table.push(format!("{w}x{h} scale {scale} {}: least contrast {least:.2}:1", if light { "light" } else { "dark" }));
+                table.push(format!(
+                    "{w}x{h} scale {scale} {}: least contrast {least:.2}:1",
+                    if light { "light" } else { "dark" }
+                ));
             }
         }
     }
@@ -150,10 +158,15 @@ fn the_search_the_ring_and_a_message_fit_the_smallest_screen() {
             match which {
                 0 => s.desk.search = Some(Default::default()),
                 1 => s.desk.hidden = true,
-                _ => s.desk.say("/a/rather/long/path/to/a/file/that/was/not/there.stl: no such file or directory", true),
+                _ => s.desk.say(
+                    "/a/rather/long/path/to/a/file/that/was/not/there.stl: no such file or directory",
+                    true,
+                ),
             }
-            let mut harness =
-                Harness::builder().with_size([640.0, 360.0]).with_pixels_per_point(2.0).build_ui_state(show, s);
+            let mut harness = Harness::builder()
+                .with_size([640.0, 360.0])
+                .with_pixels_per_point(2.0)
+                .build_ui_state(show, s);
             if which == 1 {
                 harness.hover_at(egui::pos2(320.0, 180.0));
                 harness.key_down(egui::Key::Space);

@@ -44,7 +44,8 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
 }
 
 fn harness(tab: Tab) -> Harness<'static, State> {
-    let mut h = Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).build_ui_state(show, state(tab));
+    let mut h =
+        Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).build_ui_state(show, state(tab));
     h.run_steps(3);
     h
 }
