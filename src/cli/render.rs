@@ -1,6 +1,6 @@
 //! `sculptd render`: a picture of a mesh, by the viewer's own renderer, without a window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
@@ -8,6 +8,7 @@ use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::CameraConfig;
 use crate::daemon::rig;
+use crate::stroke::Camera;
 use crate::viewer::look::{Look, MATERIALS};
 use crate::viewer::picture::{Painter, write_png};
 use crate::viewer::renderer::Scene;
@@ -38,6 +39,9 @@ pub struct RenderArgs {
     /// Edges of triangles over the clay.
     #[arg(long)]
     pub wireframe: bool,
+    /// So many pictures of one whole turn, numbered: NAME-000.png and on.
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(2..=999))]
+    pub turntable: Option<u32>,
 }
 
 fn materials() -> clap::builder::PossibleValuesParser {
@@ -80,6 +84,13 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
+/// `turn.png` becomes `turn-007.png`.
+fn numbered(path: &Path, frame: u32) -> PathBuf {
+    let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let ending = path.extension().map_or_else(String::new, |e| format!(".{}", e.to_string_lossy()));
+    path.with_file_name(format!("{stem}-{frame:03}{ending}"))
+}
+
 pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
     let mut loaded = rig::load(Some(&args.mesh), &Job::default()).map_err(super::run::rig_fail)?;
     let (width, height) = args.size;
@@ -104,12 +115,23 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
         wireframe: args.wireframe,
         ..Default::default()
     };
-    let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
-    let picture = painter.paint(&scene, width, height).map_err(no_adapter)?;
-    write_png(&args.output, &picture).map_err(|e| Fail::io(&args.output, &e))?;
-    let said = json!({ "file": args.output, "width": width, "height": height, "adapter": painter.adapter() });
+    let frames = args.turntable.unwrap_or(1);
+    let mut files = Vec::new();
+    for frame in 0..frames {
+        let turn = frame as f32 / frames as f32 * std::f32::consts::TAU;
+        let camera = Camera { yaw: camera.yaw + turn, ..camera };
+        let path = if args.turntable.is_some() { numbered(&args.output, frame) } else { args.output.clone() };
+        let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
+        let picture = painter.paint(&scene, width, height).map_err(no_adapter)?;
+        write_png(&path, &picture).map_err(|e| Fail::io(&path, &e))?;
+        files.push(path);
+    }
+    let said = json!({ "file": files[0], "files": files, "width": width, "height": height, "adapter": painter.adapter() });
     answer(as_json, &said, |out| {
-        writeln!(out, "{} ({width}x{height}, {})", args.output.display(), painter.adapter())
+        for file in &files {
+            writeln!(out, "{} ({width}x{height}, {})", file.display(), painter.adapter())?;
+        }
+        Ok(())
     });
     Ok(())
 }

@@ -15,12 +15,12 @@ const BALL: f32 = 10.0;
 
 /// Direction, letter, what it does, colour.
 const SIDES: [(Vec3, &str, Action, Color32); 6] = [
-    (Vec3::X, "X", Action::Right, Color32::from_rgb(200, 62, 62)),
-    (Vec3::NEG_X, "", Action::Left, Color32::from_rgb(200, 62, 62)),
-    (Vec3::Y, "Y", Action::Top, Color32::from_rgb(86, 142, 40)),
-    (Vec3::NEG_Y, "", Action::Bottom, Color32::from_rgb(86, 142, 40)),
-    (Vec3::Z, "Z", Action::Front, Color32::from_rgb(62, 110, 206)),
-    (Vec3::NEG_Z, "", Action::Back, Color32::from_rgb(62, 110, 206)),
+    (Vec3::X, "X", Action::Right, Color32::from_rgb(176, 48, 48)),
+    (Vec3::NEG_X, "", Action::Left, Color32::from_rgb(176, 48, 48)),
+    (Vec3::Y, "Y", Action::Top, Color32::from_rgb(58, 104, 24)),
+    (Vec3::NEG_Y, "", Action::Bottom, Color32::from_rgb(58, 104, 24)),
+    (Vec3::Z, "Z", Action::Front, Color32::from_rgb(48, 92, 184)),
+    (Vec3::NEG_Z, "", Action::Back, Color32::from_rgb(48, 92, 184)),
 ];
 
 /// Yaw and pitch that look along an axis, where the action is to.
@@ -60,7 +60,9 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<Ask>) 
             let response = ui.interact(ball, ui.scope_id().with(action.entry().name), Sense::click());
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name));
             let fade = 0.55 + 0.45 * (depth * 0.5 + 0.5);
-            let colour = colour.gamma_multiply(if response.hovered() { 1.0 } else { fade });
+            // Letters keep their ground; the far balls fade.
+            let solid = response.hovered() || !letter.is_empty();
+            let colour = colour.gamma_multiply(if solid { 1.0 } else { fade });
             if !letter.is_empty() {
                 ui.painter().line_segment([centre, at], Stroke::new(2.0, colour));
                 ui.painter().circle_filled(at, BALL, colour);

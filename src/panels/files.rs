@@ -71,7 +71,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     ui.horizontal(|ui| {
         let label = ui.label("Scale");
         ui.add(egui::DragValue::new(&mut files.scale).range(1e-6..=1e6).speed(0.01)).labelled_by(label.id);
-        egui::ComboBox::from_id_salt("unit").selected_text(files.factor().1).width(60.0).show_ui(ui, |ui| {
+        egui::ComboBox::from_label("Unit").selected_text(files.factor().1).width(60.0).show_ui(ui, |ui| {
             for (i, (name, _)) in UNITS.iter().enumerate() {
                 ui.selectable_value(&mut files.unit, i, *name);
             }

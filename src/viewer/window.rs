@@ -202,6 +202,10 @@ impl Open {
             _ => wanted.with_inner_size(winit::dpi::LogicalSize::new(1280.0, 720.0)),
         };
         let window = Arc::new(events.create_window(wanted).map_err(|e| no_window(e.to_string()))?);
+        if wiring.full_screen {
+            // Without a window manager nobody else gives it the keyboard.
+            window.focus_window();
+        }
         let instance = instance();
         let surface = instance.create_surface(window.clone()).map_err(|e| no_window(e.to_string()))?;
         let gpu = Gpu::new(instance, Some(&surface))?;
