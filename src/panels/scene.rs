@@ -9,8 +9,10 @@ use crate::command::Command;
 use crate::hand::Choice;
 use crate::mesh::{PolyMesh, shapes};
 
+type Solid = (&'static str, fn() -> PolyMesh);
+
 /// What can be taken up without a file.
-const SOLIDS: [(&str, fn() -> PolyMesh); 3] = [
+const SOLIDS: [Solid; 3] = [
     ("Ball", || shapes::uv_sphere(1.0, 24, 48)),
     ("Box", || shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE)),
     ("Cylinder", || shapes::cylinder(1.0, 2.0, 48)),

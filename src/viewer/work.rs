@@ -201,7 +201,7 @@ fn follow(wishes: &cc::Receiver<Wanted>, say: &cc::Sender<Done>) {
     let mut pages: Vec<Arc<[f32]>> = Vec::new();
     while let Ok(mut wanted) = wishes.recv() {
         loop {
-            if !map.as_mut().is_some_and(|m| pool.install(|| m.advance(&wanted.mesh)).is_ok()) {
+            if map.as_mut().is_none_or(|m| pool.install(|| m.advance(&wanted.mesh)).is_err()) {
                 map = pool.install(|| LiveMap::new(&wanted.mesh, 1, &job)).ok();
                 pages.clear();
             }
