@@ -210,7 +210,12 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
 
 /// Does what an action says, or hands it on.
 pub fn act(action: Action, ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
-    let brush = view.state.brush;
+    // Two keys in one frame: the second goes on from the first.
+    let asked = out.iter().rev().find_map(|a| match a {
+        Ask::World(Command::Brush(b)) => Some(*b),
+        _ => None,
+    });
+    let brush = asked.unwrap_or(view.state.brush);
     if let Some(command) = action::on_brush(action, brush) {
         out.push(Ask::World(command));
         return;

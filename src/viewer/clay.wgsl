@@ -12,7 +12,7 @@ struct Frame {
     base: vec4<f32>,
     // Highlight's strength and exponent, light at the rim, strength of cavities.
     finish: vec4<f32>,
-    // A map's lowest value, one over its span, and which: 0 none, 1 mask, 2 values.
+    // A map's lowest value, one over its span, which (0 none, 1 mask, 2 values), and how much nearer lines are.
     map: vec4<f32>,
     scale: array<vec4<f32>, 8>,
     // The ground's lower and upper colour.
@@ -129,7 +129,7 @@ fn line_vertex(@location(0) place: vec3<f32>, @location(1) colour: vec4<f32>) ->
     var out: LineCorner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
     // A hair nearer, so that a line on the surface is not eaten by it.
-    out.clip.z -= 0.0004 * out.clip.w;
+    out.clip.z -= frame.map.w;
     out.colour = colour;
     return out;
 }
@@ -143,7 +143,7 @@ fn line_fragment(in: LineCorner) -> @location(0) vec4<f32> {
 fn edge_vertex(@location(0) place: vec3<f32>) -> LineCorner {
     var out: LineCorner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
-    out.clip.z -= 0.0002 * out.clip.w;
+    out.clip.z -= 0.5 * frame.map.w;
     out.colour = vec4<f32>(0.0, 0.0, 0.0, 0.3);
     return out;
 }

@@ -21,7 +21,8 @@ impl Open {
         let mut lines = Vec::new();
         let mut brush = None;
         if self.desk.look.grid {
-            overlay::grid(&mut lines, state.middle, state.extent, self.desk.look.pale);
+            let floor = state.mesh.bounds().0.y;
+            overlay::grid(&mut lines, state.middle, floor, state.extent, self.desk.look.pale);
         }
         let mut ring_at = |view: Vec2, pressure: f32, tilt: Option<Vec2>, down: bool| {
             let ray = self.camera.ray(view);

@@ -73,7 +73,7 @@ pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, ra
 }
 
 /// The floor: squares of a round number of units, ten times as far as the work is wide at most.
-pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, extent: f32, pale: bool) {
+pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, floor: f32, extent: f32, pale: bool) {
     const HALF: i32 = 10;
     let step = 10f32.powf((extent * 0.3).max(1e-30).log10().floor());
     let step = if extent * 0.3 / step >= 5.0 {
@@ -83,7 +83,6 @@ pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, extent: f32, pale: bool) {
     } else {
         step
     };
-    let floor = middle.y - extent;
     let centre = (middle / step).round() * step;
     let ink = if pale { 60 } else { 190 };
     let reach = HALF as f32 * step;

@@ -242,7 +242,7 @@ impl Renderer {
             brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
             base: [m.base[0], m.base[1], m.base[2], f32::from(scene.look.flat)],
             finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
-            map: [low, 1.0 / (high - low).max(1e-12), kind, 0.0],
+            map: [low, 1.0 / (high - low).max(1e-12), kind, nearer(scene.camera, radius)],
             scale: scene.look.map.scale(),
             low: linear(ground[0]),
             high: linear(ground[1]),
@@ -304,6 +304,16 @@ impl Renderer {
             pass.draw(0..lines.len() as u32, 0..1);
         }
     }
+}
+
+/// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is `b` times the share.
+fn nearer(camera: &Camera, radius: f32) -> f32 {
+    if camera.orthographic {
+        return 4e-4;
+    }
+    let far = (camera.distance + radius * 2.0).max(1e-3);
+    let near = (camera.distance - radius * 2.0).max(far * 1e-4);
+    2e-3 * far * near / (far - near)
 }
 
 /// Whether a page's box may be seen: not wholly beyond one plane of the view.

@@ -97,6 +97,21 @@ fn keys_do_what_the_tooltips_say() {
     h.run_steps(2);
     let before = h.state().published.brush.radius;
     assert!((brushes(&h)[0].radius - before * 1.1).abs() < 1e-6);
+    // Twice in one frame is twice.
+    h.state_mut().asked.clear();
+    let key = Key::CloseBracket;
+    for pressed in [true, false, true, false] {
+        h.event(egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    h.run_steps(4);
+    let last = brushes(&h).last().map_or(0.0, |b| b.radius);
+    assert!((last - before * 1.21).abs() < 1e-5, "{last}");
     h.key_press(Key::T);
     h.run_steps(2);
     assert_eq!(h.state().desk.look.map, Map::Thickness);
