@@ -55,7 +55,8 @@ fn walk(shape: &Shape, clip: Rect, opaque: &mut Vec<(Rect, Color32)>, out: &mut 
         }
         Shape::Text(t) => {
             let rect = t.galley.mesh_bounds.translate(t.pos.to_vec2());
-            let centre = rect.center();
+            // Of the part that is seen: a page may scroll under its edge.
+            let centre = rect.intersect(clip).center();
             let under = opaque.iter().filter(|(r, _)| r.contains(centre));
             let ground = under.fold(clay, |ground, (_, fill)| blend(*fill, ground));
             let written = t.override_text_color.unwrap_or_else(|| {

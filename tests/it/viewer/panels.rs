@@ -1,6 +1,6 @@
 //! Panels through AccessKit: what a screen reader finds, a keyboard and a pointer can do.
 
-use egui::{Key, Modifiers};
+use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use sculptd::brush::BrushKind;
@@ -210,9 +210,9 @@ fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
     h.run_steps(2);
     // A ball of radius 1, twice as large, in centimetres.
     assert!(h.query_by_label_contains("0.400 x 0.400 x 0.400 cm").is_some());
-    h.get_by_label("Open").click();
+    h.get_by_role_and_label(Role::Button, "Open").click();
     h.run_steps(2);
-    h.get_by_label("Export").click();
+    h.get_by_role_and_label(Role::Button, "Export").click();
     h.run_steps(2);
     let asked = &h.state().asked;
     assert!(matches!(&asked[0], Ask::Open(p) if p.ends_with("mesh.obj")), "{asked:?}");
