@@ -161,6 +161,13 @@ impl Resolved {
         Resolver::new().finish()
     }
 
+    /// One text over the defaults, and nothing of what the machine's files say.
+    pub fn of_text(text: &str, origin: &str) -> Result<Self, ConfigError> {
+        let mut resolver = Resolver::new();
+        resolver.text(text, origin)?;
+        Ok(resolver.finish())
+    }
+
     /// The usual layers, where their files exist, then `extra` (which must exist).
     pub fn load(extra: Option<&Path>) -> Result<Self, ConfigError> {
         let mut resolver = Resolver::new();
@@ -181,6 +188,15 @@ pub fn usual_files() -> Vec<PathBuf> {
         directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("sculptd.toml")),
     );
     files
+}
+
+/// Where sessions are kept unless they are named with a folder: the user's state folder.
+pub fn state_dir() -> PathBuf {
+    let dirs = directories::ProjectDirs::from("", "", "sculptd");
+    dirs.map_or_else(
+        || std::env::temp_dir().join("sculptd"),
+        |d| d.state_dir().unwrap_or_else(|| d.data_local_dir()).to_path_buf(),
+    )
 }
 
 struct Resolver {

@@ -52,6 +52,8 @@ pub mod cli;
 pub mod command;
 pub mod config;
 pub mod daemon;
+#[doc(hidden)]
+pub mod fuzzing;
 pub mod hand;
 pub mod mesh;
 #[cfg(feature = "viewer")]

@@ -10,6 +10,7 @@ use super::{Fail, display};
 use crate::config::Config;
 use crate::daemon::live::{Journal, Live};
 use crate::daemon::rig::{Area, Begun, RecordingFeed};
+use crate::daemon::session::Health;
 use crate::daemon::session::writer::WriterThread;
 use crate::daemon::stepped::{Feed, summary};
 use crate::daemon::{Summary, adaptors, ghost};
@@ -31,6 +32,11 @@ pub struct LiveRun {
     pub limit_s: Option<f64>,
     pub export: Option<PathBuf>,
     pub session: Option<PathBuf>,
+    /// The file of `--config`, for reading it again.
+    pub settings: Option<PathBuf>,
+    /// Where the figures are served, if anywhere.
+    #[cfg(unix)]
+    pub metrics: Option<std::net::SocketAddr>,
 }
 
 /// How often a run without a window looks whether it should end.
@@ -45,12 +51,15 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
     }
     let adaptors = Arc::new(adaptors::start(&settings, catalogue, &clock, &factory));
     let (writer, thread) = begun.journal.unzip();
+    let health = thread.as_ref().map(|t| t.health.clone());
     let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
     let drain = config.channel.drain_per_tick;
     let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)
         .map_err(|e| Fail::Permission(e.to_string()))?;
     let stop = stop_signal();
-    let _control = control(&live, &stop)?;
+    let _control = control(&live, health.clone(), &stop)?;
+    #[cfg(unix)]
+    let _service = service(&run, &live, health, config)?;
     let ghosts = match run.ghosts {
         true => Some(ghost::playing(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?),
         false => None,
@@ -99,13 +108,43 @@ pub fn close_journal(thread: Option<WriterThread>) {
 }
 
 #[cfg(unix)]
-fn control(live: &Live, stop: &Arc<AtomicBool>) -> Result<Option<crate::daemon::control::Server>, Fail> {
+fn service(
+    run: &LiveRun,
+    live: &Live,
+    journal: Option<Health>,
+    config: &Config,
+) -> Result<(crate::daemon::service::Service, Option<crate::daemon::metrics::Metrics>), Fail> {
+    use crate::daemon::{metrics::Metrics, notify::Watched, service};
+    let watched = Watched { published: live.published.clone(), journal };
+    let metrics = match run.metrics {
+        None => None,
+        Some(at) => {
+            let page = Metrics::start(at, watched.clone())
+                .map_err(|e| Fail::Permission(format!("metrics on {at}: {e}")))?;
+            eprintln!("sculptd: figures at http://{}/metrics", page.address());
+            Some(page)
+        }
+    };
+    let reload =
+        service::Reload { extra: run.settings.clone(), now: config.clone(), commands: live.commands.clone() };
+    let service =
+        service::Service::start(watched, reload).map_err(|e| Fail::Permission(format!("SIGHUP: {e}")))?;
+    Ok((service, metrics))
+}
+
+#[cfg(unix)]
+fn control(
+    live: &Live,
+    journal: Option<Health>,
+    stop: &Arc<AtomicBool>,
+) -> Result<Option<crate::daemon::control::Server>, Fail> {
     use crate::daemon::control::{Host, Server, default_path, server::ServeError};
     let host = Host {
         commands: live.commands.clone(),
         published: live.published.clone(),
         stop: stop.clone(),
         thickness: Arc::default(),
+        journal,
     };
     match Server::start(&default_path(), host) {
         Ok(server) => Ok(Some(server)),
@@ -119,7 +158,7 @@ fn control(live: &Live, stop: &Arc<AtomicBool>) -> Result<Option<crate::daemon::
 }
 
 #[cfg(not(unix))]
-fn control(_: &Live, _: &Arc<AtomicBool>) -> Result<Option<()>, Fail> {
+fn control(_: &Live, _: Option<Health>, _: &Arc<AtomicBool>) -> Result<Option<()>, Fail> {
     Ok(None)
 }
 

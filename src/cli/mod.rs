@@ -18,9 +18,11 @@ pub mod demo;
 pub mod devices;
 pub mod display;
 pub mod distance;
+pub mod doctor;
 pub mod hollow;
 pub mod info;
 pub mod live;
+pub mod logs;
 pub mod measure;
 mod memory;
 pub mod offset;
@@ -30,6 +32,7 @@ pub mod remesh;
 pub mod render;
 pub mod replay;
 pub mod run;
+pub mod session;
 pub mod subdivide;
 pub mod thickness;
 
@@ -43,6 +46,9 @@ pub struct Cli {
     /// Print one JSON object on standard output instead of text.
     #[arg(long, global = true)]
     pub json: bool,
+    /// The log on standard error: text, or one JSON object a line.
+    #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
+    pub log_format: logs::LogFormat,
     #[command(subcommand)]
     pub command: Option<Command>,
 }
@@ -76,6 +82,13 @@ pub enum Command {
     /// Ask the running daemon.
     #[cfg(unix)]
     Ctl(ctl::CtlArgs),
+    /// Whether this machine can sculpt, and what to type where it cannot.
+    Doctor(doctor::DoctorArgs),
+    /// The session files: list them, look at one, remove old ones, save a damaged one.
+    Session {
+        #[command(subcommand)]
+        command: session::SessionCommand,
+    },
     /// Look at the settings.
     Config {
         #[command(subcommand)]
@@ -172,6 +185,7 @@ pub type Outcome = Result<(), Fail>;
 /// Runs the command line; the process exits with the returned code.
 pub fn run() -> u8 {
     let cli = Cli::parse();
+    logs::begin(cli.log_format);
     let outcome = match cli.command {
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "sculptd", &mut std::io::stdout());
@@ -187,6 +201,8 @@ pub fn run() -> u8 {
         #[cfg(unix)]
         Some(Command::Ctl(args)) => ctl::run(&args, cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),
+        Some(Command::Doctor(args)) => doctor::run(&args, cli.json),
+        Some(Command::Session { command }) => session::run(&command, cli.json),
         Some(Command::Boolean(args)) => boolean::run(&args, cli.json),
         Some(Command::Thickness(args)) => thickness::run(&args, cli.json),
         Some(Command::Measure(args)) => measure::run(&args, cli.json),

@@ -52,7 +52,7 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         hash: format!("{:016x}", replayed.world.hash()),
         vertices: replayed.world.mesh().vertex_count() as u64,
         export: export(args.export.as_deref(), &replayed.world)?,
-        loss: opened.loss,
+        loss: opened.loss.map(|l| l.to_string()),
     };
     answer(json, &answer_, |out| writeln!(out, "ticks  {}\nhash   {}", answer_.ticks, answer_.hash));
     Ok(())

@@ -58,6 +58,10 @@ pub struct RunArgs {
     /// How fast recordings are played. Headless, the default is as fast as the machine can; in a window, as it was.
     #[arg(long, value_enum)]
     pub pace: Option<Pace>,
+    /// Serve figures for Prometheus here, at /metrics; a port alone is on the loopback. No page does without.
+    #[cfg(unix)]
+    #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = crate::daemon::metrics::address)]
+    pub metrics: Option<std::net::SocketAddr>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -106,6 +110,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             limit_s: args.limit_s,
             export: args.export.clone(),
             session: args.session.clone(),
+            settings: args.config.clone(),
+            #[cfg(unix)]
+            metrics: args.metrics,
         };
         live::run(run, &config, begun, catalogue)?
     } else {

@@ -15,7 +15,7 @@ use crate::world::{World, WorldOptions};
 
 use super::session::format::Settings;
 use super::session::writer::{CreateError, WriterThread};
-use super::session::{self, OpenError, SessionWriter};
+use super::session::{self, OpenError, Opened, SessionWriter};
 use super::stepped::Feed;
 
 /// The work that one starts with: a ball of this many vertices, fine enough for detail, light on any machine.
@@ -78,6 +78,8 @@ pub enum BeginError {
     #[error(transparent)]
     Open(#[from] OpenError),
     #[error(transparent)]
+    Salvage(#[from] session::salvage::SalvageError),
+    #[error(transparent)]
     Create(#[from] CreateError),
 }
 
@@ -90,12 +92,27 @@ pub fn begin(
     job: &Job,
 ) -> Result<Begun, BeginError> {
     if let Some(path) = session.filter(|p| p.exists()) {
-        let opened = session::open(path)?;
         let workers = Workers::new(config.r#loop.worker_count());
-        let replayed = session::replay::replay(&opened, None, workers, job)
+        let mut warnings = Vec::new();
+        let mut path = path.to_path_buf();
+        let mut opened = session::open(&path);
+        if !matches!(
+            &opened,
+            Ok(Opened { loss: None, .. }) | Err(OpenError::TooNew { .. } | OpenError::Io { .. })
+        ) {
+            // A damaged file is kept as it is; the work goes on in another, beside it.
+            match session::salvage(&path) {
+                Ok(saved) => {
+                    warnings.push(saved.to_string());
+                    path = saved.path;
+                    opened = session::open(&path);
+                }
+                Err(e) => return Err(opened.err().map_or(BeginError::Salvage(e), BeginError::Open)),
+            }
+        }
+        let replayed = session::replay::replay(&opened?, None, workers, job)
             .map_err(|source| RigError::Build { path: path.display().to_string(), source })?;
-        let warnings = opened.loss.map(|l| format!("{}: {l}", path.display())).into_iter().collect();
-        let journal = session::resume(path)?;
+        let journal = session::resume(&path)?;
         return Ok(Begun { world: replayed.world, journal: Some(journal), warnings });
     }
     let loaded = load(mesh, job)?;

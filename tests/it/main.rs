@@ -6,13 +6,19 @@ mod bad_input;
 mod boolean;
 mod brushes;
 mod clay;
+#[cfg(unix)]
+mod control;
 mod field;
 mod golden;
 mod hands;
 mod io;
 mod io_files;
 mod mesh_craft;
+#[cfg(unix)]
+mod mutations;
 mod recovery;
+mod service;
+mod sessions;
 mod synthetic_hands;
 mod tidy;
 

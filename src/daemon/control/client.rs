@@ -28,9 +28,13 @@ pub fn call(path: &Path, method: &str, params: &Value, patience: Duration) -> Re
     stream.set_read_timeout(Some(patience)).map_err(silent)?;
     let mut line = json!({ "jsonrpc": "2.0", "id": 1, "method": method, "params": params }).to_string();
     line.push('\n');
-    (&stream).write_all(line.as_bytes()).map_err(silent)?;
+    // A daemon that refuses at once has answered and closed before it was asked: its answer is worth reading.
+    let asked = (&stream).write_all(line.as_bytes());
     let mut reply = String::new();
     BufReader::new(&stream).read_line(&mut reply).map_err(silent)?;
+    if reply.is_empty() {
+        asked.map_err(silent)?;
+    }
     let response: Response =
         serde_json::from_str(&reply).map_err(|e| ClientError::Nonsense(format!("{e}: {}", reply.trim())))?;
     match (response.result, response.error) {

@@ -22,7 +22,7 @@ use crate::mesh::io::write_mesh;
 /// Every method with its parameters, for `methods` and for the schema test.
 pub const METHODS: &[(&str, &str)] = &[
     ("methods", "{}: this list"),
-    ("status", "{version?}: the loop's figures, the work, the brush"),
+    ("status", "{version?}: the loop's figures, the work, the brush, the journal and what stands in its way"),
     (
         "brush",
         "{kind?, radius?, strength?, negative?, spacing?, ... as in the configuration's [brush]}: another kind comes with its own settings; changes what is named, answers with all",
@@ -170,12 +170,17 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
                 ));
             }
             let f = &state.figures;
+            let journal = host.journal.as_ref().map(|h| {
+                use std::sync::atomic::Ordering::Relaxed;
+                json!({ "written": h.written.load(Relaxed), "lost": h.lost.load(Relaxed), "fault": h.trouble() })
+            });
             Ok(json!({
                 "protocol": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "tick": state.tick,
                 "samples": f.samples, "dabs": f.dabs, "vertices_moved": f.vertices_moved, "overruns": f.overruns,
                 "losses": f.losses, "tick_ms": f.tick_ms,
                 "vertices": state.mesh.vertex_count(), "triangles": state.mesh.triangle_count(),
                 "undo_steps": state.undo_steps, "redo_steps": state.redo_steps, "brush": state.brush,
+                "journal": journal,
             }))
         }
         "brush" => {

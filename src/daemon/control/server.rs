@@ -25,6 +25,8 @@ pub struct Host {
     pub published: Arc<ArcSwap<Published>>,
     /// The wall thickness of the work, as last asked for.
     pub thickness: Arc<std::sync::Mutex<Option<crate::analysis::thickness::live::LiveMap>>>,
+    /// How the session file stands; `None`: the run is not recorded.
+    pub journal: Option<crate::daemon::session::Health>,
     /// Raised by `shutdown`.
     pub stop: Arc<AtomicBool>,
 }
@@ -117,9 +119,14 @@ fn accept(listener: &UnixListener, host: &Host, closing: &AtomicBool) {
 /// Only the daemon's own user and root, as the kernel names the peer.
 pub fn allowed(stream: &UnixStream, owner: u32) -> bool {
     match rustix::net::sockopt::socket_peercred(stream) {
-        Ok(peer) => peer.uid.as_raw() == owner || peer.uid.is_root(),
+        Ok(peer) => permitted(peer.uid.as_raw(), owner),
         Err(_) => false,
     }
+}
+
+/// Whether user `peer` may drive the daemon of user `owner`.
+pub fn permitted(peer: u32, owner: u32) -> bool {
+    peer == owner || peer == 0
 }
 
 fn serve(stream: UnixStream, host: &Host) {

@@ -24,6 +24,8 @@ pub const TABLES: &str = "
 /// Keys of `meta`.
 pub const META_START: &str = "start_mesh";
 pub const META_SETTINGS: &str = "settings";
+/// The CRC-32 of both, in that order. Files from before it was written go unchecked.
+pub const META_SUMS: &str = "sums";
 
 /// Everything that a fresh world is made from, besides the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,10 +9,13 @@
 pub mod format;
 pub mod reader;
 pub mod replay;
+pub mod salvage;
+pub mod shelf;
 pub mod writer;
 
-pub use reader::{OpenError, Opened, open};
-pub use writer::{Fault, SessionWriter, create, resume};
+pub use reader::{Loss, OpenError, Opened, open};
+pub use salvage::{Saved, salvage};
+pub use writer::{Fault, Health, SessionWriter, create, resume};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms that a crash may cost.
 pub const GROUP_MS: u64 = 100;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
-use super::format::{META_SETTINGS, META_START, Settings, TickInput, ticks};
+use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TickInput, ticks};
 use super::{APPLICATION_ID, VERSION};
 use crate::mesh::TriMesh;
 
@@ -31,16 +31,53 @@ pub struct Opened {
     pub start: TriMesh,
     pub settings: Settings,
     pub input: Vec<TickInput>,
-    /// What could not be read, in words: groups after the first broken one, with their ticks.
-    pub loss: Option<String>,
+    /// What could not be read.
+    pub loss: Option<Loss>,
 }
 
-/// Reads a session. A damaged tail is left out and said in [`Opened::loss`]; a damaged start is an error.
+/// What of a session could not be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Loss {
+    /// The last tick that was read.
+    pub kept: u64,
+    /// The last tick that the file speaks of, where it could be made out.
+    pub last: Option<u64>,
+    pub cause: String,
+}
+
+impl Loss {
+    /// Ticks of input lost, where the file still says how far it went.
+    pub fn ticks(&self) -> Option<u64> {
+        self.last.map(|l| l.saturating_sub(self.kept)).filter(|n| *n > 0)
+    }
+}
+
+impl std::fmt::Display for Loss {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "kept up to tick {}; ", self.kept)?;
+        match self.ticks() {
+            Some(n) => write!(f, "{n} ticks are lost, up to tick {}", self.kept + n)?,
+            None => write!(f, "what came after it is lost, how many ticks cannot be told")?,
+        }
+        write!(f, " ({})", self.cause)
+    }
+}
+
+/// Reads a session and changes nothing in it, also while a daemon writes it. A damaged tail is left out and said in
+/// [`Opened::loss`]; a damaged start is an error.
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
+    read(path, true)
+}
+
+/// `strict`: the checksums of start and settings must hold. Otherwise it is enough that they make sense.
+pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
     let name = path.display().to_string();
-    std::fs::File::open(path).map_err(|source| OpenError::Io { path: name.clone(), source })?;
+    if let Err(source) = std::fs::metadata(path) {
+        return Err(OpenError::Io { path: name, source });
+    }
     let not = |_| OpenError::NotASession { path: name.clone() };
-    let db = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_WRITE).map_err(not)?;
+    let db = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(not)?;
+    db.busy_timeout(std::time::Duration::from_secs(2)).map_err(not)?;
     let id: i32 = db.query_row("PRAGMA application_id", [], |r| r.get(0)).map_err(not)?;
     if id != APPLICATION_ID {
         return Err(OpenError::NotASession { path: name });
@@ -49,51 +86,80 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if found > VERSION {
         return Err(OpenError::TooNew { path: name, found });
     }
-    let meta = |key: &'static str| -> Result<Vec<u8>, OpenError> {
-        let damaged = |source: Box<dyn std::error::Error + Send + Sync>| OpenError::Damaged {
-            path: name.clone(),
-            what: key,
-            source,
-        };
-        let row: Option<Vec<u8>> = db
-            .query_row(
-                "SELECT value FROM meta WHERE key = ?1 AND length(value) < ?2",
-                (key, MAX_START_BYTES),
-                |r| r.get(0),
-            )
-            .optional()
-            .map_err(|e| damaged(e.into()))?;
-        row.ok_or_else(|| damaged("it is missing".into()))
+    let damaged = |what: &'static str, source: Box<dyn std::error::Error + Send + Sync>| OpenError::Damaged {
+        path: name.clone(),
+        what,
+        source,
     };
-    let decode_error =
-        |what, e: postcard::Error| OpenError::Damaged { path: name.clone(), what, source: e.into() };
-    let start: TriMesh = postcard::from_bytes(&meta(META_START)?).map_err(|e| decode_error(META_START, e))?;
+    let meta = |key: &'static str| -> Result<Option<Vec<u8>>, OpenError> {
+        db.query_row(
+            "SELECT value FROM meta WHERE key = ?1 AND length(value) < ?2",
+            (key, MAX_START_BYTES),
+            |r| r.get(0),
+        )
+        .optional()
+        .map_err(|e| damaged(key, e.into()))
+    };
+    let start_bytes = meta(META_START)?.ok_or_else(|| damaged(META_START, "it is missing".into()))?;
+    let settings_bytes =
+        meta(META_SETTINGS)?.ok_or_else(|| damaged(META_SETTINGS, "it is missing".into()))?;
+    if strict && let Some(sums) = meta(META_SUMS)? {
+        let sums: (u32, u32) = postcard::from_bytes(&sums).map_err(|e| damaged(META_SUMS, e.into()))?;
+        for (what, bytes, sum) in
+            [(META_START, &start_bytes, sums.0), (META_SETTINGS, &settings_bytes, sums.1)]
+        {
+            if crc32fast::hash(bytes) != sum {
+                return Err(damaged(what, "its checksum does not hold".into()));
+            }
+        }
+    }
+    let start: TriMesh = postcard::from_bytes(&start_bytes).map_err(|e| damaged(META_START, e.into()))?;
     let count = start.positions.len();
     if start.triangles.iter().flatten().any(|&v| v as usize >= count) {
-        return Err(OpenError::Damaged {
-            path: name,
-            what: META_START,
-            source: "an index is out of range".into(),
-        });
+        return Err(damaged(META_START, "an index is out of range".into()));
     }
-    let settings = postcard::from_bytes(&meta(META_SETTINGS)?).map_err(|e| decode_error(META_SETTINGS, e))?;
-    let (input, loss) = read_log(&db);
+    let settings = postcard::from_bytes(&settings_bytes).map_err(|e| damaged(META_SETTINGS, e.into()))?;
+    let (input, cause) = read_log(&db);
+    let loss =
+        cause.map(|cause| Loss { kept: input.last().map_or(0, |t| t.tick), last: last_named(&db), cause });
     Ok(Opened { start, settings, input, loss })
 }
 
+/// The last tick that any readable row names.
+fn last_named(db: &Connection) -> Option<u64> {
+    let mut last = None;
+    for order in ["ASC", "DESC"] {
+        // Row by row and from both ends: a damaged page in the middle hides neither end.
+        let mut scan = || -> rusqlite::Result<()> {
+            let mut query = db.prepare(&format!("SELECT last_tick FROM log ORDER BY id {order}"))?;
+            let mut rows = query.query([])?;
+            while let Some(row) = rows.next()? {
+                if let Ok(tick) = row.get::<_, i64>(0) {
+                    last = last.max(u64::try_from(tick).ok());
+                }
+            }
+            Ok(())
+        };
+        let _ = scan();
+    }
+    last
+}
+
+/// Every group up to the first that is missing, torn, or out of order, and what is wrong with that one.
 fn read_log(db: &Connection) -> (Vec<TickInput>, Option<String>) {
     let mut input: Vec<TickInput> = Vec::new();
     let mut read = || -> Result<Option<String>, rusqlite::Error> {
-        let mut query = db.prepare("SELECT first_tick, last_tick, crc, data FROM log ORDER BY id")?;
+        let mut query = db.prepare("SELECT id, first_tick, last_tick, crc, data FROM log ORDER BY id")?;
         let mut rows = query.query([])?;
+        let mut expected = 1i64;
         while let Some(row) = rows.next()? {
-            let (first, last): (i64, i64) = (row.get(0)?, row.get(1)?);
-            let (crc, data): (u32, Vec<u8>) = (row.get(2)?, row.get(3)?);
-            let broken = || {
-                Some(format!(
-                    "the input from tick {first} on is damaged (the group of ticks {first} to {last})"
-                ))
-            };
+            let (id, first, last): (i64, i64, i64) = (row.get(0)?, row.get(1)?, row.get(2)?);
+            let (crc, data): (u32, Vec<u8>) = (row.get(3)?, row.get(4)?);
+            if id != expected {
+                return Ok(Some(format!("group {expected} is missing")));
+            }
+            expected += 1;
+            let broken = || Some(format!("the group of ticks {first} to {last} is damaged"));
             if crc32fast::hash(&data) != crc {
                 return Ok(broken());
             }
@@ -106,6 +172,6 @@ fn read_log(db: &Connection) -> (Vec<TickInput>, Option<String>) {
         }
         Ok(None)
     };
-    let loss = read().unwrap_or_else(|e| Some(format!("the log cannot be read to its end: {e}")));
-    (input, loss)
+    let cause = read().unwrap_or_else(|e| Some(format!("the log cannot be read to its end: {e}")));
+    (input, cause)
 }

@@ -3,6 +3,7 @@
 //! A full disk does not stop the sculpting: groups are kept in memory up to [`KEPT_BYTES`], the fault is shown, and they are
 //! written as soon as there is room.
 
+use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -12,7 +13,7 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 use rusqlite::Connection;
 
-use super::format::{META_SETTINGS, META_START, Settings, TABLES, append};
+use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TABLES, append};
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::command::Command;
 use crate::daemon::live::Journal;
@@ -26,6 +27,8 @@ const BUFFERS: usize = 256;
 const BUFFER_BYTES: usize = 4096;
 /// Groups kept in memory while the disk takes nothing: more than an hour of a pen at 250 Hz.
 const KEPT_BYTES: usize = 64 << 20;
+/// Longest time between two signs of life of the writing thread.
+const IDLE: Duration = Duration::from_millis(1000);
 /// How often a disk that was full is tried again.
 const RETRY: Duration = Duration::from_millis(1000);
 
@@ -33,6 +36,8 @@ const RETRY: Duration = Duration::from_millis(1000);
 pub enum CreateError {
     #[error("{path}: exists already; a session is never overwritten")]
     Exists { path: String },
+    #[error("{path}: another sculptd is writing it; end that one, or name another session")]
+    Busy { path: String },
     #[error("{path}: {source}")]
     Store { path: String, source: rusqlite::Error },
     #[error("{path}: {source}")]
@@ -47,30 +52,51 @@ pub type Fault = Arc<Mutex<Option<String>>>;
 pub struct SessionWriter {
     full: cc::Sender<Message>,
     empty: cc::Receiver<Vec<u8>>,
-    /// Ticks that found no free buffer. Their input is not in the file: the session says so when it is opened.
+    /// Ticks whose input will never be in the file. After the first of them nothing more is handed over: a log with a hole
+    /// cannot be replayed beyond it.
     lost: Arc<AtomicU64>,
+    /// Ticks that found no free buffer, while the disk is slow; handed over with the next that finds one.
+    carry: Vec<u8>,
+    carry_ticks: (u64, u64),
 }
 
 /// The writing thread, to be waited for at the end.
 #[derive(Debug)]
 pub struct WriterThread {
     thread: JoinHandle<()>,
-    pub fault: Fault,
-    pub lost: Arc<AtomicU64>,
-    /// The last tick that is on the disk.
-    pub written: Arc<AtomicU64>,
+    pub health: Health,
 }
 
 impl WriterThread {
     /// Waits until all that was handed over is written. Call it after the loop, and with it the [`SessionWriter`], has ended.
     pub fn finish(self) -> Option<String> {
         let _ = self.thread.join();
+        self.health.trouble()
+    }
+}
+
+/// How the journal stands, for `status`, the log and the watchdog.
+#[derive(Debug, Clone, Default)]
+pub struct Health {
+    pub fault: Fault,
+    /// Ticks whose input is lost for the file.
+    pub lost: Arc<AtomicU64>,
+    /// The last tick that is on the disk.
+    pub written: Arc<AtomicU64>,
+    /// Grows with every turn of the writing thread: it is alive, whatever the disk does.
+    pub turns: Arc<AtomicU64>,
+}
+
+impl Health {
+    /// What stands in the way, if anything.
+    pub fn trouble(&self) -> Option<String> {
         self.fault.lock().ok().and_then(|f| f.clone())
     }
 }
 
+/// Encoded input of the ticks from the first number to the second.
 enum Message {
-    Tick(u64, Vec<u8>),
+    Ticks(u64, u64, Vec<u8>),
 }
 
 /// Makes a new session file. The mesh is written before this returns.
@@ -88,6 +114,7 @@ pub fn create(
             _ => CreateError::Io { path: name(), source },
         }
     })?;
+    let lock = lock(path)?;
     let db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
     db.pragma_update(None, "application_id", APPLICATION_ID).map_err(store)?;
@@ -97,24 +124,38 @@ pub fn create(
     };
     let mesh = blob(postcard::to_stdvec(start))?;
     let settings = blob(postcard::to_stdvec(settings))?;
+    let sums = blob(postcard::to_stdvec(&(crc32fast::hash(&mesh), crc32fast::hash(&settings))))?;
     let all = || -> rusqlite::Result<()> {
         db.execute_batch("BEGIN")?;
         db.execute_batch(TABLES)?;
         let mut put = db.prepare("INSERT INTO meta (key, value) VALUES (?1, ?2)")?;
         put.execute((META_START, &mesh))?;
         put.execute((META_SETTINGS, &settings))?;
+        put.execute((META_SUMS, &sums))?;
         db.execute_batch("COMMIT")
     };
     all().map_err(store)?;
-    Ok(start_thread(db))
+    Ok(start_thread(db, lock))
+}
+
+/// Keeps a second daemon from writing the same session. Given back when the file is closed, also by a kill.
+fn lock(path: &Path) -> Result<File, CreateError> {
+    let name = || path.display().to_string();
+    let file = File::open(path).map_err(|source| CreateError::Io { path: name(), source })?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(CreateError::Busy { path: name() }),
+        // A file system without locks: as before there were any.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+    }
 }
 
 /// Goes on writing a session that was opened.
 pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError> {
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
+    let lock = lock(path)?;
     let db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
-    Ok(start_thread(db))
+    Ok(start_thread(db, lock))
 }
 
 /// Write-ahead log, every group synced: a power cut costs the last group at most.
@@ -124,20 +165,20 @@ fn tune(db: &Connection) -> rusqlite::Result<()> {
     db.pragma_update(None, "synchronous", "full")
 }
 
-fn start_thread(db: Connection) -> (SessionWriter, WriterThread) {
+fn start_thread(db: Connection, lock: File) -> (SessionWriter, WriterThread) {
     let (full, inbox) = cc::bounded(BUFFERS);
     let (recycle, empty) = cc::bounded(BUFFERS);
     for _ in 0..BUFFERS {
         let _ = recycle.try_send(Vec::with_capacity(BUFFER_BYTES));
     }
-    let fault = Fault::default();
-    let (lost, written) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+    let health = Health::default();
     let mut writing = Writing {
         db,
+        _lock: lock,
         recycle,
-        fault: fault.clone(),
-        written: written.clone(),
+        health: health.clone(),
         groups: Vec::new(),
+        closed: false,
         clock: Clock::monotonic(),
     };
     let thread = std::thread::Builder::new()
@@ -145,22 +186,58 @@ fn start_thread(db: Connection) -> (SessionWriter, WriterThread) {
         .spawn(move || writing.run(&inbox))
         // Without a thread there is no process left to speak of: the machine has no memory for a stack.
         .unwrap_or_else(|e| panic!("the journal thread could not be started: {e}"));
-    let thread = WriterThread { thread, fault, lost: lost.clone(), written };
-    (SessionWriter { full, empty, lost }, thread)
+    let lost = health.lost.clone();
+    let writer = SessionWriter { full, empty, lost, carry: Vec::new(), carry_ticks: (0, 0) };
+    (writer, WriterThread { thread, health })
 }
 
 impl Journal for SessionWriter {
     fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], _: &World) {
+        if samples.is_empty() && commands.is_empty() && self.carry.is_empty() {
+            return;
+        }
+        if self.lost.load(Relaxed) > 0 {
+            self.lost.fetch_add(1, Relaxed);
+            return;
+        }
+        let free = self.empty.try_recv().ok();
+        if let Some(mut buffer) = free {
+            buffer.clear();
+            let mut first = tick;
+            if !self.carry.is_empty() {
+                std::mem::swap(&mut buffer, &mut self.carry);
+                first = self.carry_ticks.0;
+            }
+            if !(samples.is_empty() && commands.is_empty()) {
+                append(&mut buffer, tick, samples, commands);
+            }
+            // As many buffers as places: one in hand is a place free.
+            let _ = self.full.try_send(Message::Ticks(first, tick, buffer));
+            return;
+        }
         if samples.is_empty() && commands.is_empty() {
             return;
         }
-        let Ok(mut buffer) = self.empty.try_recv() else {
-            self.lost.fetch_add(1, Relaxed);
+        if self.carry.is_empty() {
+            self.carry_ticks.0 = tick;
+        }
+        self.carry_ticks.1 = tick;
+        if self.carry.len() > KEPT_BYTES {
+            self.carry = Vec::new();
+            self.lost.fetch_add(1 + tick.saturating_sub(self.carry_ticks.0), Relaxed);
             return;
-        };
-        buffer.clear();
-        append(&mut buffer, tick, samples, commands);
-        let _ = self.full.try_send(Message::Tick(tick, buffer));
+        }
+        append(&mut self.carry, tick, samples, commands);
+    }
+}
+
+impl Drop for SessionWriter {
+    /// Hands over what still waits; now there is time.
+    fn drop(&mut self) {
+        if !self.carry.is_empty() {
+            let carry = std::mem::take(&mut self.carry);
+            let _ = self.full.send(Message::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
+        }
     }
 }
 
@@ -172,11 +249,14 @@ struct Group {
 
 struct Writing {
     db: Connection,
+    /// After `db`: closing another handle of the file first would give back SQLite's own locks.
+    _lock: File,
     recycle: cc::Sender<Vec<u8>>,
-    fault: Fault,
-    written: Arc<AtomicU64>,
+    health: Health,
     /// Closed groups that are not on the disk yet, oldest first.
     groups: Vec<Group>,
+    /// Input was given up: what comes after it would make a log with a hole.
+    closed: bool,
     clock: Clock,
 }
 
@@ -189,19 +269,24 @@ impl Writing {
             let patience = if open.is_some() {
                 Duration::from_micros(due_us.saturating_sub(now))
             } else if self.groups.is_empty() {
-                Duration::from_secs(3600)
+                IDLE
             } else {
                 RETRY
             };
             let message = inbox.recv_timeout(patience);
+            self.health.turns.fetch_add(1, Relaxed);
             let ended = matches!(message, Err(cc::RecvTimeoutError::Disconnected));
-            if let Ok(Message::Tick(tick, bytes)) = message {
-                let group = open.get_or_insert_with(|| {
-                    due_us = self.clock.now_us() + GROUP_MS * 1000;
-                    Group { first: tick, last: tick, data: Vec::new() }
-                });
-                group.data.extend_from_slice(&bytes);
-                group.last = tick;
+            if let Ok(Message::Ticks(first, last, bytes)) = message {
+                if self.closed {
+                    self.health.lost.fetch_add(1 + last - first, Relaxed);
+                } else {
+                    let group = open.get_or_insert_with(|| {
+                        due_us = self.clock.now_us() + GROUP_MS * 1000;
+                        Group { first, last, data: Vec::new() }
+                    });
+                    group.data.extend_from_slice(&bytes);
+                    group.last = last;
+                }
                 let _ = self.recycle.try_send(bytes);
             }
             if ended || self.clock.now_us() >= due_us || (open.is_none() && !self.groups.is_empty()) {
@@ -222,22 +307,35 @@ impl Writing {
             Ok(last) => {
                 self.groups.clear();
                 if let Some(last) = last {
-                    self.written.store(last, Relaxed);
+                    self.health.written.store(last, Relaxed);
                 }
                 None
             }
             Err(e) if kept > KEPT_BYTES => {
-                // The newest are given up first: a log with a hole cannot be replayed beyond it.
-                self.groups.pop();
+                // What waits is written when there is room; nothing after it is, for a log with a hole cannot be replayed.
+                self.closed = true;
                 Some(format!(
                     "the session file takes nothing and {kept} bytes wait: input is being lost ({e})"
                 ))
             }
             Err(e) => Some(format!("the session file takes nothing, input is kept in memory: {e}")),
         };
-        if let Ok(mut fault) = self.fault.lock() {
-            *fault = text;
+        let written = self.health.written.load(Relaxed);
+        let text = text.or_else(|| {
+            self.closed.then(|| {
+                format!("the session file ends at tick {written}: the disk was full too long; begin another session")
+            })
+        });
+        let Ok(mut fault) = self.health.fault.lock() else { return };
+        // Once when it begins and once when it is over, however often it is tried between.
+        match (fault.is_some(), &text) {
+            (false, Some(text)) => tracing::error!("journal: {text}"),
+            (true, None) => {
+                tracing::info!("journal: the session file is written again, up to tick {written}")
+            }
+            _ => {}
         }
+        *fault = text;
     }
 
     fn write(&mut self) -> rusqlite::Result<Option<u64>> {

@@ -1,0 +1,111 @@
+//! `sculptd session list|show|prune|save`: the session files.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::{Fail, Outcome, answer};
+use crate::config::state_dir;
+use crate::daemon::session::salvage::{SalvageError, salvage};
+use crate::daemon::session::shelf::{self, Entry};
+
+#[derive(Debug, clap::Subcommand)]
+pub enum SessionCommand {
+    /// Every session in a folder, the newest first.
+    List {
+        /// The user's own state folder if left out.
+        folder: Option<PathBuf>,
+    },
+    /// What a session holds, and how whole it is. Ends with 1 if it is damaged.
+    Show { session: PathBuf },
+    /// Remove the oldest sessions; says which, and removes them only with --yes.
+    Prune {
+        folder: Option<PathBuf>,
+        /// How many of the newest stay.
+        #[arg(long, value_name = "N", default_value_t = 20)]
+        keep: usize,
+        #[arg(long)]
+        yes: bool,
+    },
+    /// Save what can be read of a damaged session into a new file beside it.
+    Save { session: PathBuf },
+}
+
+fn list(folder: &Path) -> Result<Vec<Entry>, Fail> {
+    shelf::list(folder).map_err(|e| Fail::io(folder, &e))
+}
+
+fn line(out: &mut dyn std::io::Write, e: &Entry) -> std::io::Result<()> {
+    let facts = e.facts.as_ref().map_or_else(
+        || "unreadable".into(),
+        |f| {
+            let seconds = f.last_tick / u64::from(f.rate_hz.max(1));
+            format!("{:>3} min {:02} s  {:>9} samples", seconds / 60, seconds % 60, f.samples)
+        },
+    );
+    writeln!(out, "{:>8} KiB  {facts}  {}", e.bytes.div_ceil(1024), e.path.display())?;
+    e.damage.as_ref().map_or(Ok(()), |d| writeln!(out, "              damaged: {d}"))
+}
+
+pub fn run(command: &SessionCommand, json: bool) -> Outcome {
+    match command {
+        SessionCommand::List { folder } => {
+            let folder = folder.clone().unwrap_or_else(state_dir);
+            let all = if folder.exists() { list(&folder)? } else { vec![] };
+            answer(json, &json!({ "folder": folder, "sessions": all }), |out| {
+                if all.is_empty() {
+                    return writeln!(out, "no sessions in {}", folder.display());
+                }
+                all.iter().try_for_each(|e| line(out, e))
+            });
+        }
+        SessionCommand::Show { session } => {
+            let entry = shelf::look(session).map_err(|e| Fail::io(session, &e))?;
+            answer(json, &entry, |out| {
+                line(out, &entry)?;
+                let Some(f) = &entry.facts else { return Ok(()) };
+                writeln!(out, "start           {:>12} vertices", f.start_vertices)?;
+                writeln!(out, "last tick       {:>12}   at {} Hz", f.last_tick, f.rate_hz)?;
+                writeln!(out, "ticks           {:>12}   that had input", f.ticks)?;
+                writeln!(out, "commands        {:>12}", f.commands)
+            });
+            match entry {
+                Entry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
+                Entry { damage: Some(_), .. } => {
+                    let text = format!("damaged; mend it with: sculptd session save '{}'", session.display());
+                    return Err(Fail::Check(text));
+                }
+                _ => {}
+            }
+        }
+        SessionCommand::Prune { folder, keep, yes } => {
+            let folder = folder.clone().unwrap_or_else(state_dir);
+            let spare = if folder.exists() { shelf::spare(list(&folder)?, *keep) } else { vec![] };
+            let freed: u64 = spare.iter().map(|e| e.bytes).sum();
+            if *yes {
+                for e in &spare {
+                    shelf::remove(&e.path).map_err(|why| Fail::io(&e.path, &why))?;
+                }
+            }
+            let paths: Vec<&PathBuf> = spare.iter().map(|e| &e.path).collect();
+            answer(json, &json!({ "removed": yes, "bytes": freed, "sessions": paths }), |out| {
+                spare.iter().try_for_each(|e| line(out, e))?;
+                let word = if *yes { "removed" } else { "would go (add --yes)" };
+                writeln!(out, "{} {word}, {} KiB", spare.len(), freed.div_ceil(1024))
+            });
+        }
+        SessionCommand::Save { session } => {
+            let saved = salvage(session).map_err(|e| match e {
+                SalvageError::Whole { .. } => Fail::Usage(e.to_string()),
+                e => Fail::Input(e.to_string()),
+            })?;
+            let lost = saved.loss.as_ref().and_then(|l| l.ticks());
+            let value = json!({
+                "path": saved.path, "lost_ticks": lost, "start_changed": saved.start_changed,
+                "loss": saved.loss.as_ref().map(|l| l.to_string()),
+            });
+            answer(json, &value, |out| writeln!(out, "{saved}"));
+        }
+    }
+    Ok(())
+}

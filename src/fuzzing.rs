@@ -1,0 +1,51 @@
+//! The doors that bytes from outside come in by, one function each: for the fuzzer's targets and for the tests that feed the
+//! same doors with seeded mutations. Each must return, whatever it is given.
+
+use std::path::Path;
+
+use crate::analysis::cancel::Job;
+use crate::mesh::Mesh;
+
+/// A mesh file of the kind that its name's ending (`obj`, `stl`, `ply`, `glb`, `3mf`) says: read, made into triangles, built.
+pub fn mesh_bytes(kind: &str, data: &[u8]) {
+    let name = format!("input.{kind}");
+    if let Ok(loaded) = crate::mesh::io::parse(data, Path::new(&name), &Job::default()) {
+        let (plain, _) = loaded.mesh.triangulate();
+        let _ = Mesh::build(&plain, &Job::default());
+    }
+}
+
+/// One line for the control socket.
+#[cfg(unix)]
+pub fn rpc_bytes(data: &[u8]) {
+    if let Ok(request) = crate::daemon::control::protocol::parse(data) {
+        // What a method makes of its parameters: the settings that most of them are.
+        let _ = serde_json::from_value::<crate::brush::BrushSettings>(request.params.clone())
+            .map(|b| b.clamped());
+        let _ = serde_json::from_value::<crate::stroke::Camera>(request.params.clone()).map(|c| c.is_sane());
+        let _ = serde_json::from_value::<crate::hand::ReachBox>(request.params).map(|r| r.is_sane());
+    }
+}
+
+/// A settings file.
+pub fn config_bytes(data: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(data) {
+        let _ = crate::config::Resolved::of_text(text, "input");
+    }
+}
+
+/// A session file, put into `folder` (which must be empty): opened, or else salvaged; and replayed.
+pub fn session_bytes(folder: &Path, data: &[u8]) {
+    use crate::daemon::session;
+    let path = folder.join("input.sculpt");
+    let written = crate::mesh::io::write_beside(&path, |out| out.write_all(data));
+    if written.is_err() {
+        return;
+    }
+    let opened = session::open(&path)
+        .or_else(|e| session::salvage(&path).map_err(|_| e).and_then(|saved| session::open(&saved.path)));
+    if let Ok(opened) = opened {
+        let workers = crate::mesh::Workers::new(1);
+        let _ = session::replay::replay(&opened, Some(400), workers, &Job::default());
+    }
+}

@@ -1,0 +1,216 @@
+//! The control socket keeps everybody else out, and everything within its limits.
+
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::net::UnixStream;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use arc_swap::ArcSwap;
+use sculptd::analysis::cancel::Job;
+use sculptd::command::Command;
+use sculptd::config::Config;
+use sculptd::daemon::control::methods::{METHODS, call as answer};
+use sculptd::daemon::control::server::{Host, Server, permitted};
+use sculptd::daemon::control::{MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
+use sculptd::daemon::published::{Published, PublishedFigures};
+use sculptd::daemon::rig;
+use sculptd::mesh::{Mesh, shapes};
+use serde_json::{Value, json};
+
+struct Rig {
+    host: Host,
+    commands: crossbeam_channel::Receiver<Command>,
+    dir: tempfile::TempDir,
+}
+
+impl Rig {
+    fn new() -> Self {
+        let config = Config {
+            r#loop: sculptd::config::LoopConfig { workers: 1, ..Default::default() },
+            ..Default::default()
+        };
+        let mesh = Mesh::build(&shapes::sphere_of_about(300), &Job::default()).expect("a ball");
+        let mut world = rig::world(mesh, &config);
+        let published = Published::of(&mut world, PublishedFigures::default());
+        let (sender, commands) = crossbeam_channel::bounded(4096);
+        let host = Host {
+            commands: sender,
+            published: Arc::new(ArcSwap::from_pointee(published)),
+            thickness: Arc::default(),
+            journal: None,
+            stop: Arc::default(),
+        };
+        Rig { host, commands, dir: tempfile::tempdir().expect("a folder") }
+    }
+
+    fn serve(&self) -> (Server, PathBuf) {
+        let path = self.dir.path().join("s.sock");
+        (Server::start(&path, self.host.clone()).expect("listens"), path)
+    }
+}
+
+struct Client {
+    out: UnixStream,
+    lines: BufReader<UnixStream>,
+}
+
+impl Client {
+    fn new(path: &Path) -> Self {
+        let out = UnixStream::connect(path).expect("connects");
+        out.set_read_timeout(Some(Duration::from_secs(10))).expect("set");
+        let lines = BufReader::new(out.try_clone().expect("cloned"));
+        Client { out, lines }
+    }
+
+    /// The next answer; `None` once the daemon has closed.
+    fn hear(&mut self) -> Option<Value> {
+        let mut line = String::new();
+        match self.lines.read_line(&mut line) {
+            Ok(0) | Err(_) => None,
+            Ok(_) => Some(serde_json::from_str(&line).expect("JSON")),
+        }
+    }
+
+    fn ask(&mut self, line: &str) -> Option<Value> {
+        let _ = self.out.write_all(format!("{line}\n").as_bytes());
+        self.hear()
+    }
+
+    fn status(&mut self, params: &Value) -> Value {
+        let line = json!({ "jsonrpc": "2.0", "id": 7, "method": "status", "params": params }).to_string();
+        self.ask(&line).expect("an answer")
+    }
+}
+
+#[test]
+fn another_user_is_refused() {
+    assert!(permitted(1000, 1000) && permitted(0, 1000));
+    assert!(!permitted(1001, 1000) && !permitted(65534, 0) && !permitted(1000, 0));
+    // And in truth, where this test may become somebody else.
+    use std::os::unix::fs::PermissionsExt;
+    use std::os::unix::process::CommandExt;
+    let rig = Rig::new();
+    let (_server, path) = rig.serve();
+    assert_eq!(std::fs::metadata(&path).expect("there").permissions().mode() & 0o777, 0o600);
+    let program = rig.dir.path().join("sculptd");
+    std::fs::copy(env!("CARGO_BIN_EXE_sculptd"), &program).expect("copied");
+    let ask = || {
+        let mut command = std::process::Command::new(&program);
+        command.args(["ctl", "status", "--socket"]).arg(&path).current_dir("/").uid(65534).gid(65534);
+        command.output()
+    };
+    if std::fs::set_permissions(rig.dir.path(), std::fs::Permissions::from_mode(0o755)).is_err()
+        || ask().is_err()
+    {
+        println!("skipped in part: this user may not become another");
+        return;
+    }
+    // The file's mode keeps them out,
+    let out = ask().expect("runs");
+    assert_eq!(out.status.code(), Some(5), "{}", String::from_utf8_lossy(&out.stderr));
+    // and if somebody opens it, the kernel's word on who asks.
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o666)).expect("set");
+    let out = ask().expect("runs");
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert!(out.status.code() == Some(1) && said.contains("another user"), "{said}");
+    assert!(Client::new(&path).status(&json!({}))["result"].is_object());
+}
+
+#[test]
+fn an_oversized_message_ends_the_talk_and_deep_nesting_does_not() {
+    let rig = Rig::new();
+    let (_server, path) = rig.serve();
+    let mut client = Client::new(&path);
+    let deep = format!(
+        r#"{{"jsonrpc":"2.0","id":1,"method":"status","params":{}1{}}}"#,
+        "[".repeat(MAX_DEPTH),
+        "]".repeat(MAX_DEPTH)
+    );
+    let refused = client.ask(&deep).expect("an answer");
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("deep")), "{refused}");
+    let very = format!("{}{}", "[".repeat(MAX_MESSAGE / 2 - 1), "]".repeat(MAX_MESSAGE / 2 - 1));
+    assert_eq!(client.ask(&very).expect("an answer")["error"]["code"], -32600);
+    assert!(client.status(&json!({}))["result"].is_object(), "the talk goes on");
+    let refused = client.ask(&"x".repeat(MAX_MESSAGE * 4)).expect("an answer");
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("bytes")), "{refused}");
+    assert_eq!(client.hear(), None, "and is closed");
+    assert!(Client::new(&path).status(&json!({}))["result"].is_object(), "others are served");
+}
+
+#[test]
+fn a_wrong_version_is_refused_with_both_numbers() {
+    let rig = Rig::new();
+    let (_server, path) = rig.serve();
+    let mut client = Client::new(&path);
+    let refused = client.status(&json!({ "version": PROTOCOL + 1 }));
+    assert_eq!(refused["error"]["code"], -32002);
+    let said = refused["error"]["message"].as_str().expect("words");
+    assert!(said.contains(&PROTOCOL.to_string()) && said.contains(&(PROTOCOL + 1).to_string()), "{said}");
+    assert_eq!(client.status(&json!({ "version": PROTOCOL }))["result"]["protocol"], PROTOCOL);
+}
+
+#[test]
+fn requests_and_clients_are_counted() {
+    let rig = Rig::new();
+    let (_server, path) = rig.serve();
+    let mut client = Client::new(&path);
+    // All at once, so that no slow machine stretches them over more than a second each.
+    let line = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"hash\"}\n";
+    client.out.write_all(line.repeat(4 * MAX_RATE as usize).as_bytes()).expect("sent");
+    let answers = (0..4 * MAX_RATE).map(|_| client.hear().expect("an answer"));
+    let slow = answers.filter(|a| a["error"]["code"] == -32001).count();
+    assert!(slow > 0, "a flood was served");
+    drop(client);
+    let mut all: Vec<Client> = Vec::new();
+    let mut refused = 0;
+    for _ in 0..MAX_CLIENTS + 3 {
+        let mut c = Client::new(&path);
+        match c.ask(r#"{"jsonrpc":"2.0","id":1,"method":"status"}"#) {
+            Some(v) if v["result"].is_object() => all.push(c),
+            _ => refused += 1,
+        }
+    }
+    assert!(all.len() <= MAX_CLIENTS && refused >= 3, "{} {refused}", all.len());
+}
+
+/// The list that `methods` gives out and the code that answers are one.
+#[test]
+fn the_schema_is_the_code() {
+    let rig = Rig::new();
+    for (name, what) in METHODS {
+        let e = answer(&rig.host, name, json!({ "no such parameter": 1 })).expect_err(name);
+        assert_eq!(e.code, -32602, "{name} {what}: {}", e.message);
+    }
+    assert!(rig.commands.is_empty(), "a refused request sent a command");
+    assert!(!rig.host.stop.load(std::sync::atomic::Ordering::Relaxed));
+    assert_eq!(answer(&rig.host, "frobnicate", Value::Null).expect_err("unknown").code, -32601);
+    let listed = answer(&rig.host, "methods", Value::Null).expect("a list");
+    assert_eq!(listed.as_object().map(|o| o.len()), Some(METHODS.len()));
+    // Every arm of the code is on the list.
+    let code = include_str!("../../src/daemon/control/methods.rs");
+    let (_, arms) = code.split_once("match method {").expect("the arms");
+    let named = arms.lines().filter(|l| l.starts_with("        \"")).flat_map(|l| {
+        let (names, _) = l.split_once("=>").unwrap_or((l, ""));
+        names.split('|').map(|n| n.trim().trim_matches('"').to_owned()).collect::<Vec<_>>()
+    });
+    let mut count = 0;
+    for name in named {
+        assert!(METHODS.iter().any(|(m, _)| *m == name), "{name} is not listed");
+        count += 1;
+    }
+    assert_eq!(count, METHODS.len());
+}
+
+#[test]
+fn paths_with_links_or_steps_upward_are_refused() {
+    let rig = Rig::new();
+    let link = rig.dir.path().join("link.stl");
+    std::os::unix::fs::symlink(rig.dir.path().join("elsewhere.stl"), &link).expect("a link");
+    for path in ["relative.stl".into(), rig.dir.path().join("../up.stl"), link] {
+        for method in ["export", "load", "take-up"] {
+            let e = answer(&rig.host, method, json!({ "path": path })).expect_err("refused");
+            assert_eq!(e.code, -32602, "{method} {}: {}", path.display(), e.message);
+        }
+    }
+}

@@ -1,0 +1,454 @@
+//! Session files that went through what really happens: torn, flipped, cut off from power, on a full disk.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Duration;
+
+use glam::Vec2;
+use sculptd::analysis::cancel::Job;
+use sculptd::config::Config;
+use sculptd::daemon::live::Journal;
+use sculptd::daemon::session::format::Settings;
+use sculptd::daemon::session::writer::WriterThread;
+use sculptd::daemon::session::{self, SessionWriter, replay, salvage};
+use sculptd::devices::sim::faults::Rng;
+use sculptd::devices::{Body, DeviceId, Pen, Sample};
+use sculptd::mesh::{Mesh, TriMesh, Workers, shapes};
+use sculptd::world::{World, WorldOptions};
+use serde_json::Value;
+
+#[allow(clippy::disallowed_methods)] // A test waits for another thread.
+fn pause(ms: u64) {
+    std::thread::sleep(Duration::from_millis(ms));
+}
+
+#[allow(clippy::disallowed_methods)] // A test's damaged file is meant to be what it is.
+fn put(path: &Path, bytes: &[u8]) {
+    std::fs::write(path, bytes).expect("written");
+}
+
+fn settings() -> Settings {
+    let c = Config::default();
+    Settings {
+        rate_hz: 120,
+        dab_budget: c.r#loop.dab_budget,
+        undo_bytes: 1 << 26,
+        camera: c.camera.camera(),
+        brush: c.brush,
+        hands: c.hand,
+    }
+}
+
+fn fresh(start: &TriMesh) -> World {
+    let s = settings();
+    let mesh = Mesh::build(start, &Job::default()).expect("a ball");
+    let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
+    World::new(mesh, s.camera, s.brush, Workers::new(1), options)
+}
+
+/// The script's samples of a tick: a pen that circles, and lifts every 50 ticks.
+fn samples(tick: u64) -> Vec<Sample> {
+    let area_mm = Vec2::new(160.0, 100.0);
+    (0..4)
+        .map(|k| {
+            let angle = (tick * 4 + k) as f32 * 0.07;
+            let pen = Pen {
+                in_range: true,
+                tip: tick % 50 != 0,
+                pos_mm: area_mm * 0.5 + Vec2::new(angle.cos(), angle.sin()) * 18.0,
+                area_mm,
+                pressure: Some(0.3 + 0.2 * angle.sin()),
+                ..Pen::default()
+            };
+            let t_us = tick * 8333 + k * 2000;
+            Sample { device: DeviceId(1), t_us, device_t_us: Some(t_us), body: Body::Pen(pen) }
+        })
+        .collect()
+}
+
+/// A scripted session being written, with the world's hash after each tick.
+struct Script {
+    path: PathBuf,
+    world: World,
+    hashes: Vec<u64>,
+    writer: Option<SessionWriter>,
+    thread: Option<WriterThread>,
+}
+
+impl Script {
+    fn begin(dir: &Path) -> Self {
+        let start = shapes::sphere_of_about(400);
+        let path = dir.join("s.sculpt");
+        let (writer, thread) = session::create(&path, &start, &settings()).expect("created");
+        let world = fresh(&start);
+        let hashes = vec![world.hash()];
+        Script { path, world, hashes, writer: Some(writer), thread: Some(thread) }
+    }
+
+    fn tick(&mut self) -> u64 {
+        let tick = self.hashes.len() as u64;
+        let input = samples(tick);
+        self.world.step(tick, &input, &[]);
+        self.hashes.push(self.world.hash());
+        if let Some(writer) = &mut self.writer {
+            writer.tick(tick, &input, &[], &self.world);
+        }
+        tick
+    }
+
+    fn written(&self) -> u64 {
+        self.thread.as_ref().map_or(0, |t| t.health.written.load(Relaxed))
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.thread.as_ref().and_then(|t| t.health.trouble())
+    }
+
+    /// Ticks of one group, and waits until it is synced.
+    fn group(&mut self, ticks: u64) {
+        let last = (0..ticks).map(|_| self.tick()).last().unwrap_or(0);
+        for _ in 0..2000 {
+            if self.written() >= last {
+                return;
+            }
+            pause(2);
+        }
+        panic!("tick {last} was never written: {:?}", self.trouble());
+    }
+
+    fn end(&mut self) {
+        self.writer = None;
+        assert_eq!(self.thread.take().and_then(WriterThread::finish), None);
+    }
+}
+
+/// A session of some groups, closed; its bytes and the hash after every tick.
+fn whole(dir: &Path, groups: u64) -> (Vec<u8>, Vec<u64>) {
+    let mut script = Script::begin(dir);
+    for _ in 0..groups {
+        script.group(60);
+    }
+    script.end();
+    (std::fs::read(&script.path).expect("read"), script.hashes)
+}
+
+fn hash_of(opened: &session::Opened) -> u64 {
+    replay::replay(opened, None, Workers::new(1), &Job::default()).expect("replays").world.hash()
+}
+
+fn wal(path: &Path) -> PathBuf {
+    PathBuf::from(format!("{}-wal", path.display()))
+}
+
+#[test]
+fn a_damaged_session_is_saved_beside_the_old_one_and_the_loss_told_in_ticks() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (bytes, hashes) = whole(dir.path(), 8);
+    let mut rng = Rng::new(11);
+    let (mut intact, mut saved, mut refused) = (0, 0, 0);
+    for case in 0..100 {
+        let here = dir.path().join(format!("case-{case}"));
+        std::fs::create_dir(&here).expect("a folder");
+        let path = here.join("d.sculpt");
+        let mut damaged = bytes.clone();
+        if case % 2 == 0 {
+            damaged.truncate(rng.below(bytes.len() as u64) as usize);
+        } else {
+            for _ in 0..=rng.below(4) {
+                let at = rng.below(bytes.len() as u64) as usize;
+                damaged[at] ^= 1 << rng.below(8);
+            }
+        }
+        put(&path, &damaged);
+        match session::open(&path) {
+            // What the checksums let through is, to the bit, a prefix of what was written.
+            Ok(opened) if opened.loss.is_none() => {
+                let last = opened.input.last().map_or(0, |t| t.tick);
+                assert_eq!(hash_of(&opened), hashes[last as usize], "case {case}");
+                intact += 1;
+            }
+            _ => match salvage(&path) {
+                Ok(s) => {
+                    let opened = session::open(&s.path).expect("the saved file is whole");
+                    assert_eq!(opened.loss, None, "case {case}");
+                    let kept = opened.input.last().map_or(0, |t| t.tick);
+                    if !s.start_changed {
+                        assert_eq!(hash_of(&opened), hashes[kept as usize], "case {case}");
+                    }
+                    if let Some(loss) = &s.loss {
+                        assert_eq!(loss.kept, kept, "case {case}");
+                        assert!(s.to_string().contains(&format!("tick {kept}")), "{s}");
+                    }
+                    saved += 1;
+                }
+                Err(e) => {
+                    assert!(e.to_string().contains("d.sculpt"), "{e}");
+                    refused += 1;
+                }
+            },
+        }
+        assert!(std::fs::read(&path).expect("still there") == damaged, "case {case}: the old file changed");
+    }
+    println!(
+        "100 damaged sessions: {intact} whole in all that counts, {saved} saved, {refused} refused with a reason"
+    );
+    assert!(saved >= 30, "{intact} {saved} {refused}");
+}
+
+#[test]
+fn the_session_tools_tell_and_mend() {
+    let dir = tempfile::tempdir().expect("a folder");
+    whole(dir.path(), 6);
+    let ask = |args: &[&str]| {
+        let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+            .arg("session")
+            .args(args)
+            .arg("--json")
+            .output()
+            .expect("runs");
+        let value: Value = serde_json::from_slice(&out.stdout).unwrap_or_default();
+        (out.status.code(), value, String::from_utf8_lossy(&out.stderr).into_owned())
+    };
+    let good = dir.path().join("s.sculpt").display().to_string();
+    let (code, shown, _) = ask(&["show", &good]);
+    assert_eq!(
+        (code, &shown["facts"]["last_tick"], &shown["damage"]),
+        (Some(0), &Value::from(360), &Value::Null)
+    );
+    // The input of the last row is overwritten with nothing: all groups before it stay.
+    let bad = dir.path().join("bad.sculpt");
+    std::fs::copy(&good, &bad).expect("copied");
+    let db = rusqlite::Connection::open(&bad).expect("opens");
+    let spoil = "UPDATE log SET data = zeroblob(length(data)) WHERE id = (SELECT max(id) FROM log)";
+    assert_eq!(db.execute(spoil, []).expect("spoilt"), 1);
+    drop(db);
+    let bad = bad.display().to_string();
+    let (code, shown, said) = ask(&["show", &bad]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("session save"), "{said}");
+    let (code, saved, said) = ask(&["save", &bad]);
+    assert_eq!(code, Some(0), "{said}");
+    let kept = 360 - saved["lost_ticks"].as_u64().expect("ticks");
+    assert!(shown["damage"].as_str().is_some_and(|d| d.contains(&format!("tick {kept}"))), "{shown} {saved}");
+    let (_, listed, _) = ask(&["list", &dir.path().display().to_string()]);
+    assert_eq!(listed["sessions"].as_array().map(Vec::len), Some(3), "{listed}");
+    // Only whole ones go, and only when told to.
+    let folder = dir.path().display().to_string();
+    let (_, would, _) = ask(&["prune", &folder, "--keep", "0"]);
+    assert_eq!(
+        (would["sessions"].as_array().map(Vec::len), &would["removed"]),
+        (Some(2), &Value::Bool(false))
+    );
+    ask(&["prune", &folder, "--keep", "0", "--yes"]);
+    assert!(Path::new(&bad).exists() && !Path::new(&good).exists());
+}
+
+#[test]
+fn a_second_writer_of_the_same_session_is_refused() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut script = Script::begin(dir.path());
+    script.group(3);
+    let refused = session::resume(&script.path).expect_err("refused").to_string();
+    assert!(refused.contains("another sculptd"), "{refused}");
+    script.end();
+    let (writer, thread) = session::resume(&script.path).expect("free again");
+    drop(writer);
+    assert_eq!(thread.finish(), None);
+}
+
+/// One state of the disk.
+#[derive(Clone)]
+struct Disk {
+    db: Vec<u8>,
+    wal: Vec<u8>,
+}
+
+impl Disk {
+    fn of(path: &Path) -> Self {
+        let wal = std::fs::read(wal(path)).unwrap_or_default();
+        Disk { db: std::fs::read(path).expect("read"), wal }
+    }
+}
+
+const SECTOR: usize = 512;
+
+/// What may be on the disk when the power goes between the states `a` (all of it synced) and `b` (its last writes not).
+fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
+    let restarted = a.wal.len() < 32 || b.wal.len() < a.wal.len() || a.wal[..32] != b.wal[..32];
+    // A log is begun again only after the database holds all of it: then the database is `b`'s.
+    let mut out = if restarted { b.clone() } else { Disk { db: a.db.clone(), wal: b.wal.clone() } };
+    let old = a.wal.clone();
+    // Bytes before this one were written and synced long ago; no write touches them again.
+    let keep = old.iter().zip(&out.wal).position(|(x, y)| x != y).unwrap_or(old.len().min(out.wal.len()));
+    let differs: Vec<usize> = (0..out.wal.len())
+        .step_by(SECTOR)
+        .filter(|&s| {
+            let e = (s + SECTOR).min(out.wal.len());
+            old.get(s..e) != Some(&out.wal[s..e])
+        })
+        .collect();
+    match rng.below(4) {
+        // The file never grew.
+        0 if !restarted => {
+            let tail = out.wal.len() - a.wal.len();
+            out.wal.truncate(a.wal.len() + rng.below(tail as u64 + 1) as usize);
+        }
+        mode => {
+            for s in differs {
+                if rng.below(2) == 0 {
+                    continue;
+                }
+                let (s, e) = (s.max(keep), (s + SECTOR).min(out.wal.len()));
+                match (mode, old.get(s..e)) {
+                    (1 | 0, Some(was)) => out.wal[s..e].copy_from_slice(was),
+                    (2, _) => out.wal[s..e].iter_mut().for_each(|x| *x = rng.below(256) as u8),
+                    _ => out.wal[s..e].fill(0),
+                }
+            }
+        }
+    }
+    // A database that was being brought up to date, with the log that it is brought up to date from still there.
+    if !restarted && a.db != b.db && rng.below(2) == 0 {
+        out.wal = b.wal.clone();
+        out.db = b.db.clone();
+        for s in (0..a.db.len()).step_by(SECTOR) {
+            if rng.below(2) == 0 {
+                let e = (s + SECTOR).min(a.db.len()).min(out.db.len());
+                out.db[s..e].copy_from_slice(&a.db[s..e]);
+            }
+        }
+    }
+    out
+}
+
+/// `cuts` power cuts of one session; answers with groups lost in full, and checkpoints that a cut fell into.
+fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut rng = Rng::new(seed);
+    let mut script = Script::begin(dir.path());
+    script.group(5);
+    let (mut lost, mut checkpoints) = (0, 0);
+    for n in 0..cuts {
+        let (synced, a) = (script.written(), Disk::of(&script.path));
+        script.group(1 + rng.below(90));
+        let (newest, b) = (script.written(), Disk::of(&script.path));
+        checkpoints += u64::from(a.db != b.db);
+        let at = cut(&a, &b, &mut rng);
+        let path = dir.path().join("after.sculpt");
+        put(&path, &at.db);
+        put(&wal(&path), &at.wal);
+        let _ = std::fs::remove_file(format!("{}-shm", path.display()));
+        let opened = session::open(&path).unwrap_or_else(|e| panic!("seed {seed}, cut {n}: {e}"));
+        assert_eq!(opened.loss, None, "seed {seed}, cut {n}: a torn write must look like none");
+        let last = opened.input.last().map_or(0, |t| t.tick);
+        assert!(
+            (synced..=newest).contains(&last),
+            "seed {seed}, cut {n}: {last}, synced {synced}, newest {newest}"
+        );
+        assert_eq!(hash_of(&opened), script.hashes[last as usize], "seed {seed}, cut {n}, tick {last}");
+        // And it can be gone on with.
+        let (writer, thread) = session::resume(&path).expect("goes on");
+        drop(writer);
+        assert_eq!(thread.finish(), None);
+        lost += u64::from(last < newest);
+    }
+    script.end();
+    (lost, checkpoints)
+}
+
+#[test]
+fn a_hundred_power_cuts_cost_the_last_group_at_most() {
+    let runs: Vec<_> = (0..10).map(|seed| std::thread::spawn(move || power_cuts(100 + seed, 10))).collect();
+    let all: Vec<(u64, u64)> = runs.into_iter().map(|r| r.join().expect("no cut was fatal")).collect();
+    let lost: u64 = all.iter().map(|a| a.0).sum();
+    println!("100 power cuts: {lost} cost their last group, {} kept it", 100 - lost);
+    assert!(lost > 20, "the cuts do tear: {all:?}");
+}
+
+/// With enough input between the cuts that SQLite moves its log into the database again and again.
+#[test]
+fn power_cuts_during_checkpoints_cost_no_more() {
+    if std::env::var_os("SCULPTD_LONG").is_none() {
+        println!("skipped: SCULPTD_LONG not set");
+        return;
+    }
+    let (lost, checkpoints) = power_cuts(5, 900);
+    println!(
+        "900 power cuts of one session: {lost} cost their last group, {checkpoints} fell into a checkpoint"
+    );
+    assert!(checkpoints > 0);
+}
+
+/// A folder of one MiB, where root may mount one.
+struct Small(PathBuf);
+
+impl Small {
+    fn mount(at: &Path) -> Option<Self> {
+        let done = Command::new("mount").args(["-t", "tmpfs", "-o", "size=1m", "tmpfs"]).arg(at).output();
+        done.is_ok_and(|o| o.status.success()).then(|| Small(at.into()))
+    }
+}
+
+impl Drop for Small {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg("-l").arg(&self.0).output();
+    }
+}
+
+#[test]
+fn a_full_disk_is_shown_and_journalling_resumes_by_itself() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let Some(small) = Small::mount(dir.path()) else {
+        println!("skipped: no small file system could be mounted (not root)");
+        return;
+    };
+    let mut script = Script::begin(&small.0);
+    script.group(10);
+    // Somebody else fills the disk.
+    let filler = small.0.join("filler");
+    let mut size = 1 << 20;
+    while size >= 1024 {
+        let mut old = std::fs::read(&filler).unwrap_or_default();
+        let before = old.len();
+        old.resize(before + size, 1);
+        #[allow(clippy::disallowed_methods)] // It is meant to fail half-way.
+        if std::fs::write(&filler, &old).is_err() {
+            old.truncate(before);
+            put(&filler, &old);
+            size /= 2;
+        }
+    }
+    let before = script.written();
+    let mut shown = None;
+    for _ in 0..300 {
+        for _ in 0..10 {
+            script.tick();
+        }
+        pause(10);
+        shown = script.trouble();
+        if shown.is_some() {
+            break;
+        }
+    }
+    let shown = shown.expect("the fault is shown");
+    assert!(shown.contains("kept in memory") && shown.contains("full"), "{shown}");
+    let stuck = script.written();
+    for _ in 0..100 {
+        script.tick();
+    }
+    std::fs::remove_file(&filler).expect("room again");
+    // By itself: no further tick is needed.
+    let last = script.hashes.len() as u64 - 1;
+    for _ in 0..300 {
+        if script.written() == last {
+            break;
+        }
+        pause(20);
+    }
+    assert_eq!((script.written(), script.trouble()), (last, None));
+    println!("full from tick {stuck} (synced {before}), resumed, {last} ticks on the disk");
+    script.end();
+    let opened = session::open(&script.path).expect("opens");
+    assert_eq!((opened.loss.clone(), hash_of(&opened)), (None, script.hashes[last as usize]));
+}
