@@ -50,7 +50,19 @@ pub fn join(
     operation: Operation,
     job: &Job,
 ) -> Result<Vec<Command>, JoinError> {
-    let (work, tool) = (work.to_tri().to_poly(), thing.placed().to_poly());
+    let tool = thing.placed().to_poly();
+    // Where the thing is small, only what is near it is cut.
+    if let Some(done) = boolean::local(work, &tool, operation, &Options::default(), job)? {
+        let mut mesh = done.mesh;
+        if mesh.triangle_count() == 0 {
+            return Err(JoinError::Nothing);
+        }
+        // Built anew from plain triangles, as a replay will build it: the same bits follow from the same strokes.
+        let plain = mesh.snapshot().to_tri();
+        let built = Mesh::build(&plain, job).map_err(|e| JoinError::Build(e.to_string()))?;
+        return Ok(vec![Command::Replace(NewClay::new(Arc::new(plain), built, true)), Command::PutDown]);
+    }
+    let work = work.to_tri().to_poly();
     let (solids, _) = boolean::compute([&work, &tool], &[operation], &Options::default(), job, || 0.0)?;
     let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
     if solid.mesh.face_count() == 0 {

@@ -63,10 +63,10 @@ impl Memory {
 impl Mesh {
     /// Builds clay from any triangle soup: open, non-manifold, with stray vertices. See [`Mesh::warnings`].
     pub fn build(tri: &TriMesh, job: &Job) -> Result<Mesh, BuildError> {
-        Ok(Mesh::of(build(tri, job)?))
+        Ok(Mesh::of(build(tri, job)?, 0))
     }
 
-    fn of(built: Built) -> Mesh {
+    pub(super) fn of(built: Built, revision: u64) -> Mesh {
         let Built { pages, vertices, triangles, warnings } = built;
         let mut top = BoxTree::default();
         top.reset(pages.len());
@@ -88,7 +88,7 @@ impl Mesh {
             stale: Stale::new(count),
             shelf: Shelf::new(&pages),
             pages,
-            revision: 0,
+            revision,
             vertices,
             triangles,
             warnings,

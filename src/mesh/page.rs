@@ -37,7 +37,7 @@ pub struct Neighbour {
 }
 
 /// What stands still while a mesh is only displaced.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub struct Topology {
     pub own: usize,
     /// The own vertices' numbers in the mesh that was loaded.
@@ -131,6 +131,19 @@ pub struct Page {
 }
 
 impl Page {
+    /// The same page again, its topology shared.
+    pub(super) fn copy(&self) -> Page {
+        Page {
+            topology: self.topology.clone(),
+            points: self.points.clone(),
+            normals: self.normals.clone(),
+            tree: self.tree.clone(),
+            lo: self.lo,
+            hi: self.hi,
+            revision: self.revision,
+        }
+    }
+
     pub fn topology(&self) -> &Arc<Topology> {
         &self.topology
     }

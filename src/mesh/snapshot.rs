@@ -78,6 +78,15 @@ impl Snapshot {
         }
     }
 
+    /// Calls `visit` with each page whose box, and whose chunk's box, `meets` takes, in ascending order.
+    pub fn each_page_in(&self, meets: impl Fn(Vec3, Vec3) -> bool, mut visit: impl FnMut(u32, &Arc<Page>)) {
+        for (c, chunk) in self.spine.iter().enumerate().filter(|(_, c)| meets(c.lo, c.hi)) {
+            for (i, page) in chunk.pages.iter().enumerate().filter(|(_, p)| meets(p.lo, p.hi)) {
+                visit((c * CHUNK + i) as u32, page);
+            }
+        }
+    }
+
     pub fn revision(&self) -> u64 {
         self.totals.revision
     }

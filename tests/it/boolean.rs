@@ -1,5 +1,6 @@
 //! Booleans: the scenes of touching and coplanar faces, as they stand and turned by an arbitrary angle.
 
+mod local;
 mod oracle;
 mod random;
 mod solids;

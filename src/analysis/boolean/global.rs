@@ -80,7 +80,7 @@ impl Engine {
         for ((operand, face, _), rings) in groups {
             let source = &self.meshes[operand as usize];
             let flat = rings.len() > 1 && is_flat(source, face as usize, &source.positions, self.eps);
-            let rings = if flat { joined_rings(rings) } else { rings };
+            let rings = if flat { joined_rings(rings, &at) } else { rings };
             for r in rings {
                 mesh.push_face(&r);
                 origins.push(Origin { operand, face });

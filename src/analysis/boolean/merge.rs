@@ -36,7 +36,7 @@ pub fn polygons(side: u8, face: u32, group: &[&Piece], flat: bool, at: &[DVec3])
         }
     }
     if flat && rings.len() > 1 {
-        rings = joined_rings(rings);
+        rings = joined_rings(rings, at);
     }
     rings.into_iter().map(|corners| Polygon { side, face, corners }).collect()
 }
@@ -48,7 +48,7 @@ fn repeats(ring: &[u32]) -> bool {
 }
 
 /// Joins polygons that share one chain of edges and touch nowhere else, until none do.
-pub fn joined_rings(rings: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+pub fn joined_rings(rings: Vec<Vec<u32>>, at: &[DVec3]) -> Vec<Vec<u32>> {
     let mut rings: Vec<Option<Vec<u32>>> = rings.into_iter().map(Some).collect();
     let mut owner: Map<(u32, u32), usize> = Map::default();
     let edges = |r: &[u32]| (0..r.len()).map(|i| (r[i], r[(i + 1) % r.len()])).collect::<Vec<_>>();
@@ -66,7 +66,7 @@ pub fn joined_rings(rings: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
             if j == i {
                 return None;
             }
-            joined(&own, rings[j].as_ref()?).map(|r| (j, r))
+            joined(&own, rings[j].as_ref()?).filter(|r| !spiked(r, at)).map(|r| (j, r))
         });
         match joined {
             Some((j, r)) => {
@@ -82,6 +82,16 @@ pub fn joined_rings(rings: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
         }
     }
     rings.into_iter().flatten().collect()
+}
+
+/// Whether the border somewhere runs back along itself.
+fn spiked(ring: &[u32], at: &[DVec3]) -> bool {
+    let n = ring.len();
+    (0..n).any(|i| {
+        let [a, o, b] = [i + n - 1, i, i + 1].map(|k| at[ring[k % n] as usize]);
+        let (u, v) = (a - o, b - o);
+        u.dot(v) > 0.0 && u.cross(v).length_squared() <= 1e-18 * u.length_squared() * v.length_squared()
+    })
 }
 
 fn joined(p: &[u32], q: &[u32]) -> Option<Vec<u32>> {

@@ -9,8 +9,10 @@
 //!
 //! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the tolerance.
 
+mod arrange;
 mod emit;
 mod global;
+mod local;
 mod meet;
 mod merge;
 mod pieces;
@@ -20,11 +22,11 @@ mod tree;
 
 use glam::DVec3;
 
+use arrange::Arrangement;
 pub use emit::{Facts, Origin};
-use merge::Polygon;
-use pieces::{Piece, Place, Shape};
-use points::Points;
-use tree::{Span, Tree};
+pub use local::local;
+use pieces::Place;
+use tree::Span;
 
 use super::cancel::{Cancelled, Job};
 use crate::mesh::PolyMesh;
@@ -226,119 +228,35 @@ fn attempt(
     report: &mut Report,
 ) -> Result<Result<Vec<Solid>, String>, Error> {
     let mut clock = now();
-    let mut lap = |report: &mut Report, name| {
+    let mut lap = |name| {
         let t = now();
         report.phases.push((name, t - clock));
         clock = t;
     };
-    let split = operands[0].positions.len();
-    let mut points = Points::new(operands.iter().flat_map(|m| m.positions.iter().copied()).collect(), eps);
-    let meshes = common(operands, &mut points, eps);
-    lap(report, "weld");
-    let mut starts: [Vec<u32>; 2] = Default::default();
-    let sides = [0, 1].map(|s| {
-        let (side, first) = side(&meshes[s], &points.at);
-        starts[s] = first;
-        side
-    });
-    lap(report, "tree");
-    job.progress(0.2);
-    let m = meet::meet(&sides, &mut points, eps, job)?;
-    lap(report, "meet");
-    job.progress(0.5);
-    let mut pieces: [Vec<Piece>; 2] = [Vec::new(), Vec::new()];
-    for s in 0..2 {
-        let flat = |f: usize| merge::is_flat(&meshes[s], f, &points.at, 4.0 * floor);
-        pieces[s] = pieces::cut(&meshes[s], s, &sides[s], &starts[s], &m, &points.at, flat, job)?;
-    }
-    lap(report, "cut");
-    pieces::place(&meshes, &sides, &mut pieces, &m, &points, job)?;
-    lap(report, "place");
-    job.progress(0.8);
-    // The cells of each face that was cut.
-    let mut groups: Vec<(u8, u32, Vec<&Piece>)> = Vec::new();
-    for s in 0..2u8 {
-        for p in pieces[s as usize].iter().filter(|p| !matches!(p.shape, Shape::Whole)) {
-            match groups.last_mut() {
-                Some(g) if (g.0, g.1) == (s, p.face) => g.2.push(p),
-                _ => groups.push((s, p.face, vec![p])),
-            }
-        }
-    }
+    let a = Arrangement::new(operands, eps, floor, None, job, &mut lap)?;
     let mut solids = Vec::new();
     for &operation in operations {
         job.check()?;
-        let takes = |s: usize, place| operation.takes(s, place, options.keep_contact);
         let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
-        let mut used = vec![false; split + operands[1].positions.len()];
-        let mut reversed = Vec::new();
-        for s in 0..2 {
-            for p in pieces[s].iter().filter(|p| matches!(p.shape, Shape::Whole)) {
-                let Some(turned) = takes(s, p.place) else { continue };
-                let corners = meshes[s].face(p.face as usize);
-                corners.iter().for_each(|&v| used[v as usize] = true);
-                // A bent face seen from behind may come in other triangles: then these are what is turned.
-                if turned
-                    && corners.len() > 3
-                    && !merge::is_flat(&meshes[s], p.face as usize, &points.at, 4.0 * floor)
-                {
-                    for t in &sides[s].triangles
-                        [starts[s][p.face as usize] as usize..starts[s][p.face as usize + 1] as usize]
-                    {
-                        push(&mut mesh, t, true, &mut reversed);
-                        origins.push(Origin { operand: s as u8, face: p.face });
-                    }
-                    continue;
-                }
-                push(&mut mesh, corners, turned, &mut reversed);
-                origins.push(Origin { operand: s as u8, face: p.face });
-            }
-        }
-        let mut cut: Vec<Polygon> = Vec::new();
-        let mut turns = Vec::new();
-        for (s, face, cells) in &groups {
-            for side in [false, true] {
-                let own: Vec<&Piece> =
-                    cells.iter().copied().filter(|p| takes(*s as usize, p.place) == Some(side)).collect();
-                if own.is_empty() {
-                    continue;
-                }
-                let flat = merge::is_flat(&meshes[*s as usize], *face as usize, &points.at, 4.0 * floor);
-                let made = merge::polygons(*s, *face, &own, flat, &points.at);
-                turns.resize(turns.len() + made.len(), side);
-                cut.extend(made);
-            }
-        }
-        let kept = |v: u32| used.get(v as usize).copied().unwrap_or(false);
-        merge::straighten(&mut cut, &meshes, kept, &points.at, eps);
-        for (p, turned) in cut.iter().zip(turns) {
-            push(&mut mesh, &p.corners, turned, &mut reversed);
-            origins.push(Origin { operand: p.side, face: p.face });
-        }
-        let facts = emit::finish(&mut mesh, &points.at);
+        a.faces(operation, options.keep_contact, |origin, corners, _| {
+            mesh.push_face(corners);
+            origins.push(origin);
+        });
+        let facts = emit::finish(&mut mesh, &a.points.at);
         if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }
         solids.push(Solid { operation, mesh, origins, facts });
     }
-    lap(report, "emit");
+    lap("emit");
     // Places may have moved by a tolerance that was asked for, but only by rounding where none was.
     let slack = if options.tolerance.is_some() { 8.0 * eps } else { floor };
-    if let Some(why) = doubt(&solids, volumes, slack, &points.at) {
+    if let Some(why) = doubt(&solids, volumes, slack, &a.points.at) {
         return Ok(Err(why));
     }
+    report.cut = a.curve();
     job.progress(1.0);
     Ok(Ok(solids))
-}
-
-fn push(mesh: &mut PolyMesh, corners: &[u32], turned: bool, scratch: &mut Vec<u32>) {
-    if turned {
-        scratch.clear();
-        scratch.extend(corners.iter().rev());
-        mesh.push_face(scratch);
-    } else {
-        mesh.push_face(corners);
-    }
 }
 
 /// What the volumes say against the results; `eps`: how far a surface may have moved.
@@ -363,60 +281,4 @@ fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<S
         .iter()
         .find(|s| s.facts.volume < -slack)
         .map(|s| format!("the {} has the volume {:.3e}", s.operation.name(), s.facts.volume))
-}
-
-/// Both operands over one list of points; those of either that are near the other's box are met by identity.
-fn common(operands: [&PolyMesh; 2], points: &mut Points, eps: f64) -> [PolyMesh; 2] {
-    let spans = operands.map(|m| Span::of(m.positions.iter().copied()));
-    let both = Span { lo: spans[0].lo.max(spans[1].lo), hi: spans[0].hi.min(spans[1].hi) }.grown(4.0 * eps);
-    let mut base = 0u32;
-    operands.map(|m| {
-        let names: Vec<u32> = (0..m.positions.len() as u32)
-            .map(|i| {
-                let p = m.positions[i as usize];
-                let near = both.lo.cmple(p).all() && p.cmple(both.hi).all();
-                if near { points.list(base + i) } else { base + i }
-            })
-            .collect();
-        base += m.positions.len() as u32;
-        let mut out = PolyMesh::new();
-        out.corners.reserve(m.corners.len());
-        let mut ring: Vec<u32> = Vec::new();
-        for f in m.faces() {
-            ring.clear();
-            for &c in f {
-                let v = names[c as usize];
-                if ring.last() != Some(&v) {
-                    ring.push(v);
-                }
-            }
-            while ring.len() > 1 && ring.first() == ring.last() {
-                ring.pop();
-            }
-            // A face that shrank to an edge keeps its number and has no corners.
-            if ring.len() < 3 {
-                ring.clear();
-            }
-            out.push_face(&ring);
-        }
-        out
-    })
-}
-
-/// Triangles, boxes and the tree of one operand, and the first triangle of each face.
-fn side(mesh: &PolyMesh, at: &[DVec3]) -> (meet::Side, Vec<u32>) {
-    let mut triangles = Vec::with_capacity(mesh.corners.len());
-    let mut starts = Vec::with_capacity(mesh.face_count() + 1);
-    starts.push(0);
-    for f in mesh.faces() {
-        match *f {
-            [] => {}
-            [a, b, c] => triangles.push([a, b, c]),
-            _ => crate::mesh::triangulate::face(at, f, &mut triangles),
-        }
-        starts.push(triangles.len() as u32);
-    }
-    let spans: Vec<Span> = triangles.iter().map(|t| Span::of(t.map(|i| at[i as usize]))).collect();
-    let tree = Tree::build(&spans);
-    (meet::Side { triangles, spans, tree }, starts)
 }

@@ -171,6 +171,7 @@ pub fn place(
     pieces: &mut [Vec<Piece>; 2],
     m: &Meeting,
     points: &Points,
+    around: Option<super::arrange::Around<'_>>,
     job: &Job,
 ) -> Result<(), Cancelled> {
     let at = &points.at;
@@ -244,7 +245,11 @@ pub fn place(
                 Some(&p) => p,
                 None => {
                     job.check()?;
-                    let w = winding(&sides[1 - s], at, largest[&root].1);
+                    let spot = largest[&root].1;
+                    let w = match around {
+                        Some(around) if s == 1 => around(spot),
+                        _ => winding(&sides[1 - s], at, spot),
+                    };
                     let p = if w > 0 { Place::Inside } else { Place::Outside };
                     answers.insert(root, p);
                     p
@@ -256,12 +261,17 @@ pub fn place(
     Ok(())
 }
 
+/// A place in a triangle that nobody draws an edge through: an edge of the other surface may lie in this one.
+fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+    a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
+}
+
 /// A point inside the piece and how much room there is.
 fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
     let l = loops[0];
     if l.len() == 3 && loops.len() == 1 {
         let [a, b, c] = [l[0], l[1], l[2]].map(|i| at[i as usize]);
-        return ((b - a).cross(c - a).length(), (a + b + c) / 3.0);
+        return ((b - a).cross(c - a).length(), within(a, b, c));
     }
     let n: DVec3 = loops.iter().map(|l| area_vector(at, l)).sum();
     let mut best = (-1.0, at[l[0] as usize]);
@@ -269,7 +279,7 @@ fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
         let [a, b, c] = t.map(|i| at[i as usize]);
         let size = (b - a).cross(c - a).length();
         if size > best.0 {
-            best = (size, (a + b + c) / 3.0);
+            best = (size, within(a, b, c));
         }
     }
     best
@@ -280,6 +290,8 @@ pub fn triangles(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<[u32; 3]> {
     let mut out = Vec::new();
     if loops.len() == 1 {
         crate::mesh::triangulate::face(at, loops[0], &mut out);
+    } else if let Some(made) = super::planar::delaunay(loops, n, at) {
+        out = made;
     } else {
         crate::mesh::triangulate::face(at, &bridged(loops, n, at), &mut out);
     }
@@ -333,21 +345,26 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
     ring
 }
 
-/// How often the surface goes around a point: signed crossings of a segment that leaves the box, decided exactly; a segment
-/// that meets an edge is tried anew in another direction.
+/// How often the surface goes around a point.
 pub fn winding(side: &Side, at: &[DVec3], o: DVec3) -> i32 {
     let span = side.tree.span();
     if !(span.lo.cmple(o).all() && o.cmple(span.hi).all()) {
         return 0;
     }
-    let reach = (span.hi - span.lo).length() * 2.0;
+    crossings(o, (span.hi - span.lo).length() * 2.0, |p, visit| {
+        side.tree.along(o, p, |t| visit(side.triangles[t as usize].map(|i| at[i as usize])));
+    })
+}
+
+/// Signed crossings of a segment of length `reach` that leaves the surface's box, decided exactly; a segment that meets an
+/// edge is tried anew in another direction. `along` shows the triangles near the segment to `o`'s far end until told false.
+pub fn crossings(o: DVec3, reach: f64, along: impl Fn(DVec3, &mut dyn FnMut([DVec3; 3]) -> bool)) -> i32 {
     for attempt in 0..64 {
         let k = attempt as f64;
         let d = DVec3::new((k * 1.7 + 0.4).sin(), (k * 2.3 + 1.1).sin(), (k * 0.9 + 2.2).cos());
         let p = o + d.normalize_or(DVec3::X) * reach;
         let (mut sum, mut good) = (0, true);
-        side.tree.along(o, p, |t| {
-            let [a, b, c] = side.triangles[t as usize].map(|i| at[i as usize]);
+        along(p, &mut |[a, b, c]| {
             let (x, y) = (orient3d(c3(a), c3(b), c3(c), c3(o)), orient3d(c3(a), c3(b), c3(c), c3(p)));
             if (x > 0.0 && y > 0.0) || (x < 0.0 && y < 0.0) {
                 return true;
@@ -370,4 +387,30 @@ pub fn winding(side: &Side, at: &[DVec3], o: DVec3) -> i32 {
         }
     }
     0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thin_hole_is_left_out_once() {
+        let at: Vec<DVec3> = [
+            [0., 3., 1.],
+            [2., 2., 4.],
+            [3., 1., 4.],
+            [26. / 11., 16. / 11., 38. / 11.],
+            [14. / 9., 19. / 9., 3.],
+            [11. / 6., 11. / 6., 3.],
+        ]
+        .map(DVec3::from)
+        .to_vec();
+        let loops: [&[u32]; 2] = [&[0, 1, 2], &[3, 4, 5]];
+        let want: DVec3 = loops.iter().map(|l| area_vector(&at, l)).sum();
+        let made = triangles(&loops, want, &at);
+        let got: f64 = made.iter().map(|t| area_vector(&at, t).length()).sum();
+        assert!((got - want.length()).abs() < 1e-12, "{made:?}: {got} instead of {}", want.length());
+        // A corner of the hole is in line with one of the border: no triangle is that line.
+        assert!(made.iter().all(|t| area_vector(&at, t).length() > 1e-6), "{made:?}");
+    }
 }

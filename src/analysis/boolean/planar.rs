@@ -181,6 +181,63 @@ fn assemble(
     out.into_iter().map(|c| c.0).collect()
 }
 
+/// The triangles of a polygon with holes, as few thin ones as can be (constrained Delaunay, Chew 1989). None where rounding
+/// makes the loops cross.
+pub fn delaunay(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Option<Vec<[u32; 3]>> {
+    use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+    let flat = flatten(n);
+    let mut cdt: ConstrainedDelaunayTriangulation<Point2<f64>> = ConstrainedDelaunayTriangulation::new();
+    let mut names: Vec<u32> = Vec::new();
+    let mut rings = Vec::new();
+    for l in loops {
+        let mut ring = Vec::with_capacity(l.len());
+        for &v in *l {
+            let c = flat(at[v as usize]);
+            let h = cdt.insert(Point2::new(c.x, c.y)).ok()?;
+            if h.index() == names.len() {
+                names.push(v);
+            } else if names[h.index()] != v {
+                return None;
+            }
+            ring.push((h, c));
+        }
+        rings.push(ring);
+    }
+    for ring in &rings {
+        for i in 0..ring.len() {
+            let (a, b) = (ring[i].0, ring[(i + 1) % ring.len()].0);
+            if !cdt.can_add_constraint(a, b) {
+                return None;
+            }
+            cdt.add_constraint(a, b);
+        }
+    }
+    let inside = |p: Coord<f64>| {
+        let mut odd = false;
+        for ring in &rings {
+            for i in 0..ring.len() {
+                let (a, b) = (ring[i].1, ring[(i + 1) % ring.len()].1);
+                if (a.y > p.y) != (b.y > p.y) {
+                    let side = orient2d(a, b, p);
+                    odd ^= if b.y > a.y { side > 0.0 } else { side < 0.0 };
+                }
+            }
+        }
+        odd
+    };
+    let mut out = Vec::new();
+    for face in cdt.inner_faces() {
+        let v = face.vertices();
+        let [a, b, c] = [0, 1, 2].map(|k| v[k].position());
+        if inside(Coord { x: (a.x + b.x + c.x) / 3.0, y: (a.y + b.y + c.y) / 3.0 }) {
+            out.push([0, 1, 2].map(|k| names[v[k].index()]));
+        }
+    }
+    // Corners, one border and holes: what a triangulation must count.
+    let corners: usize = loops.iter().map(|l| l.len()).sum();
+    (out.len() == corners + 2 * (loops.len() - 1) - 2).then_some(out)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

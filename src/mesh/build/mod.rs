@@ -8,11 +8,14 @@
 
 mod assemble;
 mod order;
+mod splice;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
+
+pub use splice::{Corner, Home, NewVertex, Spliced, home_of, splice};
 
 use super::TriMesh;
 use super::page::{Page, Ring};

@@ -1,0 +1,395 @@
+//! Clay with some triangles taken out and others put in: only the pages around them are written, all others are shared.
+//!
+//! A page is written again when one of its own vertices lost or got a triangle. Its vertices that other pages know stay at
+//! their place in it, so those pages stand; the rest fills the places between, and what is left over makes new pages. A
+//! page beside only takes over the normals that turned.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{Vec3, Vec4};
+
+use super::super::TriMesh;
+use super::super::clay::Mesh;
+use super::super::page::{Page, Topology};
+use super::super::snapshot::Snapshot;
+use super::{Built, Homes, PAGE_VERTICES, assemble, order};
+
+/// Where a vertex is: page, and local index of one of its own.
+pub type Home = (u32, u16);
+
+/// A corner of a triangle that is put in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Corner {
+    Old(Home),
+    /// Index into the new vertices.
+    New(u32),
+}
+
+/// A vertex that comes with the new triangles.
+#[derive(Debug, Clone, Copy)]
+pub struct NewVertex {
+    pub place: Vec3,
+    pub colour: [u8; 4],
+    /// 0 free to 1 protected.
+    pub mask: f32,
+}
+
+/// The result.
+#[derive(Debug)]
+pub struct Spliced {
+    pub mesh: Mesh,
+    /// Pages written anew, and pages that are the snapshot's own.
+    pub written: usize,
+    pub shared: usize,
+}
+
+/// Home of a local vertex.
+pub fn home_of(t: &Topology, page: u32, v: u16) -> Home {
+    match (v as usize).checked_sub(t.own) {
+        None => (page, v),
+        Some(k) => t.halo_home(k),
+    }
+}
+
+struct Region {
+    tri: TriMesh,
+    masks: Vec<f32>,
+    /// In the new pages.
+    homes: Homes,
+    /// Number in the whole clay; of those that stay.
+    ids: Vec<u32>,
+    outer: BTreeMap<Home, u32>,
+}
+
+impl Region {
+    fn push(&mut self, place: Vec3, mask: f32, colour: [u8; 4], home: Home, id: u32) -> u32 {
+        self.tri.positions.push(place);
+        self.tri.colours.get_or_insert_default().push(colour);
+        self.masks.push(mask);
+        self.homes.page.push(home.0);
+        self.homes.local.push(home.1);
+        self.ids.push(id);
+        self.masks.len() as u32 - 1
+    }
+}
+
+/// Triangles out (page, index in it) and in. None where the pages around cannot hold the result: then build all anew.
+pub fn splice(
+    old: &Snapshot,
+    removed: &[(u32, u32)],
+    added: &[[Corner; 3]],
+    new: &[NewVertex],
+) -> Option<Spliced> {
+    let mut removed = removed.to_vec();
+    removed.sort_unstable();
+    let homes_of = |p: u32, t: usize| {
+        let topology = old.page(p).topology();
+        topology.triangles[t].map(|v| home_of(topology, p, v))
+    };
+    // Pages to write.
+    let mut dirty: Vec<Home> = removed.iter().flat_map(|&(p, t)| homes_of(p, t as usize)).collect();
+    dirty.extend(added.iter().flatten().filter_map(|c| match c {
+        Corner::Old(h) => Some(*h),
+        Corner::New(_) => None,
+    }));
+    dirty.sort_unstable();
+    dirty.dedup();
+    let mut inner: Vec<u32> = dirty.iter().map(|h| h.0).collect();
+    inner.dedup();
+    let slot = |p: u32| inner.binary_search(&p).ok();
+    let mut beside: Vec<u32> =
+        inner.iter().flat_map(|&p| old.page(p).topology().neighbours.iter().map(|n| n.page)).collect();
+    beside.sort_unstable();
+    beside.dedup();
+    beside.retain(|&p| slot(p).is_none());
+
+    // Triangles that stay, with a corner in a page to write.
+    let mut stay: Vec<(u32, [Home; 3])> = Vec::new();
+    for &p in inner.iter().chain(&beside) {
+        let t = old.page(p).topology();
+        let from = removed.partition_point(|r| r.0 < p);
+        let gone = &removed[from..removed.partition_point(|r| r.0 <= p)];
+        for (i, corners) in t.triangles.iter().enumerate() {
+            if slot(p).is_none() && corners.iter().all(|&v| (v as usize) < t.own) {
+                continue;
+            }
+            let homes = corners.map(|v| home_of(t, p, v));
+            if homes.iter().any(|h| slot(h.0).is_some())
+                && gone.binary_search_by_key(&(i as u32), |r| r.1).is_err()
+            {
+                stay.push((t.triangle_ids[i], homes));
+            }
+        }
+    }
+    stay.sort_unstable();
+
+    // Which of the inner pages' vertices stay, and which of them must stay where they are.
+    let mut lives: Vec<Vec<bool>> = inner.iter().map(|&p| vec![true; old.page(p).own()]).collect();
+    let mut fixed: Vec<Vec<bool>> = inner.iter().map(|&p| vec![false; old.page(p).own()]).collect();
+    for h in &dirty {
+        lives[slot(h.0)?][h.1 as usize] = false;
+    }
+    let kept_corners = stay.iter().flat_map(|s| s.1).chain(added.iter().flatten().filter_map(|c| match c {
+        Corner::Old(h) => Some(*h),
+        Corner::New(_) => None,
+    }));
+    for h in kept_corners {
+        if let Some(s) = slot(h.0) {
+            lives[s][h.1 as usize] = true;
+        }
+    }
+    for &p in &beside {
+        let t = old.page(p).topology();
+        for (home, part) in t.halo_parts() {
+            if let Some(s) = slot(home) {
+                t.halo_sources[part].iter().for_each(|&l| fixed[s][l as usize] = true);
+            }
+        }
+    }
+
+    let mut region = Region {
+        tri: TriMesh::default(),
+        masks: Vec::new(),
+        homes: Homes { page: Vec::new(), local: Vec::new() },
+        ids: Vec::new(),
+        outer: BTreeMap::new(),
+    };
+    // Numbers that fall free are given again; the rest is appended.
+    let mut free_ids: Vec<u32> = Vec::new();
+    let mut place: Vec<Vec<u32>> = Vec::new();
+    for (s, &p) in inner.iter().enumerate() {
+        let page = old.page(p);
+        place.push(
+            (0..page.own())
+                .map(|v| {
+                    let id = page.topology().ids[v];
+                    if !lives[s][v] {
+                        free_ids.push(id);
+                        return u32::MAX;
+                    }
+                    region.push(page.point(v), page.mask(v), page.colour(v), (p, v as u16), id)
+                })
+                .collect(),
+        );
+    }
+    free_ids.sort_unstable();
+    let first_new = region.masks.len() as u32;
+    let count = old.vertex_count() - free_ids.len() + new.len();
+    for (i, v) in new.iter().enumerate() {
+        let id = free_ids.get(i).copied().unwrap_or((old.vertex_count() + i - free_ids.len()) as u32);
+        region.push(v.place, v.mask, v.colour, (u32::MAX, 0), id);
+    }
+    let holes: Vec<u32> =
+        free_ids.iter().skip(new.len()).copied().filter(|&id| (id as usize) < count).collect();
+
+    let layout = lay_out(old, &inner, &place, &fixed, &mut region, first_new, new)?;
+
+    // Triangles over the region's vertices.
+    let mut numbers: Vec<u32> = Vec::with_capacity(stay.len() + added.len());
+    let reused: Vec<u32> =
+        removed.iter().map(|&(p, t)| old.page(p).topology().triangle_ids[t as usize]).collect();
+    for &(id, homes) in &stay {
+        let corners = homes.map(|h| match slot(h.0) {
+            Some(s) => place[s][h.1 as usize],
+            None => region.outer.get(&h).copied().unwrap_or_else(|| {
+                let page = old.page(h.0);
+                let v = h.1 as usize;
+                let made =
+                    region.push(page.point(v), page.mask(v), page.colour(v), h, page.topology().ids[v]);
+                region.outer.insert(h, made);
+                made
+            }),
+        });
+        region.tri.triangles.push(corners);
+        numbers.push(id);
+    }
+    for (i, t) in added.iter().enumerate() {
+        let corners = t.map(|c| match c {
+            Corner::Old(h) => slot(h.0).map_or(u32::MAX, |s| place[s][h.1 as usize]),
+            Corner::New(i) => first_new + i,
+        });
+        region.tri.triangles.push(corners);
+        // Numbers only give an order: they need not differ.
+        numbers.push(reused.get(i).or(reused.last()).copied().unwrap_or(0));
+    }
+    let revision = old.revision() + 1;
+    let mut pages: Vec<Arc<Page>> = old.pages().cloned().collect();
+    let made = write(&region, &layout, &numbers, revision)?;
+    for (p, page) in made {
+        match pages.get_mut(p as usize) {
+            Some(old) => *old = page,
+            None => pages.push(page),
+        }
+    }
+    normals(&mut pages, &layout, &beside);
+    renumber(&mut pages, &holes, count);
+    let shared = old.pages().zip(&pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count();
+    let written = pages.len() - shared;
+    let triangles = old.triangle_count() - removed.len() + added.len();
+    let built = Built { pages, vertices: count, triangles, warnings: Vec::new() };
+    Some(Spliced { mesh: Mesh::of(built, revision), written, shared })
+}
+
+/// Which vertices each written page owns, in order.
+fn lay_out(
+    old: &Snapshot,
+    inner: &[u32],
+    place: &[Vec<u32>],
+    fixed: &[Vec<bool>],
+    region: &mut Region,
+    first_new: u32,
+    new: &[NewVertex],
+) -> Option<Vec<(u32, Vec<u32>)>> {
+    // New vertices in an order that keeps neighbours together.
+    let mut items: Vec<order::Item> =
+        new.iter().enumerate().map(|(i, v)| (v.place, first_new + i as u32)).collect();
+    order::order_runs(&mut items, 64);
+    let mut fresh: std::collections::VecDeque<u32> = items.into_iter().map(|i| i.1).collect();
+    let mut layout: Vec<(u32, Vec<u32>)> = Vec::new();
+    let mut short: Vec<(usize, usize)> = Vec::new();
+    for (s, &p) in inner.iter().enumerate() {
+        let keep = |v: usize| fixed[s][v] && place[s][v] != u32::MAX;
+        let mut loose: std::collections::VecDeque<u32> = (0..place[s].len())
+            .filter(|&v| !keep(v))
+            .map(|v| place[s][v])
+            .filter(|&r| r != u32::MAX)
+            .collect();
+        let last = (0..place[s].len()).rev().find(|&v| keep(v)).map_or(0, |v| v + 1);
+        let mut own: Vec<u32> = Vec::with_capacity(PAGE_VERTICES);
+        for v in 0..last {
+            own.push(if keep(v) { place[s][v] } else { loose.pop_front().unwrap_or(u32::MAX) });
+        }
+        own.extend(loose);
+        while own.len() < PAGE_VERTICES.min(place[s].len()) && !fresh.is_empty() {
+            own.extend(fresh.pop_front());
+        }
+        for (k, r) in own.iter_mut().enumerate() {
+            if *r == u32::MAX {
+                match fresh.pop_front() {
+                    Some(f) => *r = f,
+                    None => short.push((s, k)),
+                }
+            }
+        }
+        layout.push((p, own));
+    }
+    // Places that nothing new fills take loose vertices from the ends of other pages.
+    for (s, k) in short {
+        let donor = (0..layout.len()).find(|&d| {
+            let own = &layout[d].1;
+            own.last().is_some_and(|&r| {
+                r != u32::MAX
+                    && (r >= first_new || {
+                        let (page, local) = (region.homes.page[r as usize], region.homes.local[r as usize]);
+                        page != inner[d] || !fixed[d][local as usize]
+                    })
+                    && (d != s || own.len() > k + 1)
+            })
+        })?;
+        let moved = layout[donor].1.pop()?;
+        layout[s].1[k] = moved;
+    }
+    let mut next = old.page_count() as u32;
+    while !fresh.is_empty() {
+        // The last few go with those before.
+        let most = if fresh.len() < PAGE_VERTICES * 3 / 2 { fresh.len() } else { PAGE_VERTICES };
+        layout.push((next, fresh.drain(..most).collect()));
+        next += 1;
+    }
+    for (p, own) in &layout {
+        if own.is_empty() || own.len() >= u16::MAX as usize / 4 {
+            return None;
+        }
+        for (l, &r) in own.iter().enumerate() {
+            region.homes.page[r as usize] = *p;
+            region.homes.local[r as usize] = l as u16;
+        }
+    }
+    Some(layout)
+}
+
+fn write(
+    region: &Region,
+    layout: &[(u32, Vec<u32>)],
+    numbers: &[u32],
+    revision: u64,
+) -> Option<Vec<(u32, Arc<Page>)>> {
+    let mut touching: BTreeMap<u32, Vec<u32>> = layout.iter().map(|l| (l.0, Vec::new())).collect();
+    for (t, corners) in region.tri.triangles.iter().enumerate() {
+        let mut last = [u32::MAX; 3];
+        for (k, &v) in corners.iter().enumerate() {
+            let p = *region.homes.page.get(v as usize)?;
+            if !last.contains(&p)
+                && let Some(list) = touching.get_mut(&p)
+            {
+                list.push(t as u32);
+            }
+            last[k] = p;
+        }
+    }
+    let mut lookup: BTreeMap<Home, u32> = region.outer.clone();
+    for (p, own) in layout {
+        lookup.extend(own.iter().enumerate().map(|(l, &r)| ((*p, l as u16), r)));
+    }
+    layout
+        .iter()
+        .map(|(p, own)| {
+            let mut page =
+                assemble::assemble(&region.tri, &region.homes, *p, own.clone(), &touching[p]).ok()?;
+            let one = Arc::get_mut(&mut page)?;
+            let topology = Arc::get_mut(&mut one.topology)?;
+            topology.ids = own.iter().map(|&r| region.ids[r as usize]).collect();
+            topology.triangle_ids = topology.triangle_ids.iter().map(|&t| numbers[t as usize]).collect();
+            for (v, &r) in own.iter().enumerate() {
+                one.points[v].w = region.masks[r as usize];
+            }
+            for k in 0..topology.halo_sources.len() {
+                let r = *lookup.get(&topology.halo_home(k))?;
+                one.points[own.len() + k].w = region.masks[r as usize];
+            }
+            one.revision = revision;
+            Some((*p, page))
+        })
+        .collect()
+}
+
+/// Every copy of a normal is what its home says.
+fn normals(pages: &mut [Arc<Page>], layout: &[(u32, Vec<u32>)], beside: &[u32]) {
+    for &p in layout.iter().map(|l| &l.0).chain(beside) {
+        let page = &pages[p as usize];
+        let t = page.topology.clone();
+        let fresh: Vec<Vec4> = (0..t.halo_sources.len())
+            .map(|k| {
+                let (home, local) = t.halo_home(k);
+                pages[home as usize].normals[local as usize]
+            })
+            .collect();
+        let bits = |n: &Vec4| n.to_array().map(f32::to_bits);
+        if !page.normals[t.own..].iter().map(bits).eq(fresh.iter().map(bits)) {
+            let mut copy = page.copy();
+            copy.normals[t.own..].copy_from_slice(&fresh);
+            pages[p as usize] = Arc::new(copy);
+        }
+    }
+}
+
+/// Numbers stay without gaps: the highest fill what fell free.
+fn renumber(pages: &mut [Arc<Page>], holes: &[u32], count: usize) {
+    if holes.is_empty() {
+        return;
+    }
+    let mut holes = holes.iter().copied();
+    for slot in pages.iter_mut() {
+        if slot.topology.ids.iter().all(|&id| (id as usize) < count) {
+            continue;
+        }
+        let mut page = slot.copy();
+        let mut topology = Topology::clone(&page.topology);
+        for id in topology.ids.iter_mut().filter(|id| **id as usize >= count) {
+            *id = holes.next().unwrap_or(*id);
+        }
+        page.topology = Arc::new(topology);
+        *slot = Arc::new(page);
+    }
+}
