@@ -84,11 +84,9 @@ pub fn hollow(
     // Only the points that a cavity kept uses, in their order.
     let mut used = vec![false; inner.len()];
     faces.iter().flatten().for_each(|&v| used[v as usize] = true);
-    let mut next = base;
     let mut number = vec![0; inner.len()];
-    for (number, _) in number.iter_mut().zip(&used).filter(|(_, u)| **u) {
+    for ((number, _), next) in number.iter_mut().zip(&used).filter(|(_, u)| **u).zip(base..) {
         *number = next;
-        next += 1;
     }
     out.positions.extend(inner.iter().zip(&used).filter(|(_, u)| **u).map(|(p, _)| *p));
     let of = |v: u32| number[v as usize];

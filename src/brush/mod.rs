@@ -107,6 +107,8 @@ brushes! {
     "texture" Texture texture,
 }
 
+// The variants come from a macro, which marks no default.
+#[allow(clippy::derivable_impls)]
 impl Default for BrushKind {
     fn default() -> Self {
         BrushKind::Gaussian

@@ -126,12 +126,12 @@ impl<B: Brush> Kernel for Each<'_, B> {
             if sum.mask != 0.0 {
                 out.set_mask(v, page.mask(v) + sum.mask);
             }
-            if sum.dye > 0.0 {
-                if let Some((dab, ..)) = &self.members[0] {
-                    let (old, new) = (page.colour(v), dab.settings.colour);
-                    let t = sum.dye.min(1.0);
-                    out.set_colour(v, std::array::from_fn(|i| blend(old[i], new[i], t)));
-                }
+            if sum.dye > 0.0
+                && let Some((dab, ..)) = &self.members[0]
+            {
+                let (old, new) = (page.colour(v), dab.settings.colour);
+                let t = sum.dye.min(1.0);
+                out.set_colour(v, std::array::from_fn(|i| blend(old[i], new[i], t)));
             }
         }
     }

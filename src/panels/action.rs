@@ -200,7 +200,7 @@ pub fn search(text: &str) -> Vec<&'static Entry> {
             } else {
                 2
             };
-            words.iter().all(|w| holds(w)).then_some((rank, e))
+            words.iter().all(holds).then_some((rank, e))
         })
         .collect();
     found.sort_by_key(|f| f.0);

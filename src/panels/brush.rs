@@ -46,7 +46,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
         });
     };
     let favourite = |name: &&str| BrushKind::ALL.iter().find(|k| k.name() == *name).copied();
-    palette(ui, &mut FIRST.iter().filter_map(|n| favourite(n)));
+    palette(ui, &mut FIRST.iter().filter_map(favourite));
     let chosen_below = !FIRST.contains(&view.state.brush.kind.name());
     let more = egui::CollapsingHeader::new("More brushes").default_open(false);
     more.show(ui, |ui| palette(ui, &mut BrushKind::ALL.iter().filter(|k| !first(k)).copied()));

@@ -227,7 +227,7 @@ fn a_thing_is_taken_up_placed_and_joined() {
     h.run_steps(2);
     let asked = std::mem::take(&mut h.state_mut().asked);
     let [Ask::World(take)] = &asked[..] else { panic!("{asked:?}") };
-    world.step(1, &[], &[take.clone()]);
+    world.step(1, &[], std::slice::from_ref(take));
     h.state_mut().published = super::published(&mut world);
     assert!(h.state().published.thing.is_some());
     h.run_steps(2);
