@@ -33,8 +33,19 @@ pub enum Command {
     CalibrateReach,
     /// This part of the tracked space is laid over the work.
     Reach(ReachBox),
+    /// Another person's work begins: the world is made anew, and nothing of what was before it stays.
+    Begin(Box<Beginning>),
     /// The thing in the hands stands here.
     Place(Similarity),
+}
+
+/// What a new person's world begins with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Beginning {
+    pub clay: NewClay,
+    /// Before it frames the work.
+    pub camera: Camera,
+    pub brush: BrushSettings,
 }
 
 /// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its own; a replay, which has

@@ -181,6 +181,22 @@ impl World {
                     self.scratch.picture = Some(picture.clone());
                 }
             }
+            Command::Begin(new) => {
+                self.lift_all();
+                let clay = &new.clay;
+                let built = clay.take().or_else(|| Mesh::build(&clay.plain, &Default::default()).ok());
+                if let (Some(mesh), true) = (built, new.camera.is_sane()) {
+                    let workers = std::mem::replace(&mut self.workers, Workers::new(1));
+                    let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
+                    let mut old = std::mem::replace(self, fresh);
+                    self.tick = old.tick;
+                    self.report = old.report;
+                    std::mem::swap(&mut self.retired, &mut old.retired);
+                    let retired = &mut self.retired;
+                    old.works.forget(|m| retired.push(m));
+                    self.retired.push(old.mesh);
+                }
+            }
             Command::Mask(action) => {
                 self.lift_all();
                 self.mesh.begin_step();

@@ -8,6 +8,7 @@ use std::time::Duration;
 use super::run::{export, stop_signal};
 use super::{Fail, display};
 use crate::config::Config;
+use crate::daemon::kiosk::{KioskConfig, keeper};
 use crate::daemon::live::{Journal, Live};
 use crate::daemon::rig::{Area, Begun, RecordingFeed};
 use crate::daemon::session::Health;
@@ -24,6 +25,8 @@ use crate::devices::recording::Player;
 pub struct LiveRun {
     pub window: bool,
     pub full_screen: bool,
+    /// Visitors come and go.
+    pub kiosk: Option<KioskConfig>,
     /// Simulated devices perform the demo's journal.
     pub ghosts: bool,
     /// Real devices are listened to.
@@ -50,6 +53,12 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
         settings = crate::config::DevicesConfig { hid: false, ..Default::default() };
     }
     let adaptors = Arc::new(adaptors::start(&settings, catalogue, &clock, &factory));
+    // As the world is now, so every visitor finds it.
+    let start = run.kiosk.is_some().then(|| keeper::Start {
+        plain: Arc::new(begun.world.mesh().to_tri()),
+        camera: config.camera.camera(),
+        brush: *begun.world.brush(),
+    });
     let (writer, thread) = begun.journal.unzip();
     let health = thread.as_ref().map(|t| t.health.clone());
     let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
@@ -65,6 +74,22 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
         false => None,
     };
     let _players = play(run.players, &clock, &factory, &stop);
+    let _keeper = match run.kiosk.zip(start) {
+        None => None,
+        Some((kiosk, start)) => {
+            let (published, commands) = (live.published.clone(), live.commands.clone());
+            let keeper = keeper::start(
+                kiosk,
+                start,
+                published,
+                commands,
+                factory.clone(),
+                clock.clone(),
+                stop.clone(),
+            );
+            Some(keeper.map_err(Fail::Config)?)
+        }
+    };
     let _limit = run.limit_s.map(|s| end_after(s, &stop));
     if run.window {
         let wired = display::Wired {

@@ -11,6 +11,7 @@ use crate::analysis::cancel::Job;
 use crate::brush::BrushKind;
 use crate::config::{Config, ConfigError, Resolved};
 use crate::daemon::Summary;
+use crate::daemon::kiosk::KioskConfig;
 use crate::daemon::live::Journal;
 use crate::daemon::rig::{self, Area, BeginError, Begun, Loaded, RecordingFeed, RigError};
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
@@ -40,6 +41,9 @@ pub struct RunArgs {
     /// Full screen, for an installation.
     #[arg(long)]
     pub kiosk: bool,
+    /// Settings of the installation, in the place of the built-in config/kiosk.toml.
+    #[arg(long, value_name = "FILE", requires = "kiosk")]
+    pub kiosk_config: Option<PathBuf>,
     /// End after this many seconds of the loop's time.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
@@ -98,12 +102,25 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
     }
     let players = open_players(args, &config, &catalogue)?;
+    let kiosk = kiosk(args)?;
+    if let Some(kiosk) = &kiosk {
+        config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
+    }
     let begun = begin(args, &config)?;
+    if let Some(kiosk) = kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles) {
+        let words = kiosk.words().map_err(Fail::Config)?;
+        let (most, found) = (kiosk.max_triangles, begun.world.mesh().triangle_count());
+        return Err(Fail::Input(format!(
+            "{}: {found} triangles, at most {most} (max_triangles)",
+            words.too_large
+        )));
+    }
     let window = display::wanted(args.headless);
-    let summary = if window || players.is_empty() {
+    let summary = if window || players.is_empty() || kiosk.is_some() {
         let run = LiveRun {
             window,
             full_screen: args.kiosk,
+            kiosk,
             ghosts: false,
             devices: true,
             players,
@@ -119,6 +136,19 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         run_stepped(args, &config, begun, players)?
     };
     report(&summary, args.stats.as_deref(), json)
+}
+
+/// The installation's settings, if it is one; what cannot be shown to visitors is said before any come.
+fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
+    if !args.kiosk {
+        return Ok(None);
+    }
+    let config = match &args.kiosk_config {
+        Some(path) => KioskConfig::load(path).map_err(Fail::Config)?,
+        None => KioskConfig::default(),
+    };
+    config.words().map_err(Fail::Config)?;
+    Ok(Some(config))
 }
 
 pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {

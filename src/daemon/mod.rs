@@ -7,6 +7,7 @@ pub mod doctor;
 pub mod figures;
 pub mod ghost;
 pub mod joiner;
+pub mod kiosk;
 pub mod live;
 #[cfg(unix)]
 pub mod metrics;

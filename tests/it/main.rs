@@ -13,12 +13,14 @@ mod golden;
 mod hands;
 mod io;
 mod io_files;
+mod kiosk;
 mod mesh_craft;
 #[cfg(unix)]
 mod mutations;
 mod recovery;
 mod service;
 mod sessions;
+mod soak;
 mod synthetic_hands;
 mod tidy;
 

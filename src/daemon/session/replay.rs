@@ -13,6 +13,9 @@ pub struct Replayed {
     pub ticks: u64,
 }
 
+/// Ticks without any input over which a resting pen is followed: ten minutes at 120 a second.
+const RESTING: u64 = 72_000;
+
 /// Steps every tick from the first to the last with input (at most `until`), and on until nothing of a stroke waits. Ticks
 /// without input matter only while a stroke waits for its budget; over the others the world is at rest.
 pub fn replay(
@@ -45,9 +48,12 @@ pub fn replay(
         waits = report.paused;
         job.progress(i as f32 / total);
     }
-    while waits && tick < until {
+    // A pen that rests at the end goes on resting as long as was asked for, and no longer than anybody rests.
+    let rested = if until == u64::MAX { tick } else { until.min(tick.saturating_add(RESTING)) };
+    while tick < until && (waits || busy && tick < rested) {
         tick += 1;
-        waits = world.step(tick, &[], &[]).paused;
+        let report = world.step(tick, &[], &[]);
+        (waits, busy) = (report.paused, report.paused || report.resting);
     }
     Ok(Replayed { world, ticks: tick })
 }

@@ -1,0 +1,14 @@
+//! An installation that nobody looks after: visitors come, sculpt and go, and each finds the place as the first one did.
+//!
+//! Laws kept here:
+//! * The cycle is a state machine driven by ticks ([`cycle`]): no clock, no IO.
+//! * A reset leaves nothing of the visitor before: the world is begun anew by [`crate::command::Command::Begin`].
+//! * What is written (gallery, audit) appears whole or not at all, and says nothing of who was here.
+
+pub mod cycle;
+pub mod gallery;
+pub mod keeper;
+pub mod settings;
+
+pub use cycle::{Act, Cycle, Stage, View};
+pub use settings::{KioskConfig, Language};

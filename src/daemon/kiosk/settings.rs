@@ -1,0 +1,125 @@
+//! `config/kiosk.toml` and the languages.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+/// The embedded defaults, which are also the documentation of every key.
+pub const DEFAULTS: &str = include_str!("../../../config/kiosk.toml");
+
+const LANGUAGES: [(&str, &str); 3] = [
+    ("en", include_str!("../../../config/languages/en.toml")),
+    ("it", include_str!("../../../config/languages/it.toml")),
+    ("el", include_str!("../../../config/languages/el.toml")),
+];
+
+/// What an installation can be told.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct KioskConfig {
+    pub idle_s: f64,
+    pub countdown_s: f64,
+    pub max_triangles: usize,
+    pub undo_bytes: u64,
+    pub language: String,
+    pub languages: Vec<PathBuf>,
+    pub staff_pin: String,
+    pub gallery: PathBuf,
+    pub audit: PathBuf,
+    pub attract: Vec<PathBuf>,
+}
+
+impl Default for KioskConfig {
+    fn default() -> Self {
+        KioskConfig {
+            idle_s: 60.0,
+            countdown_s: 15.0,
+            max_triangles: 500_000,
+            undo_bytes: 256 << 20,
+            language: "en".into(),
+            languages: vec![],
+            staff_pin: String::new(),
+            gallery: PathBuf::new(),
+            audit: PathBuf::new(),
+            attract: vec![],
+        }
+    }
+}
+
+impl KioskConfig {
+    /// Reads a file; the message names it, and the line or the key and its range.
+    pub fn load(path: &Path) -> Result<Self, String> {
+        let name = path.display();
+        let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
+        let config: KioskConfig = toml::from_str(&text).map_err(|e| format!("{name}: {e}"))?;
+        config.check().map_err(|e| format!("{name}: {e}"))?;
+        Ok(config)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        for (key, s) in [("idle_s", self.idle_s), ("countdown_s", self.countdown_s)] {
+            if !(1.0..=86_400.0).contains(&s) {
+                return Err(format!("{key} = {s}: expected a number from 1 to 86400"));
+            }
+        }
+        if !(1_000..=100_000_000).contains(&self.max_triangles) {
+            return Err(format!("max_triangles = {}: expected 1000 to 100000000", self.max_triangles));
+        }
+        if self.undo_bytes < 1 << 20 {
+            return Err(format!("undo_bytes = {}: expected at least 1048576", self.undo_bytes));
+        }
+        let digits = self.staff_pin.chars().all(|c| c.is_ascii_digit());
+        if !(self.staff_pin.is_empty() || digits && self.staff_pin.len() >= 4) {
+            return Err("staff_pin: expected four digits or more, in quotes, or nothing".into());
+        }
+        Ok(())
+    }
+
+    /// The words to show.
+    pub fn words(&self) -> Result<Language, String> {
+        for path in &self.languages {
+            let name = path.display();
+            if path.file_stem().is_some_and(|s| s.to_string_lossy() == self.language) {
+                let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
+                return toml::from_str(&text).map_err(|e| format!("{name}: {e}"));
+            }
+        }
+        let built_in = LANGUAGES.iter().find(|(n, _)| *n == self.language);
+        let (name, text) = built_in.ok_or_else(|| {
+            format!("language = \"{}\": expected en, it, el, or one of `languages`", self.language)
+        })?;
+        toml::from_str(text).map_err(|e| format!("{name}: {e}"))
+    }
+}
+
+/// What a screen says; `{seconds}` stands for a number.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Language {
+    pub name: String,
+    pub welcome: String,
+    pub countdown: String,
+    pub go_on: String,
+    pub finish: String,
+    pub kept: String,
+    pub too_large: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_embedded_file_is_the_code_s_own_defaults() {
+        assert_eq!(toml::from_str::<KioskConfig>(DEFAULTS).expect("parses"), KioskConfig::default());
+    }
+
+    #[test]
+    fn every_language_has_every_word_and_counts_the_seconds() {
+        for (language, _) in LANGUAGES {
+            let config = KioskConfig { language: language.into(), ..KioskConfig::default() };
+            assert!(config.words().expect("whole").countdown.contains("{seconds}"), "{language}");
+        }
+        assert!(KioskConfig { language: "xx".into(), ..KioskConfig::default() }.words().is_err());
+    }
+}
