@@ -160,6 +160,8 @@ pub trait Brush: Copy + Sync {
     const GRIP: Grip = Grip::Surface;
     /// Whether the mask protects from it; a brush that paints the mask must not be stopped by it.
     const MASKED: bool = true;
+    /// Whether triangles may be cut under it: not if it needs to know where vertices were when the stroke began.
+    const CUTS: bool = matches!(Self::GRIP, Grip::Surface | Grip::Tow);
 
     /// What the dab needs to know, found out before anything moves.
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self;

@@ -7,6 +7,8 @@ use super::ground::Ground;
 pub struct Layer;
 
 impl Brush for Layer {
+    const CUTS: bool = false;
+
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
         Layer
     }

@@ -33,7 +33,7 @@ pub use falloff::Falloff;
 pub use gaussian::Gaussian;
 pub use ground::Scratch;
 pub use mask_all::MaskAction;
-pub use options::{AutoMask, Method, Mirror, PathSettings};
+pub use options::{AutoMask, Measure, Method, Mirror, PathSettings, Topology};
 pub use palm::Palm;
 pub use push::Push;
 pub use settings::{BrushSettings, PressureCurve};
@@ -68,6 +68,11 @@ macro_rules! brushes {
 
             pub fn grip(self) -> Grip {
                 match self { $(BrushKind::$variant => <$module::$variant as Brush>::GRIP,)* }
+            }
+
+            /// Whether triangles may be cut under it.
+            pub fn cuts(self) -> bool {
+                match self { $(BrushKind::$variant => <$module::$variant as Brush>::CUTS,)* }
             }
 
             /// One dab of this brush, and its images.
@@ -105,6 +110,8 @@ brushes! {
     "mask-blur" MaskBlur mask_blur,
     "paint" Paint paint,
     "texture" Texture texture,
+    "density" Density density,
+    "simplify" Simplify simplify,
 }
 
 // The variants come from a macro, which marks no default.

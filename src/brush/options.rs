@@ -45,6 +45,41 @@ impl AutoMask {
     }
 }
 
+/// What the wanted length of edges is measured by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// Triangles stay as they are.
+    #[default]
+    Off,
+    /// The brush's radius.
+    Brush,
+    /// The work's bounding radius when it was put in place.
+    Work,
+    /// The view's height, at the brush's depth.
+    View,
+}
+
+/// Triangles cut to a wanted size under the brush, before each dab. Not for brushes that hold or count from where the stroke
+/// began (grab and its kin, layer, texture, a saturated stroke): new vertices were nowhere then.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Topology {
+    pub by: Measure,
+    /// Wanted length of edges as a share of the measure; 0.002 to 1.
+    pub edge: f32,
+    /// Longer edges are split.
+    pub split: bool,
+    /// Shorter ones are collapsed.
+    pub collapse: bool,
+}
+
+impl Default for Topology {
+    fn default() -> Self {
+        Topology { by: Measure::Off, edge: 0.15, split: true, collapse: true }
+    }
+}
+
 /// How the pen's path becomes dabs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::BrushKind;
 use super::alpha::Alpha;
 use super::falloff::{CURVE, Falloff};
-use super::options::{AutoMask, Mirror, PathSettings};
+use super::options::{AutoMask, Mirror, PathSettings, Topology};
 
 /// How pressure (0 to 1) becomes a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -73,6 +73,7 @@ pub struct BrushSettings {
     pub alpha: Alpha,
     pub auto: AutoMask,
     pub path: PathSettings,
+    pub topology: Topology,
     /// The brush's own numbers, as its file names them.
     pub extra: [f32; EXTRAS],
 }
@@ -98,6 +99,7 @@ impl Default for BrushSettings {
             alpha: Alpha::default(),
             auto: AutoMask::default(),
             path: PathSettings::default(),
+            topology: Topology::default(),
             extra: [0.0; EXTRAS],
         }
     }
@@ -175,6 +177,7 @@ impl BrushSettings {
         f("mirror.offset", &mut self.mirror.offset, -10.0, 10.0, 0.0);
         f("auto.normal_degrees", &mut self.auto.normal_degrees, 0.0, 180.0, 0.0);
         f("auto.cavity", &mut self.auto.cavity, -1.0, 1.0, 0.0);
+        f("topology.edge", &mut self.topology.edge, 0.002, 1.0, d.topology.edge);
         f("path.rope", &mut self.path.rope, 0.0, 0.5, 0.0);
         f("path.jitter", &mut self.path.jitter, 0.0, 2.0, 0.0);
         f("path.every_ticks", &mut self.path.every_ticks, 1.0, 1000.0, d.path.every_ticks);

@@ -16,6 +16,8 @@ pub struct Texture {
 }
 
 impl Brush for Texture {
+    const CUTS: bool = false;
+
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
         Texture { newest: on.unroll(dab) }
     }

@@ -32,6 +32,11 @@ pub struct Mesh {
     pub(super) revision: u64,
     vertices: usize,
     triangles: usize,
+    /// The numbers that the next new vertex and triangle get.
+    pub(super) next_vertex: u32,
+    pub(super) next_triangle: u32,
+    /// Pages that lost all their vertices.
+    pub(super) empty: Vec<u32>,
     warnings: Vec<String>,
     pub(super) clock: Option<fn() -> u64>,
     pub(super) phases: PhaseTimes,
@@ -77,6 +82,7 @@ impl Mesh {
         let rows = pages.iter().map(|p| p.points.len()).max().unwrap_or(0);
         let leaves = pages.iter().map(|p| p.tree.leaves()).max().unwrap_or(0);
         let count = pages.len();
+        let numbers = pages.iter().flat_map(|p| &p.topology.triangle_ids).max().map_or(0, |most| most + 1);
         Mesh {
             built_cost: top.cost(),
             top,
@@ -91,6 +97,9 @@ impl Mesh {
             revision,
             vertices,
             triangles,
+            next_vertex: vertices as u32,
+            next_triangle: numbers,
+            empty: Vec::new(),
             warnings,
             clock: None,
             phases: PhaseTimes::default(),
@@ -221,11 +230,20 @@ impl Mesh {
         &mut self,
         way: impl FnOnce(&mut History, &mut dyn FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool,
     ) -> bool {
-        let Mesh { history, pages, top, stale, .. } = self;
+        let Mesh { history, pages, top, stale, vertices, triangles, empty, .. } = self;
         let done = way(history, &mut |i, page| {
             top.set_leaf(i as usize, page.lo, page.hi);
             stale.add(i);
-            std::mem::replace(&mut pages[i as usize], page)
+            let old = std::mem::replace(&mut pages[i as usize], page);
+            let new = &pages[i as usize].topology;
+            if !Arc::ptr_eq(&old.topology, new) {
+                *vertices = *vertices + new.own - old.topology.own;
+                *triangles = *triangles + new.triangles.len() - old.topology.triangles.len();
+                if new.own == 0 {
+                    empty.push(i);
+                }
+            }
+            old
         });
         for &leaf in stale.paths() {
             top.refit_path(leaf as usize);
@@ -238,6 +256,29 @@ impl Mesh {
     /// What was taken back can no longer be done again.
     pub fn forget_redo(&mut self) {
         self.history.forget_redo();
+    }
+
+    /// Keeps the totals after a page took the place of `old`.
+    pub(super) fn recount(&mut self, index: u32, old: &Page) {
+        let (new, old) = (&self.pages[index as usize].topology, &old.topology);
+        self.vertices = self.vertices + new.own - old.own;
+        self.triangles = self.triangles + new.triangles.len() - old.triangles.len();
+    }
+
+    /// Everything that has an entry a page gets one for each page that was added at the end.
+    pub(super) fn grow(&mut self) {
+        let count = self.pages.len();
+        self.bench.grow(count);
+        self.history.grow(count);
+        self.stale.grow(count);
+        if count > self.top.leaves() {
+            // Room for more than one, or each new page would build the tree anew.
+            self.top.reset((count + count / 8).next_multiple_of(64));
+            for (i, page) in self.pages.iter().enumerate() {
+                self.top.set_leaf(i, page.lo, page.hi);
+            }
+            self.top.refit_all();
+        }
     }
 
     pub fn undo_steps(&self) -> usize {

@@ -108,6 +108,10 @@ impl Bench {
         (slot, Side { incoming: Vec::with_capacity(self.rows), colours: Vec::new() })
     }
 
+    pub(super) fn grow(&mut self, pages: usize) {
+        self.slot_of.resize(pages, 0);
+    }
+
     fn add(&mut self, index: u32, page: Arc<Page>) {
         let (mut slot, mut side) = self.spare.pop().unwrap_or_else(|| self.fresh());
         slot.index = index;

@@ -29,6 +29,11 @@ impl Stale {
         }
     }
 
+    pub(super) fn grow(&mut self, pages: usize) {
+        self.chunk_is.resize(pages.div_ceil(CHUNK), false);
+        self.path_is.resize(pages.div_ceil(8), false);
+    }
+
     pub(super) fn add(&mut self, page: u32) {
         let c = page as usize / CHUNK;
         if !std::mem::replace(&mut self.chunk_is[c], true) {
@@ -89,6 +94,7 @@ impl Shelf {
         if let Some(new) = Arc::get_mut(&mut spine) {
             new.clear();
             new.extend_from_slice(&self.shown);
+            new.resize_with(pages.len().div_ceil(CHUNK), Arc::default);
         }
         self.reclaim(2 * stale.chunks.len() + 4);
         for c in stale.chunks.drain(..) {

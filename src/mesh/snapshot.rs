@@ -123,6 +123,11 @@ impl Snapshot {
         Some(pick::finish(best?, ray, |i| self.page(i)))
     }
 
+    /// From vertices' numbers to their places in [`Snapshot::to_tri`].
+    pub fn ranks(&self) -> Ranks {
+        ranks(&|i| self.page(i), self.totals)
+    }
+
     pub fn to_tri(&self) -> TriMesh {
         to_tri(&|i| self.page(i), self.totals)
     }
@@ -133,8 +138,42 @@ impl Snapshot {
     }
 }
 
+/// From a vertex's number to its place in the order of numbers: the same while no vertex was added or taken away.
+#[derive(Debug)]
+pub struct Ranks(Option<Vec<u32>>);
+
+impl Ranks {
+    /// The place of a vertex; for a number that no vertex has, whatever comes.
+    pub fn find(&self, id: u32) -> Option<u32> {
+        self.0.as_ref().map_or(Some(id), |ranks| ranks.get(id as usize).copied())
+    }
+
+    #[inline]
+    pub(super) fn of(&self, id: u32) -> usize {
+        self.0.as_ref().map_or(id, |ranks| ranks[id as usize]) as usize
+    }
+}
+
+pub(super) fn ranks<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> Ranks {
+    let pages = || (0..totals.pages as u32).map(|p| page(p));
+    let most = pages().flat_map(|p| p.topology.ids.iter()).max().map_or(0, |m| *m as usize + 1);
+    if most == totals.vertices {
+        return Ranks(None);
+    }
+    let mut ranks = vec![0u32; most];
+    for page in pages() {
+        page.topology.ids.iter().for_each(|id| ranks[*id as usize] = 1);
+    }
+    let mut count = 0;
+    for r in &mut ranks {
+        count += std::mem::replace(r, count);
+    }
+    Ranks(Some(ranks))
+}
+
 /// In the order of the mesh that was loaded. Triangles that were left out at load are not there: the others close up.
 pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> TriMesh {
+    let rank = ranks(page, totals);
     let mut positions = vec![Vec3::ZERO; totals.vertices];
     let mut colours = vec![[255u8; 4]; totals.vertices];
     let mut triangles: Vec<(u32, [u32; 3])> = Vec::with_capacity(totals.triangles);
@@ -142,17 +181,18 @@ pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) ->
         let one = page(p);
         let t = &one.topology;
         for (v, &id) in t.ids.iter().enumerate() {
-            positions[id as usize] = one.point(v);
-            colours[id as usize] = one.colour(v);
+            let id = rank.of(id);
+            positions[id] = one.point(v);
+            colours[id] = one.colour(v);
         }
         for (corners, &id) in t.triangles.iter().zip(&t.triangle_ids) {
             triangles.push((
                 id,
                 corners.map(|v| match (v as usize).checked_sub(t.own) {
-                    None => t.ids[v as usize],
+                    None => rank.of(t.ids[v as usize]) as u32,
                     Some(k) => {
                         let (home, local) = t.halo_home(k);
-                        page(home).topology.ids[local as usize]
+                        rank.of(page(home).topology.ids[local as usize]) as u32
                     }
                 }),
             ));
@@ -169,11 +209,12 @@ pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) ->
 /// FNV-1a, 64 bits, a word at a time, over positions, mask, colours and triangles in the loaded order.
 pub(super) fn hash<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> u64 {
     let plain = to_tri(page, totals);
+    let rank = ranks(page, totals);
     let mut mask = vec![0u32; totals.vertices];
     for p in 0..totals.pages as u32 {
         let one = page(p);
         for (v, &id) in one.topology.ids.iter().enumerate() {
-            mask[id as usize] = one.mask(v).to_bits();
+            mask[rank.of(id)] = one.mask(v).to_bits();
         }
     }
     let mut h = 0xcbf2_9ce4_8422_2325u64;

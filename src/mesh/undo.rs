@@ -42,6 +42,10 @@ impl History {
         }
     }
 
+    pub(super) fn grow(&mut self, pages: usize) {
+        self.touched.resize(pages, (0, 0));
+    }
+
     pub(super) fn begin(&mut self) {
         if self.open.is_none() {
             self.open = Some(Vec::with_capacity(256));

@@ -63,8 +63,14 @@ impl Mesh {
                 return Err(format!("page {i}: its tree is out of date"));
             }
         }
+        let sum = |of: &dyn Fn(&super::page::Topology) -> usize| {
+            self.pages.iter().map(|p| of(p.topology())).sum::<usize>()
+        };
+        if (sum(&|t| t.own), sum(&|t| t.triangles.len())) != (self.vertex_count(), self.triangle_count()) {
+            return Err("the totals are out of date".into());
+        }
         let mut top = BoxTree::default();
-        top.reset(self.pages.len());
+        top.reset(self.top.leaves());
         for (i, page) in self.pages.iter().enumerate() {
             top.set_leaf(i, page.lo, page.hi);
         }

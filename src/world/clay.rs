@@ -5,9 +5,12 @@ use glam::{Mat3, Vec2, Vec3};
 use super::StepReport;
 use crate::brush::dab::IMAGES;
 use crate::brush::restore::Restore;
-use crate::brush::{BrushSettings, Dab, Grip, Method, Scratch, Tool};
-use crate::mesh::{DabReport, Hit, Mesh, Ray, Reach, Workers};
+use crate::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
+use crate::mesh::{DabReport, Detail, Hit, Mesh, Ray, Reach, Workers};
 use crate::stroke::{Camera, Flow, PenPoint, Surface, Way};
+
+/// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this one stopped.
+const MOST_CUTS: usize = 2000;
 
 /// What one pen's stroke remembers from dab to dab.
 #[derive(Debug, Clone, Copy, Default)]
@@ -227,6 +230,7 @@ impl Clay<'_> {
         if !(strength > 0.0) {
             return;
         }
+        self.cut(&dabs[..count], hit);
         let mut tool = Tool {
             mesh: self.mesh,
             workers: self.workers,
@@ -238,6 +242,34 @@ impl Clay<'_> {
         self.report.dabs += count as u64;
         self.report.vertices_moved += done.moved as u64;
         self.left = self.left.saturating_sub(done.affected as u64 + 1);
+    }
+
+    /// Cuts the triangles under a dab and its images to the wanted size, where the brush is set to.
+    fn cut(&mut self, dabs: &[Dab<'_>], hit: &Hit) {
+        let t = &self.brush.topology;
+        let measure = match t.by {
+            Measure::Off => return,
+            Measure::Brush => dabs[0].radius,
+            Measure::Work => self.extent,
+            Measure::View => self.world_per_view(hit),
+        };
+        let path = self.brush.path.method;
+        let counts = self.brush.saturation > 0.0 || matches!(path, Method::Anchored | Method::DragDot);
+        if counts || !self.brush.kind.cuts() {
+            return;
+        }
+        for dab in dabs {
+            let detail = Detail {
+                centre: dab.centre,
+                radius: dab.radius,
+                edge: t.edge * measure,
+                split: t.split,
+                collapse: t.collapse,
+                most: MOST_CUTS,
+            };
+            let cuts = self.mesh.remodel(&detail);
+            self.left = self.left.saturating_sub(8 * (cuts.splits + cuts.collapses + cuts.flips) as u64);
+        }
     }
 
     /// A place strewn about a hit, in its tangent plane, and the surface there.

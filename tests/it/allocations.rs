@@ -3,7 +3,7 @@
 //! The law: in the steady state of a stroke the tick thread neither allocates nor frees.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::cell::Cell;
 
 use glam::Vec3;
 use sculptd::analysis::cancel::Job;
@@ -12,15 +12,14 @@ use sculptd::mesh::{Mesh, Reach, Workers, shapes};
 
 struct Counting;
 
-static CALLS: AtomicU64 = AtomicU64::new(0);
-
 thread_local! {
-    static COUNTED: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+    static COUNTED: Cell<bool> = const { Cell::new(false) };
+    static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
 fn note() {
-    if COUNTED.with(std::cell::Cell::get) {
-        CALLS.fetch_add(1, Relaxed);
+    if COUNTED.get() {
+        CALLS.set(CALLS.get() + 1);
     }
 }
 
@@ -41,6 +40,15 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
+/// Calls of the allocator that this thread makes in `work`.
+pub(crate) fn counted(work: impl FnOnce()) -> u64 {
+    let before = CALLS.get();
+    COUNTED.set(true);
+    work();
+    COUNTED.set(false);
+    CALLS.get() - before
+}
+
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
@@ -54,7 +62,7 @@ fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
     for round in 0..6 {
         // The first rounds touch each page once and fill the pools; the later ones go over the same ground.
         let steady = round >= 3;
-        CALLS.store(0, Relaxed);
+        CALLS.set(0);
         for i in 0..60 {
             let turn = i as f32 * 0.02;
             let at = Vec3::new(turn.cos(), turn.sin(), 0.0);
@@ -69,7 +77,7 @@ fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
             COUNTED.set(false);
         }
         if steady {
-            assert_eq!(CALLS.load(Relaxed), 0, "allocations and frees in round {round}");
+            assert_eq!(CALLS.get(), 0, "allocations and frees in round {round}");
         }
     }
     mesh.end_step();

@@ -3,7 +3,9 @@
 mod formulas;
 mod golden;
 mod properties;
+mod sheet;
 mod texture;
+mod topology;
 
 use glam::{Vec2, Vec3};
 use sculptd::analysis::cancel::Job;

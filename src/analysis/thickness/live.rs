@@ -15,7 +15,7 @@ use super::cone::{Cone, Outliers, Weights, fold, frame};
 use super::ray::{Caster, Correction, Site};
 use crate::analysis::cancel::{Cancelled, Job};
 use crate::analysis::tree::{Parents, WideTree};
-use crate::mesh::{Snapshot, TriMesh};
+use crate::mesh::{Ranks, Snapshot, TriMesh};
 
 /// Full angle of the cone, degrees.
 const OPENING: f32 = 60.0;
@@ -26,6 +26,8 @@ const MARGIN: f32 = 1e-5;
 #[derive(Debug)]
 pub struct LiveMap {
     snapshot: Snapshot,
+    /// From the clay's numbers to the mesh's.
+    ranks: Ranks,
     mesh: TriMesh,
     tree: WideTree,
     parents: Parents,
@@ -69,6 +71,7 @@ impl LiveMap {
         let parents = tree.parents(triangles);
         let mut map = LiveMap {
             snapshot: snapshot.clone(),
+            ranks: snapshot.ranks(),
             tree,
             parents,
             starts,
@@ -102,8 +105,10 @@ impl LiveMap {
             same &= Arc::ptr_eq(old.topology(), page.topology());
             for (v, &id) in page.topology().ids.iter().enumerate() {
                 let to = page.point(v);
-                if to != self.mesh.positions[id as usize] {
-                    moved.push((id, to));
+                // After cuts numbers have gaps: another topology, which is told below.
+                let Some(row) = self.ranks.find(id) else { continue };
+                if self.mesh.positions.get(row as usize).is_some_and(|at| *at != to) {
+                    moved.push((row, to));
                 }
             }
         });

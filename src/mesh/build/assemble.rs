@@ -27,7 +27,7 @@ fn owns(homes: &Homes, corners: [u32; 3], page: u32) -> bool {
 }
 
 /// `own`: the page's vertices; `touching`: the triangles that have at least one of them, ascending.
-pub(super) fn assemble(
+pub(in crate::mesh) fn assemble(
     tri: &TriMesh,
     homes: &Homes,
     page: u32,

@@ -6,8 +6,8 @@
 //!
 //! All three run on all cores; the result does not depend on how many there are.
 
-mod assemble;
-mod order;
+pub(super) mod assemble;
+pub(super) mod order;
 mod splice;
 
 use std::sync::Arc;
@@ -45,9 +45,9 @@ pub enum BuildError {
 
 /// Which page a vertex is in, and where.
 #[derive(Debug)]
-struct Homes {
-    page: Vec<u32>,
-    local: Vec<u16>,
+pub(super) struct Homes {
+    pub(super) page: Vec<u32>,
+    pub(super) local: Vec<u16>,
 }
 
 /// Bytes that building clay of this size needs at its peak, the input included: about 330 a vertex with two triangles each.

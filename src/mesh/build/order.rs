@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 /// Something with a place and a number.
-pub(super) type Item = (Vec3, u32);
+pub(in crate::mesh) type Item = (Vec3, u32);
 
 /// Below this many items a range is ordered by one thread.
 const FORK: usize = 16_384;
@@ -27,7 +27,12 @@ fn longest_axis(items: &[Item]) -> usize {
 }
 
 /// Orders `items` into cells `first..last`; cell `c` begins at item `start(c) - start(first)`.
-pub(super) fn order(items: &mut [Item], first: usize, last: usize, start: &(impl Fn(usize) -> usize + Sync)) {
+pub(in crate::mesh) fn order(
+    items: &mut [Item],
+    first: usize,
+    last: usize,
+    start: &(impl Fn(usize) -> usize + Sync),
+) {
     if last - first <= 1 || items.len() <= 1 {
         return;
     }

@@ -1,7 +1,7 @@
 //! What holds for every brush, whatever is set.
 
 use glam::{Vec2, Vec3};
-use sculptd::brush::{BrushKind, BrushSettings, Falloff, MaskAction, Method, PressureCurve};
+use sculptd::brush::{BrushKind, BrushSettings, Falloff, MaskAction, Measure, Method, PressureCurve};
 use sculptd::command::Command;
 use sculptd::mesh::shapes;
 
@@ -115,6 +115,31 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
         for (p, q) in start.positions.iter().zip(&end) {
             assert!(p == q || segment(*p) < reach + 0.25, "{kind}: {p} moved");
         }
+    }
+}
+
+#[test]
+fn no_brush_allocates_in_the_steady_state_of_a_stroke() {
+    for kind in BrushKind::ALL {
+        let mut brush = BrushSettings { radius: 0.1, ..BrushSettings::of(*kind) };
+        // Where triangles are cut, pages are built anew: that is no steady state.
+        brush.topology.by = Measure::Off;
+        brush.auto.topology = true;
+        brush.symmetry = [true, false, false];
+        let mut studio = Studio::new(&form(30_000), brush, 1);
+        let there_and_back = |studio: &mut Studio| {
+            for i in 0..40 {
+                let x = 0.5 + 0.04 * (i as f32 * std::f32::consts::TAU / 40.0).sin();
+                studio.sample(Vec2::new(x, 0.5), 0.7, true);
+            }
+        };
+        // The first rounds touch each page once and fill the pools.
+        for _ in 0..3 {
+            there_and_back(&mut studio);
+        }
+        let calls = crate::allocations::counted(|| there_and_back(&mut studio));
+        // A texture's stroke goes on to fresh numbers for as long as it is; its tables have grown to their size by then.
+        assert_eq!(calls, 0, "{kind}");
     }
 }
 

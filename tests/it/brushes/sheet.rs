@@ -1,0 +1,115 @@
+//! The contact sheet: the same stroke of each brush on the same form, as a picture. `SCULPTD_BLESS=1` draws it anew: look at
+//! it before it is kept.
+
+use std::path::PathBuf;
+
+use glam::{Vec2, Vec3};
+use sculptd::analysis::picture::{Camera, Picture, draw};
+use sculptd::brush::{Alpha, BrushKind, BrushSettings, Grip, MaskAction};
+use sculptd::command::Command;
+
+use super::{Studio, form};
+
+const COLUMNS: usize = 6;
+const CELL: usize = 160;
+
+/// The stroke: across the form from the left, down in the middle.
+fn stroke() -> Vec<(Vec2, f32)> {
+    (0..=30)
+        .map(|i| {
+            let t = i as f32 / 30.0;
+            (Vec2::new(0.5 + 0.18 * (t - 0.5) * 2.0, 0.42 + 0.12 * (t * 5.0).sin()), 0.8)
+        })
+        .collect()
+}
+
+fn cell(kind: BrushKind) -> Picture {
+    let held = if kind.grip() == Grip::Surface { 0.14 } else { 0.25 };
+    let mut brush = BrushSettings { radius: held, ..BrushSettings::of(kind) };
+    if kind == BrushKind::Texture {
+        brush.alpha = Alpha::Rope;
+        brush.strength = 0.35;
+    }
+    // On a finer mesh a relief shows; where triangles are cut they begin coarse.
+    let cuts = matches!(kind, BrushKind::Density | BrushKind::Simplify);
+    let coarse = cuts || kind == BrushKind::Smooth;
+    let mut studio = Studio::new(&form(if coarse { 6_000 } else { 60_000 }), brush, 2);
+    if kind == BrushKind::MaskBlur {
+        studio.tell(Command::Mask(MaskAction::Cavity(0.1)));
+    }
+    if kind.grip() == Grip::Surface {
+        studio.stroke(&stroke());
+    } else {
+        // Held: a short pull to the upper right.
+        let pull: Vec<_> =
+            (0..=12).map(|i| (Vec2::new(0.53, 0.5) + Vec2::new(0.012, -0.012) * i as f32, 0.8)).collect();
+        studio.stroke(&pull);
+    }
+    let mesh = studio.world.mesh().to_tri();
+    let mut tints = vec![[190u8, 180, 170]; mesh.positions.len()];
+    if let Some(colours) = &mesh.colours {
+        for (tint, c) in tints.iter_mut().zip(colours).filter(|(_, c)| **c != [255; 4]) {
+            *tint = [c[0], c[1], c[2]].map(|c| (f32::from(c) * 0.75) as u8);
+        }
+    }
+    let clay = studio.world.mesh();
+    if !cuts {
+        for p in 0..clay.page_count() as u32 {
+            let page = clay.page(p);
+            for v in 0..page.own() {
+                let free = 1.0 - 0.7 * page.mask(v);
+                let tint = &mut tints[page.topology().ids[v] as usize];
+                *tint = tint.map(|c| (f32::from(c) * free) as u8);
+            }
+        }
+    }
+    let camera = Camera {
+        target: Vec3::ZERO,
+        towards_eye: Vec3::new(0.15, 0.25, 1.0),
+        up: Vec3::Y,
+        half_height: 1.15,
+    };
+    draw(&mesh, Some(&tints), &camera, CELL, CELL)
+}
+
+fn sheet() -> Picture {
+    let rows = BrushKind::ALL.len().div_ceil(COLUMNS);
+    let (width, height) = (COLUMNS * CELL, rows * CELL);
+    let mut all = Picture { width, height, rgb: vec![[255; 3]; width * height] };
+    for (i, kind) in BrushKind::ALL.iter().enumerate() {
+        let one = cell(*kind);
+        let (x, y) = (i % COLUMNS * CELL, i / COLUMNS * CELL);
+        for row in 0..CELL {
+            let at = (y + row) * width + x;
+            all.rgb[at..at + CELL].copy_from_slice(&one.rgb[row * CELL..(row + 1) * CELL]);
+        }
+    }
+    all
+}
+
+#[test]
+fn every_brush_looks_as_it_did() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/sheet/brushes.png");
+    let now = sheet();
+    if std::env::var_os("SCULPTD_BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        #[allow(clippy::disallowed_methods)] // Under version control: a torn file is seen.
+        std::fs::write(&path, now.png().expect("a picture")).expect("written");
+        return;
+    }
+    let then = image::open(&path).expect("the sheet").into_rgb8();
+    assert_eq!((then.width() as usize, then.height() as usize), (now.width, now.height));
+    for (i, kind) in BrushKind::ALL.iter().enumerate() {
+        let (x, y) = (i % COLUMNS * CELL, i / COLUMNS * CELL);
+        let mut sum = 0u64;
+        for row in y..y + CELL {
+            for column in x..x + CELL {
+                let then = then.get_pixel(column as u32, row as u32).0;
+                let now = now.rgb[row * now.width + column];
+                sum += (0..3).map(|k| u64::from(then[k].abs_diff(now[k]))).sum::<u64>();
+            }
+        }
+        let mean = sum as f64 / (3 * CELL * CELL) as f64;
+        assert!(mean < 1.0, "{kind}: differs by {mean:.2} of 255 a pixel");
+    }
+}
