@@ -3,7 +3,7 @@
 //!
 //! Guarantees: what was a manifold stays one, with the same Euler characteristic (collapses keep the link condition of
 //! Dey, Edelsbrunner, Guha and Nekhayev 1999; splits and flips cannot change it). Borders stay where they are. An operation
-//! leaves no angle below [`LEAST`] that is smaller than the smallest about it before.
+//! leaves no angle below [`LEAST`] that is smaller than the smallest about it before. Protected vertices stay.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -12,6 +12,8 @@ use glam::Vec3;
 
 /// An angle below which no operation goes, radians: 3 degrees.
 const LEAST: f32 = 0.052;
+/// A vertex with this much mask stays where and as it is.
+const PROTECTED: f32 = 0.99;
 /// Flat enough to flip across: the cosine between the two triangles.
 const FLAT: f32 = 0.94;
 
@@ -263,6 +265,7 @@ impl Patch {
             let v = v as usize;
             self.whole[v]
                 && self.alive[v]
+                && self.masks[v] < PROTECTED
                 && (self.points[v] - d.centre).length_squared() <= d.radius * d.radius
         };
         let mut edges = Vec::new();
