@@ -82,6 +82,7 @@ impl Mesh {
         let rows = pages.iter().map(|p| p.points.len()).max().unwrap_or(0);
         let leaves = pages.iter().map(|p| p.tree.leaves()).max().unwrap_or(0);
         let count = pages.len();
+        let next_vertex = pages.iter().flat_map(|p| &p.topology.ids).max().map_or(0, |most| most + 1);
         let numbers = pages.iter().flat_map(|p| &p.topology.triangle_ids).max().map_or(0, |most| most + 1);
         Mesh {
             built_cost: top.cost(),
@@ -97,7 +98,7 @@ impl Mesh {
             revision,
             vertices,
             triangles,
-            next_vertex: vertices as u32,
+            next_vertex,
             next_triangle: numbers,
             empty: Vec::new(),
             warnings,

@@ -123,6 +123,16 @@ impl Snapshot {
         Some(pick::finish(best?, ray, |i| self.page(i)))
     }
 
+    /// Whether vertices and triangles are numbered without gaps, as they are until triangles are cut.
+    pub fn is_dense(&self) -> bool {
+        let (mut vertex, mut triangle) = (0, 0);
+        for page in (0..self.totals.pages as u32).map(|i| self.page(i)) {
+            vertex = page.topology.ids.iter().fold(vertex, |m, id| m.max(id + 1));
+            triangle = page.topology.triangle_ids.iter().fold(triangle, |m, id| m.max(id + 1));
+        }
+        vertex as usize <= self.totals.vertices && triangle as usize <= self.totals.triangles
+    }
+
     /// From vertices' numbers to their places in [`Snapshot::to_tri`].
     pub fn ranks(&self) -> Ranks {
         ranks(&|i| self.page(i), self.totals)

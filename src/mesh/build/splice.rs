@@ -81,6 +81,10 @@ pub fn splice(
     added: &[[Corner; 3]],
     new: &[NewVertex],
 ) -> Option<Spliced> {
+    // New numbers are counted on from the old ones.
+    if !old.is_dense() {
+        return None;
+    }
     let mut removed = removed.to_vec();
     removed.sort_unstable();
     let homes_of = |p: u32, t: usize| {
