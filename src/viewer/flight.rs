@@ -64,7 +64,8 @@ mod tests {
         assert!(camera.backward().dot(place.normalize()) > 0.999);
         // Never the long way round.
         let (half, _) = flight.at(5 + TAKES_US / 2);
-        let step = (half.yaw - from.yaw + 9.42477).rem_euclid(6.28318) - 3.14159;
+        let turn = std::f32::consts::TAU;
+        let step = (half.yaw - from.yaw + 1.5 * turn).rem_euclid(turn) - 0.5 * turn;
         assert!(step.abs() < 1.6, "{step}");
     }
 }
