@@ -165,7 +165,7 @@ impl Ranks {
 }
 
 pub(super) fn ranks<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> Ranks {
-    let pages = || (0..totals.pages as u32).map(|p| page(p));
+    let pages = || (0..totals.pages as u32).map(page);
     let most = pages().flat_map(|p| p.topology.ids.iter()).max().map_or(0, |m| *m as usize + 1);
     if most == totals.vertices {
         return Ranks(None);

@@ -34,7 +34,7 @@ fn checked(mesh: &TriMesh) -> (i64, f64) {
     for (a, b) in edges.keys() {
         assert!(edges.contains_key(&(*b, *a)), "edge {a}-{b} is open");
     }
-    for (&(v, first), _) in &edges {
+    for &(v, first) in edges.keys() {
         // Round the fan: as many steps as triangles, no sooner.
         let (mut k, mut steps) = (first, 0);
         loop {
