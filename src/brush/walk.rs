@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::mesh::page::BREAK;
-use crate::mesh::{Mesh, Page, Reach};
+use crate::mesh::{Mesh, PAGE_VERTICES, Page, Reach};
 
 /// A vertex by its page and its place in it.
 pub type Key = (u32, u16);
@@ -60,7 +60,14 @@ impl Walk {
             return &mut self.blocks[slot - 1];
         }
         if self.used == self.blocks.len() {
-            self.blocks.push(Block::default());
+            // Room for any page at once: which block serves which page changes from walk to walk.
+            self.blocks.push(Block {
+                page: 0,
+                distance: Vec::with_capacity(PAGE_VERTICES),
+                place: Vec::with_capacity(PAGE_VERTICES),
+                frame: Vec::with_capacity(PAGE_VERTICES),
+                owner: Vec::with_capacity(PAGE_VERTICES),
+            });
         }
         let own = mesh.page(page).own();
         let block = &mut self.blocks[self.used];

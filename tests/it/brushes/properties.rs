@@ -143,13 +143,15 @@ fn no_brush_allocates_in_the_steady_state_of_a_stroke() {
                 studio.sample(Vec2::new(x, 0.5), 0.7, true);
             }
         };
-        // The first rounds touch each page once and fill the pools.
-        for _ in 0..3 {
-            there_and_back(&mut studio);
+        // The first rounds touch each page once and fill the pools; a brush that carries the surface along may come upon
+        // one more page later. Three rounds in a row must then need nothing.
+        let (mut quiet, mut rounds) = (0, 0);
+        while quiet < 3 {
+            let calls = crate::allocations::counted(|| there_and_back(&mut studio));
+            quiet = if calls == 0 { quiet + 1 } else { 0 };
+            rounds += 1;
+            assert!(rounds < 16, "{kind}: still {calls} calls in round {rounds}");
         }
-        let calls = crate::allocations::counted(|| there_and_back(&mut studio));
-        // A texture's stroke goes on to fresh numbers for as long as it is; its tables have grown to their size by then.
-        assert_eq!(calls, 0, "{kind}");
     }
 }
 
