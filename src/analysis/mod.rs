@@ -15,4 +15,5 @@ pub mod remesh;
 pub mod silhouette;
 pub mod thickness;
 pub mod tree;
+mod unfold;
 pub mod winding;

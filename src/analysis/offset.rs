@@ -7,7 +7,8 @@ use super::cancel::Job;
 use super::distance::Solid;
 use super::grid::Grid;
 use super::remesh::dual::extract;
-use super::remesh::{RemeshError, layout};
+use super::remesh::{MARGIN, RemeshError, layout};
+use super::unfold::{even, settle_all};
 use crate::mesh::TriMesh;
 
 /// Newton steps that put a vertex at its distance from the old surface.
@@ -38,17 +39,42 @@ fn settle(solid: &Solid, start: DVec3, distance: f64, h: f64) -> DVec3 {
     p
 }
 
+/// A surface, and the spacing of the samples that it was made from.
+struct Made {
+    points: Vec<Vec3>,
+    faces: Vec<[u32; 3]>,
+    spacing: f64,
+}
+
+impl Made {
+    fn mesh(self) -> TriMesh {
+        TriMesh { positions: self.points, triangles: self.faces, colours: None }
+    }
+}
+
+/// The surface at `distance` from the solid's, possibly of nothing.
+fn at_distance(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<Made, RemeshError> {
+    let grid = Grid::band([solid], |[d]| d - distance, layout(solid, distance.max(0.0), side)?, job)?;
+    let h = grid.spacing;
+    let (from, faces) = extract(&grid, middle, job)?;
+    let mut moved = even(&from, &faces, h * ROOM);
+    moved.par_iter_mut().try_for_each(|p| {
+        job.check()?;
+        *p = settle(solid, p.as_dvec3(), distance, h).as_vec3();
+        Ok::<_, RemeshError>(())
+    })?;
+    Ok(Made { points: settle_all(&from, moved, &faces, job)?, faces, spacing: h })
+}
+
 /// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold, vertices at that distance to about
 /// a ten-thousandth of the spacing except at creases. [`RemeshError::Empty`] where shrinking leaves nothing.
 pub fn offset(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<TriMesh, RemeshError> {
-    let grid = Grid::band([solid], |[d]| d - distance, layout(solid, distance.max(0.0), side)?, job)?;
-    let h = grid.spacing;
-    let (positions, triangles) = extract(&grid, |points| settle(solid, middle(points), distance, h), job)?;
-    if triangles.is_empty() {
+    let made = at_distance(solid, distance, side, job)?;
+    if made.faces.is_empty() {
         return Err(RemeshError::Empty);
     }
     job.progress(1.0);
-    Ok(TriMesh { positions, triangles, colours: None })
+    Ok(made.mesh())
 }
 
 /// A hollowed solid.
@@ -63,7 +89,8 @@ pub struct Hollow {
 }
 
 /// Hollows `mesh` to a wall of `wall`: the old surface is kept, and a cavity everywhere further than `wall` inside is cut
-/// out. The wall is nowhere thinner than that by more than the chord of a cavity's triangle, `spacing^2 / (4 wall)`.
+/// out, together with every partition within it that is thinner than the wall. So the wall is nowhere thinner than that by
+/// more than the chord of a cavity's triangle, `spacing^2 / (4 wall)`, except at the old surface's own sharp edges.
 /// [`RemeshError::Empty`] where the solid is nowhere thick enough for a cavity.
 pub fn hollow(
     mesh: &TriMesh,
@@ -72,13 +99,13 @@ pub fn hollow(
     side: usize,
     job: &Job,
 ) -> Result<Hollow, RemeshError> {
-    let grid = Grid::band([solid], |[d]| d + wall, layout(solid, 0.0, side)?, job)?;
-    let h = grid.spacing;
-    let (inner, faces) = extract(&grid, |points| settle(solid, middle(points), -wall, h), job)?;
-    let faces = without_specks(&inner, faces, h);
-    if faces.is_empty() {
+    let deep = at_distance(solid, -wall, side, job)?;
+    let h = deep.spacing;
+    let deep = Made { faces: without_specks(&deep.points, deep.faces, h), ..deep };
+    if deep.faces.is_empty() {
         return Err(RemeshError::Empty);
     }
+    let Made { points: inner, faces, .. } = closed(deep, wall * 0.5, job)?;
     let mut out = mesh.clone();
     let base = out.positions.len() as u32;
     // Only the points that a cavity kept uses, in their order.
@@ -96,6 +123,23 @@ pub fn hollow(
     }
     job.progress(1.0);
     Ok(Hollow { mesh: out, cavity: faces.len(), spacing: h })
+}
+
+/// The cavity grown by `radius` and shrunk again (Serra, "Image analysis and mathematical morphology", 1982). Where the solid
+/// is about twice the wall thick, what lies further inside than the wall falls into several rooms with partitions as thin as
+/// may be between them; this takes out every partition that a ball of `radius` does not fit into, and leaves all else.
+fn closed(cavity: Made, radius: f64, job: &Job) -> Result<Made, RemeshError> {
+    let h = cavity.spacing;
+    let next = |made: Made, distance: f64| {
+        let solid = Solid::build(&made.mesh(), job)?;
+        let (lo, hi) = solid.tree.bounds();
+        let longest = (hi - lo).max_element() as f64 + 2.0 * distance.max(0.0);
+        let side = (longest / h).ceil() as usize + 1 + 2 * MARGIN;
+        at_distance(&solid, distance, side.clamp(8, 1024), job)
+    };
+    let back = next(next(cavity, radius)?, -radius)?;
+    let faces = without_specks(&back.points, back.faces, h);
+    if faces.is_empty() { Err(RemeshError::Empty) } else { Ok(Made { faces, ..back }) }
 }
 
 /// The cavities without those that are flatter than the samples can tell: where a solid is about twice the wall thick, its
@@ -156,7 +200,7 @@ pub fn smooth_union(
     layout(b, 0.0, side)?;
     let room = DVec3::splat(k * 0.25);
     let both = (alo.min(blo).as_dvec3() - room, ahi.max(bhi).as_dvec3() + room);
-    let shape = Grid::layout(both, side, super::remesh::MARGIN);
+    let shape = Grid::layout(both, side, MARGIN);
     let grid = Grid::band([a, b], |[p, q]| smooth_min(p, q, k), shape, job)?;
     let h = grid.spacing;
     let field = |p: DVec3| smooth_min(a.signed_distance(p), b.signed_distance(p), k);
