@@ -50,7 +50,8 @@ fn middles(points: &[Vec3], faces: &[[u32; 3]]) -> Vec<Vec3> {
             *sum = (sum.0 + points[f[b] as usize].as_dvec3(), sum.1 + 1.0);
         }
     }
-    let each = |(&p, (sum, count)): (&Vec3, (DVec3, f64))| if count > 0.0 { (sum / count).as_vec3() } else { p };
+    let each =
+        |(&p, (sum, count)): (&Vec3, (DVec3, f64))| if count > 0.0 { (sum / count).as_vec3() } else { p };
     points.iter().zip(sums).map(each).collect()
 }
 

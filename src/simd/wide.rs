@@ -1,5 +1,5 @@
-//! The two inner tests of the eight-wide tree, each in AVX2 and in plain Rust with the same bits: one ray against eight
-//! boxes, one ray against four triangles. The order of operations is the same in both, there is no fused multiply-add,
+//! The inner tests of the eight-wide tree, each in AVX2 and in plain Rust with the same bits: one ray against eight boxes,
+//! one ray against four triangles, and the same two for the distance of a point. The order of operations is the same in both, there is no fused multiply-add,
 //! and `max`/`min` return their second argument on NaN in both (as the processor does).
 //!
 //! Boxes: slabs, the far side widened by two roundings (Ize, "Robust BVH ray traversal", 2013).
@@ -99,6 +99,10 @@ impl Prepared {
 /// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3).
 const WIDEN: f32 = 1.000_000_5;
 
+/// Squared sine of the angle from which on a triangle's plane is sure to a few roundings: below it the plane bounds the
+/// distance from below only.
+const WIDE: f32 = 0.1;
+
 /// A set of hits in a pack: which lanes, and where.
 #[derive(Debug, Clone, Copy)]
 pub struct PackHits {
@@ -109,12 +113,19 @@ pub struct PackHits {
     pub v: [f32; 4],
 }
 
-/// The two tests. Both implementations give the same bits.
+/// The tests. Both implementations give the same bits.
 pub trait Wide: Copy {
     /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it enters each.
     fn boxes(self, ray: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32;
     /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included.
     fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
+    /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which is finite: an unused box
+    /// is infinitely far.
+    fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32;
+    /// Bounds of the four triangles' distances from `p`: nowhere is a triangle nearer than `low`, and somewhere it is as
+    /// near as `high`. `slack` is the rounding's share of the largest distance of a corner. A sliver of which single
+    /// precision cannot tell gets 0 and infinity, and so does an empty lane.
+    fn near_triangles(self, p: [f32; 3], pack: &Pack, slack: f32, low: &mut [f32; 4], high: &mut [f32; 4]);
 }
 
 /// Plain Rust.
@@ -171,11 +182,53 @@ impl Wide for Scalar {
         }
         out
     }
+
+    #[inline(always)]
+    fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32 {
+        let mut mask = 0;
+        for i in 0..8 {
+            let d: [f32; 3] = std::array::from_fn(|a| {
+                max(max(node.planes[a][i] - p[a], p[a] - node.planes[3 + a][i]), 0.0)
+            });
+            out[i] = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+            mask |= u32::from(out[i] <= bound) << i;
+        }
+        mask
+    }
+
+    #[inline(always)]
+    fn near_triangles(self, p: [f32; 3], pack: &Pack, slack: f32, low: &mut [f32; 4], high: &mut [f32; 4]) {
+        let dot = |a: [f32; 3], b: [f32; 3]| (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+        let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let cross = |a: [f32; 3], b: [f32; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        for i in 0..4 {
+            let v: [[f32; 3]; 3] = std::array::from_fn(|c| minus(pack.v[c].map(|axis| axis[i]), p));
+            let e = [minus(v[1], v[0]), minus(v[2], v[1]), minus(v[0], v[2])];
+            let n = cross(e[0], e[1]);
+            let (mut near, mut size, mut inside) = (f32::INFINITY, 0.0f32, true);
+            for k in 0..3 {
+                let t = min(max((0.0 - dot(v[k], e[k])) / dot(e[k], e[k]), 0.0), 1.0);
+                let q: [f32; 3] = std::array::from_fn(|a| v[k][a] + e[k][a] * t);
+                near = min(dot(q, q), near);
+                size = max(dot(v[k], v[k]), size);
+                // Outside of this side: the origin is right of it, seen along the normal.
+                inside &= dot(cross(e[k], n), v[k]) >= 0.0;
+            }
+            let (height, area) = (dot(v[0], n), dot(n, n));
+            let flat = min(height * height / area, near);
+            let wide = area >= WIDE * (dot(e[0], e[0]) * dot(e[1], e[1]));
+            let room = slack * size.sqrt();
+            low[i] = max(if inside { flat } else { near }.sqrt() - room, 0.0);
+            high[i] = min(if inside && wide { flat } else { near }.sqrt() + room, f32::INFINITY);
+        }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use super::{Node, Pack, PackHits, Prepared, WIDEN, Wide};
+    use super::{Node, Pack, PackHits, Prepared, WIDE, WIDEN, Wide};
     use std::arch::x86_64::*;
 
     /// Proof that the processor has AVX2: made only after the check in [`super::dispatch`].
@@ -256,6 +309,82 @@ mod avx2 {
                 }
             }
             out
+        }
+
+        #[inline(always)]
+        fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32 {
+            // SAFETY: the token proves AVX2; all loads and stores are within their arrays.
+            unsafe {
+                let square = |a: usize| {
+                    let at = _mm256_set1_ps(p[a]);
+                    let below = _mm256_sub_ps(_mm256_load_ps(node.planes[a].as_ptr()), at);
+                    let above = _mm256_sub_ps(at, _mm256_load_ps(node.planes[3 + a].as_ptr()));
+                    let d = _mm256_max_ps(_mm256_max_ps(below, above), _mm256_setzero_ps());
+                    _mm256_mul_ps(d, d)
+                };
+                let d = _mm256_add_ps(_mm256_add_ps(square(0), square(1)), square(2));
+                _mm256_storeu_ps(out.as_mut_ptr(), d);
+                _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(d, _mm256_set1_ps(bound))) as u32
+            }
+        }
+
+        #[inline(always)]
+        fn near_triangles(
+            self,
+            p: [f32; 3],
+            pack: &Pack,
+            slack: f32,
+            low: &mut [f32; 4],
+            high: &mut [f32; 4],
+        ) {
+            type Three = [__m128; 3];
+            // SAFETY: the token proves AVX2 (and so SSE); all loads are within the pack, which is aligned.
+            unsafe {
+                let dot = |a: Three, b: Three| {
+                    let xy = _mm_add_ps(_mm_mul_ps(a[0], b[0]), _mm_mul_ps(a[1], b[1]));
+                    _mm_add_ps(xy, _mm_mul_ps(a[2], b[2]))
+                };
+                let minus = |a: Three, b: Three| {
+                    [_mm_sub_ps(a[0], b[0]), _mm_sub_ps(a[1], b[1]), _mm_sub_ps(a[2], b[2])]
+                };
+                let det = |a, b, c, d| _mm_sub_ps(_mm_mul_ps(a, b), _mm_mul_ps(c, d));
+                let cross = |a: Three, b: Three| {
+                    [det(a[1], b[2], a[2], b[1]), det(a[2], b[0], a[0], b[2]), det(a[0], b[1], a[1], b[0])]
+                };
+                let origin = [_mm_set1_ps(p[0]), _mm_set1_ps(p[1]), _mm_set1_ps(p[2])];
+                let corner = |c: usize| {
+                    let at = |a: usize| _mm_load_ps(pack.v[c][a].as_ptr());
+                    minus([at(0), at(1), at(2)], origin)
+                };
+                let (v0, v1, v2) = (corner(0), corner(1), corner(2));
+                let (e0, e1, e2) = (minus(v1, v0), minus(v2, v1), minus(v0, v2));
+                let n = cross(e0, e1);
+                let (zero, one) = (_mm_setzero_ps(), _mm_set1_ps(1.0));
+                let segment = |v: Three, e: Three| {
+                    let t = _mm_div_ps(_mm_sub_ps(zero, dot(v, e)), dot(e, e));
+                    let t = _mm_min_ps(_mm_max_ps(t, zero), one);
+                    let along = |a: usize| _mm_add_ps(v[a], _mm_mul_ps(e[a], t));
+                    let q = [along(0), along(1), along(2)];
+                    dot(q, q)
+                };
+                let within = |v: Three, e: Three| _mm_cmp_ps::<_CMP_GE_OQ>(dot(cross(e, n), v), zero);
+                let far = |v: Three| dot(v, v);
+                let inf = _mm_set1_ps(f32::INFINITY);
+                let near = _mm_min_ps(segment(v0, e0), inf);
+                let near = _mm_min_ps(segment(v2, e2), _mm_min_ps(segment(v1, e1), near));
+                let size = _mm_max_ps(far(v2), _mm_max_ps(far(v1), _mm_max_ps(far(v0), zero)));
+                let inside = _mm_and_ps(_mm_and_ps(within(v0, e0), within(v1, e1)), within(v2, e2));
+                let (height, area) = (dot(v0, n), dot(n, n));
+                let flat = _mm_min_ps(_mm_div_ps(_mm_mul_ps(height, height), area), near);
+                let sides = _mm_mul_ps(_mm_set1_ps(WIDE), _mm_mul_ps(dot(e0, e0), dot(e1, e1)));
+                let wide = _mm_and_ps(inside, _mm_cmp_ps::<_CMP_GE_OQ>(area, sides));
+                let room = _mm_mul_ps(_mm_set1_ps(slack), _mm_sqrt_ps(size));
+                let below = _mm_sub_ps(_mm_sqrt_ps(_mm_blendv_ps(near, flat, inside)), room);
+                let above = _mm_add_ps(_mm_sqrt_ps(_mm_blendv_ps(near, flat, wide)), room);
+                // Both give their second argument where the first is not a number.
+                _mm_storeu_ps(low.as_mut_ptr(), _mm_max_ps(below, zero));
+                _mm_storeu_ps(high.as_mut_ptr(), _mm_min_ps(above, inf));
+            }
         }
     }
 }

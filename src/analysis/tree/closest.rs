@@ -1,12 +1,12 @@
 //! The nearest point of the mesh, exactly.
 //!
-//! Single precision finds the few triangles that may be nearest, double precision decides between them: the filter's own
-//! rounding, bounded below, widens what it lets through. So the answer is that of a double-precision search over all
+//! Single precision bounds how near and how far each triangle can be, and so finds the few that may be nearest; double
+//! precision decides between them. The bounds are widened by single precision's own rounding. So the answer is that of a double-precision search over all
 //! triangles, of two equally near the one of lower index.
 
 use glam::DVec3;
 
-use super::{LEAF, NO_TRIANGLE, Node, Pack, WideTree};
+use super::{LEAF, NO_TRIANGLE, WideTree};
 use crate::simd::wide::{self, Wide, WideWork};
 
 /// Which part of a triangle holds the nearest point. `Edge(k)` runs from corner `k` to corner `k + 1`.
@@ -130,144 +130,64 @@ const INLINE: usize = 128;
 /// Largest coordinate of a mesh or a point that distances are asked of.
 pub const REACH: f64 = 1e15;
 
-/// Squared distances of the eight boxes from `p`; an unused box is infinitely far.
-#[inline(always)]
-fn box_distances(node: &Node, p: [f32; 3]) -> [f32; 8] {
-    let mut out = [0.0f32; 8];
-    for axis in 0..3 {
-        for i in 0..8 {
-            let below = node.planes[axis][i] - p[axis];
-            let above = p[axis] - node.planes[3 + axis][i];
-            let d = if below > above { below } else { above };
-            let d = if d > 0.0 { d } else { 0.0 };
-            out[i] += d * d;
-        }
-    }
-    out
-}
-
-/// Squared distances of the four triangles from `p`, and the square of the largest length that entered each.
-#[inline(always)]
-fn triangle_distances(pack: &Pack, p: [f32; 3]) -> ([f32; 4], [f32; 4]) {
-    let mut v = [[[0.0f32; 4]; 3]; 3];
-    for c in 0..3 {
-        for axis in 0..3 {
-            for i in 0..4 {
-                v[c][axis][i] = pack.v[c][axis][i] - p[axis];
-            }
-        }
-    }
-    #[inline(always)]
-    fn dot(a: &[[f32; 4]; 3], b: &[[f32; 4]; 3]) -> [f32; 4] {
-        std::array::from_fn(|i| a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i])
-    }
-    #[inline(always)]
-    fn cross(a: &[[f32; 4]; 3], b: &[[f32; 4]; 3]) -> [[f32; 4]; 3] {
-        std::array::from_fn(|x| {
-            let (y, z) = ((x + 1) % 3, (x + 2) % 3);
-            std::array::from_fn(|i| a[y][i] * b[z][i] - a[z][i] * b[y][i])
-        })
-    }
-    #[inline(always)]
-    fn minus(a: &[[f32; 4]; 3], b: &[[f32; 4]; 3]) -> [[f32; 4]; 3] {
-        std::array::from_fn(|x| std::array::from_fn(|i| a[x][i] - b[x][i]))
-    }
-    let e = [minus(&v[1], &v[0]), minus(&v[2], &v[1]), minus(&v[0], &v[2])];
-    let n = cross(&e[0], &e[1]);
-    let nn = dot(&n, &n);
-    let height = dot(&v[0], &n);
-    let (mut near, mut size) = ([f32::INFINITY; 4], [0.0f32; 4]);
-    let mut inside = [true; 4];
-    for k in 0..3 {
-        let (along, from) = (dot(&v[k], &e[k]), dot(&v[k], &v[k]));
-        let length = dot(&e[k], &e[k]);
-        // Outside of this side: the origin is right of it, seen along the normal.
-        let side = dot(&cross(&e[k], &n), &v[k]);
-        for i in 0..4 {
-            let t = -along[i] / length[i];
-            let t = if t > 0.0 { t } else { 0.0 };
-            let t = if t < 1.0 { t } else { 1.0 };
-            let q: [f32; 3] = std::array::from_fn(|x| v[k][x][i] + e[k][x][i] * t);
-            let d = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-            near[i] = if d < near[i] { d } else { near[i] };
-            size[i] = if from[i] > size[i] { from[i] } else { size[i] };
-            inside[i] &= side[i] >= 0.0;
-        }
-    }
-    for i in 0..4 {
-        let flat = height[i] * height[i] / nn[i];
-        near[i] = if inside[i] && flat < near[i] { flat } else { near[i] };
-    }
-    (near, size)
-}
-
 impl WideWork for Search<'_> {
     type Out = Option<Nearest>;
 
     #[inline(always)]
-    fn run<W: Wide>(self, _: W) -> Option<Nearest> {
-        let Search { tree, p, within } = self;
-        let exact = p;
-        let p = p.as_vec3().to_array();
+    fn run<W: Wide>(self, wide: W) -> Option<Nearest> {
+        let Search { tree, p: exact, within } = self;
+        let p = exact.as_vec3().to_array();
         // What rounding the point itself may cost.
         let moved = p[0].abs().max(p[1].abs()).max(p[2].abs()) * 1.2e-7;
-        let mut best = None::<Nearest>;
-        let mut limit = within * within;
-        // The boxes' bound, in single precision and rounded up.
-        let widen = |limit: f64| {
-            let r = limit.sqrt() as f32 * (1.0 + 2.0 * SLACK) + moved;
-            // Finite always: what is infinitely far is a child that is not there.
-            (r, (r * r * (1.0 + SLACK)).min(f32::MAX))
-        };
-        let (mut radius, mut bound) = widen(limit);
+        let mut exactly = Exact { tree, p: exact, moved, limit: within * within, best: None };
+        let mut radius = exactly.radius();
+        let mut bound = square(radius);
+        let mut maybe = [(0.0f32, 0u32); MAYBE];
+        let mut count = 0;
         let mut inline = [(0.0f32, 0u32); INLINE];
         let mut heap = if tree.stack > INLINE { vec![(0.0f32, 0u32); tree.stack] } else { Vec::new() };
         let stack: &mut [(f32, u32)] = if heap.is_empty() { &mut inline } else { &mut heap };
         let mut top = 0;
         let mut at = 0u32;
         'walk: loop {
-            'down: {
-                if at & LEAF == 0 {
-                    let node = &tree.nodes[at as usize];
-                    let near = box_distances(node, p);
-                    let base = top;
-                    for i in 0..8 {
-                        if near[i] <= bound {
-                            // The farthest at the bottom.
-                            let mut j = top;
-                            while j > base && stack[j - 1].0 < near[i] {
-                                stack[j] = stack[j - 1];
-                                j -= 1;
-                            }
-                            stack[j] = (near[i], node.child[i]);
-                            top += 1;
-                        }
+            if at & LEAF == 0 {
+                let node = &tree.nodes[at as usize];
+                let mut near = [0.0f32; 8];
+                let mut mask = wide.near_boxes(p, node, bound, &mut near);
+                let base = top;
+                while mask != 0 {
+                    let i = mask.trailing_zeros() as usize & 7;
+                    mask &= mask - 1;
+                    // The farthest at the bottom.
+                    let mut j = top;
+                    while j > base && stack[j - 1].0 < near[i] {
+                        stack[j] = stack[j - 1];
+                        j -= 1;
                     }
-                    break 'down;
+                    stack[j] = (near[i], node.child[i]);
+                    top += 1;
                 }
-                let pack = &tree.packs[(at & !LEAF) as usize];
-                let (near, size) = triangle_distances(pack, p);
+            } else {
+                let number = at & !LEAF;
+                let (mut low, mut high) = ([0.0f32; 4], [0.0f32; 4]);
+                wide.near_triangles(p, &tree.packs[number as usize], SLACK, &mut low, &mut high);
+                let least = high[0].min(high[1]).min(high[2].min(high[3])) + moved;
+                if least < radius {
+                    radius = least;
+                    bound = square(radius);
+                }
                 for i in 0..4 {
-                    let id = pack.id[i];
-                    let reach = radius + SLACK * size[i].sqrt();
-                    // Not `near > reach`: a sliver's NaN goes to the exact test.
-                    if id == NO_TRIANGLE || near[i] > reach * reach {
+                    if low[i] > radius {
                         continue;
                     }
-                    let corners = [0, 1, 2].map(|c| {
-                        DVec3::new(pack.v[c][0][i] as f64, pack.v[c][1][i] as f64, pack.v[c][2][i] as f64)
-                    });
-                    let (point, feature) = nearest_on_triangle(exact, corners);
-                    let d = exact.distance_squared(point);
-                    let better = match &best {
-                        None => d <= limit,
-                        Some(b) => d < limit || (d == limit && id < b.triangle),
-                    };
-                    if better {
-                        best = Some(Nearest { distance_squared: d, point, triangle: id, feature });
-                        limit = d;
-                        (radius, bound) = widen(limit);
+                    if count == MAYBE {
+                        exactly.settle(&maybe);
+                        count = 0;
+                        radius = radius.min(exactly.radius());
+                        bound = square(radius);
                     }
+                    maybe[count] = (low[i], number << 2 | i as u32);
+                    count += 1;
                 }
             }
             loop {
@@ -281,6 +201,61 @@ impl WideWork for Search<'_> {
                 }
             }
         }
-        best
+        for &one in &maybe[..count] {
+            if one.0 <= radius {
+                exactly.settle(&[one]);
+                radius = radius.min(exactly.radius());
+            }
+        }
+        exactly.best
+    }
+}
+
+/// Triangles that wait for the double-precision test.
+const MAYBE: usize = 32;
+
+/// The square of a radius, rounded up. Finite always: what is infinitely far is a child that is not there.
+#[inline(always)]
+fn square(radius: f32) -> f32 {
+    (radius * radius * (1.0 + SLACK)).min(f32::MAX)
+}
+
+/// The double-precision side of a search.
+struct Exact<'a> {
+    tree: &'a WideTree,
+    p: DVec3,
+    moved: f32,
+    limit: f64,
+    best: Option<Nearest>,
+}
+
+impl Exact<'_> {
+    /// The best distance so far, rounded up to what single precision may find in its place.
+    #[inline(always)]
+    fn radius(&self) -> f32 {
+        self.limit.sqrt() as f32 * (1.0 + 2.0 * SLACK) + self.moved
+    }
+
+    /// Looks at triangles, by pack and lane.
+    #[inline(always)]
+    fn settle(&mut self, some: &[(f32, u32)]) {
+        for &(_, which) in some {
+            let (pack, i) = (&self.tree.packs[which as usize >> 2], which as usize & 3);
+            let id = pack.id[i];
+            if id == NO_TRIANGLE {
+                continue;
+            }
+            let corners = pack.v.map(|c| DVec3::new(c[0][i] as f64, c[1][i] as f64, c[2][i] as f64));
+            let (point, feature) = nearest_on_triangle(self.p, corners);
+            let d = self.p.distance_squared(point);
+            let better = match &self.best {
+                None => d <= self.limit,
+                Some(b) => d < self.limit || (d == self.limit && id < b.triangle),
+            };
+            if better {
+                self.best = Some(Nearest { distance_squared: d, point, triangle: id, feature });
+                self.limit = d;
+            }
+        }
     }
 }

@@ -10,6 +10,7 @@ use sculptd::analysis::measure::measures;
 use sculptd::analysis::offset::{hollow, offset, smooth_union};
 use sculptd::analysis::remesh::{RemeshError, Settings, dual::extract, remesh};
 use sculptd::mesh::TriMesh;
+use sculptd::mesh::crossing::pairs;
 use sculptd::mesh::shapes::{cuboid, icosphere, torus};
 
 use super::{Random, bounds, long, manifold, meshes};
@@ -173,4 +174,29 @@ fn solids_grow_shrink_hollow_and_melt() {
     let truth = 2.0 * volume(10.0) - overlap;
     assert!((measures(&plain).volume / truth - 1.0).abs() < 0.01);
     assert!(measures(&melted).volume > measures(&plain).volume * 1.002);
+}
+
+/// Two balls that melt into each other, and a block with edges: their cavities have ridges and points.
+#[test]
+fn a_cavity_folds_nowhere_and_keeps_its_depth() {
+    let job = Job::default();
+    let ball = icosphere(10.0, 24);
+    let moved =
+        TriMesh { positions: ball.positions.iter().map(|p| *p + Vec3::X * 18.0).collect(), ..ball.clone() };
+    let melted = smooth_union(&solid(&ball), &solid(&moved), 1.0, 96, &job).unwrap();
+    let block = cuboid(DVec3::splat(-10.0), DVec3::new(10.0, 8.0, 25.0)).triangulate().0;
+    for (mesh, wall) in [(melted, 3.0), (block, 2.0)] {
+        let old = solid(&mesh);
+        let hollowed = hollow(&mesh, &old, wall, 96, &job).unwrap();
+        assert!(manifold(&hollowed.mesh));
+        let at: Vec<DVec3> = hollowed.mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+        let crossing = pairs(&at, &hollowed.mesh.triangles, &job).unwrap();
+        assert!(crossing.is_empty(), "{} pairs", crossing.len());
+        let inner = &hollowed.mesh.positions[mesh.positions.len()..];
+        assert!(inner.len() > 1000);
+        for p in inner {
+            let depth = -old.signed_distance(p.as_dvec3());
+            assert!(depth > wall - 0.05 * hollowed.spacing, "{depth} under a wall of {wall}");
+        }
+    }
 }
