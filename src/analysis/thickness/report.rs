@@ -1,6 +1,8 @@
 //! The report: one page that needs nothing else, on a screen, on paper, and read aloud.
 
+use std::borrow::Cow;
 use std::fmt::Write;
+use std::path::Path;
 
 use glam::Vec3;
 
@@ -29,8 +31,9 @@ pub fn html(part: &Part, checked: &Checked, origin: Origin<'_>) -> Result<String
     let a = &checked.answer;
     let scale = checked.thickness.scale();
     let colours = checked.thickness.colours(scale);
-    let mut out = head(&format!("Wall thickness of {}", a.file));
-    let _ = write!(out, "<h1>Wall thickness</h1><p class=file>{}</p>", escape(&a.file));
+    let name = name_of(a);
+    let mut out = head(&format!("Wall thickness of {name}"));
+    let _ = write!(out, "<h1>Wall thickness</h1><p class=file>{}</p>", escape(&name));
     verdict(&mut out, a);
     out.push_str("<h2>The part</h2><div class=views>");
     for (side, name) in [
@@ -70,6 +73,11 @@ padding:.2rem 0}figure{margin:0}figcaption{color:#444;font-size:.9rem}img{max-wi
 .views{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));gap:1rem}svg{max-width:100%;height:auto}\
 details{margin:.5rem 0}@media print{main{padding:0;max-width:none}h2{break-after:avoid}figure,tr,svg{break-inside:avoid}\
 details>summary{display:none}.verdict{print-color-adjust:exact}}";
+
+/// The page is for others: where the file lies on this machine is not theirs.
+fn name_of(a: &Answer) -> Cow<'_, str> {
+    Path::new(&a.file).file_name().map_or(a.file.as_str().into(), |n| n.to_string_lossy())
+}
 
 fn verdict(out: &mut String, a: &Answer) {
     let (class, word) = match a.verdict {
@@ -283,7 +291,7 @@ fn method(out: &mut String, a: &Answer, origin: Origin<'_>) {
         limit(l.warn_below),
         limit(l.fail_below),
         limit(l.fail_above),
-        escape(&a.file),
+        escape(&name_of(a)),
         origin.bytes,
         origin.hash,
         escape(origin.program)

@@ -22,10 +22,12 @@ pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
         )
     });
     say(faults.boundary_edges, &|n| {
+        let lost = match summary.missing.nothing_ahead {
+            0 => "every vertex still met some wall, beside an opening perhaps a further one".into(),
+            lost => format!("{lost} vertices are without a value"),
+        };
         format!(
-            "the mesh is open ({n} edges have one face only): what lies behind an opening has no thickness, and \
-             {} vertices are without a value",
-            summary.missing.nothing_ahead
+            "the mesh is open ({n} edges have one face only): what lies behind an opening has no thickness; {lost}"
         )
     });
     say(faults.inverted_edges, &|n| {
