@@ -78,15 +78,8 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
         None => None,
         Some((kiosk, start)) => {
             let (published, commands) = (live.published.clone(), live.commands.clone());
-            let keeper = keeper::start(
-                kiosk,
-                start,
-                published,
-                commands,
-                factory.clone(),
-                clock.clone(),
-                stop.clone(),
-            );
+            let keeper =
+                keeper::start(kiosk, start, published, commands, &factory, clock.clone(), stop.clone());
             Some(keeper.map_err(Fail::Config)?)
         }
     };

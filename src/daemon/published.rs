@@ -39,6 +39,8 @@ pub struct Published {
     pub hands: Option<Hands>,
     /// What each hand that is followed is doing.
     pub poses: [Option<Pose>; MAX_HANDS],
+    /// The tracker of each.
+    pub hand_devices: [Option<DeviceId>; MAX_HANDS],
     /// What the hands hold, and where.
     pub thing: Option<Thing>,
     /// The ball of the hands' menu that a fingertip is in, and 0 to 1 how far its ring has closed.
@@ -76,8 +78,9 @@ impl Published {
             *slot = Some(pen);
         }
         let mut poses = [None; MAX_HANDS];
-        for (slot, (_, _, pose)) in poses.iter_mut().zip(world.poses()) {
-            *slot = Some(pose);
+        let mut hand_devices = [None; MAX_HANDS];
+        for ((pose, by), (device, _, now)) in poses.iter_mut().zip(&mut hand_devices).zip(world.poses()) {
+            (*pose, *by) = (Some(now), Some(device));
         }
         let mesh = world.snapshot();
         let tools = world.hand_tools();
@@ -93,6 +96,7 @@ impl Published {
             pens,
             hands: world.hands().copied(),
             poses,
+            hand_devices,
             thing: world.thing().cloned(),
             menu: tools.menu().showing(),
             fatigue: (tools.fatigue().spent(), tools.fatigue().wants_lower()),

@@ -4,6 +4,8 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::process::Command;
+use std::sync::atomic::{AtomicI64, Ordering::Relaxed};
 
 use glam::Vec3;
 use sculptd::analysis::cancel::Job;
@@ -11,6 +13,9 @@ use sculptd::brush::{Gaussian, Smooth};
 use sculptd::mesh::{Mesh, Reach, Workers, shapes};
 
 struct Counting;
+
+/// Bytes that the whole process holds.
+static LIVE: AtomicI64 = AtomicI64::new(0);
 
 thread_local! {
     static COUNTED: Cell<bool> = const { Cell::new(false) };
@@ -28,14 +33,17 @@ fn note() {
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         note();
+        LIVE.fetch_add(layout.size() as i64, Relaxed);
         unsafe { System.alloc(layout) }
     }
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
         note();
+        LIVE.fetch_sub(layout.size() as i64, Relaxed);
         unsafe { System.dealloc(at, layout) }
     }
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         note();
+        LIVE.fetch_add(size as i64 - layout.size() as i64, Relaxed);
         unsafe { System.realloc(at, layout, size) }
     }
 }
@@ -47,6 +55,31 @@ pub(crate) fn counted(work: impl FnOnce()) -> u64 {
     work();
     COUNTED.set(false);
     CALLS.get() - before
+}
+
+/// Bytes that this process holds now, by the allocator's own count.
+pub(crate) fn live_bytes() -> i64 {
+    LIVE.load(Relaxed)
+}
+
+/// Runs the test of this name in a process of its own, where nobody else allocates, and answers false there and true when it
+/// has passed there.
+pub(crate) fn passed_alone(name: &str) -> bool {
+    const ALONE: &str = "SCULPTD_TEST_ALONE";
+    if std::env::var_os(ALONE).is_some() {
+        return false;
+    }
+    let me = std::env::current_exe().expect("this binary");
+    let out = Command::new(me)
+        .args(["--exact", name, "--nocapture", "--test-threads=1"])
+        .env(ALONE, "1")
+        .output()
+        .expect("it runs");
+    println!("{}", String::from_utf8_lossy(&out.stdout));
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert!(out.status.success(), "{said}");
+    assert!(String::from_utf8_lossy(&out.stdout).contains("1 passed"), "no test is called {name}");
+    true
 }
 
 #[global_allocator]

@@ -1,6 +1,5 @@
 //! The cycle at work: a thread looks at what the loop publishes, plays the attract recordings, and sends what the cycle asks for.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -9,17 +8,15 @@ use std::time::Duration;
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
+use super::film::Film;
 use super::{Act, Cycle, KioskConfig, Stage, View, gallery};
 use crate::analysis::cancel::Job;
 use crate::brush::BrushSettings;
 use crate::command::{Beginning, Command, NewClay};
 use crate::daemon::Published;
 use crate::daemon::adaptors::RECORDING_IDS;
-use crate::daemon::rig::{Area, RecordingFeed, used_area};
-use crate::daemon::stepped::Feed;
 use crate::devices::catalogue::Catalogue;
-use crate::devices::queue::SenderFactory;
-use crate::devices::recording::Player;
+use crate::devices::queue::{Sender, SenderFactory};
 use crate::devices::{Clock, DeviceId};
 use crate::mesh::{Mesh, TriMesh};
 use crate::stroke::Camera;
@@ -68,14 +65,14 @@ struct Keeping {
     start: Start,
     published: Arc<ArcSwap<Published>>,
     commands: cc::Sender<Command>,
-    factory: SenderFactory,
+    sender: Sender,
     clock: Clock,
     stop: Arc<AtomicBool>,
     desk: Arc<Desk>,
-    /// Recordings of the attract loop, each with the part of the tablet that it uses.
-    films: Vec<(PathBuf, Option<Area>)>,
-    playing: Option<RecordingFeed>,
-    next_film: usize,
+    /// What plays while nobody is there; never empty.
+    films: Vec<Film>,
+    film: usize,
+    playing: bool,
     began_us: u64,
     dabs_before: u64,
 }
@@ -86,16 +83,22 @@ pub fn start(
     start: Start,
     published: Arc<ArcSwap<Published>>,
     commands: cc::Sender<Command>,
-    factory: SenderFactory,
+    factory: &SenderFactory,
     clock: Clock,
     stop: Arc<AtomicBool>,
 ) -> Result<Keeper, String> {
     let catalogue = Catalogue::builtin().map_err(|e| e.to_string())?;
     let mut films = Vec::new();
-    for path in &config.attract {
-        let player =
-            Player::open(path, DeviceId(ATTRACT_IDS.start), &catalogue).map_err(|e| e.to_string())?;
-        films.push((path.clone(), used_area(player, start.camera.aspect)));
+    for (path, id) in config.attract.iter().zip(ATTRACT_IDS.cycle()) {
+        let film =
+            Film::open(path, DeviceId(id), start.camera.aspect, &catalogue).map_err(|e| e.to_string())?;
+        if film.is_empty() {
+            return Err(format!("{}: nothing in it touches the work", path.display()));
+        }
+        films.push(film);
+    }
+    if films.is_empty() {
+        films.push(Film::own(DeviceId(ATTRACT_IDS.start)));
     }
     let desk = Arc::new(Desk::default());
     let mut keeping = Keeping {
@@ -103,24 +106,24 @@ pub fn start(
         start,
         published,
         commands,
-        factory,
+        sender: factory.sender(),
         clock,
         stop,
         desk: desk.clone(),
         films,
-        playing: None,
-        next_film: 0,
+        film: 0,
+        playing: false,
         began_us: 0,
         dabs_before: 0,
     };
-    let run = move || keeping.run(&catalogue);
+    let run = move || keeping.run();
     let thread =
         std::thread::Builder::new().name("sculptd-kiosk".into()).spawn(run).map_err(|e| e.to_string())?;
     Ok(Keeper { desk, thread })
 }
 
 impl Keeping {
-    fn run(&mut self, catalogue: &Catalogue) {
+    fn run(&mut self) {
         let mut cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
         let mut felt = None;
         let (_keep, quiet) = cc::bounded::<()>(1);
@@ -138,7 +141,7 @@ impl Keeping {
                 self.obey(act, &cycle);
             }
             if cycle.view().stage == Stage::Attract {
-                self.attract(catalogue);
+                self.attract();
             }
             if let Ok(mut view) = self.desk.view.lock() {
                 *view = Some(cycle.view());
@@ -152,7 +155,9 @@ impl Keeping {
             None => {}
             Some(Act::Quit) => self.stop.store(true, Relaxed),
             Some(Act::Begin) => {
-                self.playing = None;
+                if std::mem::take(&mut self.playing) {
+                    self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
+                }
                 self.dabs_before = self.published.load().figures.dabs;
                 self.put_back();
             }
@@ -185,19 +190,17 @@ impl Keeping {
         }
     }
 
-    fn attract(&mut self, catalogue: &Catalogue) {
-        let over = self.playing.as_ref().is_none_or(|p| p.finished());
-        if over {
-            let Some((path, area)) = self.films.get(self.next_film) else { return };
-            self.next_film = (self.next_film + 1) % self.films.len();
+    fn attract(&mut self) {
+        if !self.playing {
+            // Each film begins on clean clay.
             self.put_back();
-            let Ok(mut player) = Player::open(path, DeviceId(ATTRACT_IDS.start), catalogue) else { return };
-            self.began_us = self.clock.now_us();
-            player.start_at(self.began_us);
-            self.playing = Some(RecordingFeed::new(player, self.factory.sender(), *area));
+            self.films[self.film].rewind();
+            (self.playing, self.began_us) = (true, self.clock.now_us());
         }
-        if let Some(feed) = &mut self.playing {
-            feed.advance(self.clock.now_us().saturating_sub(self.began_us));
+        let now = self.clock.now_us().saturating_sub(self.began_us);
+        if !self.films[self.film].play(self.began_us, now, &mut self.sender) {
+            self.film = (self.film + 1) % self.films.len();
+            self.playing = false;
         }
     }
 }
@@ -210,7 +213,8 @@ fn touch(state: &Published) -> Option<Vec<(u16, [f32; 3])>> {
             felt.push((id.0, [pen.view.x, pen.view.y, pen.pressure]));
         }
     }
-    if let Some(hands) = &state.hands {
+    let visitors = state.hand_devices.iter().flatten().any(|id| !ATTRACT_IDS.contains(&id.0));
+    if let Some(hands) = state.hands.as_ref().filter(|_| visitors) {
         felt.extend(hands.as_slice().iter().map(|h| (u16::MAX, h.palm.to_array())));
     }
     (!felt.is_empty()).then_some(felt)

@@ -6,6 +6,7 @@
 //! * What is written (gallery, audit) appears whole or not at all, and says nothing of who was here.
 
 pub mod cycle;
+pub mod film;
 pub mod gallery;
 pub mod keeper;
 pub mod settings;

@@ -3,7 +3,7 @@
 //!
 //! Laws kept here:
 //! * The tick thread only hands over data and never waits ([`writer`]).
-//! * Input is on its way to the disk at most [`GROUP_MS`] after its tick, and on it (synced) with that group.
+//! * Input is committed at most [`GROUP_MS`] after its tick, safe from a kill, and then synced, safe from a power cut.
 //! * What was written is never rewritten: a group is a row, a row carries its checksum, a torn tail is dropped and said.
 
 pub mod format;
@@ -11,6 +11,7 @@ pub mod reader;
 pub mod replay;
 pub mod salvage;
 pub mod shelf;
+mod syncer;
 pub mod writer;
 
 pub use reader::{Loss, OpenError, Opened, open};

@@ -14,6 +14,7 @@ use crossbeam_channel as cc;
 use rusqlite::Connection;
 
 use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TABLES, append};
+use super::syncer::Syncer;
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::command::Command;
 use crate::daemon::live::Journal;
@@ -135,7 +136,7 @@ pub fn create(
         db.execute_batch("COMMIT")
     };
     all().map_err(store)?;
-    Ok(start_thread(db, lock))
+    start_thread(db, lock, path)
 }
 
 /// Keeps a second daemon from writing the same session. Given back when the file is closed, also by a kill.
@@ -155,25 +156,32 @@ pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError>
     let lock = lock(path)?;
     let db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
-    Ok(start_thread(db, lock))
+    start_thread(db, lock, path)
 }
 
-/// Write-ahead log, every group synced: a power cut costs the last group at most.
+/// Write-ahead log, every group synced by [`Syncer`]: a kill costs what was not committed, a power cut the last group at most.
 fn tune(db: &Connection) -> rusqlite::Result<()> {
     db.busy_timeout(Duration::from_secs(2))?;
     db.pragma_update(None, "journal_mode", "wal")?;
-    db.pragma_update(None, "synchronous", "full")
+    db.pragma_update(None, "synchronous", "normal")
 }
 
-fn start_thread(db: Connection, lock: File) -> (SessionWriter, WriterThread) {
+fn start_thread(
+    db: Connection,
+    lock: File,
+    path: &Path,
+) -> Result<(SessionWriter, WriterThread), CreateError> {
     let (full, inbox) = cc::bounded(BUFFERS);
     let (recycle, empty) = cc::bounded(BUFFERS);
     for _ in 0..BUFFERS {
         let _ = recycle.try_send(Vec::with_capacity(BUFFER_BYTES));
     }
     let health = Health::default();
+    let syncer = Syncer::start(path, health.written.clone())
+        .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     let mut writing = Writing {
         db,
+        syncer: Some(syncer),
         _lock: lock,
         recycle,
         health: health.clone(),
@@ -184,11 +192,10 @@ fn start_thread(db: Connection, lock: File) -> (SessionWriter, WriterThread) {
     let thread = std::thread::Builder::new()
         .name("sculptd-journal".into())
         .spawn(move || writing.run(&inbox))
-        // Without a thread there is no process left to speak of: the machine has no memory for a stack.
-        .unwrap_or_else(|e| panic!("the journal thread could not be started: {e}"));
+        .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     let lost = health.lost.clone();
     let writer = SessionWriter { full, empty, lost, carry: Vec::new(), carry_ticks: (0, 0) };
-    (writer, WriterThread { thread, health })
+    Ok((writer, WriterThread { thread, health }))
 }
 
 impl Journal for SessionWriter {
@@ -249,6 +256,8 @@ struct Group {
 
 struct Writing {
     db: Connection,
+    /// Taken at the end.
+    syncer: Option<Syncer>,
     /// After `db`: closing another handle of the file first would give back SQLite's own locks.
     _lock: File,
     recycle: cc::Sender<Vec<u8>>,
@@ -295,8 +304,17 @@ impl Writing {
                 self.flush();
             }
             if ended {
+                self.end();
                 return;
             }
+        }
+    }
+
+    /// The last group is synced too before the thread is gone.
+    fn end(&mut self) {
+        let Some(why) = self.syncer.take().and_then(Syncer::finish) else { return };
+        if let Ok(mut fault) = self.health.fault.lock() {
+            fault.get_or_insert(format!("the session file was not synced: {why}"));
         }
     }
 
@@ -306,10 +324,11 @@ impl Writing {
         let text = match result {
             Ok(last) => {
                 self.groups.clear();
-                if let Some(last) = last {
-                    self.health.written.store(last, Relaxed);
+                if let (Some(last), Some(syncer)) = (last, &self.syncer) {
+                    syncer.committed(last);
                 }
-                None
+                let unsynced = self.syncer.as_ref().and_then(Syncer::trouble);
+                unsynced.map(|e| format!("the session file cannot be synced: {e}"))
             }
             Err(e) if kept > KEPT_BYTES => {
                 // What waits is written when there is room; nothing after it is, for a log with a hole cannot be replayed.
