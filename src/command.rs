@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::brush::{BrushSettings, MaskAction, Picture};
 use crate::hand::{ReachBox, Similarity};
-use crate::mesh::{Mesh, TriMesh};
+use crate::mesh::{Levels, Mesh, TriMesh};
 use crate::stroke::Camera;
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -55,6 +55,8 @@ pub struct NewClay {
     pub plain: Arc<TriMesh>,
     /// Keep the camera where it is (a Boolean's result), or frame the new work (a file).
     pub keep_camera: bool,
+    /// The other levels of it.
+    pub levels: Option<Arc<Levels>>,
     /// Taken by the first `step` that sees it.
     #[serde(skip)]
     built: Arc<Mutex<Option<Mesh>>>,
@@ -62,7 +64,7 @@ pub struct NewClay {
 
 impl NewClay {
     pub fn new(plain: Arc<TriMesh>, built: Mesh, keep_camera: bool) -> Self {
-        NewClay { plain, keep_camera, built: Arc::new(Mutex::new(Some(built))) }
+        NewClay { plain, keep_camera, levels: None, built: Arc::new(Mutex::new(Some(built))) }
     }
 
     /// The pages, if they were built and not yet taken. Never waits: nobody else holds the lock once the command is sent.

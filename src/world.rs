@@ -214,6 +214,7 @@ impl World {
                 let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());
                 if let Some(mut mesh) = built {
                     mesh.set_undo_bytes(self.options.undo_bytes);
+                    mesh.set_levels(new.levels.clone());
                     let World { works, retired, mesh: now, options, .. } = self;
                     if new.keep_camera {
                         works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));

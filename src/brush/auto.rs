@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::dab::Dab;
 use super::ground::{Ground, Scratch};
+use super::stamp::Laid;
 use crate::mesh::PageIn;
 
 /// Faces fade out over this much of the cosine to the eye.
@@ -19,6 +20,7 @@ pub struct Auto {
     cavity: f32,
     /// The image whose connected part was marked.
     connected: Option<usize>,
+    stamp: Option<Laid>,
 }
 
 impl Auto {
@@ -27,19 +29,21 @@ impl Auto {
         if a.topology {
             on.mark_connected(dab);
         }
+        let stamp = Laid::ready(dab);
         Auto {
-            on: a.is_on(),
+            on: a.is_on() || stamp.is_some(),
             eye: a.front_faces.then_some(dab.eye),
             boundary: a.boundary,
             normal: (a.normal_degrees > 0.0).then(|| (dab.normal, a.normal_degrees.to_radians())),
             cavity: a.cavity * dab.radius,
             connected: a.topology.then_some(on.image),
+            stamp,
         }
     }
 
-    /// 0 left alone to 1 free.
+    /// 0 left alone to 1 free. `at`: where the brush has the vertex, now or at the start of the stroke.
     #[inline(always)]
-    pub fn share(&self, page: &PageIn<'_>, v: usize, scratch: &Scratch) -> f32 {
+    pub fn share(&self, page: &PageIn<'_>, v: usize, at: Vec3, scratch: &Scratch) -> f32 {
         if !self.on {
             return 1.0;
         }
@@ -60,6 +64,11 @@ impl Auto {
         }
         if self.connected.is_some_and(|image| !scratch.is_marked(image, page.number(), v)) {
             return 0.0;
+        }
+        if let Some(stamp) = &self.stamp
+            && w > 0.0
+        {
+            w *= stamp.share(at, scratch.picture());
         }
         w
     }

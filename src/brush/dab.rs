@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use super::BrushSettings;
 use super::ground::{Ground, Scratch};
+use super::stamp::Lens;
 use crate::mesh::{PageIn, Reach};
 
 /// Images of a dab at most, itself counted.
@@ -44,6 +45,8 @@ pub struct Dab<'a> {
     pub eye: Vec3,
     /// Unit, to the right of the view.
     pub right: Vec3,
+    /// How the eye sees the work.
+    pub lens: Lens,
     /// 1, or -1 in an image that is mirrored.
     pub hand: f32,
     /// Which of the images it is; 0 the brush itself.

@@ -62,13 +62,16 @@ pub struct Plane {
     pub point: Vec3,
     /// Unit length.
     pub normal: Vec3,
+    /// What is further away is none of its concern.
+    pub trim: f32,
 }
 
 impl Plane {
-    /// Above the plane it is positive.
+    /// Above the plane it is positive; 0 also for what is beyond the trim.
     #[inline(always)]
     pub fn height(&self, p: Vec3) -> f32 {
-        (p - self.point).dot(self.normal)
+        let h = (p - self.point).dot(self.normal);
+        if h.abs() > self.trim { 0.0 } else { h }
     }
 }
 
@@ -90,7 +93,9 @@ impl Ground<'_> {
         });
         let normal = normal.as_vec3().try_normalize().unwrap_or(dab.normal);
         let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };
-        Plane { point: point + normal * (offset * dab.radius), normal }
+        let trim = dab.settings.plane_trim;
+        let trim = if trim > 0.0 { trim * dab.radius } else { f32::INFINITY };
+        Plane { point: point + normal * (offset * dab.radius), normal, trim }
     }
 
     /// Marks what hangs together with the dab's centre within its radius.

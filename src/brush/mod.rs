@@ -19,6 +19,7 @@ pub mod preset;
 mod push;
 pub mod restore;
 pub mod settings;
+pub mod stamp;
 pub mod tool;
 pub mod unroll;
 pub mod walk;
@@ -38,6 +39,7 @@ pub use palm::Palm;
 pub use push::Push;
 pub use settings::{BrushSettings, PressureCurve};
 pub use smooth::Smooth;
+pub use stamp::{Stamp, StampBy};
 pub use tool::Tool;
 
 /// Declares the brushes: name, variant, module.

@@ -97,6 +97,8 @@ pub enum Method {
     DragDot,
     /// A straight line from where the pen came down to where it lifts.
     Line,
+    /// A fair curve, near all that was drawn, once the pen lifts.
+    Curve,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

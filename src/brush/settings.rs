@@ -9,6 +9,7 @@ use super::BrushKind;
 use super::alpha::Alpha;
 use super::falloff::{CURVE, Falloff};
 use super::options::{AutoMask, Mirror, PathSettings, Topology};
+use super::stamp::Stamp;
 
 /// How pressure (0 to 1) becomes a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -65,12 +66,16 @@ pub struct BrushSettings {
     pub saturation: f32,
     /// The share of the radius over which brushes that need a plane average the surface; 0.05 to 2.
     pub normal_radius: f32,
+    /// Brushes that need a plane leave alone what is further from it than so many radii; 0: nothing; to 2.
+    pub plane_trim: f32,
     /// How much the dab's direction leans from the surface normal to the pen's own, 0 to 1. Without a tilt: not at all.
     pub tilt: f32,
     /// RGBA, sRGB: for brushes that paint.
     pub colour: [u8; 4],
     /// For brushes that press a picture of heights.
     pub alpha: Alpha,
+    /// How the alpha is laid between the brush and the clay.
+    pub stamp: Stamp,
     pub auto: AutoMask,
     pub path: PathSettings,
     pub topology: Topology,
@@ -94,9 +99,11 @@ impl Default for BrushSettings {
             curve: [1.0, 0.95, 0.85, 0.7, 0.5, 0.3, 0.15, 0.05, 0.0],
             saturation: 0.0,
             normal_radius: 0.5,
+            plane_trim: 0.0,
             tilt: 0.0,
             colour: [200, 90, 60, 255],
             alpha: Alpha::default(),
+            stamp: Stamp::default(),
             auto: AutoMask::default(),
             path: PathSettings::default(),
             topology: Topology::default(),
@@ -173,6 +180,12 @@ impl BrushSettings {
         }
         f("saturation", &mut self.saturation, 0.0, 1000.0, 0.0);
         f("normal_radius", &mut self.normal_radius, 0.05, 2.0, d.normal_radius);
+        f("plane_trim", &mut self.plane_trim, 0.0, 2.0, 0.0);
+        f("stamp.size", &mut self.stamp.size, 0.05, 10.0, 1.0);
+        f("stamp.turn_degrees", &mut self.stamp.turn_degrees, -180.0, 180.0, 0.0);
+        for v in &mut self.stamp.at {
+            f("stamp.at", v, -4.0, 4.0, 0.0);
+        }
         f("tilt", &mut self.tilt, 0.0, 1.0, 0.0);
         f("mirror.offset", &mut self.mirror.offset, -10.0, 10.0, 0.0);
         f("auto.normal_degrees", &mut self.auto.normal_degrees, 0.0, 180.0, 0.0);

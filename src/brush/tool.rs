@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::auto::Auto;
 use super::dab::{Brush, Change, Dab, Grip, IMAGES, Spot};
 use super::ground::{Ground, Scratch};
+use super::stamp::StampBy;
 use crate::mesh::{DabReport, Kernel, Mesh, PageIn, PageOut, Reach, Workers};
 
 /// The clay in a brush's hand.
@@ -29,7 +30,8 @@ impl Tool<'_> {
     pub fn apply<B: Brush>(&mut self, dabs: &[Dab<'_>]) {
         let dabs = &dabs[..dabs.len().min(IMAGES)];
         let Some(first) = dabs.first() else { return };
-        let plain = !first.settings.auto.is_on() && first.settings.saturation == 0.0;
+        let stamped = first.settings.stamp.by != StampBy::Off;
+        let plain = !first.settings.auto.is_on() && !stamped && first.settings.saturation == 0.0;
         // Which images act together: those whose balls overlap, directly or by others between them.
         let balls: [(Vec3, f32); IMAGES] =
             std::array::from_fn(|i| dabs.get(i).map_or((Vec3::ZERO, 0.0), |d| ball(&B::reach(d))));
@@ -99,8 +101,9 @@ impl<B: Brush> Kernel for Each<'_, B> {
                     continue;
                 }
                 within = true;
+                let at = if matches!(B::GRIP, Grip::Anchor) { page.before(v) } else { p };
                 let free = if B::MASKED { 1.0 - page.mask(v) } else { 1.0 };
-                let weight = share * free * auto.share(page, v, self.scratch);
+                let weight = share * free * auto.share(page, v, at, self.scratch);
                 if !(weight > 0.0) {
                     continue;
                 }

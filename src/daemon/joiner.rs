@@ -14,7 +14,7 @@ use crate::analysis::boolean::{self, Operation, Options};
 use crate::analysis::cancel::Job;
 use crate::command::{Command, NewClay};
 use crate::hand::{Choice, Thing};
-use crate::mesh::{Mesh, Snapshot, TriMesh};
+use crate::mesh::{LevelError, Levels, Mesh, Snapshot, TriMesh};
 
 /// Tries before a work that never rests is told so.
 const TRIES: usize = 3;
@@ -25,6 +25,10 @@ pub enum JoinError {
     Empty,
     #[error(transparent)]
     Boolean(#[from] boolean::Error),
+    #[error("this part of the view holds nothing that could be cut off")]
+    NoPart,
+    #[error(transparent)]
+    Level(#[from] LevelError),
     #[error("nothing of the work would be left")]
     Nothing,
     #[error("the result cannot be sculpted: {0}")]
@@ -73,6 +77,25 @@ pub fn join(
     Ok(vec![Command::Replace(NewClay::new(Arc::new(plain), built, true)), Command::PutDown])
 }
 
+/// The work one level finer or coarser: the command that puts it in place, and which level of how many it is.
+pub fn level(shown: &ArcSwap<Published>, finer: bool) -> Result<(Command, (usize, usize)), JoinError> {
+    settled(shown, |now| {
+        let (work, job) = (now.mesh.to_tri(), Job::default());
+        let levels = now.mesh.levels().map(|l| &**l);
+        let (plain, levels) = match (finer, levels) {
+            // Where triangles were cut the levels end: what is there now is the lowest of new ones.
+            (true, levels) => Levels::up(levels.filter(|l| l.fits(&work)), &work, &job)?,
+            (false, Some(levels)) => levels.down(&work, &job)?,
+            (false, None) => return Err(LevelError::Lowest.into()),
+        };
+        let built = Mesh::build(&plain, &job).map_err(|e| JoinError::Build(e.to_string()))?;
+        let at = levels.at();
+        let mut clay = NewClay::new(Arc::new(plain), built, true);
+        clay.levels = Some(Arc::new(levels));
+        Ok((Command::Replace(clay), at))
+    })
+}
+
 /// A running joiner; it ends when this is dropped and what it computes is done.
 #[derive(Debug)]
 pub struct Joiner {
@@ -110,10 +133,20 @@ impl Joiner {
 /// Joins the work as it is now; again when it was changed meanwhile.
 pub fn at_rest(shown: &ArcSwap<Published>, choice: Choice) -> Result<Vec<Command>, JoinError> {
     let operation = operation(choice).ok_or(JoinError::Empty)?;
+    settled(shown, |now| {
+        let thing = now.thing.as_ref().ok_or(JoinError::Empty)?;
+        join(&now.mesh, thing, operation, &Job::default())
+    })
+}
+
+/// What `of` makes of the work; made again when the work was changed meanwhile.
+pub fn settled<T>(
+    shown: &ArcSwap<Published>,
+    of: impl Fn(&Published) -> Result<T, JoinError>,
+) -> Result<T, JoinError> {
     for _ in 0..TRIES {
         let before = shown.load_full();
-        let thing = before.thing.as_ref().ok_or(JoinError::Empty)?;
-        let done = join(&before.mesh, thing, operation, &Job::default())?;
+        let done = of(&before)?;
         if shown.load().mesh.revision() == before.mesh.revision() {
             return Ok(done);
         }

@@ -20,6 +20,7 @@ pub mod rig;
 pub mod service;
 pub mod session;
 pub mod stepped;
+pub mod trim;
 
 pub use figures::{Figures, Summary};
 pub use published::{Published, Publisher};

@@ -8,6 +8,7 @@ use super::TriMesh;
 use super::boxtree::BoxTree;
 use super::build::{BuildError, Built, build};
 use super::dab::{Bench, PhaseTimes};
+use super::levels::Levels;
 use super::page::Page;
 use super::pick;
 use super::pool::Pool;
@@ -41,6 +42,7 @@ pub struct Mesh {
     pub(super) clock: Option<fn() -> u64>,
     pub(super) phases: PhaseTimes,
     built_cost: f32,
+    levels: Option<Arc<Levels>>,
 }
 
 /// Bytes by part.
@@ -86,6 +88,7 @@ impl Mesh {
         let numbers = pages.iter().flat_map(|p| &p.topology.triangle_ids).max().map_or(0, |most| most + 1);
         Mesh {
             built_cost: top.cost(),
+            levels: None,
             top,
             history: History::new(count),
             // A page of a strange mesh may be huge: then pooled pages grow on use instead.
@@ -105,6 +108,15 @@ impl Mesh {
             clock: None,
             phases: PhaseTimes::default(),
         }
+    }
+
+    /// The coarser and finer levels that were made of this work, or of what it was cut from.
+    pub fn levels(&self) -> Option<&Arc<Levels>> {
+        self.levels.as_ref()
+    }
+
+    pub fn set_levels(&mut self, levels: Option<Arc<Levels>>) {
+        self.levels = levels;
     }
 
     /// What was odd about the input, in words.
@@ -177,7 +189,7 @@ impl Mesh {
         let t0 = now();
         let spine = self.shelf.publish(&self.pages, &mut self.stale);
         self.phases.publish += now() - t0;
-        Snapshot { spine, totals: self.totals() }
+        Snapshot { spine, totals: self.totals(), levels: self.levels.clone() }
     }
 
     /// The nearest point of the surface on the ray, seen from either side. Exact: no ray passes between two triangles that

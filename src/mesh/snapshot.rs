@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use super::TriMesh;
 use super::boxtree::BoxRay;
+use super::levels::Levels;
 use super::page::Page;
 use super::pick::{self, Found};
 use super::ray::{Hit, Ray};
@@ -44,9 +45,15 @@ pub(super) struct Totals {
 pub struct Snapshot {
     pub(super) spine: Arc<Vec<Arc<Chunk>>>,
     pub(super) totals: Totals,
+    pub(super) levels: Option<Arc<Levels>>,
 }
 
 impl Snapshot {
+    /// As [`super::Mesh::levels`].
+    pub fn levels(&self) -> Option<&Arc<Levels>> {
+        self.levels.as_ref()
+    }
+
     /// All pages in order. A page that did not change between two snapshots is the same `Arc` in both.
     pub fn pages(&self) -> impl ExactSizeIterator<Item = &Arc<Page>> + Clone {
         (0..self.totals.pages).map(|i| self.page(i as u32))

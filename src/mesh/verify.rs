@@ -34,7 +34,8 @@ impl Mesh {
                     return Err(format!("page {i}: halo vertex {k} is not where page {home} has it"));
                 }
                 if !same(page.normals[t.own + k], other.normals[local as usize]) {
-                    return Err(format!("page {i}: halo normal {k} is not what page {home} has"));
+                    let (here, there) = (page.normals[t.own + k], other.normals[local as usize]);
+                    return Err(format!("page {i}: halo normal {k} is {here}, page {home} has {there}"));
                 }
             }
             for v in 0..t.own {

@@ -4,7 +4,7 @@ use egui::{Pos2, Sense, Stroke, vec2};
 
 use super::action::Action;
 use super::{Ask, View, theme};
-use crate::brush::{BrushKind, BrushSettings};
+use crate::brush::{BrushKind, BrushSettings, Method, StampBy};
 use crate::command::Command;
 
 /// Those that are shown first; the others stand under "more".
@@ -22,6 +22,33 @@ const FIRST: [&str; 12] = [
     "mask",
     "gaussian",
 ];
+
+const METHODS: [(Method, &str); 7] = [
+    (Method::Space, "Evenly spaced"),
+    (Method::Dots, "Dots"),
+    (Method::Airbrush, "Airbrush"),
+    (Method::Anchored, "Anchored"),
+    (Method::DragDot, "Dragged dot"),
+    (Method::Line, "Line"),
+    (Method::Curve, "Fair curve"),
+];
+
+const STAMPS: [(StampBy, &str); 4] = [
+    (StampBy::Off, "None"),
+    (StampBy::Dab, "Under each dab"),
+    (StampBy::View, "Along the view"),
+    (StampBy::Stencil, "Stencil"),
+];
+
+/// One of several, in a list that unfolds.
+fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, all: &[(T, &str)]) {
+    let now = all.iter().find(|(v, _)| v == value).map_or("", |(_, name)| name);
+    egui::ComboBox::from_label(title).selected_text(now).show_ui(ui, |ui| {
+        for (v, name) in all {
+            ui.selectable_value(value, *v, *name);
+        }
+    });
+}
 
 /// What a button says: `clay-strips` becomes `Clay strips`.
 fn title(kind: BrushKind) -> String {
@@ -76,6 +103,15 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
             .on_hover_text("The brush is drawn on a lazy rope: a share of the view's height");
         ui.add(egui::Slider::new(&mut brush.path.jitter, 0.0..=2.0).text("Strewn"))
             .on_hover_text("How far dabs are strewn about the path, in radii");
+        choice(ui, "Method", &mut brush.path.method, &METHODS);
+        choice(ui, "Stamp", &mut brush.stamp.by, &STAMPS);
+        if brush.stamp.by != StampBy::Off {
+            ui.add(
+                egui::Slider::new(&mut brush.stamp.size, 0.05..=10.0).logarithmic(true).text("Stamp's size"),
+            );
+            ui.add(egui::Slider::new(&mut brush.stamp.turn_degrees, -180.0..=180.0).text("Stamp's turn"));
+            ui.checkbox(&mut brush.stamp.repeat, "Stamp repeats");
+        }
         ui.checkbox(&mut brush.auto.front_faces, "Front faces only");
         ui.checkbox(&mut brush.auto.topology, "Only what hangs together");
         for (value, extra) in brush.extra.iter_mut().zip(brush.kind.preset().extras()) {

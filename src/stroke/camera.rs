@@ -5,6 +5,7 @@
 use glam::{Mat4, Vec2, Vec3, camera::rh};
 use serde::{Deserialize, Serialize};
 
+use crate::brush::stamp::Lens;
 use crate::mesh::Ray;
 
 /// A turntable camera. Right-handed world, +y up.
@@ -61,6 +62,13 @@ impl Camera {
         let back = self.backward();
         let right = Vec3::Y.cross(back).normalize_or(Vec3::X);
         (right, back.cross(right))
+    }
+
+    /// What a brush needs to know of it.
+    pub fn lens(&self) -> Lens {
+        let (right, up) = self.axes();
+        let (back, half) = (self.backward(), self.half_height(1.0));
+        Lens { eye: self.eye(), right, up, back, half, parallel: self.orthographic }
     }
 
     /// Half the view's height at `depth` before the eye, mesh units.

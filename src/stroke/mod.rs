@@ -1,6 +1,7 @@
 //! From a pen's path over the view to dabs on the surface.
 
 pub mod camera;
+pub mod curve;
 pub mod spacer;
 pub mod steady;
 pub mod track;

@@ -59,6 +59,8 @@ pub enum Way {
     Held,
     /// A straight line, once the pen lifts.
     Line,
+    /// A fair curve through what was drawn, once the pen lifts.
+    Curve,
 }
 
 /// What a stroke is drawn on.

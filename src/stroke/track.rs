@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use glam::Vec2;
 
+use super::curve::{Curve, PIECES};
 use super::spacer::{Flow, PenPoint, Spacer, Surface, Way};
 use super::steady::Steady;
 use crate::brush::PathSettings;
@@ -28,8 +29,11 @@ pub struct PenTrack {
     steady: Steady,
     /// Where the pen came down: a straight line begins there.
     start: PenPoint,
-    /// The line from there is being drawn.
+    /// The line or curve from there is being drawn; so many pieces of it are done.
     drawing: bool,
+    pieces: usize,
+    curved: bool,
+    curve: Curve,
     spacer: Spacer,
     /// Where the walk stands: the point reached, and the share of the segment to the first waiting point.
     from: PenPoint,
@@ -51,6 +55,9 @@ impl Default for PenTrack {
             steady: Steady::default(),
             start: PenPoint::default(),
             drawing: false,
+            pieces: 0,
+            curved: false,
+            curve: Curve::default(),
             spacer: Spacer::default(),
             from: PenPoint::default(),
             share: 0.0,
@@ -153,10 +160,11 @@ impl PenTrack {
                 self.open = true;
                 self.spacer = Spacer::new(aspect);
                 (self.from, self.start, self.drawing) = (at, at, false);
+                self.curve.begin(&at);
                 match on.way() {
                     Way::Spaced | Way::Each => self.spacer.begin(&at, on),
                     Way::Held => on.hold(&at, true),
-                    Way::Line => Flow::Go,
+                    Way::Line | Way::Curve => Flow::Go,
                 }
             }
             PenEvent::Move(to) => {
@@ -174,21 +182,18 @@ impl PenTrack {
                     Way::Held if matches!(self.waiting.get(1), Some(PenEvent::Move(_))) => Flow::Go,
                     Way::Held => on.hold(&to, false),
                     Way::Line => Flow::Go,
+                    Way::Curve => {
+                        self.curve.take(&to);
+                        Flow::Go
+                    }
                 };
                 self.from = to;
                 flow
             }
             PenEvent::Up => {
-                if on.way() == Way::Line && self.open {
-                    if !self.drawing {
-                        self.drawing = true;
-                        self.spacer.begin(&self.start, on);
-                    }
-                    self.share = self.spacer.walk(&self.start, &self.from, self.share, on);
-                    if self.share < 1.0 {
-                        walked.paused = true;
-                        return Some(walked);
-                    }
+                if matches!(on.way(), Way::Line | Way::Curve) && self.open && !self.draw(aspect, on) {
+                    walked.paused = true;
+                    return Some(walked);
                 }
                 walked.ended = self.open;
                 self.open = false;
@@ -199,6 +204,35 @@ impl PenTrack {
         self.share = 0.0;
         self.waiting.pop_front();
         Some(walked)
+    }
+
+    /// Draws the line or the curve that waited for the pen to lift. False: there is more of it, for the next tick.
+    fn draw(&mut self, aspect: f32, on: &mut dyn Surface) -> bool {
+        if !self.drawing {
+            // Another setting meanwhile does not change what is being drawn.
+            (self.drawing, self.pieces, self.curved) = (true, 0, on.way() == Way::Curve);
+            if self.curved {
+                self.curve.end(aspect);
+            }
+            self.spacer.begin(&self.start, on);
+        }
+        let curved = self.curved;
+        let all = if curved { PIECES } else { 1 };
+        while self.pieces < all {
+            let point = |k: usize| match (k, curved) {
+                (k, true) => self.curve.point(k as f32 / PIECES as f32),
+                (0, false) => self.start,
+                (_, false) => self.from,
+            };
+            let (from, to) = (point(self.pieces), point(self.pieces + 1));
+            self.share = self.spacer.walk(&from, &to, self.share, on);
+            if self.share < 1.0 {
+                return false;
+            }
+            self.share = 0.0;
+            self.pieces += 1;
+        }
+        true
     }
 
     /// One more dab where the pen rests. The stroke goes on from it as from any other.

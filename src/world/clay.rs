@@ -193,6 +193,7 @@ impl Clay<'_> {
             last,
             eye: -ray.dir,
             right: self.camera.axes().0,
+            lens: self.camera.lens(),
             hand: 1.0,
             image: 0,
             travelled: self.stroke.travelled,
@@ -220,6 +221,7 @@ impl Clay<'_> {
                 last: image.m * last,
                 eye: image.m * first.eye,
                 right: image.m * first.right,
+                lens: first.lens.image(image.m, image.t),
                 hand: image.hand,
                 ..first
             };
@@ -366,6 +368,7 @@ impl Surface for Clay<'_> {
             (Grip::Surface, Method::Space | Method::Airbrush) => Way::Spaced,
             (Grip::Surface, Method::Dots) => Way::Each,
             (Grip::Surface, Method::Line) => Way::Line,
+            (Grip::Surface, Method::Curve) => Way::Curve,
         }
     }
 

@@ -2,8 +2,10 @@
 
 mod formulas;
 mod golden;
+mod levels;
 mod properties;
 mod sheet;
+mod spacing;
 mod texture;
 mod topology;
 
@@ -20,8 +22,17 @@ use sculptd::world::{World, WorldOptions};
 /// A work, a pen, and a hand that guides it.
 pub struct Studio {
     pub world: World,
+    /// How the pen leans, radians.
+    pub tilt: Option<Vec2>,
+    /// All that the world was told, where that is kept.
+    pub told: Option<Vec<Told>>,
+    /// There was more to do than one tick allows.
+    paused: bool,
     tick: u64,
 }
+
+/// One tick's samples and commands.
+pub type Told = (u64, Vec<Sample>, Vec<Command>);
 
 impl Studio {
     pub fn new(mesh: &TriMesh, brush: BrushSettings, workers: usize) -> Studio {
@@ -30,16 +41,30 @@ impl Studio {
             WorldOptions { dab_budget: 400_000, undo_bytes: 1 << 30, hands: HandSettings::default() };
         // Straight from the front, so that the view's left and right are the work's.
         let camera = Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() };
-        Studio { world: World::new(mesh, camera, brush, Workers::new(workers), options), tick: 0 }
+        Studio {
+            world: World::new(mesh, camera, brush, Workers::new(workers), options),
+            tilt: None,
+            told: None,
+            paused: false,
+            tick: 0,
+        }
+    }
+
+    fn step(&mut self, samples: &[Sample], commands: &[Command]) -> u64 {
+        self.tick += 1;
+        if let Some(told) = &mut self.told {
+            told.push((self.tick, samples.to_vec(), commands.to_vec()));
+        }
+        let report = self.world.step(self.tick, samples, commands);
+        self.paused = report.paused;
+        report.dabs
     }
 
     pub fn tell(&mut self, command: Command) {
-        self.tick += 1;
-        self.world.step(self.tick, &[], &[command]);
+        self.step(&[], &[command]);
     }
 
     pub fn sample(&mut self, view: Vec2, pressure: f32, tip: bool) -> u64 {
-        self.tick += 1;
         let area_mm = Vec2::new(self.world.camera().aspect, 1.0) * 100.0;
         let pen = Pen {
             in_range: true,
@@ -47,20 +72,20 @@ impl Studio {
             pos_mm: view * area_mm,
             area_mm,
             pressure: Some(pressure),
+            tilt: self.tilt,
             ..Pen::default()
         };
-        let sample =
-            Sample { device: DeviceId(1), t_us: self.tick * 8000, device_t_us: None, body: Body::Pen(pen) };
-        self.world.step(self.tick, &[sample], &[]).dabs
+        let sample = Sample {
+            device: DeviceId(1),
+            t_us: (self.tick + 1) * 8000,
+            device_t_us: None,
+            body: Body::Pen(pen),
+        };
+        self.step(&[sample], &[])
     }
 
     pub fn rest(&mut self, ticks: u32) -> u64 {
-        (0..ticks)
-            .map(|_| {
-                self.tick += 1;
-                self.world.step(self.tick, &[], &[]).dabs
-            })
-            .sum()
+        (0..ticks).map(|_| self.step(&[], &[])).sum()
     }
 
     /// One stroke through the points, each with its pressure; the dabs it made.
@@ -70,7 +95,14 @@ impl Studio {
             dabs += self.sample(view, pressure, true);
         }
         let (last, _) = points[points.len() - 1];
-        dabs + self.sample(last, 0.0, false) + self.rest(2)
+        dabs += self.sample(last, 0.0, false) + self.rest(2);
+        for _ in 0..10_000 {
+            if !self.paused {
+                break;
+            }
+            dabs += self.rest(1);
+        }
+        dabs
     }
 
     pub fn positions(&self) -> Vec<Vec3> {

@@ -14,7 +14,7 @@ use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
 use crate::brush::{BrushKind, MaskAction, Picture};
 use crate::command::{Command, NewClay};
-use crate::daemon::{joiner, rig};
+use crate::daemon::{joiner, rig, trim};
 use crate::hand::{Choice, ReachBox};
 use crate::mesh::Snapshot;
 use crate::mesh::io::write_mesh;
@@ -44,11 +44,38 @@ pub const METHODS: &[(&str, &str)] = &[
     ("put-down", "{}: the thing in the hands is gone"),
     ("join", "{operation}: add, carve or keep: the thing in the hands and the work become one"),
     (
+        "trim",
+        "{part: {box: [x, y, x, y]} | {line: [x, y, x, y]}}: cuts off what is seen there, or to the left of the line",
+    ),
+    (
+        "level",
+        "{to: up|down}: the work one level finer or coarser; what was sculpted on finer levels goes along with coarser ones",
+    ),
+    (
         "reach",
         "{middle_mm, half_mm} lays this part of the tracked space over the work; {} measures it for five seconds",
     ),
     ("shutdown", "{}: ends the daemon as a signal would"),
 ];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TrimParam {
+    part: trim::Part,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum LevelTo {
+    Up,
+    Down,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LevelParam {
+    to: LevelTo,
+}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -268,6 +295,20 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let done = joiner::at_rest(&host.published, p.operation).map_err(|e| failed(e.to_string()))?;
             done.into_iter().try_for_each(send)?;
             Ok(json!({ "sent": true }))
+        }
+        "trim" => {
+            let p: TrimParam = read(params)?;
+            let done = trim::at_rest(&host.published, &p.part).map_err(|e| failed(e.to_string()))?;
+            done.into_iter().try_for_each(send)?;
+            Ok(json!({ "sent": true }))
+        }
+        "level" => {
+            let p: LevelParam = read(params)?;
+            let finer = matches!(p.to, LevelTo::Up);
+            let (command, (level, levels)) =
+                joiner::level(&host.published, finer).map_err(|e| failed(e.to_string()))?;
+            send(command)?;
+            Ok(json!({ "level": level, "levels": levels }))
         }
         "reach" => {
             let reach =

@@ -215,6 +215,8 @@ impl Mesh {
     fn empty_page(&mut self) -> u32 {
         while let Some(i) = self.empty.pop() {
             if self.pages[i as usize].own() == 0 {
+                // Emptied, filled again by undo, emptied again: then it is noted twice, and must not be given twice.
+                self.empty.retain(|&other| other != i);
                 return i;
             }
         }

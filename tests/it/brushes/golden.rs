@@ -2,10 +2,14 @@
 //! number of workers. `SCULPTD_BLESS=1` writes the facts anew.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use sculptd::brush::{BrushKind, BrushSettings, Falloff, MaskAction, Method};
+use glam::{Vec2, Vec3};
+use sculptd::brush::{
+    Alpha, BrushKind, BrushSettings, Falloff, MaskAction, Measure, Method, Picture, PressureCurve, StampBy,
+};
 use sculptd::command::Command;
-use sculptd::mesh::TriMesh;
+use sculptd::mesh::{TriMesh, shapes};
 use serde::{Deserialize, Serialize};
 
 use super::{Studio, form, s_curve};
@@ -24,6 +28,9 @@ struct Facts {
     /// Sum of the mask, and vertices with another colour.
     masked: f64,
     coloured: u64,
+    /// Vertices, where triangles were cut.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    vertices: Option<u64>,
     /// Told, and not held across machines.
     hash: String,
 }
@@ -46,7 +53,15 @@ fn draw(
 }
 
 fn facts(about: &str, brush: &BrushSettings, act: &(dyn Fn(&mut Studio) -> u64 + Sync)) -> Facts {
-    let start = form(60_000);
+    facts_on(form(60_000), about, brush, act)
+}
+
+fn facts_on(
+    start: TriMesh,
+    about: &str,
+    brush: &BrushSettings,
+    act: &(dyn Fn(&mut Studio) -> u64 + Sync),
+) -> Facts {
     let (dabs, studio) = draw(&start, brush, act, 1);
     studio.world.verify_invariants().unwrap_or_else(|e| panic!("{about}: {e}"));
     let hash = studio.world.hash();
@@ -80,6 +95,7 @@ fn facts(about: &str, brush: &BrushSettings, act: &(dyn Fn(&mut Studio) -> u64 +
         volume: round((volume(&end) / volume(&start) - 1.0) * 100.0),
         masked: round(masked),
         coloured: end.colours.map_or(0, |c| c.iter().filter(|c| **c != [255; 4]).count() as u64),
+        vertices: (end.positions.len() != start.positions.len()).then_some(end.positions.len() as u64),
         hash: format!("{hash:016x}"),
     }
 }
@@ -106,6 +122,8 @@ fn hold(name: &str, now: &Facts) {
     near(name, "outwards", now.outwards, then.outwards, share(then.outwards, 0.2));
     near(name, "volume", now.volume, then.volume, share(then.volume, 0.01));
     near(name, "masked", now.masked, then.masked, share(then.masked, 5.0));
+    let vertices = |f: &Facts| f.vertices.unwrap_or(0) as f64;
+    near(name, "vertices", vertices(now), vertices(&then), share(vertices(&then), 0.0));
     near(name, "coloured", now.coloured as f64, then.coloured as f64, share(then.coloured as f64, 20.0));
 }
 
@@ -218,6 +236,82 @@ fn every_option_draws_as_it_did() {
         });
         hold(&format!("falloff-{name}"), &now);
     }
+}
+
+#[test]
+fn every_measure_alpha_and_stamp_draws_as_it_did() {
+    let of = |kind: BrushKind, set: &dyn Fn(&mut BrushSettings)| {
+        let mut b = BrushSettings { radius: 0.2, ..BrushSettings::of(kind) };
+        set(&mut b);
+        b
+    };
+    let stamp = |by: StampBy, b: &mut BrushSettings| {
+        b.stamp.by = by;
+        b.stamp.size = if by == StampBy::Stencil { 0.4 } else { 1.0 };
+        b.stamp.turn_degrees = 30.0;
+        b.alpha = Alpha::Cracks;
+    };
+    let cut = |by: Measure, edge: f32, b: &mut BrushSettings| {
+        b.topology.by = by;
+        b.topology.edge = edge;
+    };
+    let firm = PressureCurve { at_zero: 1.0, gamma: 1.0 };
+    use BrushKind::{Clay, ClayStrips, Draw, Gaussian, Texture};
+    let options = [
+        ("tilt", of(Gaussian, &|b| b.tilt = 0.8)),
+        ("normal-radius", of(Clay, &|b| b.normal_radius = 1.5)),
+        ("plane-trim", of(ClayStrips, &|b| b.plane_trim = 0.05)),
+        (
+            "pressure-radius",
+            of(Gaussian, &|b| b.pressure_radius = PressureCurve { at_zero: 0.1, gamma: 3.0 }),
+        ),
+        ("pressure-strength", of(Gaussian, &|b| b.pressure_strength = firm)),
+        ("curve", with_method(of(Gaussian, &|_| ()), Method::Curve)),
+        ("detail-brush", of(Draw, &|b| cut(Measure::Brush, 0.05, b))),
+        ("detail-absolute", of(Draw, &|b| cut(Measure::Work, 0.012, b))),
+        ("detail-view", of(Draw, &|b| cut(Measure::View, 0.006, b))),
+        ("stamp-dab", of(Draw, &|b| stamp(StampBy::Dab, b))),
+        ("stamp-view", of(Draw, &|b| stamp(StampBy::View, b))),
+        ("stamp-stencil", of(Draw, &|b| stamp(StampBy::Stencil, b))),
+        ("stamp-mirrored", {
+            let mut b = of(Draw, &|b| stamp(StampBy::Stencil, b));
+            b.symmetry = [true, false, false];
+            b
+        }),
+    ];
+    for (name, brush) in options {
+        let now = facts(&format!("the {} brush, {name}", brush.kind), &brush, &|s| {
+            s.tilt = Some(Vec2::new(0.6, -0.3));
+            s.stroke(&s_curve())
+        });
+        assert!(now.displaced > 0, "{name} does nothing");
+        hold(&format!("option-{name}"), &now);
+    }
+    for alpha in Alpha::MADE.into_iter().chain([Alpha::Picture]) {
+        let name = serde_json::to_value(alpha).expect("a name");
+        let name = name.as_str().expect("a name").to_string();
+        let now = facts(&format!("texture, alpha {name}"), &of(Texture, &|b| b.alpha = alpha), &|s| {
+            // A ramp along and a step across.
+            let heights = (0..64u16).map(|i| (i % 8) * 6000 + if i < 32 { 9000 } else { 0 }).collect();
+            s.tell(Command::Picture(Arc::new(Picture { width: 8, height: 8, heights })));
+            s.stroke(&s_curve())
+        });
+        assert!(now.displaced > 0, "{name} does nothing");
+        hold(&format!("alpha-{name}"), &now);
+    }
+    // Over the border of an open sheet.
+    let mut brush = of(Gaussian, &|b| b.radius = 0.1);
+    brush.auto.boundary = true;
+    let sheet = shapes::grid(2.0, 2.0, 120, 120).triangulate().0;
+    let now = facts_on(sheet, "the Gaussian brush over a border that is kept", &brush, &|s| {
+        let at: Vec<_> =
+            (0..=12).map(|i| (s.view(Vec3::new(0.95, -0.3 + 0.05 * i as f32, 0.0)), 1.0)).collect();
+        let dabs = s.stroke(&at);
+        let kept = s.positions().iter().filter(|p| p.x == 1.0).all(|p| p.z == 0.0);
+        assert!(kept, "the border stays");
+        dabs
+    });
+    hold("option-auto-boundary", &now);
 }
 
 fn with_method(mut brush: BrushSettings, method: Method) -> BrushSettings {

@@ -1,11 +1,12 @@
 //! What holds for every brush, whatever is set.
 
 use glam::{Vec2, Vec3};
+use sculptd::analysis::cancel::Job;
 use sculptd::brush::{
-    BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, Topology,
+    BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, StampBy, Topology,
 };
 use sculptd::command::Command;
-use sculptd::mesh::shapes;
+use sculptd::mesh::{Mesh, TriMesh, shapes};
 
 use super::super::clay::Dice;
 use super::{Studio, form};
@@ -26,9 +27,20 @@ fn any_brush(dice: &mut Dice) -> BrushSettings {
     b.auto.boundary = pick(4) == 0;
     b.auto.normal_degrees = if pick(4) == 0 { 40.0 } else { 0.0 };
     b.auto.cavity = if pick(5) == 0 { 0.7 } else { 0.0 };
-    let methods =
-        [Method::Space, Method::Dots, Method::Airbrush, Method::Anchored, Method::DragDot, Method::Line];
-    b.path.method = methods[pick(6)];
+    let methods = [
+        Method::Space,
+        Method::Dots,
+        Method::Airbrush,
+        Method::Anchored,
+        Method::DragDot,
+        Method::Line,
+        Method::Curve,
+    ];
+    b.path.method = methods[pick(7)];
+    let stamps = [StampBy::Off, StampBy::Off, StampBy::Off, StampBy::Dab, StampBy::View, StampBy::Stencil];
+    b.stamp.by = stamps[pick(6)];
+    b.stamp.repeat = pick(2) == 0;
+    b.plane_trim = if pick(4) == 0 { 0.3 } else { 0.0 };
     b.path.continuous = pick(5) == 0;
     b.path.rope = if pick(5) == 0 { 0.04 } else { 0.0 };
     b.path.average = if pick(5) == 0 { 6 } else { 0 };
@@ -55,6 +67,7 @@ fn random_strokes_leave_all_in_order_undo_takes_them_back_and_a_second_run_is_eq
     let run = move |check: bool, workers: usize| {
         let mut dice = Dice(2024);
         let mut studio = Studio::new(&form(12_000), BrushSettings::default(), workers);
+        studio.told = (!check).then(Vec::new);
         let triangles = studio.world.mesh().to_tri().triangles;
         let mut cut = false;
         for round in 0..rounds {
@@ -77,16 +90,27 @@ fn random_strokes_leave_all_in_order_undo_takes_them_back_and_a_second_run_is_eq
                 studio.tell(Command::Undo);
             }
             assert_eq!(studio.world.hash(), before.0, "{round}: undo\n{brush:?}");
+            studio.world.verify_invariants().unwrap_or_else(|e| panic!("{round}, undone: {e}\n{brush:?}"));
             for _ in 0..steps {
                 studio.tell(Command::Redo);
             }
             assert_eq!(studio.world.hash(), after.0, "{round}: redo\n{brush:?}");
+            studio.world.verify_invariants().unwrap_or_else(|e| panic!("{round}, redone: {e}\n{brush:?}"));
         }
-        studio.world.hash()
+        (studio.world.hash(), studio.told)
     };
-    let checked = run(true, 1);
+    let (checked, _) = run(true, 1);
     // Undo and redo leave no trace, nor does another number of workers.
-    assert_eq!(checked, std::thread::spawn(move || run(false, 3)).join().expect("no panic"));
+    let (plain, told) = std::thread::spawn(move || run(false, 3)).join().expect("no panic");
+    assert_eq!(checked, plain);
+    // And a replay of what was written down is what was live.
+    let written = postcard::to_stdvec(&told.expect("it was kept")).expect("plain data");
+    let told: Vec<super::Told> = postcard::from_bytes(&written).expect("as it was written");
+    let mut again = Studio::new(&form(12_000), BrushSettings::default(), 2);
+    for (tick, samples, commands) in &told {
+        again.world.step(*tick, samples, commands);
+    }
+    assert_eq!(again.world.hash(), checked, "replay");
 }
 
 #[test]
@@ -108,20 +132,49 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
         let before = studio.world.hash();
         studio.stroke(&[(a, 0.0), (b, 0.0)]);
         assert_eq!(studio.world.hash(), before, "{kind}");
+        if *kind == BrushKind::MaskBlur {
+            continue;
+        }
         studio.stroke(&[(a, 1.0), (b, 1.0)]);
         let end = studio.positions();
-        // Held brushes reach where they took hold (elastic ones four radii about it), the others along the stroke.
-        let radii = if *kind == BrushKind::Elastic { 4.0 } else { 1.5 };
-        let reach = studio.world.brush_radius() * radii;
-        let segment = |p: Vec3| {
-            let (a, b) = (Vec3::new(-0.25, 0.0, 0.97), Vec3::new(0.25, 0.0, 0.97));
-            let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-            (p - a.lerp(b, t)).length()
+        // No dab's middle is off the segment by more than the ball bends over it.
+        let radius = studio.world.brush_radius();
+        let radii = match kind {
+            BrushKind::Elastic => 4.0,
+            BrushKind::ClayStrips => std::f32::consts::SQRT_2,
+            _ => 1.0,
         };
-        for (p, q) in start.positions.iter().zip(&end) {
-            assert!(p == q || segment(*p) < reach + 0.25, "{kind}: {p} moved");
+        let (from, to) = (hit(&start, &studio, a), hit(&start, &studio, b));
+        let off = |p: Vec3| {
+            let t = ((p - from).dot(to - from) / (to - from).length_squared()).clamp(0.0, 1.0);
+            (p - from.lerp(to, t)).length()
+        };
+        let painted = changed(&studio, end.len());
+        let all = end.iter().zip(&start.positions).enumerate();
+        let touched = all.filter(|(v, (q, p))| q != p || painted[*v]).map(|(_, (_, p))| *p);
+        let widest = touched.map(off).fold(0.0, f32::max) / radius;
+        println!("{kind}: {widest:.3} radii of {radii:.3}");
+        assert!(widest > 0.1 && widest < radii + 0.05, "{kind}: {widest} radii");
+    }
+}
+
+/// Where a view point lies on a ball as it was.
+fn hit(start: &TriMesh, studio: &Studio, view: Vec2) -> Vec3 {
+    let mesh = Mesh::build(start, &Job::default()).expect("builds");
+    mesh.pick(studio.world.camera().ray(view)).expect("on the ball").position
+}
+
+/// Which vertices were masked or coloured.
+fn changed(studio: &Studio, count: usize) -> Vec<bool> {
+    let (mesh, mut all) = (studio.world.mesh(), vec![false; count]);
+    for i in 0..mesh.page_count() as u32 {
+        let page = mesh.page(i);
+        for k in 0..page.own() {
+            let v = page.topology().ids[k] as usize;
+            all[v] = page.mask(k) != 0.0 || page.colour(k) != [255; 4];
         }
     }
+    all
 }
 
 #[test]
@@ -192,4 +245,42 @@ fn the_mask_of_the_whole_work() {
     studio.tell(Command::Mask(MaskAction::Cavity(0.1)));
     assert!(sum(&studio) > 0.0 && sum(&studio) < 0.5 * all);
     studio.world.verify_invariants().expect("in order");
+}
+
+#[test]
+fn the_method_may_change_in_the_middle_of_a_stroke() {
+    let methods = [
+        Method::Space,
+        Method::Dots,
+        Method::Airbrush,
+        Method::Anchored,
+        Method::DragDot,
+        Method::Line,
+        Method::Curve,
+    ];
+    let mut studio = Studio::new(&form(6_000), BrushSettings::default(), 1);
+    for kind in [BrushKind::Draw, BrushKind::Grab, BrushKind::SnakeHook] {
+        for first in methods {
+            for second in methods {
+                let of = |method| {
+                    let mut b = BrushSettings { radius: 0.1, ..BrushSettings::of(kind) };
+                    b.path.method = method;
+                    b
+                };
+                let before = studio.world.hash();
+                let points = super::s_curve();
+                studio.tell(Command::Brush(of(first)));
+                for &(at, pressure) in &points[..8] {
+                    studio.sample(at, pressure, true);
+                }
+                studio.tell(Command::Brush(of(second)));
+                studio.stroke(&points[8..]);
+                studio.world.verify_invariants().unwrap_or_else(|e| panic!("{first:?}, {second:?}: {e}"));
+                while studio.world.mesh().undo_steps() > 0 {
+                    studio.tell(Command::Undo);
+                }
+                assert_eq!(studio.world.hash(), before, "{first:?}, {second:?}");
+            }
+        }
+    }
 }

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
 use sculptd::analysis::picture::{Camera, Picture, draw};
-use sculptd::brush::{Alpha, BrushKind, BrushSettings, Grip, MaskAction};
+use sculptd::brush::{Alpha, BrushKind, BrushSettings, Falloff, Grip};
 use sculptd::command::Command;
+use sculptd::mesh::TriMesh;
 
+use super::super::clay::Dice;
 use super::{Studio, form};
 
 const COLUMNS: usize = 6;
@@ -30,15 +32,36 @@ fn cell(kind: BrushKind) -> Picture {
         brush.alpha = Alpha::Rope;
         brush.strength = 0.35;
     }
-    // On a finer mesh a relief shows; where triangles are cut they begin coarse.
+    // What evens takes more than one stroke to be seen; what only moves or cuts triangles is seen by their size.
     let cuts = matches!(kind, BrushKind::Density | BrushKind::Simplify);
-    let coarse = cuts || kind == BrushKind::Smooth;
-    let mut studio = Studio::new(&form(if coarse { 6_000 } else { 60_000 }), brush, 2);
-    if kind == BrushKind::MaskBlur {
-        studio.tell(Command::Mask(MaskAction::Cavity(0.1)));
+    let sizes = cuts || kind == BrushKind::Relax;
+    let evens = matches!(
+        kind,
+        BrushKind::Smooth | BrushKind::Flatten | BrushKind::Fill | BrushKind::Scrape | BrushKind::Relax
+    );
+    if evens {
+        (brush.radius, brush.strength) = (0.2, 1.0);
     }
-    if kind.grip() == Grip::Surface {
+    let mut start = form(if sizes { 8_000 } else { 60_000 });
+    if kind == BrushKind::Relax {
+        let mut dice = Dice(5);
+        start.positions.iter_mut().for_each(|p| *p += dice.unit().cross(*p) * 0.012);
+    }
+    let mut studio = Studio::new(&start, brush, 2);
+    if kind == BrushKind::MaskBlur {
+        // Half of a masked stroke is blurred.
+        let mask =
+            BrushSettings { radius: 0.14, falloff: Falloff::Constant, ..BrushSettings::of(BrushKind::Mask) };
+        studio.tell(Command::Brush(mask));
         studio.stroke(&stroke());
+        studio.tell(Command::Brush(BrushSettings { radius: 0.3, strength: 1.0, ..brush }));
+        for _ in 0..6 {
+            studio.stroke(&stroke()[15..]);
+        }
+    } else if kind.grip() == Grip::Surface {
+        for _ in 0..if evens { 5 } else { 1 } {
+            studio.stroke(&stroke());
+        }
     } else {
         // Held: a short pull to the upper right.
         let pull: Vec<_> =
@@ -51,6 +74,9 @@ fn cell(kind: BrushKind) -> Picture {
         for (tint, c) in tints.iter_mut().zip(colours).filter(|(_, c)| **c != [255; 4]) {
             *tint = [c[0], c[1], c[2]].map(|c| (f32::from(c) * 0.75) as u8);
         }
+    }
+    if sizes {
+        tint_by_size(&mesh, &mut tints);
     }
     let clay = studio.world.mesh();
     if !cuts {
@@ -70,6 +96,22 @@ fn cell(kind: BrushKind) -> Picture {
         half_height: 1.15,
     };
     draw(&mesh, Some(&tints), &camera, CELL, CELL)
+}
+
+/// Dark where triangles are small, light where they are large.
+fn tint_by_size(mesh: &TriMesh, tints: &mut [[u8; 3]]) {
+    let mut area = vec![(0.0f32, 0.0f32); mesh.positions.len()];
+    for t in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(t);
+        for v in mesh.triangles[t] {
+            let at = &mut area[v as usize];
+            *at = (at.0 + (b - a).cross(c - a).length(), at.1 + 1.0);
+        }
+    }
+    for (tint, (sum, n)) in tints.iter_mut().zip(area) {
+        let light = ((sum / n.max(1.0)).sqrt() * 18.0).clamp(0.25, 1.3);
+        *tint = tint.map(|c| (f32::from(c) * light).min(255.0) as u8);
+    }
 }
 
 fn sheet() -> Picture {
