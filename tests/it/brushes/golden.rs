@@ -92,7 +92,12 @@ fn facts_on(
         displaced,
         longest: round(longest * 1e3),
         outwards: round(outwards / displaced.max(1) as f64 * 1e3),
-        volume: round((volume(&end) / volume(&start) - 1.0) * 100.0),
+        // A sheet has none.
+        volume: if volume(&start).abs() < 1e-6 {
+            0.0
+        } else {
+            round((volume(&end) / volume(&start) - 1.0) * 100.0)
+        },
         masked: round(masked),
         coloured: end.colours.map_or(0, |c| c.iter().filter(|c| **c != [255; 4]).count() as u64),
         vertices: (end.positions.len() != start.positions.len()).then_some(end.positions.len() as u64),

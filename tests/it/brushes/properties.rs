@@ -1,11 +1,13 @@
 //! What holds for every brush, whatever is set.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 use sculptd::analysis::cancel::Job;
 use sculptd::brush::{
     BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, StampBy, Topology,
 };
-use sculptd::command::Command;
+use sculptd::command::{Command, NewClay};
 use sculptd::mesh::{Mesh, TriMesh, shapes};
 
 use super::super::clay::Dice;
@@ -71,6 +73,13 @@ fn random_strokes_leave_all_in_order_undo_takes_them_back_and_a_second_run_is_eq
         let triangles = studio.world.mesh().to_tri().triangles;
         let mut cut = false;
         for round in 0..rounds {
+            if round % 60 == 59 {
+                // A new work, so that cuts do not pile up, and all steps of one stroke are kept by undo.
+                let plain = form(12_000);
+                let built = Mesh::build(&plain, &Job::default()).expect("builds");
+                studio.tell(Command::Replace(NewClay::new(Arc::new(plain), built, false)));
+                cut = false;
+            }
             let brush = any_brush(&mut dice);
             studio.tell(Command::Brush(brush));
             let before = (studio.world.hash(), studio.world.mesh().undo_steps());

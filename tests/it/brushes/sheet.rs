@@ -42,7 +42,11 @@ fn cell(kind: BrushKind) -> Picture {
     if evens {
         (brush.radius, brush.strength) = (0.2, 1.0);
     }
-    let mut start = form(if sizes { 8_000 } else { 60_000 });
+    let coarse = matches!(kind, BrushKind::Smooth | BrushKind::Relax | BrushKind::Density);
+    let mut start = form(if coarse { 8_000 } else { 60_000 });
+    if kind == BrushKind::Simplify {
+        brush.topology.edge = 0.4;
+    }
     if kind == BrushKind::Relax {
         let mut dice = Dice(5);
         start.positions.iter_mut().for_each(|p| *p += dice.unit().cross(*p) * 0.012);
@@ -108,8 +112,12 @@ fn tint_by_size(mesh: &TriMesh, tints: &mut [[u8; 3]]) {
             *at = (at.0 + (b - a).cross(c - a).length(), at.1 + 1.0);
         }
     }
-    for (tint, (sum, n)) in tints.iter_mut().zip(area) {
-        let light = ((sum / n.max(1.0)).sqrt() * 18.0).clamp(0.25, 1.3);
+    let size = |(sum, n): &(f32, f32)| (sum / n.max(1.0)).sqrt();
+    let mut sizes: Vec<f32> = area.iter().map(size).collect();
+    sizes.sort_by(f32::total_cmp);
+    let usual = sizes[sizes.len() / 2];
+    for (tint, at) in tints.iter_mut().zip(&area) {
+        let light = (size(at) / usual * 0.8).clamp(0.3, 1.35);
         *tint = tint.map(|c| (f32::from(c) * light).min(255.0) as u8);
     }
 }
