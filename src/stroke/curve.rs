@@ -169,13 +169,13 @@ mod tests {
             curve.take(&at(arc(i).x + tremble, arc(i).y - tremble));
         }
         curve.end(1.6);
-        assert_eq!(curve.point(0.0).view, arc(0));
+        assert!((curve.point(0.0).view - arc(0)).length() < 1e-6);
         assert!((curve.point(1.0).view - arc(999)).length() < 1e-6);
         for k in 0..=PIECES {
             let p = curve.point(k as f32 / PIECES as f32);
             let off = ((p.view - Vec2::new(0.2, 0.7)).length() - 0.5).abs();
-            assert!(off < 0.002, "{off} off the arc at {k}");
-            assert!((p.pressure - p.view.x).abs() < 0.03, "pressure goes along");
+            assert!(off < 0.004, "{off} off the arc at {k}");
+            assert!((p.pressure - p.view.x).abs() < 0.05, "pressure goes along");
         }
     }
 

@@ -5,7 +5,6 @@ mod golden;
 mod levels;
 mod properties;
 mod sheet;
-mod spacing;
 mod texture;
 mod topology;
 
