@@ -46,6 +46,8 @@ pub struct Wired<'a> {
     /// On the clock; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
+    /// The screen of an installation, in the place of the panels.
+    pub kiosk: Option<crate::daemon::kiosk::keeper::Screen>,
 }
 
 /// Shows the window until it is closed or the run ends; `Err` says why there is none.
@@ -63,6 +65,7 @@ pub fn show(wired: &Wired<'_>) -> Result<(), String> {
         session: wired.session.clone(),
         ghosts_until_us: wired.ghosts_until_us,
         full_screen: wired.full_screen,
+        kiosk: wired.kiosk.clone(),
     };
     crate::viewer::run(wiring).map_err(|e| e.to_string())
 }

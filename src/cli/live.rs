@@ -74,13 +74,15 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
         false => None,
     };
     let _players = play(run.players, &clock, &factory, &stop);
-    let _keeper = match run.kiosk.zip(start) {
+    let keeper = match run.kiosk.zip(start) {
         None => None,
         Some((kiosk, start)) => {
+            let (words, staff) = (kiosk.every_language().map_err(Fail::Config)?, !kiosk.staff_pin.is_empty());
             let (published, commands) = (live.published.clone(), live.commands.clone());
             let keeper =
                 keeper::start(kiosk, start, published, commands, &factory, clock.clone(), stop.clone());
-            Some(keeper.map_err(Fail::Config)?)
+            let keeper = keeper.map_err(Fail::Config)?;
+            Some(keeper::Screen { desk: keeper.desk, words, staff })
         }
     };
     let _limit = run.limit_s.map(|s| end_after(s, &stop));
@@ -94,6 +96,7 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
             session: run.session.as_ref().map(|p| p.display().to_string()),
             ghosts_until_us: ghosts.as_ref().map_or(0, |g| g.ends_us),
             full_screen: run.full_screen,
+            kiosk: keeper,
         };
         if let Err(why) = display::show(&wired) {
             eprintln!("sculptd: going on without a window: {why}");

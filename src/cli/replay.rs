@@ -8,8 +8,13 @@ use super::run::export;
 use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::LoopConfig;
-use crate::daemon::session::{self, OpenError};
-use crate::mesh::Workers;
+use crate::daemon::session::replay::{Replayed, replay_seen};
+use crate::daemon::session::{self, OpenError, Opened};
+use crate::mesh::{BuildError, Workers};
+
+/// Pixels of a picture.
+#[cfg(feature = "viewer")]
+const PICTURE: (u32, u32) = (1280, 720);
 
 #[derive(Debug, clap::Args)]
 pub struct ReplayArgs {
@@ -21,6 +26,12 @@ pub struct ReplayArgs {
     /// Write the mesh as it then is.
     #[arg(long, value_name = "FILE")]
     pub export: Option<PathBuf>,
+    /// Write a picture of the work every --every seconds of the session, as frame-00000.png and on, into this folder.
+    #[arg(long, value_name = "FOLDER")]
+    pub frames: Option<PathBuf>,
+    /// Seconds of the session between two pictures.
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = super::run::seconds, requires = "frames")]
+    pub every: f64,
     /// Threads that help; the hash is the same with any number.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub workers: usize,
@@ -32,8 +43,47 @@ struct Answer {
     hash: String,
     vertices: u64,
     export: Option<String>,
+    /// Pictures written.
+    frames: u32,
     /// What of the file could not be read, if anything.
     loss: Option<String>,
+}
+
+type Done = Result<(Replayed, u32), Fail>;
+
+#[cfg(feature = "viewer")]
+fn replay(args: &ReplayArgs, opened: &Opened, workers: Workers) -> Done {
+    use crate::viewer::lapse::Lapse;
+    let every = (args.every * f64::from(opened.settings.rate_hz)).round() as u64;
+    let mut lapse = match &args.frames {
+        None => None,
+        Some(folder) => Some(Lapse::new(folder, every, PICTURE).map_err(Fail::Device)?),
+    };
+    let mut failed = None;
+    let mut see = |tick, world: &mut crate::world::World| {
+        if let Some(Err(e)) = lapse.as_mut().filter(|_| failed.is_none()).map(|l| l.see(tick, world)) {
+            failed = Some(e);
+        }
+    };
+    let replayed =
+        replay_seen(opened, args.until, workers, &Job::default(), &mut see).map_err(|e| cannot(args, &e))?;
+    match failed {
+        Some(e) => Err(Fail::Input(e)),
+        None => Ok((replayed, lapse.map_or(0, |l| l.frames))),
+    }
+}
+
+#[cfg(not(feature = "viewer"))]
+fn replay(args: &ReplayArgs, opened: &Opened, workers: Workers) -> Done {
+    if args.frames.is_some() {
+        return Err(Fail::Device("this build draws no pictures (the feature `viewer` is off)".into()));
+    }
+    let replayed = replay_seen(opened, args.until, workers, &Job::default(), &mut |_, _| {});
+    Ok((replayed.map_err(|e| cannot(args, &e))?, 0))
+}
+
+fn cannot(args: &ReplayArgs, e: &BuildError) -> Fail {
+    Fail::Input(format!("{}: {e}", args.session.display()))
 }
 
 pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
@@ -45,13 +95,13 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         eprintln!("sculptd: warning: {}: {loss}", args.session.display());
     }
     let workers = Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
-    let replayed = session::replay::replay(&opened, args.until, workers, &Job::default())
-        .map_err(|e| Fail::Input(format!("{}: {e}", args.session.display())))?;
+    let (replayed, frames) = replay(args, &opened, workers)?;
     let answer_ = Answer {
         ticks: replayed.ticks,
         hash: format!("{:016x}", replayed.world.hash()),
         vertices: replayed.world.mesh().vertex_count() as u64,
         export: export(args.export.as_deref(), &replayed.world)?,
+        frames,
         loss: opened.loss.map(|l| l.to_string()),
     };
     answer(json, &answer_, |out| writeln!(out, "ticks  {}\nhash   {}", answer_.ticks, answer_.hash));

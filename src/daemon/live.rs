@@ -168,9 +168,18 @@ impl Ticking {
 
 /// Real-time scheduling where it is allowed, else a nicer place in the queue, else as it is: `sculptd doctor` says which.
 pub fn raise_priority() -> &'static str {
+    raise(20)
+}
+
+/// The same for what serves the loop, one step below it: a journal that waits for its turn loses what a kill finds unwritten.
+pub fn raise_priority_below() -> &'static str {
+    raise(10)
+}
+
+fn raise(level: u8) -> &'static str {
     use thread_priority as tp;
     let fifo = tp::ThreadSchedulePolicy::Realtime(tp::RealtimeThreadSchedulePolicy::Fifo);
-    let middle = tp::ThreadPriorityValue::try_from(20u8).map(tp::ThreadPriority::Crossplatform);
+    let middle = tp::ThreadPriorityValue::try_from(level).map(tp::ThreadPriority::Crossplatform);
     let Ok(middle) = middle else { return "normal" };
     #[cfg(unix)]
     {

@@ -9,6 +9,7 @@ pub mod devices;
 pub mod files;
 pub mod hints;
 pub mod history;
+pub mod kiosk;
 pub mod legend;
 pub mod look;
 pub mod masks;
@@ -106,6 +107,8 @@ pub struct Desk {
     pub devices: devices::Trace,
     /// A Boolean is under way.
     pub joining: bool,
+    /// The screen of an installation.
+    pub pad: kiosk::Pad,
     /// A theme and scale that are in force, so that they are set once.
     pub applied: Option<(bool, u32)>,
 }

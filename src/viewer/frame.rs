@@ -231,7 +231,10 @@ impl Open {
         };
         let desk = &mut self.desk;
         let context = self.egui.egui_ctx().clone();
-        let out = context.run_ui(input, |ui| panels::all(ui, &view, desk, &mut asks));
+        let out = context.run_ui(input, |ui| match &wiring.kiosk {
+            Some(screen) => panels::kiosk::ui(ui, &view, screen, desk, &mut asks),
+            None => panels::all(ui, &view, desk, &mut asks),
+        });
         self.egui.handle_platform_output(&self.window, out.platform_output);
         if out.viewport_output.values().any(|v| v.repaint_delay.is_zero()) {
             self.window.request_redraw();

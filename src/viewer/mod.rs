@@ -4,6 +4,7 @@
 mod flight;
 mod frame;
 pub mod gpu;
+pub mod lapse;
 pub mod look;
 pub mod overlay;
 pub mod pages;

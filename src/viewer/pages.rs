@@ -1,4 +1,5 @@
-//! The clay on the card: every page has a slot of one large vertex buffer, and only pages that changed are sent again.
+//! The clay on the card: every page has a slot of one large vertex buffer, and of the pages that changed only the rows that
+//! did are sent again.
 
 use std::sync::Arc;
 
@@ -38,6 +39,53 @@ pub struct MapValues {
 /// Most bytes sent a frame; what is left follows with the next frames, so that a whole-mesh undo does not stop the window.
 const BUDGET: u64 = 24 << 20;
 
+/// Rows between two changed ones that are sent with them: a call costs about as much as so many bytes.
+const GAP: usize = 8;
+
+/// Which rows of each page are not on the card yet, a bit a row.
+#[derive(Debug)]
+struct Rows {
+    bits: Vec<u64>,
+    words: usize,
+}
+
+impl Rows {
+    fn all(pages: usize, slot: usize) -> Rows {
+        let words = slot.div_ceil(64);
+        Rows { bits: vec![u64::MAX; pages * words], words }
+    }
+
+    fn of(&mut self, page: u32) -> &mut [u64] {
+        let at = page as usize * self.words;
+        &mut self.bits[at..at + self.words]
+    }
+
+    /// Marks the rows in which two states of a page differ.
+    fn mark(&mut self, i: u32, old: &Page, new: &Page) {
+        let bits = self.of(i);
+        for v in 0..new.own() {
+            let same = old.point(v) == new.point(v)
+                && old.normal(v) == new.normal(v)
+                && old.mask(v) == new.mask(v)
+                && old.colour(v) == new.colour(v);
+            bits[v / 64] |= u64::from(!same) << (v % 64);
+        }
+    }
+
+    /// Takes the marked runs of a page with `own` rows, those near each other as one.
+    fn take(&mut self, i: u32, own: usize, runs: &mut Vec<std::ops::Range<usize>>) {
+        runs.clear();
+        let bits = self.of(i);
+        for v in (0..own).filter(|v| bits[v / 64] >> (v % 64) & 1 == 1) {
+            match runs.last_mut() {
+                Some(run) if v - run.end <= GAP => run.end = v + 1,
+                _ => runs.push(v..v + 1),
+            }
+        }
+        bits.fill(0);
+    }
+}
+
 #[derive(Debug)]
 pub struct Pages {
     vertices: wgpu::Buffer,
@@ -54,8 +102,10 @@ pub struct Pages {
     /// Pages that changed and are not sent yet, oldest first.
     queue: Vec<u32>,
     queued: Vec<bool>,
+    rows: Rows,
     slot: usize,
     scratch: Vec<Vertex>,
+    runs: Vec<std::ops::Range<usize>>,
     /// Bytes sent by the last [`Pages::update`].
     pub uploaded: u64,
 }
@@ -91,8 +141,10 @@ impl Pages {
             seen: None,
             queue: (0..count as u32).collect(),
             queued: vec![true; count],
+            rows: Rows::all(count, slot),
             slot,
             scratch: Vec::with_capacity(slot),
+            runs: Vec::with_capacity(slot.div_ceil(GAP)),
             uploaded: 0,
         }
     }
@@ -112,12 +164,13 @@ impl Pages {
         same
     }
 
-    /// Sends pages that changed since they were last sent, up to the budget; the first time all of them.
+    /// Sends what changed of the pages since they were last sent, up to the budget; the first time all of them.
     pub fn update(&mut self, queue: &wgpu::Queue, mesh: &Snapshot) {
         let first = self.seen.is_none();
         if let Some(seen) = &self.seen {
-            let (waiting, queued) = (&mut self.queue, &mut self.queued);
-            mesh.each_changed(seen, |i, _| {
+            let (waiting, queued, rows) = (&mut self.queue, &mut self.queued, &mut self.rows);
+            mesh.each_changed(seen, |i, page| {
+                rows.mark(i, seen.page(i), page);
                 if !std::mem::replace(&mut queued[i as usize], true) {
                     waiting.push(i);
                 }
@@ -131,18 +184,22 @@ impl Pages {
             sent += 1;
             self.queued[i as usize] = false;
             let page = mesh.page(i);
-            self.scratch.clear();
-            self.scratch.extend((0..page.own()).map(|v| {
-                let n = (page.normal(v) * 32767.0).to_array().map(|c| c as i16);
-                Vertex {
-                    place: page.point(v).to_array(),
-                    normal: [n[0], n[1], n[2], (page.mask(v) * 32767.0) as i16],
-                    colour: page.colour(v),
-                }
-            }));
-            let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
-            queue.write_buffer(&self.vertices, (i as usize * self.slot * size_of::<Vertex>()) as u64, bytes);
-            self.uploaded += bytes.len() as u64;
+            self.rows.take(i, page.own(), &mut self.runs);
+            for run in &self.runs {
+                self.scratch.clear();
+                self.scratch.extend(run.clone().map(|v| {
+                    let n = (page.normal(v) * 32767.0).to_array().map(|c| c as i16);
+                    Vertex {
+                        place: page.point(v).to_array(),
+                        normal: [n[0], n[1], n[2], (page.mask(v) * 32767.0) as i16],
+                        colour: page.colour(v),
+                    }
+                }));
+                let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
+                let at = (i as usize * self.slot + run.start) * size_of::<Vertex>();
+                queue.write_buffer(&self.vertices, at as u64, bytes);
+                self.uploaded += bytes.len() as u64;
+            }
         }
         self.queue.drain(..sent);
     }

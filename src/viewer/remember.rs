@@ -23,6 +23,12 @@ impl Remembered {
         (Remembered { path, kept: prefs }, desk)
     }
 
+    /// A desk as it comes, of which nothing will be kept.
+    pub fn nothing() -> (Remembered, Desk) {
+        let desk = Desk::default();
+        (Remembered { path: None, kept: desk.prefs.clone() }, desk)
+    }
+
     /// Writes what changed; a folder that cannot be written is nobody's concern here.
     pub fn keep(&mut self, desk: &Desk) {
         let mut now = desk.prefs.clone();

@@ -43,6 +43,8 @@ pub struct Wiring {
     /// On the clock, when the ghosts have ended; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
+    /// The screen of an installation, in the place of the panels.
+    pub kiosk: Option<crate::daemon::kiosk::keeper::Screen>,
 }
 
 impl std::fmt::Debug for Wiring {
@@ -145,6 +147,8 @@ impl ApplicationHandler for App {
         }
         let wiring = &mut self.wiring;
         match event {
+            // Visitors do not end an installation that staff ends by a number.
+            WindowEvent::CloseRequested if wiring.kiosk.as_ref().is_some_and(|k| k.staff) => {}
             WindowEvent::CloseRequested => {
                 wiring.stop.store(true, Relaxed);
                 events.exit();
@@ -177,7 +181,9 @@ impl ApplicationHandler for App {
                 open.camera.zoom(1.0 + delta as f32);
                 open.send_camera(wiring);
             }
-            WindowEvent::DroppedFile(path) => open.work.load(path, wiring.commands.clone()),
+            WindowEvent::DroppedFile(path) if wiring.kiosk.is_none() => {
+                open.work.load(path, wiring.commands.clone())
+            }
             _ => {}
         }
     }
@@ -218,7 +224,11 @@ impl Open {
             config.format = *srgb;
         }
         surface.configure(&gpu.device, &config);
-        let (remembered, desk) = Remembered::load();
+        let (remembered, desk) = match wiring.kiosk {
+            None => Remembered::load(),
+            // Nothing of yesterday's visitors.
+            Some(_) => Remembered::nothing(),
+        };
         let samples = gpu.samples(desk.prefs.smooth_edges);
         let renderer = Renderer::new(&gpu, config.format, samples);
         let context = egui::Context::default();

@@ -214,3 +214,34 @@ fn paths_with_links_or_steps_upward_are_refused() {
         }
     }
 }
+
+#[test]
+fn a_subscriber_hears_each_change_and_answers_still_come_whole() {
+    let rig = Rig::new();
+    let (_server, path) = rig.serve();
+    let mut client = Client::new(&path);
+    let said = client.ask(r#"{"jsonrpc":"2.0","id":1,"method":"subscribe"}"#).expect("an answer");
+    assert!(said["result"]["events"].as_array().is_some_and(|e| e.len() == 5), "{said}");
+    let mut next = (*rig.host.published.load_full()).clone();
+    next.undo_steps = 3;
+    rig.host.published.store(Arc::new(next.clone()));
+    let event = client.hear().expect("an event");
+    assert_eq!(event["method"], "event");
+    assert_eq!(event["params"]["event"], "history");
+    assert_eq!(event["params"]["now"], json!({ "undo_steps": 3, "redo_steps": 0 }));
+    assert!(event.get("id").is_none());
+    // Events and answers take turns, a line each.
+    let mut answers = 0;
+    for n in 0..40usize {
+        next.undo_steps = 4 + n;
+        rig.host.published.store(Arc::new(next.clone()));
+        let mut line = client.ask(r#"{"jsonrpc":"2.0","id":2,"method":"hash"}"#).expect("a line");
+        while line["method"] == "event" {
+            line = client.hear().expect("a line");
+        }
+        answers += usize::from(line["result"]["hash"].is_string());
+    }
+    assert_eq!(answers, 40);
+    let wrong = Client::new(&path).ask(r#"{"jsonrpc":"2.0","id":1,"method":"subscribe","params":{"to":1}}"#);
+    assert_eq!(wrong.expect("an answer")["error"]["code"], -32602);
+}

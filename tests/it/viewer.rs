@@ -1,10 +1,13 @@
 //! The window without a window: the renderer on whatever adapter there is, the panels through AccessKit, and the law
 //! that a viewer that stalls costs the sculpture nothing.
 
+mod kiosk;
 mod layout;
 mod panels;
 mod pictures;
 mod stall;
+#[cfg(unix)]
+mod window;
 
 use sculptd::analysis::cancel::Job;
 use sculptd::brush::BrushSettings;

@@ -55,6 +55,10 @@ pub const METHODS: &[(&str, &str)] = &[
         "reach",
         "{middle_mm, half_mm} lays this part of the tracked space over the work; {} measures it for five seconds",
     ),
+    (
+        "subscribe",
+        "{}: from now on a line {method: event, params: {event, tick, now}} for each change of work, history, brush, losses or journal",
+    ),
     ("shutdown", "{}: ends the daemon as a signal would"),
 ];
 
@@ -209,6 +213,10 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
                 "undo_steps": state.undo_steps, "redo_steps": state.redo_steps, "brush": state.brush,
                 "journal": journal,
             }))
+        }
+        "subscribe" => {
+            read::<Nothing>(params)?;
+            Ok(json!({ "events": super::events::EVENTS }))
         }
         "brush" => {
             let other = params.get("kind").and_then(|k| k.as_str()).map(str::parse::<BrushKind>);

@@ -6,6 +6,7 @@
 //! * No TCP. A web page cannot reach a Unix socket; mode 0600 and the peer's user id keep other users out.
 
 pub mod client;
+pub mod events;
 pub mod methods;
 pub mod protocol;
 pub mod server;

@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
@@ -13,7 +13,7 @@ use crossbeam_channel as cc;
 use serde_json::Value;
 
 use super::protocol::{Code, Response, RpcError, parse};
-use super::{MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, methods, user_id};
+use super::{MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, methods, user_id};
 use crate::command::Command;
 use crate::daemon::Published;
 use crate::devices::Clock;
@@ -24,7 +24,7 @@ pub struct Host {
     pub commands: cc::Sender<Command>,
     pub published: Arc<ArcSwap<Published>>,
     /// The wall thickness of the work, as last asked for.
-    pub thickness: Arc<std::sync::Mutex<Option<crate::analysis::thickness::live::LiveMap>>>,
+    pub thickness: Arc<Mutex<Option<crate::analysis::thickness::live::LiveMap>>>,
     /// How the session file stands; `None`: the run is not recorded.
     pub journal: Option<crate::daemon::session::Health>,
     /// Raised by `shutdown`.
@@ -132,7 +132,12 @@ pub fn permitted(peer: u32, owner: u32) -> bool {
 fn serve(stream: UnixStream, host: &Host) {
     // A client that sends half a line and sleeps is let go after a minute; one that is merely quiet is not.
     let _ = stream.set_write_timeout(Some(Duration::from_secs(5)));
-    let Ok(mut out) = stream.try_clone() else { return };
+    let Ok(out) = stream.try_clone() else { return };
+    // Answers and events take turns, a line each.
+    let out = Arc::new(Mutex::new(out));
+    let gone = Arc::new(AtomicBool::new(false));
+    let _leaving = Leaving(gone.clone());
+    let mut subscribed = false;
     let mut lines = BufReader::new(stream);
     let clock = Clock::monotonic();
     let (mut second, mut asked) = (0, 0);
@@ -146,20 +151,23 @@ fn serve(stream: UnixStream, host: &Host) {
         let whole = line.ends_with(b"\n");
         let now = clock.now_us() / 1_000_000;
         (second, asked) = if now == second { (second, asked + 1) } else { (now, 1) };
-        let response = if asked > MAX_RATE {
-            Some(Response::of(
-                Value::Null,
-                Err(RpcError::new(Code::Slow, format!("at most {MAX_RATE} requests a second"))),
-            ))
+        let (response, subscribes) = if asked > MAX_RATE {
+            let slow = RpcError::new(Code::Slow, format!("at most {MAX_RATE} requests a second"));
+            (Some(Response::of(Value::Null, Err(slow))), false)
         } else {
             answer(host, line.trim_ascii())
         };
+        // Taken before the client is told: nothing after its answer is missed.
+        let before = (subscribes && !std::mem::replace(&mut subscribed, true)).then(|| events::look(host));
         if let Some(response) = response {
             let Ok(mut bytes) = serde_json::to_vec(&response) else { return };
             bytes.push(b'\n');
-            if out.write_all(&bytes).is_err() {
+            if out.lock().map_or(true, |mut o| o.write_all(&bytes).is_err()) {
                 return;
             }
+        }
+        if let Some(before) = before {
+            let _ = events::start(host, before, out.clone(), gone.clone());
         }
         // What follows an oversized line cannot be told apart from it.
         if !whole {
@@ -168,15 +176,26 @@ fn serve(stream: UnixStream, host: &Host) {
     }
 }
 
-fn answer(host: &Host, line: &[u8]) -> Option<Response> {
+/// Raises its flag when the client has gone, however that came.
+struct Leaving(Arc<AtomicBool>);
+
+impl Drop for Leaving {
+    fn drop(&mut self) {
+        self.0.store(true, SeqCst);
+    }
+}
+
+/// The answer, if one is wanted, and whether events follow it.
+fn answer(host: &Host, line: &[u8]) -> (Option<Response>, bool) {
     if line.is_empty() {
-        return None;
+        return (None, false);
     }
     match parse(line) {
-        Err(e) => Some(Response::of(Value::Null, Err(e))),
+        Err(e) => (Some(Response::of(Value::Null, Err(e))), false),
         Ok(request) => {
             let result = methods::call(host, &request.method, request.params);
-            request.id.map(|id| Response::of(id, result))
+            let subscribes = request.method == "subscribe" && result.is_ok();
+            (request.id.map(|id| Response::of(id, result)), subscribes)
         }
     }
 }

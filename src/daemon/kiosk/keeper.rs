@@ -9,7 +9,7 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::film::Film;
-use super::{Act, Cycle, KioskConfig, Stage, View, gallery};
+use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
 use crate::analysis::cancel::Job;
 use crate::brush::BrushSettings;
 use crate::command::{Beginning, Command, NewClay};
@@ -47,10 +47,22 @@ impl Start {
 #[derive(Debug, Default)]
 pub struct Desk {
     pub view: Mutex<Option<View>>,
+    /// Something on the screen itself was pressed.
+    pub touched: AtomicBool,
     /// The visitor pressed "finished".
     pub finished: AtomicBool,
     /// What staff typed.
     pub typed: Mutex<Option<String>>,
+}
+
+/// What the window of an installation shows.
+#[derive(Debug, Clone)]
+pub struct Screen {
+    pub desk: Arc<Desk>,
+    /// Never empty; the first is shown to each new visitor.
+    pub words: Vec<Language>,
+    /// Staff can leave by a number.
+    pub staff: bool,
 }
 
 /// A running keeper; it ends when `stop` is raised.
@@ -130,7 +142,8 @@ impl Keeping {
         while !self.stop.load(Relaxed) {
             let now = touch(&self.published.load());
             // Something that lies still on the tablet is nobody.
-            let touched = now.is_some() && now != felt;
+            let pressed = self.desk.touched.swap(false, Relaxed);
+            let touched = pressed || now.is_some() && now != felt;
             felt = now;
             let done = self.desk.finished.swap(false, Relaxed);
             let act = cycle.step(touched, done);

@@ -92,6 +92,27 @@ impl KioskConfig {
     }
 }
 
+impl KioskConfig {
+    /// Every language that can be chosen on the screen, the one of the settings first.
+    pub fn every_language(&self) -> Result<Vec<Language>, String> {
+        let mut all = vec![self.words()?];
+        for (name, _) in LANGUAGES {
+            all.push(KioskConfig { language: name.into(), ..self.clone() }.words()?);
+        }
+        for path in &self.languages {
+            let language = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+            all.push(KioskConfig { language, ..self.clone() }.words()?);
+        }
+        let mut seen: Vec<String> = Vec::new();
+        all.retain(|l| {
+            let new = !seen.contains(&l.name);
+            seen.push(l.name.clone());
+            new
+        });
+        Ok(all)
+    }
+}
+
 /// What a screen says; `{seconds}` stands for a number.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -103,6 +124,11 @@ pub struct Language {
     pub finish: String,
     pub kept: String,
     pub too_large: String,
+    pub draw: String,
+    pub carve: String,
+    pub smooth: String,
+    pub undo: String,
+    pub staff: String,
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ pub use salvage::{Saved, salvage};
 pub use writer::{Fault, Health, SessionWriter, create, resume};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms that a crash may cost.
-pub const GROUP_MS: u64 = 100;
+pub const GROUP_MS: u64 = 50;
 
 /// The version of the file's layout. A newer file is refused by name, an older one is read.
 pub const VERSION: u32 = 1;

@@ -17,7 +17,7 @@ use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TABLES, appe
 use super::syncer::Syncer;
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::command::Command;
-use crate::daemon::live::Journal;
+use crate::daemon::live::{Journal, raise_priority_below};
 use crate::devices::{Clock, Sample};
 use crate::mesh::TriMesh;
 use crate::world::World;
@@ -271,6 +271,7 @@ struct Writing {
 
 impl Writing {
     fn run(&mut self, inbox: &cc::Receiver<Message>) {
+        raise_priority_below();
         let mut open: Option<Group> = None;
         let mut due_us = u64::MAX;
         loop {

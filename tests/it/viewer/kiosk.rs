@@ -1,0 +1,104 @@
+//! The screen of an installation: every word in every language, every target large, nothing of one visitor for the next.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use sculptd::command::Command;
+use sculptd::daemon::kiosk::keeper::{Desk, Screen};
+use sculptd::daemon::kiosk::{KioskConfig, Stage, View};
+use sculptd::panels::{Ask, Tab, kiosk, timing::FrameFigures};
+
+use super::panels::{State, state};
+
+fn screen() -> Screen {
+    let words = KioskConfig::default().every_language().expect("three languages");
+    Screen { desk: Arc::new(Desk::default()), words, staff: true }
+}
+
+fn at(screen: &Screen, stage: Stage, visits: u64) {
+    let view = View { stage, seconds_left: 7, visits, locked: false };
+    *screen.desk.view.lock().expect("a desk") = Some(view);
+}
+
+fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
+    let screen = screen.clone();
+    let show = move |ui: &mut egui::Ui, s: &mut State| {
+        let view = sculptd::panels::View {
+            state: &s.published,
+            camera: s.published.camera,
+            devices: &s.devices,
+            session: None,
+            uploaded: 0,
+            adapter: "an adapter",
+            frame: FrameFigures::default(),
+            ghosts: false,
+        };
+        kiosk::ui(ui, &view, &screen, &mut s.desk, &mut s.asked);
+    };
+    let mut h = Harness::builder().with_size(size).with_max_steps(64).build_ui_state(show, state(Tab::Look));
+    h.run_steps(4);
+    h
+}
+
+#[test]
+fn a_visit_by_large_targets_in_any_language() {
+    let screen = screen();
+    for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
+        at(&screen, Stage::Working, 0);
+        let mut h = harness(&screen, size);
+        let names =
+            ["Add", "Carve", "Smooth", "Undo", "Finished", "English", "Italiano", "Ελληνικά", "Staff"];
+        let inside = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let rects: Vec<egui::Rect> = names.iter().map(|n| h.get_by_label(n).rect()).collect();
+        for (i, rect) in rects.iter().enumerate() {
+            assert!(
+                rect.width() >= kiosk::TARGET && rect.height() >= kiosk::TARGET,
+                "{}: {rect:?}",
+                names[i]
+            );
+            assert!(inside.contains_rect(*rect), "{} is cut: {rect:?}", names[i]);
+            assert!(rects[..i].iter().all(|r| !r.shrink(1.0).intersects(*rect)), "{} overlaps", names[i]);
+        }
+        h.get_by_label("Ελληνικά").click();
+        h.run_steps(3);
+        assert!(screen.desk.touched.swap(false, Relaxed), "a press counts as a touch");
+        h.get_by_label("Σκάψιμο").click();
+        h.run_steps(3);
+        let carves = |a: &Ask| matches!(a, Ask::World(Command::Brush(b)) if b.negative);
+        assert!(h.state().asked.iter().any(carves));
+        h.get_by_label("Τέλος").click();
+        h.run_steps(3);
+        assert!(screen.desk.finished.swap(false, Relaxed));
+        // The next visitor finds the first language again.
+        at(&screen, Stage::Attract, 1);
+        h.run_steps(3);
+        h.get_by_label("Touch to sculpt");
+        at(&screen, Stage::Countdown, 1);
+        h.run_steps(3);
+        h.get_by_label_contains("7 s");
+        h.get_by_label("Touch to go on").click();
+        h.run_steps(3);
+        assert!(screen.desk.touched.swap(false, Relaxed));
+    }
+}
+
+#[test]
+fn staff_types_a_number_that_is_not_shown() {
+    let screen = screen();
+    at(&screen, Stage::Attract, 0);
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    h.get_by_label("Staff").click();
+    h.run_steps(3);
+    for key in ["4", "7", "1", "1"] {
+        h.get_by_label(key).click();
+        h.run_steps(3);
+    }
+    assert!(h.query_by_label_contains("4711").is_none());
+    h.get_by_label("••••");
+    h.get_by_label("OK").click();
+    h.run_steps(3);
+    assert_eq!(screen.desk.typed.lock().expect("a desk").as_deref(), Some("4711"));
+    assert!(h.query_by_label("OK").is_none(), "the keypad is closed");
+}
