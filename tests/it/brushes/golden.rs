@@ -53,22 +53,22 @@ fn draw(
 }
 
 fn facts(about: &str, brush: &BrushSettings, act: &(dyn Fn(&mut Studio) -> u64 + Sync)) -> Facts {
-    facts_on(form(60_000), about, brush, act)
+    facts_on(&form(60_000), about, brush, act)
 }
 
 fn facts_on(
-    start: TriMesh,
+    start: &TriMesh,
     about: &str,
     brush: &BrushSettings,
     act: &(dyn Fn(&mut Studio) -> u64 + Sync),
 ) -> Facts {
-    let (dabs, studio) = draw(&start, brush, act, 1);
+    let (dabs, studio) = draw(start, brush, act, 1);
     studio.world.verify_invariants().unwrap_or_else(|e| panic!("{about}: {e}"));
     let hash = studio.world.hash();
     for workers in [2, 3, 7, 16] {
         // A thread of its own: it takes part in the work of its pool.
         let other =
-            std::thread::scope(|s| s.spawn(|| draw(&start, brush, act, workers).1.world.hash()).join());
+            std::thread::scope(|s| s.spawn(|| draw(start, brush, act, workers).1.world.hash()).join());
         assert_eq!(other.expect("no panic"), hash, "{about}: with {workers} workers");
     }
     let end = studio.world.mesh().to_tri();
@@ -93,10 +93,10 @@ fn facts_on(
         longest: round(longest * 1e3),
         outwards: round(outwards / displaced.max(1) as f64 * 1e3),
         // A sheet has none.
-        volume: if volume(&start).abs() < 1e-6 {
+        volume: if volume(start).abs() < 1e-6 {
             0.0
         } else {
-            round((volume(&end) / volume(&start) - 1.0) * 100.0)
+            round((volume(&end) / volume(start) - 1.0) * 100.0)
         },
         masked: round(masked),
         coloured: end.colours.map_or(0, |c| c.iter().filter(|c| **c != [255; 4]).count() as u64),
@@ -308,7 +308,7 @@ fn every_measure_alpha_and_stamp_draws_as_it_did() {
     let mut brush = of(Gaussian, &|b| b.radius = 0.1);
     brush.auto.boundary = true;
     let sheet = shapes::grid(2.0, 2.0, 120, 120).triangulate().0;
-    let now = facts_on(sheet, "the Gaussian brush over a border that is kept", &brush, &|s| {
+    let now = facts_on(&sheet, "the Gaussian brush over a border that is kept", &brush, &|s| {
         let at: Vec<_> =
             (0..=12).map(|i| (s.view(Vec3::new(0.95, -0.3 + 0.05 * i as f32, 0.0)), 1.0)).collect();
         let dabs = s.stroke(&at);
