@@ -1,8 +1,9 @@
 //! Bringing the log to the disk itself, on a thread of its own.
 //!
 //! A group that was committed is in the system's hands: a killed process loses nothing of it. That the disk has it too takes as
-//! long as the disk likes, which on a loaded machine is longer than a group; so nobody waits for it but this thread. SQLite
-//! itself syncs the log before it takes it over into the database, so a power cut never leaves an unreadable file.
+//! long as the disk likes, which on a loaded machine is longer than a group; so nobody waits for it but this thread. It also
+//! takes the log over into the database, with SQLite's own syncs before and after, so a power cut never leaves an unreadable
+//! file.
 
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
@@ -11,6 +12,12 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
 use crossbeam_channel as cc;
+use rusqlite::Connection;
+
+/// A log of this many bytes is taken over into the database.
+const LOG_BYTES: u64 = 4 << 20;
+/// Syncs between two times: the file of a log keeps its length when it is begun again.
+const SYNCS: u32 = 200;
 
 /// The thread, for the one who commits.
 #[derive(Debug)]
@@ -31,13 +38,20 @@ impl Syncer {
         let (wake, calls) = cc::bounded::<()>(1);
         let committed = Arc::new(AtomicU64::new(0));
         let trouble = Arc::new(Mutex::new(None));
-        let (last, said) = (committed.clone(), trouble.clone());
+        let (last, said, database) = (committed.clone(), trouble.clone(), database.to_path_buf());
         let thread = std::thread::Builder::new().name("sculptd-sync".into()).spawn(move || {
             let mut log: Option<File> = None;
+            let mut own: Option<Connection> = None;
+            let mut since = SYNCS;
             for () in calls {
                 // Taken before the sync: what is committed meanwhile belongs to the next one.
                 let tick = last.load(Relaxed);
-                let result = sync(&mut log, &path);
+                since += 1;
+                let mut result = sync(&mut log, &path);
+                if since > SYNCS && result.as_ref().is_ok_and(|bytes| *bytes > LOG_BYTES) {
+                    since = 0;
+                    result = take_over(&mut own, &database).map(|()| 0).map_err(std::io::Error::other);
+                }
                 if result.is_ok() {
                     written.fetch_max(tick, Relaxed);
                 }
@@ -68,10 +82,22 @@ impl Syncer {
     }
 }
 
-/// The file is opened once: SQLite keeps the same one as long as it is connected.
-fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<()> {
+/// Brings the log to the disk; its bytes. The file is opened once: SQLite keeps the same one as long as it is connected.
+fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<u64> {
     if log.is_none() {
         *log = Some(OpenOptions::new().read(true).write(true).open(path)?);
     }
-    log.as_ref().map_or(Ok(()), File::sync_data)
+    let Some(log) = log else { return Ok(0) };
+    log.sync_data()?;
+    Ok(log.metadata()?.len())
+}
+
+/// Takes what it can of the log into the database, and holds up nobody who writes.
+fn take_over(own: &mut Option<Connection>, database: &Path) -> rusqlite::Result<()> {
+    if own.is_none() {
+        let db = Connection::open(database)?;
+        db.pragma_update(None, "synchronous", "full")?;
+        *own = Some(db);
+    }
+    own.as_ref().map_or(Ok(()), |db| db.query_row("PRAGMA wal_checkpoint(PASSIVE)", [], |_| Ok(())))
 }

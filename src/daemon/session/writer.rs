@@ -163,7 +163,9 @@ pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError>
 fn tune(db: &Connection) -> rusqlite::Result<()> {
     db.busy_timeout(Duration::from_secs(2))?;
     db.pragma_update(None, "journal_mode", "wal")?;
-    db.pragma_update(None, "synchronous", "normal")
+    db.pragma_update(None, "wal_autocheckpoint", 0)?;
+    // Until the thread of its own syncs: see `start_thread`.
+    db.pragma_update(None, "synchronous", "full")
 }
 
 fn start_thread(
@@ -179,6 +181,9 @@ fn start_thread(
     let health = Health::default();
     let syncer = Syncer::start(path, health.written.clone())
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
+    // From here on the syncer does it, and no commit waits for a disk.
+    let store = |source| CreateError::Store { path: path.display().to_string(), source };
+    db.pragma_update(None, "synchronous", "off").map_err(store)?;
     let mut writing = Writing {
         db,
         syncer: Some(syncer),
@@ -313,6 +318,8 @@ impl Writing {
 
     /// The last group is synced too before the thread is gone.
     fn end(&mut self) {
+        // Closing takes the rest of the log over, and syncs as it should.
+        let _ = self.db.pragma_update(None, "synchronous", "full");
         let Some(why) = self.syncer.take().and_then(Syncer::finish) else { return };
         if let Ok(mut fault) = self.health.fault.lock() {
             fault.get_or_insert(format!("the session file was not synced: {why}"));
