@@ -1,8 +1,11 @@
 //! The other route: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always gives a closed manifold.
 //! It knows no tolerance and leaves sheets where faces only nearly touch, so it is asked only where the first route found no
-//! consistent answer. Its *Exact* engine alone keeps what is not cut; its status is read, for it drops bad operands silently.
+//! consistent answer. Its *Exact* engine alone keeps what is not cut; its status is read, for it drops bad operands silently,
+//! and a panic within it (an index out of its arrays, on operands that cross themselves) is an error like any other. A result
+//! of no faces is a value.
 
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::DVec3;
 use manifold_rust::manifold::Manifold;
@@ -17,6 +20,22 @@ use crate::mesh::PolyMesh;
 
 /// A result: its mesh, the origin of each face, its facts.
 pub type Made = (PolyMesh, Vec<Origin>, Facts);
+
+/// What the crate gives, or in words why it gave nothing. What it was given is not used again after a panic.
+fn guarded<T>(what: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(what)).unwrap_or_else(|payload| {
+        let said = payload.downcast_ref::<String>().map(String::as_str);
+        let said = said.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no reason given");
+        Err(format!("the global engine panicked: {said}"))
+    })
+}
+
+fn sound(m: Manifold) -> Result<Manifold, String> {
+    match m.status() {
+        Status::NoError => Ok(m),
+        bad => Err(format!("the global engine says {bad:?}")),
+    }
+}
 
 /// Both operands as the crate holds them.
 pub struct Engine {
@@ -33,11 +52,10 @@ impl Engine {
         let mut made = Vec::new();
         for s in 0..2 {
             job.check()?;
-            let m = Manifold::from_mesh_gl64(&plain(operands[s], ids[s]));
-            if m.status() != Status::NoError {
-                return Ok(Err(format!("{:?}", m.status())));
+            match guarded(|| sound(Manifold::from_mesh_gl64(&plain(operands[s], ids[s])))) {
+                Ok(m) => made.push(m),
+                Err(why) => return Ok(Err(why)),
             }
-            made.push(m);
         }
         let [a, b] = <[Manifold; 2]>::try_from(made).unwrap_or_default();
         Ok(Ok(Engine { operands: [a, b], ids, meshes: operands.map(PolyMesh::clone), eps }))
@@ -46,17 +64,18 @@ impl Engine {
     pub fn run(&self, operation: Operation, job: &Job) -> Result<Result<Made, String>, Cancelled> {
         job.check()?;
         let [a, b] = &self.operands;
-        let out = match operation {
-            Operation::Union => a.boolean_with_engine(b, OpType::Add, BooleanEngine::Exact),
-            Operation::Intersection => a.boolean_with_engine(b, OpType::Intersect, BooleanEngine::Exact),
-            Operation::Difference => a.boolean_with_engine(b, OpType::Subtract, BooleanEngine::Exact),
-            Operation::ReverseDifference => b.boolean_with_engine(a, OpType::Subtract, BooleanEngine::Exact),
+        let (first, second, kind) = match operation {
+            Operation::Union => (a, b, OpType::Add),
+            Operation::Intersection => (a, b, OpType::Intersect),
+            Operation::Difference => (a, b, OpType::Subtract),
+            Operation::ReverseDifference => (b, a, OpType::Subtract),
         };
+        let out = guarded(|| {
+            let out = sound(first.boolean_with_engine(second, kind, BooleanEngine::Exact))?;
+            Ok(out.get_mesh_gl64(-1))
+        });
         job.check()?;
-        if out.status() != Status::NoError {
-            return Ok(Err(format!("{:?}", out.status())));
-        }
-        Ok(Ok(self.polygons(&out.get_mesh_gl64(-1))))
+        Ok(out.map(|gl| self.polygons(&gl)))
     }
 
     /// Triangles of one input face as that face again, or in as few polygons as join.
@@ -117,16 +136,15 @@ fn plain(mesh: &PolyMesh, id: u32) -> MeshGL64 {
 /// Faces come in triangles.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Cancelled> {
     job.check()?;
-    let raw = Manifold::from_mesh_gl64_robust(&plain(mesh, Manifold::reserve_ids(1)));
-    if raw.status() != Status::NoError {
-        return Ok(Err(format!("{:?}", raw.status())));
-    }
-    let solid = raw.rebuild_solid(WindingRule::Positive);
+    let solved = guarded(|| {
+        let raw = sound(Manifold::from_mesh_gl64_robust(&plain(mesh, Manifold::reserve_ids(1))))?;
+        Ok(sound(raw.rebuild_solid(WindingRule::Positive))?.get_mesh_gl64(-1))
+    });
     job.check()?;
-    if solid.status() != Status::NoError {
-        return Ok(Err(format!("{:?}", solid.status())));
-    }
-    let gl = solid.get_mesh_gl64(-1);
+    let gl = match solved {
+        Ok(gl) => gl,
+        Err(why) => return Ok(Err(why)),
+    };
     let at = points(&gl);
     let mut merged: Map<u32, u32> = Map::default();
     merged.extend(gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)));
@@ -136,4 +154,17 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Can
         out.push_face(&t);
     }
     Ok(if separate(&mut out, &at) { Ok(out) } else { Err("the solved surface is not closed".into()) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_and_says_why() {
+        let broken: Vec<u32> = Vec::new();
+        let said = guarded(|| Ok(broken[broken.len()])).expect_err("it panicked");
+        assert!(said.contains("index out of bounds"), "{said}");
+        assert_eq!(guarded(|| Ok(7)), Ok(7));
+    }
 }
