@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::distance::warn;
 use super::{Fail, Outcome, answer};
-use crate::analysis::boolean::{self, Operation, Options, Solid};
+use crate::analysis::boolean::{self, Operation, Options, Report, Solid};
 use crate::analysis::cancel::Job;
 use crate::mesh::io::{read_mesh, writable_format, write_mesh};
 use crate::mesh::{PolyMesh, check, mend};
@@ -23,6 +24,10 @@ pub enum What {
     ReverseDifference,
     /// All four, from one computation.
     All,
+    /// One solid in two by `--plane`: what is above it and what is below it.
+    Split,
+    /// Each connected shell of one mesh in a file of its own.
+    Shells,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -35,9 +40,9 @@ pub enum Solve {
 pub struct BooleanArgs {
     pub what: What,
     /// The operands A, B and, for a union, an intersection or a difference (A minus all others), more.
-    #[arg(required = true, num_args = 2..)]
+    #[arg(required = true, num_args = 1..)]
     pub meshes: Vec<PathBuf>,
-    /// Where the result goes; the ending says the format. `all` puts the operation's name before the ending.
+    /// Where the result goes; the ending says the format. Where there are several, their names stand before the ending.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     /// Length within which faces are in contact; 0 for what the numbers say. Otherwise taken from the operands' rounding.
@@ -52,33 +57,54 @@ pub struct BooleanArgs {
     /// Leave out the look for triangles that cross within an operand.
     #[arg(long)]
     pub trust: bool,
+    /// Of `split`: the plane x*X + y*Y + z*Z = D; above is where (x, y, z) points.
+    #[arg(long, value_name = "X,Y,Z,D", value_delimiter = ',', allow_hyphen_values = true)]
+    pub plane: Vec<f64>,
+    /// Say in the answer where the cut runs, and which operand's which face each face is of.
+    #[arg(long)]
+    pub details: bool,
 }
 
 /// What `--json` prints.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Answer {
     results: Vec<Made>,
     seconds: f64,
     /// Seconds by phase.
     phases: BTreeMap<String, f64>,
     tolerance: f64,
-    /// Ends of the pieces of the curve in which the two surfaces meet.
+    /// Pieces of the curve in which the surfaces meet.
     cut_segments: usize,
+    /// That curve, in polylines.
+    cut: Vec<Line>,
     warnings: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
+struct Line {
+    closed: bool,
+    length: f64,
+    /// With `--details`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<[f64; 3]>>,
+}
+
+#[derive(Debug, Serialize)]
 struct Made {
-    name: &'static str,
+    name: String,
     file: PathBuf,
     vertices: usize,
     faces: usize,
-    volume: f64,
+    /// Of a closed result.
+    volume: Option<f64>,
     area: f64,
     components: usize,
     genus: Option<i64>,
     closed: bool,
     manifold: bool,
+    /// With `--details`: operand (in the order of the command line, from 0) and face in it, one a face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    origins: Option<Vec<(usize, u32)>>,
 }
 
 impl From<boolean::Error> for Fail {
@@ -98,73 +124,159 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     if args.tolerance.is_some_and(|t| !(t >= 0.0 && t.is_finite())) {
         return Err(Fail::Usage("expected a tolerance of 0 or more".into()));
     }
-    if args.meshes.len() > 2 && matches!(args.what, What::All | What::ReverseDifference) {
-        return Err(Fail::Usage("more than two operands: expected union, intersection or difference".into()));
-    }
-    let mut out = Answer {
-        results: Vec::new(),
-        seconds: 0.0,
-        phases: BTreeMap::new(),
-        tolerance: 0.0,
-        cut_segments: 0,
-        warnings: Vec::new(),
+    let plane = match (args.what, &args.plane[..]) {
+        (What::Split, &[x, y, z, d]) => Some((DVec3::new(x, y, z), d)),
+        (What::Split, _) => return Err(Fail::Usage("split: expected --plane X,Y,Z,D".into())),
+        (_, &[]) => None,
+        _ => return Err(Fail::Usage("--plane: only for split".into())),
     };
+    let fits = match args.what {
+        What::Split | What::Shells => args.meshes.len() == 1,
+        What::All | What::ReverseDifference => args.meshes.len() == 2,
+        _ => args.meshes.len() >= 2,
+    };
+    if !fits {
+        return Err(Fail::Usage(
+            "expected one operand for split and shells, two for all and reverse-difference, else two or more"
+                .into(),
+        ));
+    }
+    let mut out = Answer::default();
     let mut operands = Vec::new();
     for path in &args.meshes {
         operands.push(operand(path, args, &job, &now, &mut out)?);
     }
     let start = now();
     let options = Options { tolerance: args.tolerance, keep_contact: args.keep_contact };
+    let solids: Vec<(String, Solid, Origins)> = match plane {
+        Some((normal, offset)) => {
+            let (made, report) = boolean::split(&operands[0], normal, offset, &options, &job, now)?;
+            out.note(report, args.details);
+            let names = ["above", "below"].map(str::to_owned);
+            names.into_iter().zip(made).map(|(n, s)| (n, s, None)).collect()
+        }
+        None if args.what == What::Shells => return shells(&operands[0], args, out, json),
+        None => join(&operands, args, &options, &job, &now, &mut out)?,
+    };
+    out.seconds = now() - start;
+    let several = solids.len() > 1;
+    for (name, s, origins) in &solids {
+        let file = if several { named(&args.out, name) } else { args.out.clone() };
+        if s.mesh.face_count() == 0 {
+            out.warnings.push(format!("the {name} is empty"));
+        }
+        write_mesh(&file, &s.mesh)?;
+        let mut made = Made::of(name, file, &s.mesh, &job)?;
+        if args.details {
+            let plain = || s.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
+            made.origins = Some(origins.clone().unwrap_or_else(plain));
+        }
+        out.results.push(made);
+    }
+    told(args, &out, json);
+    Ok(())
+}
+
+/// Operand and face of each face, where there were more than two operands.
+type Origins = Option<Vec<(usize, u32)>>;
+
+/// The asked operations, from the left to the right.
+fn join(
+    operands: &[PolyMesh],
+    args: &BooleanArgs,
+    options: &Options,
+    job: &Job,
+    now: &impl Fn() -> f64,
+    out: &mut Answer,
+) -> Result<Vec<(String, Solid, Origins)>, Fail> {
     let operations = match args.what {
         What::Union => vec![Operation::Union],
         What::Intersection => vec![Operation::Intersection],
         What::Difference => vec![Operation::Difference],
         What::ReverseDifference => vec![Operation::ReverseDifference],
-        What::All => Operation::ALL.to_vec(),
+        _ => Operation::ALL.to_vec(),
     };
-    let mut left = operands.remove(0);
-    let mut solids: Vec<Solid> = Vec::new();
-    for right in &operands {
-        if let Some(last) = solids.pop() {
-            left = last.mesh;
-        }
-        let (made, report) = boolean::compute([&left, right], &operations, &options, &job, now)?;
-        solids = made;
+    let mut solids: Vec<(String, Solid, Origins)> = Vec::new();
+    for (n, right) in operands.iter().enumerate().skip(1) {
+        let left = solids.pop();
+        let first = left.as_ref().map_or(&operands[0], |l| &l.1.mesh);
+        let (made, report) = boolean::compute([first, right], &operations, options, job, now)?;
+        out.note(report, args.details);
+        let known = left.as_ref().and_then(|l| l.2.as_ref());
+        let of = |o: &boolean::Origin| match (o.operand, known) {
+            (0, Some(known)) => known[o.face as usize],
+            (0, None) => (0, o.face),
+            _ => (n, o.face),
+        };
+        solids = made
+            .into_iter()
+            .map(|s| {
+                let origins = s.origins.iter().map(of).collect();
+                (s.operation.name().to_owned(), s, Some(origins))
+            })
+            .collect();
+    }
+    Ok(solids)
+}
+
+/// Each shell in its file.
+fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: Answer, json: bool) -> Outcome {
+    let job = Job::default();
+    for (n, shell) in boolean::shells(mesh).iter().enumerate() {
+        let name = (n + 1).to_string();
+        let file = named(&args.out, &name);
+        write_mesh(&file, shell)?;
+        out.results.push(Made::of(&name, file, shell, &job)?);
+    }
+    told(args, &out, json);
+    Ok(())
+}
+
+impl Answer {
+    fn note(&mut self, report: Report, details: bool) {
         for (name, seconds) in report.phases {
-            *out.phases.entry(name.into()).or_default() += seconds;
+            *self.phases.entry(name.into()).or_default() += seconds;
         }
-        out.tolerance = report.tolerance;
-        out.cut_segments += report.cut.len();
-        out.warnings.extend(report.warnings);
+        self.tolerance = report.tolerance;
+        self.warnings.extend(report.warnings);
+        for line in report.cut {
+            self.cut_segments += line.len() - 1;
+            self.cut.push(Line {
+                closed: line.first() == line.last(),
+                length: line.windows(2).map(|w| w[0].distance(w[1])).sum(),
+                points: details.then(|| line.iter().map(|p| p.to_array()).collect()),
+            });
+        }
     }
-    out.seconds = now() - start;
-    for s in &solids {
-        let file =
-            if args.what == What::All { named(&args.out, s.operation.name()) } else { args.out.clone() };
-        if s.mesh.face_count() == 0 {
-            out.warnings.push(format!("the {} is empty", s.operation.name()));
-        }
-        write_mesh(&file, &s.mesh)?;
-        let facts = check::report(&s.mesh, false, &job).map_err(|e| Fail::Input(e.to_string()))?;
-        out.results.push(Made {
-            name: s.operation.name(),
+}
+
+impl Made {
+    fn of(name: &str, file: PathBuf, mesh: &PolyMesh, job: &Job) -> Result<Made, Fail> {
+        let facts = check::report(mesh, false, job).map_err(|e| Fail::Input(e.to_string()))?;
+        Ok(Made {
+            name: name.to_owned(),
             file,
-            vertices: s.mesh.positions.len(),
-            faces: s.mesh.face_count(),
-            volume: s.facts.volume,
-            area: s.facts.area,
-            components: s.facts.components,
+            vertices: mesh.positions.len(),
+            faces: mesh.face_count(),
+            volume: facts.volume,
+            area: facts.area,
+            components: facts.components,
             genus: facts.genus,
-            closed: s.facts.closed,
-            manifold: s.facts.manifold,
-        });
+            closed: facts.closed,
+            manifold: facts.manifold,
+            origins: None,
+        })
     }
+}
+
+/// Says what was made.
+fn told(args: &BooleanArgs, out: &Answer, json: bool) {
     warn(&args.out, &out.warnings);
-    answer(json, &out, |w| {
+    answer(json, out, |w| {
         for r in &out.results {
             writeln!(
                 w,
-                "{}: {} vertices, {} faces, volume {}, area {}, {} components -> {}",
+                "{}: {} vertices, {} faces, volume {:?}, area {}, {} components -> {}",
                 r.name,
                 r.vertices,
                 r.faces,
@@ -176,7 +288,6 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         }
         writeln!(w, "{:.4} s, tolerance {:.3e}", out.seconds, out.tolerance)
     });
-    Ok(())
 }
 
 /// Reads one operand, mends it where asked, and says what is wrong with it.

@@ -74,7 +74,7 @@ impl Mesh {
     }
 
     pub(super) fn of(built: Built, revision: u64) -> Mesh {
-        let Built { pages, vertices, triangles, warnings } = built;
+        let Built { pages, vertices, triangles, warnings, next } = built;
         let mut top = BoxTree::default();
         top.reset(pages.len());
         for (i, page) in pages.iter().enumerate() {
@@ -84,8 +84,6 @@ impl Mesh {
         let rows = pages.iter().map(|p| p.points.len()).max().unwrap_or(0);
         let leaves = pages.iter().map(|p| p.tree.leaves()).max().unwrap_or(0);
         let count = pages.len();
-        let next_vertex = pages.iter().flat_map(|p| &p.topology.ids).max().map_or(0, |most| most + 1);
-        let numbers = pages.iter().flat_map(|p| &p.topology.triangle_ids).max().map_or(0, |most| most + 1);
         Mesh {
             built_cost: top.cost(),
             levels: None,
@@ -101,8 +99,8 @@ impl Mesh {
             revision,
             vertices,
             triangles,
-            next_vertex,
-            next_triangle: numbers,
+            next_vertex: next[0],
+            next_triangle: next[1],
             empty: Vec::new(),
             warnings,
             clock: None,
@@ -180,6 +178,7 @@ impl Mesh {
             vertices: self.vertices,
             triangles: self.triangles,
             pages: self.pages.len(),
+            next: [self.next_vertex, self.next_triangle],
         }
     }
 

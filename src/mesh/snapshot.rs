@@ -39,6 +39,8 @@ pub(super) struct Totals {
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) pages: usize,
+    /// The numbers that the next new vertex and triangle get.
+    pub(super) next: [u32; 2],
 }
 
 #[derive(Debug, Clone)]
@@ -128,16 +130,6 @@ impl Snapshot {
             }
         }
         Some(pick::finish(best?, ray, |i| self.page(i)))
-    }
-
-    /// Whether vertices and triangles are numbered without gaps, as they are until triangles are cut.
-    pub fn is_dense(&self) -> bool {
-        let (mut vertex, mut triangle) = (0, 0);
-        for page in (0..self.totals.pages as u32).map(|i| self.page(i)) {
-            vertex = page.topology.ids.iter().fold(vertex, |m, id| m.max(id + 1));
-            triangle = page.topology.triangle_ids.iter().fold(triangle, |m, id| m.max(id + 1));
-        }
-        vertex as usize <= self.totals.vertices && triangle as usize <= self.totals.triangles
     }
 
     /// From vertices' numbers to their places in [`Snapshot::to_tri`].

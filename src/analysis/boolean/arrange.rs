@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Operation;
+use super::curve::chains;
 use super::emit::Origin;
 use super::meet::{self, Meeting, Side};
 use super::merge::{self, Polygon};
@@ -133,11 +134,12 @@ impl Arrangement {
         }
     }
 
-    /// The curve in which the surfaces meet, in pieces, in the order of their ends' numbers.
-    pub fn curve(&self) -> Vec<[DVec3; 2]> {
+    /// The curve in which the surfaces meet, in polylines; see [`chains`].
+    pub fn curve(&self) -> Vec<Vec<DVec3>> {
         let mut ends: Vec<(u32, u32)> = self.meeting.curve.keys().copied().collect();
         ends.sort_unstable();
-        ends.into_iter().map(|(a, b)| [a, b].map(|i| self.points.at[i as usize])).collect()
+        let place = |i: u32| self.points.at[i as usize];
+        chains(&ends).into_iter().map(|c| c.into_iter().map(place).collect()).collect()
     }
 }
 

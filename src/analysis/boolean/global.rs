@@ -167,4 +167,15 @@ mod tests {
         assert!(said.contains("index out of bounds"), "{said}");
         assert_eq!(guarded(|| Ok(7)), Ok(7));
     }
+
+    #[test]
+    fn nothing_left_is_a_value() {
+        let job = Job::default();
+        let cube = crate::mesh::shapes::cuboid(DVec3::ZERO, DVec3::ONE);
+        let far = crate::mesh::shapes::cuboid(DVec3::splat(5.0), DVec3::splat(6.0));
+        let engine = Engine::new([&cube, &far], 1e-9, &job).expect("not cancelled").expect("taken");
+        let (mesh, _, facts) =
+            engine.run(Operation::Intersection, &job).expect("not cancelled").expect("a result");
+        assert_eq!((mesh.face_count(), facts.volume, facts.components), (0, 0.0, 0));
+    }
 }

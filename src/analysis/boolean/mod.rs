@@ -10,11 +10,14 @@
 //! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the tolerance.
 
 mod arrange;
+mod attributes;
+mod curve;
 mod emit;
 mod global;
 mod local;
 mod meet;
 mod merge;
+mod parts;
 mod pieces;
 mod planar;
 mod points;
@@ -25,13 +28,15 @@ use glam::DVec3;
 use arrange::Arrangement;
 pub use emit::{Facts, Origin};
 pub use local::local;
+pub use parts::{shells, split};
 use pieces::Place;
 use tree::Span;
 
 use super::cancel::{Cancelled, Job};
 use crate::mesh::PolyMesh;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Operation {
     Union,
     Intersection,
@@ -107,8 +112,9 @@ pub struct Report {
     /// The tolerance that was used.
     pub tolerance: f64,
     pub warnings: Vec<String>,
-    /// The cut as polylines: places where both surfaces are, in pairs of ends.
-    pub cut: Vec<[DVec3; 2]>,
+    /// The cut: places where both surfaces are, as polylines that end where the curve ends or branches. A closed one names its
+    /// first place again at its end. Of the global engine: none.
+    pub cut: Vec<Vec<DVec3>>,
     /// Phase names, called as each ends.
     pub phases: Vec<(&'static str, f64)>,
 }
@@ -173,7 +179,8 @@ fn globally(
     let engine = global::Engine::new(operands, eps, job)?.map_err(Error::Inconsistent)?;
     let mut solids = Vec::new();
     for &operation in operations {
-        let (mesh, origins, facts) = engine.run(operation, job)?.map_err(Error::Inconsistent)?;
+        let (mut mesh, origins, facts) = engine.run(operation, job)?.map_err(Error::Inconsistent)?;
+        attributes::carry(&mut mesh, &origins, operands);
         if !facts.closed {
             return Err(Error::Inconsistent(format!("the {} is not closed", operation.name())));
         }
@@ -246,6 +253,7 @@ fn attempt(
         if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }
+        attributes::carry(&mut mesh, &origins, operands);
         solids.push(Solid { operation, mesh, origins, facts });
     }
     lap("emit");

@@ -61,6 +61,8 @@ pub(super) struct Built {
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) warnings: Vec<String>,
+    /// The numbers that the next new vertex and triangle get.
+    pub(super) next: [u32; 2],
 }
 
 pub(super) fn build(tri: &TriMesh, job: &Job) -> Result<Built, BuildError> {
@@ -117,7 +119,8 @@ pub(super) fn build(tri: &TriMesh, job: &Job) -> Result<Built, BuildError> {
     job.progress(1.0);
     let triangles = pages.iter().map(|p| p.topology.triangles.len()).sum();
     let warnings = warnings(tri, &pages, triangles);
-    Ok(Built { pages, vertices: count, triangles, warnings })
+    let next = [count as u32, tri.triangles.len() as u32];
+    Ok(Built { pages, vertices: count, triangles, warnings, next })
 }
 
 fn check(tri: &TriMesh) -> Result<(), BuildError> {

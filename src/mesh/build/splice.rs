@@ -81,8 +81,9 @@ pub fn splice(
     added: &[[Corner; 3]],
     new: &[NewVertex],
 ) -> Option<Spliced> {
-    // New numbers are counted on from the old ones.
-    if !old.is_dense() {
+    // As in a cut of the topology: numbers only run up.
+    let [mut next_vertex, mut next_triangle] = old.totals.next;
+    if u32::MAX - next_vertex.max(next_triangle) <= (new.len() + added.len()) as u32 {
         return None;
     }
     let mut removed = removed.to_vec();
@@ -181,11 +182,12 @@ pub fn splice(
     let first_new = region.masks.len() as u32;
     let count = old.vertex_count() - free_ids.len() + new.len();
     for (i, v) in new.iter().enumerate() {
-        let id = free_ids.get(i).copied().unwrap_or((old.vertex_count() + i - free_ids.len()) as u32);
+        let id = free_ids.get(i).copied().unwrap_or_else(|| {
+            next_vertex += 1;
+            next_vertex - 1
+        });
         region.push(v.place, v.mask, v.colour, (u32::MAX, 0), id);
     }
-    let holes: Vec<u32> =
-        free_ids.iter().skip(new.len()).copied().filter(|&id| (id as usize) < count).collect();
 
     let layout = lay_out(old, &inner, &place, &fixed, &mut region, first_new, new)?;
 
@@ -214,8 +216,10 @@ pub fn splice(
             Corner::New(i) => first_new + i,
         });
         region.tri.triangles.push(corners);
-        // Numbers only give an order: they need not differ.
-        numbers.push(reused.get(i).or(reused.last()).copied().unwrap_or(0));
+        numbers.push(reused.get(i).copied().unwrap_or_else(|| {
+            next_triangle += 1;
+            next_triangle - 1
+        }));
     }
     let revision = old.revision() + 1;
     let mut pages: Vec<Arc<Page>> = old.pages().cloned().collect();
@@ -227,11 +231,11 @@ pub fn splice(
         }
     }
     normals(&mut pages, &layout, &beside);
-    renumber(&mut pages, &holes, count);
     let shared = old.pages().zip(&pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count();
     let written = pages.len() - shared;
     let triangles = old.triangle_count() - removed.len() + added.len();
-    let built = Built { pages, vertices: count, triangles, warnings: Vec::new() };
+    let next = [next_vertex, next_triangle];
+    let built = Built { pages, vertices: count, triangles, warnings: Vec::new(), next };
     Some(Spliced { mesh: Mesh::of(built, revision), written, shared })
 }
 
@@ -375,25 +379,5 @@ fn normals(pages: &mut [Arc<Page>], layout: &[(u32, Vec<u32>)], beside: &[u32]) 
             copy.normals[t.own..].copy_from_slice(&fresh);
             pages[p as usize] = Arc::new(copy);
         }
-    }
-}
-
-/// Numbers stay without gaps: the highest fill what fell free.
-fn renumber(pages: &mut [Arc<Page>], holes: &[u32], count: usize) {
-    if holes.is_empty() {
-        return;
-    }
-    let mut holes = holes.iter().copied();
-    for slot in pages.iter_mut() {
-        if slot.topology.ids.iter().all(|&id| (id as usize) < count) {
-            continue;
-        }
-        let mut page = slot.copy();
-        let mut topology = Topology::clone(&page.topology);
-        for id in topology.ids.iter_mut().filter(|id| **id as usize >= count) {
-            *id = holes.next().unwrap_or(*id);
-        }
-        page.topology = Arc::new(topology);
-        *slot = Arc::new(page);
     }
 }
