@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::brush::{BrushSettings, MaskAction, Picture};
 use crate::hand::{ReachBox, Similarity};
-use crate::mesh::{Levels, Mesh, TriMesh};
+use crate::mesh::{Cut, Grafted, Levels, Mesh, TriMesh};
 use crate::stroke::Camera;
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -37,6 +37,19 @@ pub enum Command {
     Begin(Box<Beginning>),
     /// The thing in the hands stands here.
     Place(Similarity),
+    /// A Boolean of a small tool: made where the work around it is as it was when the cut was computed, else not at all.
+    Cut(Carving),
+}
+
+/// A cut to be made in the work.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Carving {
+    pub cut: Arc<Cut>,
+    /// The thing in the hands is the tool, and gone once the cut is made.
+    pub put_down: bool,
+    /// Told what came of it; `None`: the work was changed there in between. Nobody waits for who asked.
+    #[serde(skip)]
+    pub answer: Option<crossbeam_channel::Sender<Option<Grafted>>>,
 }
 
 /// What a new person's world begins with.

@@ -209,6 +209,22 @@ impl World {
                     thing.place = *place;
                 }
             }
+            Command::Cut(carving) => {
+                self.lift_all();
+                self.mesh.begin_step();
+                let made = self.mesh.graft(&carving.cut);
+                self.mesh.end_step();
+                if made.is_some() {
+                    let retired = &mut self.retired;
+                    self.works.forget_future(|m| retired.push(m));
+                    if carving.put_down {
+                        self.put_down();
+                    }
+                }
+                if let Some(answer) = &carving.answer {
+                    let _ = answer.try_send(made);
+                }
+            }
             Command::Replace(new) => {
                 self.lift_all();
                 let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());

@@ -1,7 +1,7 @@
 //! A tool out of clay of several sizes, the clay's pages and trees as they stand: `cargo run --release --example carve`.
 //!
-//! Median and least wall time of a difference and a union, the pages that were written and shared, and the ratio of the
-//! largest clay to the smallest. The tool has 2,000 triangles and is as large as ten of the clay's, so that the same number
+//! Median and least wall time of a difference and a union until the clay is cut, the part of it that the tick waits for, the
+//! pages that were written and shared, and the ratio of the largest clay to the smallest. The tool has 2,000 triangles and is as large as ten of the clay's, so that the same number
 //! of them is cut in any clay. `--hold N`: only N differences out of 2 million, for a profiler.
 
 use glam::{DMat3, DVec3};
@@ -25,8 +25,8 @@ fn main() {
     let tool = shapes::icosphere(1.0, 10).to_poly();
     let mut medians: Vec<f64> = Vec::new();
     println!(
-        "{:>10} {:>6} {:>9} {:>9} {:>8} {:>8}",
-        "triangles", "", "median ms", "least ms", "written", "shared"
+        "{:>10} {:>6} {:>9} {:>9} {:>8} {:>8} {:>8}",
+        "triangles", "", "median ms", "least ms", "tick ms", "written", "shared"
     );
     for frequency in if hold.is_some() { vec![316] } else { vec![63, 316, 632] } {
         let mut clay = match Mesh::build(&shapes::icosphere(1.0, frequency), &job) {
@@ -36,27 +36,36 @@ fn main() {
         let work = clay.snapshot();
         let radius = 5.0 / f64::from(frequency);
         for operation in [Operation::Difference, Operation::Union] {
-            let (mut times, mut pages) = (Vec::new(), (0, 0));
+            let (mut times, mut ticks, mut pages) = (Vec::new(), Vec::new(), (0, 0));
             for n in 0..hold.unwrap_or(21) {
                 let tool = placed(&tool, n, radius);
                 let start = clock.now_us();
-                let done = local(&work, &tool, operation, &Options::default(), &job);
-                times.push((clock.now_us() - start) as f64 * 1e-3);
+                let cut = local(&work, &tool, operation, &Options::default(), &job);
+                let computed = clock.now_us();
+                clay.begin_step();
+                let done = cut.ok().flatten().and_then(|c| clay.graft(&c));
+                clay.end_step();
+                let made = clock.now_us();
+                times.push((made - start) as f64 * 1e-3);
+                ticks.push((made - computed) as f64 * 1e-3);
                 match done {
-                    Ok(Some(done)) => pages = (done.written, done.shared),
-                    other => eprintln!("{n}: {:?}", other.map(|d| d.is_some())),
+                    Some(done) => pages = (done.written, done.shared),
+                    None => eprintln!("{n}: not done locally"),
                 }
+                clay.undo();
             }
             times.sort_by(f64::total_cmp);
+            ticks.sort_by(f64::total_cmp);
             let median = times[times.len() / 2];
             if operation == Operation::Difference {
                 medians.push(median);
             }
             println!(
-                "{:>10} {:>6} {median:>9.2} {:>9.2} {:>8} {:>8}",
+                "{:>10} {:>6} {median:>9.2} {:>9.2} {:>8.2} {:>8} {:>8}",
                 work.triangle_count(),
                 &operation.name()[..5],
                 times[0],
+                ticks[ticks.len() / 2],
                 pages.0,
                 pages.1
             );

@@ -165,6 +165,7 @@ fn control(
         published: live.published.clone(),
         stop: stop.clone(),
         thickness: Arc::default(),
+        joining: Arc::default(),
         journal,
     };
     match Server::start(&default_path(), host) {

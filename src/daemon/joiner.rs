@@ -1,23 +1,29 @@
 //! The thing in the hands and the work made one, on a thread of its own.
 //!
 //! A choice from the hands' menu (or a call on the control socket) asks; the joiner takes the newest snapshot, computes the
-//! Boolean and sends what came of it as commands. The loop never waits for it. When the work was changed meanwhile, the
-//! result is computed again on the work as it is now: nothing that was sculpted is lost.
+//! Boolean and sends what came of it as commands. The loop never waits for it. Where the work was changed meanwhile elsewhere,
+//! a cut is made all the same; where it was changed there, it is computed again: nothing that was sculpted is lost.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
+use serde::Serialize;
 
 use super::published::Published;
 use crate::analysis::boolean::{self, Operation, Options};
 use crate::analysis::cancel::Job;
-use crate::command::{Command, NewClay};
-use crate::hand::{Choice, Thing};
-use crate::mesh::{LevelError, Levels, Mesh, Snapshot, TriMesh};
+use crate::command::{Carving, Command, NewClay};
+use crate::hand::Choice;
+use crate::mesh::{Grafted, LevelError, Levels, Mesh, PAGE_VERTICES, PolyMesh, Snapshot, TriMesh};
 
 /// Tries before a work that never rests is told so.
 const TRIES: usize = 3;
+/// Pages that a cut may concern: the tick that makes it waits for no more than this.
+const MOST_PAGES: usize = 64;
+/// For the loop to say whether a cut was made.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 #[derive(Debug, thiserror::Error)]
 pub enum JoinError {
@@ -35,6 +41,8 @@ pub enum JoinError {
     Build(String),
     #[error("the work was changed while it was joined, {TRIES} times over")]
     Restless,
+    #[error("the loop has ended")]
+    Ended,
 }
 
 /// What a choice from the menu means for the work and the thing.
@@ -47,34 +55,33 @@ pub fn operation(choice: Choice) -> Option<Operation> {
     }
 }
 
-/// The work and the thing made one: the commands that put the result in place.
+/// The work and a tool made one: the commands that put the result in place. Where the tool reaches little of the work, only that
+/// is computed and written; every other page stays as it is. `held`: the tool is the thing in the hands.
 pub fn join(
     work: &Snapshot,
-    thing: &Thing,
+    tool: &PolyMesh,
+    held: bool,
     operation: Operation,
     job: &Job,
 ) -> Result<Vec<Command>, JoinError> {
-    let tool = thing.placed().to_poly();
-    // Where the thing is small, only what is near it is cut.
-    if let Some(done) = boolean::local(work, &tool, operation, &Options::default(), job)? {
-        let mut mesh = done.mesh;
-        if mesh.triangle_count() == 0 {
-            return Err(JoinError::Nothing);
-        }
-        // Built anew from plain triangles, as a replay will build it: the same bits follow from the same strokes.
-        let plain = mesh.snapshot().to_tri();
-        let built = Mesh::build(&plain, job).map_err(|e| JoinError::Build(e.to_string()))?;
-        return Ok(vec![Command::Replace(NewClay::new(Arc::new(plain), built, true)), Command::PutDown]);
+    let options = Options::default();
+    if let Some(cut) = boolean::local(work, tool, operation, &options, job)?
+        && cut.page_count() <= MOST_PAGES
+        && cut.can_be_made(work)
+    {
+        return Ok(vec![Command::Cut(Carving { cut: Arc::new(cut), put_down: held, answer: None })]);
     }
     let work = work.to_tri().to_poly();
-    let (solids, _) = boolean::compute([&work, &tool], &[operation], &Options::default(), job, || 0.0)?;
+    let (solids, _) = boolean::compute([&work, tool], &[operation], &options, job, || 0.0)?;
     let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
     if solid.mesh.face_count() == 0 {
         return Err(JoinError::Nothing);
     }
     let plain: TriMesh = solid.mesh.triangulate().0;
     let built = Mesh::build(&plain, job).map_err(|e| JoinError::Build(e.to_string()))?;
-    Ok(vec![Command::Replace(NewClay::new(Arc::new(plain), built, true)), Command::PutDown])
+    let mut out = vec![Command::Replace(NewClay::new(Arc::new(plain), built, true))];
+    out.extend(held.then_some(Command::PutDown));
+    Ok(out)
 }
 
 /// The work one level finer or coarser: the command that puts it in place, and which level of how many it is.
@@ -109,14 +116,9 @@ impl Joiner {
         let (asked, todo) = cc::bounded::<Choice>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
             for choice in todo {
-                match at_rest(&shown, choice) {
-                    Ok(done) => {
-                        for command in done {
-                            if commands.send(command).is_err() {
-                                return;
-                            }
-                        }
-                    }
+                match at_rest(&shown, choice, &Job::default(), &commands) {
+                    Ok(_) => {}
+                    Err(JoinError::Ended) => return,
                     Err(e) => tracing::warn!("{}: {e}", choice.label()),
                 }
             }
@@ -130,13 +132,28 @@ impl Joiner {
     }
 }
 
-/// Joins the work as it is now; again when it was changed meanwhile.
-pub fn at_rest(shown: &ArcSwap<Published>, choice: Choice) -> Result<Vec<Command>, JoinError> {
+/// What a join came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Joined {
+    /// Computed and written only where the tool is.
+    pub local: bool,
+    /// Pages written anew, and pages that stayed as they were.
+    pub pages_written: usize,
+    pub pages_shared: usize,
+    /// Times that it was computed: again where the work was changed meanwhile.
+    pub tries: usize,
+}
+
+/// Joins the work as it is now with the thing in the hands.
+pub fn at_rest(
+    shown: &ArcSwap<Published>,
+    choice: Choice,
+    job: &Job,
+    commands: &cc::Sender<Command>,
+) -> Result<Joined, JoinError> {
     let operation = operation(choice).ok_or(JoinError::Empty)?;
-    settled(shown, |now| {
-        let thing = now.thing.as_ref().ok_or(JoinError::Empty)?;
-        join(&now.mesh, thing, operation, &Job::default())
-    })
+    let held = |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
+    carry_out(shown, held, true, operation, job, commands)
 }
 
 /// What `of` makes of the work; made again when the work was changed meanwhile.
@@ -149,6 +166,44 @@ pub fn settled<T>(
         let done = of(&before)?;
         if shown.load().mesh.revision() == before.mesh.revision() {
             return Ok(done);
+        }
+    }
+    Err(JoinError::Restless)
+}
+
+/// Joins the work as it is now with the tool; again where the work was changed there meanwhile.
+pub fn carry_out(
+    shown: &ArcSwap<Published>,
+    tool: impl Fn(&Published) -> Result<PolyMesh, JoinError>,
+    held: bool,
+    operation: Operation,
+    job: &Job,
+    commands: &cc::Sender<Command>,
+) -> Result<Joined, JoinError> {
+    let send = |c| commands.send(c).map_err(|_| JoinError::Ended);
+    for tries in 1..=TRIES {
+        let before = shown.load_full();
+        let mut done = join(&before.mesh, &tool(&before)?, held, operation, job)?;
+        job.check().map_err(boolean::Error::from)?;
+        if let [Command::Cut(carving)] = &mut done[..] {
+            let (answer, made) = cc::bounded(1);
+            carving.answer = Some(answer);
+            done.into_iter().try_for_each(send)?;
+            match made.recv_timeout(PATIENCE) {
+                Ok(Some(Grafted { written, shared })) => {
+                    return Ok(Joined { local: true, pages_written: written, pages_shared: shared, tries });
+                }
+                Ok(None) => continue,
+                Err(_) => return Err(JoinError::Ended),
+            }
+        }
+        if shown.load().mesh.revision() == before.mesh.revision() {
+            let pages = done.iter().find_map(|c| match c {
+                Command::Replace(new) => Some(new.plain.positions.len().div_ceil(PAGE_VERTICES)),
+                _ => None,
+            });
+            done.into_iter().try_for_each(send)?;
+            return Ok(Joined { local: false, pages_written: pages.unwrap_or(0), pages_shared: 0, tries });
         }
     }
     Err(JoinError::Restless)

@@ -118,9 +118,9 @@ impl Stepped<'_> {
                 journal.tick(tick, &samples, &commands, self.world);
             }
             if let Some(operation) = report.join.and_then(joiner::operation)
-                && let Some(thing) = self.world.thing().cloned()
+                && let Some(tool) = self.world.thing().map(|t| t.placed().to_poly())
             {
-                match joiner::join(&self.world.snapshot(), &thing, operation, &Job::default()) {
+                match joiner::join(&self.world.snapshot(), &tool, true, operation, &Job::default()) {
                     Ok(done) => joined = done,
                     Err(e) => tracing::warn!("{}: {e}", operation.name()),
                 }

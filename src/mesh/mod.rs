@@ -37,9 +37,7 @@ mod undo;
 mod verify;
 mod workers;
 
-pub use build::{
-    BuildError, Corner, Home, NewVertex, PAGE_VERTICES, Spliced, bytes_to_build, home_of, splice,
-};
+pub use build::{BuildError, Corner, Cut, Grafted, Home, NewVertex, PAGE_VERTICES, bytes_to_build, home_of};
 pub use clay::{Memory, Mesh};
 pub use dab::{DabReport, PhaseTimes};
 pub use flat::{PolyMesh, TriMesh};

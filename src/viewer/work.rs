@@ -126,11 +126,8 @@ impl Work {
     pub fn join(&self, choice: Choice, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
-            let (text, wrong) = match joiner::at_rest(&shown, choice) {
-                Ok(done) => match done.into_iter().all(|c| commands.send(c).is_ok()) {
-                    true => (format!("{}: done", choice.label()), false),
-                    false => ("the loop has ended".into(), true),
-                },
+            let (text, wrong) = match joiner::at_rest(&shown, choice, &Job::default(), &commands) {
+                Ok(_) => (format!("{}: done", choice.label()), false),
                 Err(e) => (e.to_string(), true),
             };
             let _ = say.send(Done::Said(text, wrong));

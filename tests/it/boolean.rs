@@ -1,7 +1,9 @@
 //! Booleans: the scenes of touching and coplanar faces, as they stand and turned by an arbitrary angle.
 
+mod live;
 mod local;
 mod oracle;
+mod pairs;
 mod random;
 mod solids;
 

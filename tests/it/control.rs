@@ -38,6 +38,7 @@ impl Rig {
             commands: sender,
             published: Arc::new(ArcSwap::from_pointee(published)),
             thickness: Arc::default(),
+            joining: Arc::default(),
             journal: None,
             stop: Arc::default(),
         };

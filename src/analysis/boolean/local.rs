@@ -1,5 +1,5 @@
 //! A tool out of clay (or onto it) at the cost of the tool's region: only triangles whose boxes meet the tool's box are cut,
-//! only the pages around them are written, every other page is the clay's own.
+//! and what comes of it is a [`Cut`], which writes only the pages around ([`crate::mesh::Mesh::graft`]).
 //!
 //! The clay is not looked at as a whole, so it is trusted to be closed; what is put in has the border of what is taken out,
 //! edge by edge and in the same direction, so it is as closed after as it was before. Where that fails, nothing is given and
@@ -12,7 +12,7 @@ use super::pieces::crossings;
 use super::points::Map;
 use super::{Error, NAMES, Operation, Options, check};
 use crate::analysis::cancel::Job;
-use crate::mesh::{Corner, Home, NewVertex, Page, PolyMesh, Snapshot, Spliced, home_of, splice, triangulate};
+use crate::mesh::{Corner, Cut, Home, NewVertex, Page, PolyMesh, Snapshot, home_of, triangulate};
 
 /// Union or difference of the clay and a tool (A and B); None where only the whole can tell: for an intersection, or where the
 /// cut does not close.
@@ -22,7 +22,7 @@ pub fn local(
     operation: Operation,
     options: &Options,
     job: &Job,
-) -> Result<Option<Spliced>, Error> {
+) -> Result<Option<Cut>, Error> {
     if !matches!(operation, Operation::Union | Operation::Difference) {
         return Ok(None);
     }
@@ -41,7 +41,7 @@ pub fn local(
         let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(&around), job, &mut |_| ())?;
         if let Some(change) = patch.change(&a, clay, operation, options.keep_contact) {
             job.check()?;
-            return Ok(splice(clay, &change.removed, &change.added, &change.new));
+            return Ok(Some(Cut::new(clay, patch.bounds, change.removed, change.added, change.new)));
         }
     }
     Ok(None)
@@ -49,6 +49,8 @@ pub fn local(
 
 /// The clay's triangles near the tool.
 struct Patch {
+    /// The tool's box, rounded outwards.
+    bounds: (Vec3, Vec3),
     mesh: PolyMesh,
     /// One a vertex.
     homes: Vec<Home>,
@@ -70,7 +72,9 @@ impl Patch {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
         let (lo, hi) = (lo - slack, hi + slack);
         let meets = |l: Vec3, h: Vec3| l.as_dvec3().cmple(hi).all() && lo.cmple(h.as_dvec3()).all();
-        let mut out = Patch { mesh: PolyMesh::new(), homes: Vec::new(), triangles: Vec::new() };
+        let outwards = (lo.as_vec3().map(f32::next_down), hi.as_vec3().map(f32::next_up));
+        let mut out =
+            Patch { bounds: outwards, mesh: PolyMesh::new(), homes: Vec::new(), triangles: Vec::new() };
         let mut names: Map<Home, u32> = Map::default();
         clay.each_page_in(meets, |p, page| {
             let t = page.topology();

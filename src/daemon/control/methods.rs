@@ -10,14 +10,16 @@ use serde_json::{Value, json};
 use super::PROTOCOL;
 use super::protocol::{Code, RpcError};
 use super::server::Host;
+use crate::analysis::boolean::Operation;
 use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
 use crate::brush::{BrushKind, MaskAction, Picture};
 use crate::command::{Command, NewClay};
-use crate::daemon::{joiner, rig, trim};
+use crate::daemon::{Published, joiner, rig, trim};
+use crate::devices::Clock;
 use crate::hand::{Choice, ReachBox};
-use crate::mesh::Snapshot;
-use crate::mesh::io::write_mesh;
+use crate::mesh::io::{read_mesh, write_mesh};
+use crate::mesh::{Snapshot, mend};
 
 /// Every method with its parameters, for `methods` and for the schema test.
 pub const METHODS: &[(&str, &str)] = &[
@@ -51,6 +53,12 @@ pub const METHODS: &[(&str, &str)] = &[
         "level",
         "{to: up|down}: the work one level finer or coarser; what was sculpted on finer levels goes along with coarser ones",
     ),
+    (
+        "boolean",
+        "{operation: union|intersection|difference, path, at?}: the work and a mesh from a file, moved by `at`, become one; answers with the pages written and shared",
+    ),
+    ("progress", "{}: of the join or Boolean under way, 0 to 1"),
+    ("cancel", "{}: ends the join or Boolean under way; nothing is changed"),
     (
         "reach",
         "{middle_mm, half_mm} lays this part of the tracked space over the work; {} measures it for five seconds",
@@ -131,6 +139,39 @@ fn thickness(host: &Host, mesh: &Snapshot, p: &ThicknessParam) -> Result<Value, 
 #[serde(deny_unknown_fields)]
 struct JoinParam {
     operation: Choice,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BooleanParam {
+    operation: Operation,
+    path: PathBuf,
+    #[serde(default)]
+    at: [f64; 3],
+}
+
+/// Runs a join that `progress` and `cancel` know of. One at a time.
+fn watched(
+    host: &Host,
+    work: impl FnOnce(&Job) -> Result<joiner::Joined, joiner::JoinError>,
+) -> Result<Value, RpcError> {
+    let failed = |text: String| RpcError::new(Code::Failed, text);
+    let job = Arc::new(Job::default());
+    {
+        let mut slot = host.joining.lock().map_err(|e| failed(e.to_string()))?;
+        if slot.is_some() {
+            return Err(failed("another join is under way".into()));
+        }
+        *slot = Some(job.clone());
+    }
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let done = work(&job);
+    *host.joining.lock().map_err(|e| failed(e.to_string()))? = None;
+    let joined = done.map_err(|e| failed(e.to_string()))?;
+    let mut said = json!(joined);
+    said["seconds"] = json!((clock.now_us() - begun) as f64 * 1e-6);
+    Ok(said)
 }
 
 #[derive(Deserialize)]
@@ -300,9 +341,37 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         }
         "join" => {
             let p: JoinParam = read(params)?;
-            let done = joiner::at_rest(&host.published, p.operation).map_err(|e| failed(e.to_string()))?;
-            done.into_iter().try_for_each(send)?;
-            Ok(json!({ "sent": true }))
+            watched(host, |job| joiner::at_rest(&host.published, p.operation, job, &host.commands))
+        }
+        "boolean" => {
+            let p: BooleanParam = read(params)?;
+            safe(&p.path)?;
+            if !p.at.iter().all(|x| x.is_finite()) || p.operation == Operation::ReverseDifference {
+                return Err(RpcError::new(
+                    Code::BadParams,
+                    "expected union, intersection or difference, and a finite place",
+                ));
+            }
+            let mut tool = read_mesh(&p.path, &Job::default()).map_err(|e| failed(e.to_string()))?.mesh;
+            mend::weld(&mut tool, 0.0);
+            tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(p.at));
+            let given = |_: &Published| Ok(tool.clone());
+            watched(host, |job| {
+                joiner::carry_out(&host.published, given, false, p.operation, job, &host.commands)
+            })
+        }
+        "progress" => {
+            read::<Nothing>(params)?;
+            let under_way = host.joining.lock().map_err(|e| failed(e.to_string()))?;
+            Ok(json!({ "running": under_way.is_some(), "done": under_way.as_ref().map(|j| j.done()) }))
+        }
+        "cancel" => {
+            read::<Nothing>(params)?;
+            let under_way = host.joining.lock().map_err(|e| failed(e.to_string()))?;
+            if let Some(job) = under_way.as_ref() {
+                job.cancel();
+            }
+            Ok(json!({ "cancelled": under_way.is_some() }))
         }
         "trim" => {
             let p: TrimParam = read(params)?;

@@ -25,6 +25,8 @@ pub struct Host {
     pub published: Arc<ArcSwap<Published>>,
     /// The wall thickness of the work, as last asked for.
     pub thickness: Arc<Mutex<Option<crate::analysis::thickness::live::LiveMap>>>,
+    /// The Boolean under way.
+    pub joining: Arc<Mutex<Option<Arc<crate::analysis::cancel::Job>>>>,
     /// How the session file stands; `None`: the run is not recorded.
     pub journal: Option<crate::daemon::session::Health>,
     /// Raised by `shutdown`.

@@ -7,15 +7,16 @@
 //! All three run on all cores; the result does not depend on how many there are.
 
 pub(super) mod assemble;
+mod cut;
 pub(super) mod order;
-mod splice;
+pub(super) mod splice;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
-pub use splice::{Corner, Home, NewVertex, Spliced, home_of, splice};
+pub use cut::{Corner, Cut, Grafted, Home, NewVertex, home_of};
 
 use super::TriMesh;
 use super::page::{Page, Ring};

@@ -10,46 +10,15 @@ use std::sync::Arc;
 use glam::{Vec3, Vec4};
 
 use super::super::TriMesh;
-use super::super::clay::Mesh;
-use super::super::page::{Page, Topology};
+use super::super::page::Page;
 use super::super::snapshot::Snapshot;
-use super::{Built, Homes, PAGE_VERTICES, assemble, order};
+use super::cut::{Corner, Cut, Home, NewVertex, concerned, home_of, touched};
+use super::{Homes, PAGE_VERTICES, assemble, order};
 
-/// Where a vertex is: page, and local index of one of its own.
-pub type Home = (u32, u16);
-
-/// A corner of a triangle that is put in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Corner {
-    Old(Home),
-    /// Index into the new vertices.
-    New(u32),
-}
-
-/// A vertex that comes with the new triangles.
-#[derive(Debug, Clone, Copy)]
-pub struct NewVertex {
-    pub place: Vec3,
-    pub colour: [u8; 4],
-    /// 0 free to 1 protected.
-    pub mask: f32,
-}
-
-/// The result.
-#[derive(Debug)]
-pub struct Spliced {
-    pub mesh: Mesh,
-    /// Pages written anew, and pages that are the snapshot's own.
-    pub written: usize,
-    pub shared: usize,
-}
-
-/// Home of a local vertex.
-pub fn home_of(t: &Topology, page: u32, v: u16) -> Home {
-    match (v as usize).checked_sub(t.own) {
-        None => (page, v),
-        Some(k) => t.halo_home(k),
-    }
+/// Pages that a cut makes new, ascending; those beyond the last are added.
+pub(in crate::mesh) struct Remade {
+    pub(in crate::mesh) pages: Vec<(u32, Arc<Page>)>,
+    pub(in crate::mesh) next: [u32; 2],
 }
 
 struct Region {
@@ -74,40 +43,20 @@ impl Region {
     }
 }
 
-/// Triangles out (page, index in it) and in. None where the pages around cannot hold the result: then build all anew.
-pub fn splice(
-    old: &Snapshot,
-    removed: &[(u32, u32)],
-    added: &[[Corner; 3]],
-    new: &[NewVertex],
-) -> Option<Spliced> {
+/// The pages that the cut makes new, and the numbers that the next new vertex and triangle get. The cut must fit. None where
+/// the pages around cannot hold the result: then build all anew.
+pub(in crate::mesh) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
+    let Cut { removed, added, new, .. } = cut;
     // As in a cut of the topology: numbers only run up.
     let [mut next_vertex, mut next_triangle] = old.totals.next;
     if u32::MAX - next_vertex.max(next_triangle) <= (new.len() + added.len()) as u32 {
         return None;
     }
-    let mut removed = removed.to_vec();
+    let mut removed = removed.clone();
     removed.sort_unstable();
-    let homes_of = |p: u32, t: usize| {
-        let topology = old.page(p).topology();
-        topology.triangles[t].map(|v| home_of(topology, p, v))
-    };
-    // Pages to write.
-    let mut dirty: Vec<Home> = removed.iter().flat_map(|&(p, t)| homes_of(p, t as usize)).collect();
-    dirty.extend(added.iter().flatten().filter_map(|c| match c {
-        Corner::Old(h) => Some(*h),
-        Corner::New(_) => None,
-    }));
-    dirty.sort_unstable();
-    dirty.dedup();
-    let mut inner: Vec<u32> = dirty.iter().map(|h| h.0).collect();
-    inner.dedup();
+    let dirty = touched(old, cut);
+    let (inner, beside) = concerned(old, &dirty);
     let slot = |p: u32| inner.binary_search(&p).ok();
-    let mut beside: Vec<u32> =
-        inner.iter().flat_map(|&p| old.page(p).topology().neighbours.iter().map(|n| n.page)).collect();
-    beside.sort_unstable();
-    beside.dedup();
-    beside.retain(|&p| slot(p).is_none());
 
     // Triangles that stay, with a corner in a page to write.
     let mut stay: Vec<(u32, [Home; 3])> = Vec::new();
@@ -180,7 +129,6 @@ pub fn splice(
     }
     free_ids.sort_unstable();
     let first_new = region.masks.len() as u32;
-    let count = old.vertex_count() - free_ids.len() + new.len();
     for (i, v) in new.iter().enumerate() {
         let id = free_ids.get(i).copied().unwrap_or_else(|| {
             next_vertex += 1;
@@ -221,22 +169,9 @@ pub fn splice(
             next_triangle - 1
         }));
     }
-    let revision = old.revision() + 1;
-    let mut pages: Vec<Arc<Page>> = old.pages().cloned().collect();
-    let made = write(&region, &layout, &numbers, revision)?;
-    for (p, page) in made {
-        match pages.get_mut(p as usize) {
-            Some(old) => *old = page,
-            None => pages.push(page),
-        }
-    }
-    normals(&mut pages, &layout, &beside);
-    let shared = old.pages().zip(&pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count();
-    let written = pages.len() - shared;
-    let triangles = old.triangle_count() - removed.len() + added.len();
-    let next = [next_vertex, next_triangle];
-    let built = Built { pages, vertices: count, triangles, warnings: Vec::new(), next };
-    Some(Spliced { mesh: Mesh::of(built, revision), written, shared })
+    let mut pages: BTreeMap<u32, Arc<Page>> = write(&region, &layout, &numbers)?.into_iter().collect();
+    normals(old, &mut pages, &layout, &beside);
+    Some(Remade { pages: pages.into_iter().collect(), next: [next_vertex, next_triangle] })
 }
 
 /// Which vertices each written page owns, in order.
@@ -317,12 +252,7 @@ fn lay_out(
     Some(layout)
 }
 
-fn write(
-    region: &Region,
-    layout: &[(u32, Vec<u32>)],
-    numbers: &[u32],
-    revision: u64,
-) -> Option<Vec<(u32, Arc<Page>)>> {
+fn write(region: &Region, layout: &[(u32, Vec<u32>)], numbers: &[u32]) -> Option<Vec<(u32, Arc<Page>)>> {
     let mut touching: BTreeMap<u32, Vec<u32>> = layout.iter().map(|l| (l.0, Vec::new())).collect();
     for (t, corners) in region.tri.triangles.iter().enumerate() {
         let mut last = [u32::MAX; 3];
@@ -356,28 +286,28 @@ fn write(
                 let r = *lookup.get(&topology.halo_home(k))?;
                 one.points[own.len() + k].w = region.masks[r as usize];
             }
-            one.revision = revision;
             Some((*p, page))
         })
         .collect()
 }
 
 /// Every copy of a normal is what its home says.
-fn normals(pages: &mut [Arc<Page>], layout: &[(u32, Vec<u32>)], beside: &[u32]) {
+fn normals(old: &Snapshot, pages: &mut BTreeMap<u32, Arc<Page>>, layout: &[(u32, Vec<u32>)], beside: &[u32]) {
     for &p in layout.iter().map(|l| &l.0).chain(beside) {
-        let page = &pages[p as usize];
+        let now = |p: u32| pages.get(&p).unwrap_or_else(|| old.page(p));
+        let page = now(p);
         let t = page.topology.clone();
         let fresh: Vec<Vec4> = (0..t.halo_sources.len())
             .map(|k| {
                 let (home, local) = t.halo_home(k);
-                pages[home as usize].normals[local as usize]
+                now(home).normals[local as usize]
             })
             .collect();
         let bits = |n: &Vec4| n.to_array().map(f32::to_bits);
         if !page.normals[t.own..].iter().map(bits).eq(fresh.iter().map(bits)) {
             let mut copy = page.copy();
             copy.normals[t.own..].copy_from_slice(&fresh);
-            pages[p as usize] = Arc::new(copy);
+            pages.insert(p, Arc::new(copy));
         }
     }
 }

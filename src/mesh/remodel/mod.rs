@@ -20,7 +20,8 @@ use glam::{Vec3, Vec4Swizzles};
 
 use self::patch::Patch;
 pub use self::patch::{Cuts, Detail};
-use super::build::{Homes, PAGE_VERTICES, assemble, order};
+use super::build::splice::remake;
+use super::build::{Cut, Grafted, Homes, PAGE_VERTICES, assemble, order};
 use super::clay::Mesh;
 use super::flat::TriMesh;
 use super::page::Page;
@@ -211,6 +212,31 @@ impl Mesh {
         owners
     }
 
+    fn push_empty(&mut self) {
+        let mut empty = Page { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY, ..Page::default() };
+        empty.tree.reset(0);
+        self.pages.push(Arc::new(empty));
+    }
+
+    /// Makes a cut where the clay is, around it, as it was when the cut was computed: part of the open undo step, if there is one,
+    /// at a cost of the pages around the cut. None, and nothing changed, where it is not so.
+    pub fn graft(&mut self, cut: &Cut) -> Option<Grafted> {
+        let old = self.snapshot();
+        let made = cut.fits(&old).then(|| remake(&old, cut)).flatten()?;
+        drop(old);
+        let count = made.pages.last().map_or(0, |p| p.0 as usize + 1);
+        if count > self.pages.len() {
+            while self.pages.len() < count {
+                self.push_empty();
+            }
+            self.grow();
+        }
+        [self.next_vertex, self.next_triangle] = made.next;
+        let written = made.pages.len();
+        self.replace_pages(made.pages);
+        Some(Grafted { written, shared: self.pages.len() - written })
+    }
+
     /// The number of a page without vertices: one that was emptied, or a new one.
     fn empty_page(&mut self) -> u32 {
         while let Some(i) = self.empty.pop() {
@@ -221,9 +247,7 @@ impl Mesh {
             }
         }
         let i = self.pages.len() as u32;
-        let mut empty = Page { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY, ..Page::default() };
-        empty.tree.reset(0);
-        self.pages.push(Arc::new(empty));
+        self.push_empty();
         self.grow();
         i
     }

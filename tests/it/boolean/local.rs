@@ -34,15 +34,25 @@ fn a_tool_out_of_clay_and_onto_it_as_the_long_way_has_it() {
         let before = clay.snapshot();
         let plain = before.to_tri().to_poly();
         let long = compute([&plain, &tool], &[what], &Options::default(), &job, || 0.0).expect("a result").0;
-        let Some(done) = local(&before, &tool, what, &Options::default(), &job).expect("a result") else {
+        let cut = local(&before, &tool, what, &Options::default(), &job).expect("a result");
+        let Some(cut) = cut.filter(|c| c.can_be_made(&before)) else {
             // Nothing was given, so nothing wrong was: the long way it is.
             println!("{n}: not done locally");
             elsewhere += 1;
             clay = Mesh::build(&long[0].mesh.triangulate().0, &job).expect("clay");
             continue;
         };
-        done.mesh.verify_invariants().unwrap_or_else(|e| panic!("{n}: {e}"));
-        clay = done.mesh;
+        clay.begin_step();
+        assert!(clay.graft(&cut).is_some(), "{n}");
+        clay.end_step();
+        clay.verify_invariants().unwrap_or_else(|e| panic!("{n}: {e}"));
+        // There and back.
+        let (made, hash) = (clay.vertex_count(), clay.hash());
+        assert!(clay.undo());
+        clay.verify_invariants().unwrap_or_else(|e| panic!("{n}, taken back: {e}"));
+        assert_eq!(clay.hash(), before.hash(), "{n}");
+        assert!(clay.redo());
+        assert_eq!((clay.vertex_count(), clay.hash()), (made, hash), "{n}");
         let after = clay.snapshot().to_tri().to_poly();
         let (f, want) = (facts(&after), long[0].facts);
         assert!(f.closed && f.oriented, "{n}: {f:?}");
@@ -72,11 +82,17 @@ fn what_is_far_from_the_tool_is_shared_and_costs_nothing() {
             let turn = DMat3::from_rotation_z(0.3 + 0.61 * f64::from(n));
             let tool = placed(&tool, radius, turn, turn * DVec3::new(0.8, 0.6, 0.02));
             let start = clock.now_us();
-            let done =
+            let cut =
                 local(&work, &tool, Operation::Difference, &Options::default(), &job).expect("a result");
+            clay.begin_step();
+            let done = clay.graft(&cut.expect("done locally")).expect("made");
+            clay.end_step();
             times.push((clock.now_us() - start) as f64 * 1e-3);
-            let done = done.expect("done locally");
+            let after = clay.snapshot();
+            let same = work.pages().zip(after.pages()).filter(|(a, b)| std::sync::Arc::ptr_eq(a, b)).count();
+            assert_eq!((done.written + done.shared, same), (after.page_count(), done.shared));
             pages = (done.written, done.shared);
+            assert!(clay.undo());
         }
         times.sort_by(f64::total_cmp);
         println!(
