@@ -44,14 +44,15 @@ impl Arrangement {
         let mut points =
             Points::new(operands.iter().flat_map(|m| m.positions.iter().copied()).collect(), eps);
         let own = points.at.len();
-        let meshes = common(operands, &mut points, eps);
+        let meshes = common(operands, &mut points, eps, job)?;
         lap("weld");
         let mut starts: [Vec<u32>; 2] = Default::default();
-        let sides = [0, 1].map(|s| {
-            let (side, first) = side(&meshes[s], &points.at);
+        let mut build = |s: usize| -> Result<Side, Cancelled> {
+            let (side, first) = side(&meshes[s], &points.at, job)?;
             starts[s] = first;
-            side
-        });
+            Ok(side)
+        };
+        let sides = [build(0)?, build(1)?];
         lap("tree");
         job.progress(0.2);
         let meeting = meet::meet(&sides, &mut points, eps, job)?;
@@ -144,11 +145,17 @@ impl Arrangement {
 }
 
 /// Both operands over one list of points; those of either that are near the other's box are met by identity.
-fn common(operands: [&PolyMesh; 2], points: &mut Points, eps: f64) -> [PolyMesh; 2] {
+fn common(
+    operands: [&PolyMesh; 2],
+    points: &mut Points,
+    eps: f64,
+    job: &Job,
+) -> Result<[PolyMesh; 2], Cancelled> {
     let spans = operands.map(|m| Span::of(m.positions.iter().copied()));
     let both = Span { lo: spans[0].lo.max(spans[1].lo), hi: spans[0].hi.min(spans[1].hi) }.grown(4.0 * eps);
     let mut base = 0u32;
-    operands.map(|m| {
+    let mut one = |m: &PolyMesh| -> Result<PolyMesh, Cancelled> {
+        job.check()?;
         let names: Vec<u32> = (0..m.positions.len() as u32)
             .map(|i| {
                 let p = m.positions[i as usize];
@@ -160,6 +167,7 @@ fn common(operands: [&PolyMesh; 2], points: &mut Points, eps: f64) -> [PolyMesh;
         let mut out = PolyMesh::new();
         out.corners.reserve(m.corners.len());
         let mut ring: Vec<u32> = Vec::new();
+        job.check()?;
         for f in m.faces() {
             ring.clear();
             for &c in f {
@@ -177,12 +185,14 @@ fn common(operands: [&PolyMesh; 2], points: &mut Points, eps: f64) -> [PolyMesh;
             }
             out.push_face(&ring);
         }
-        out
-    })
+        Ok(out)
+    };
+    Ok([one(operands[0])?, one(operands[1])?])
 }
 
 /// Triangles, boxes and the tree of one operand, and the first triangle of each face.
-fn side(mesh: &PolyMesh, at: &[DVec3]) -> (Side, Vec<u32>) {
+fn side(mesh: &PolyMesh, at: &[DVec3], job: &Job) -> Result<(Side, Vec<u32>), Cancelled> {
+    job.check()?;
     let mut triangles = Vec::with_capacity(mesh.corners.len());
     let mut starts = Vec::with_capacity(mesh.face_count() + 1);
     starts.push(0);
@@ -195,6 +205,6 @@ fn side(mesh: &PolyMesh, at: &[DVec3]) -> (Side, Vec<u32>) {
         starts.push(triangles.len() as u32);
     }
     let spans: Vec<Span> = triangles.iter().map(|t| Span::of(t.map(|i| at[i as usize]))).collect();
-    let tree = Tree::build(&spans);
-    (Side { triangles, spans, tree }, starts)
+    let tree = Tree::build(&spans, job)?;
+    Ok((Side { triangles, spans, tree }, starts))
 }

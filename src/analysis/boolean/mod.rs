@@ -133,6 +133,7 @@ pub fn compute(
     let mut volumes = [0.0; 2];
     let start = now();
     for s in 0..2 {
+        job.check()?;
         volumes[s] = check(operands[s], NAMES[s])?;
     }
     report.phases.push(("check", now() - start));
@@ -249,7 +250,9 @@ fn attempt(
             mesh.push_face(corners);
             origins.push(origin);
         });
+        job.check()?;
         let facts = emit::finish(&mut mesh, &a.points.at);
+        job.check()?;
         if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }

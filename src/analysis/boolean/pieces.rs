@@ -180,6 +180,9 @@ pub fn place(
     let mut borders: [Map<(u32, u32), Vec<u32>>; 2] = Default::default();
     for s in 0..2 {
         for (i, p) in pieces[s].iter().enumerate() {
+            if i % 4096 == 0 {
+                job.check()?;
+            }
             let loops = p.loops(|f| meshes[s].face(f as usize));
             for l in &loops {
                 for k in 0..l.len() {
@@ -215,6 +218,9 @@ pub fn place(
         let count = pieces[s].len();
         let mut sets = Sets::new(count + at.len());
         for (i, p) in pieces[s].iter().enumerate().filter(|&(i, _)| !settled[s][i]) {
+            if i % 4096 == 0 {
+                job.check()?;
+            }
             for l in p.loops(|f| meshes[s].face(f as usize)) {
                 for &v in l.iter().filter(|&&v| !shared(v)) {
                     sets.join(i as u32, count as u32 + v);
@@ -227,6 +233,7 @@ pub fn place(
                 free.windows(2).for_each(|w| sets.join(w[0], w[1]));
             }
         }
+        job.check()?;
         // The largest triangle of each part asks for all.
         let mut largest: Map<u32, (f64, DVec3)> = Map::default();
         for (i, p) in pieces[s].iter().enumerate().filter(|&(i, _)| !settled[s][i]) {

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::analysis::cancel::{Cancelled, Job};
+
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy)]
 pub struct Span {
@@ -50,11 +52,12 @@ const LEAF: usize = 4;
 const FORK: usize = 8192;
 
 impl Tree {
-    pub fn build(spans: &[Span]) -> Tree {
+    pub fn build(spans: &[Span], job: &Job) -> Result<Tree, Cancelled> {
         let mut items: Vec<(u32, DVec3)> =
             spans.iter().enumerate().map(|(i, s)| (i as u32, s.lo + s.hi)).collect();
-        let nodes = if items.is_empty() { Vec::new() } else { branch(&mut items, 0, spans) };
-        Tree { nodes, items: items.into_iter().map(|(i, _)| i).collect() }
+        let nodes = if items.is_empty() { Vec::new() } else { branch(&mut items, 0, spans, job) };
+        job.check()?;
+        Ok(Tree { nodes, items: items.into_iter().map(|(i, _)| i).collect() })
     }
 
     pub fn span(&self) -> Span {
@@ -124,9 +127,10 @@ impl Tree {
 }
 
 /// Nodes of a branch, indices from `base` on of the whole tree's items, child indices relative to the branch's root.
-fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span]) -> Vec<Node> {
+/// A cancelled job leaves branches out.
+fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> Vec<Node> {
     let span = items.iter().fold(Span::EMPTY, |s, i| s.join(spans[i.0 as usize]));
-    if items.len() <= LEAF {
+    if items.len() <= LEAF || (items.len() > FORK && job.cancelled()) {
         return vec![Node { span, at: first, count: items.len() as u32 }];
     }
     let c = Span::of(items.iter().map(|i| i.1));
@@ -143,9 +147,9 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span]) -> Vec<Node> {
     let large = items.len() > FORK;
     let (l, r) = items.split_at_mut(half);
     let (l, r) = if large {
-        rayon::join(|| branch(l, first, spans), || branch(r, first + half as u32, spans))
+        rayon::join(|| branch(l, first, spans, job), || branch(r, first + half as u32, spans, job))
     } else {
-        (branch(l, first, spans), branch(r, first + half as u32, spans))
+        (branch(l, first, spans, job), branch(r, first + half as u32, spans, job))
     };
     let mut out = Vec::with_capacity(1 + l.len() + r.len());
     let (one, two) = (1, 1 + l.len() as u32);

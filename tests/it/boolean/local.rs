@@ -43,16 +43,18 @@ fn a_tool_out_of_clay_and_onto_it_as_the_long_way_has_it() {
             continue;
         };
         clay.begin_step();
-        assert!(clay.graft(&cut).is_some(), "{n}");
+        let done = clay.graft(&cut).unwrap_or_else(|| panic!("{n}: not made"));
         clay.end_step();
         clay.verify_invariants().unwrap_or_else(|e| panic!("{n}: {e}"));
-        // There and back.
-        let (made, hash) = (clay.vertex_count(), clay.hash());
-        assert!(clay.undo());
-        clay.verify_invariants().unwrap_or_else(|e| panic!("{n}, taken back: {e}"));
-        assert_eq!(clay.hash(), before.hash(), "{n}");
-        assert!(clay.redo());
-        assert_eq!((clay.vertex_count(), clay.hash()), (made, hash), "{n}");
+        // There and back, unless the tool was within the clay or beside it.
+        if done.written > 0 {
+            let (made, hash) = (clay.vertex_count(), clay.hash());
+            assert!(clay.undo());
+            clay.verify_invariants().unwrap_or_else(|e| panic!("{n}, taken back: {e}"));
+            assert_eq!(clay.hash(), before.hash(), "{n}");
+            assert!(clay.redo());
+            assert_eq!((clay.vertex_count(), clay.hash()), (made, hash), "{n}");
+        }
         let after = clay.snapshot().to_tri().to_poly();
         let (f, want) = (facts(&after), long[0].facts);
         assert!(f.closed && f.oriented, "{n}: {f:?}");
@@ -73,7 +75,7 @@ fn what_is_far_from_the_tool_is_shared_and_costs_nothing() {
     let tool = shapes::icosphere(1.0, 10).to_poly();
     for frequency in if long { vec![63, 316, 632] } else { vec![63, 126] } {
         let mut clay = Mesh::build(&shapes::icosphere(1.0, frequency), &job).expect("a sphere");
-        let work = clay.snapshot();
+        let triangles = clay.triangle_count();
         // As large as the clay's triangles: the same number of them is cut, whatever the clay.
         let radius = 5.0 / f64::from(frequency);
         let mut times = Vec::new();
@@ -81,6 +83,7 @@ fn what_is_far_from_the_tool_is_shared_and_costs_nothing() {
         for n in 0..9 {
             let turn = DMat3::from_rotation_z(0.3 + 0.61 * f64::from(n));
             let tool = placed(&tool, radius, turn, turn * DVec3::new(0.8, 0.6, 0.02));
+            let work = clay.snapshot();
             let start = clock.now_us();
             let cut =
                 local(&work, &tool, Operation::Difference, &Options::default(), &job).expect("a result");
@@ -97,13 +100,13 @@ fn what_is_far_from_the_tool_is_shared_and_costs_nothing() {
         times.sort_by(f64::total_cmp);
         println!(
             "a tool of 2,000 out of {} triangles: {:.1} ms (least {:.1}); {} pages written, {} shared",
-            work.triangle_count(),
+            triangles,
             times[4],
             times[0],
             pages.0,
             pages.1
         );
         assert!(pages.0 <= 24, "{} pages written", pages.0);
-        assert!(pages.0 + pages.1 >= work.page_count());
+        assert!(pages.1 > 10 * pages.0);
     }
 }
