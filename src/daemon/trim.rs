@@ -1,9 +1,7 @@
 //! Trimming: what is seen within a box, or on one side of a line, is cut off the work, all the way through, by a Boolean.
 
-use std::sync::Arc;
-
 use arc_swap::ArcSwap;
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::joiner::{self, JoinError};
@@ -11,7 +9,6 @@ use super::published::Published;
 use crate::analysis::boolean::Operation;
 use crate::analysis::cancel::Job;
 use crate::command::Command;
-use crate::hand::{Similarity, Thing};
 use crate::mesh::TriMesh;
 use crate::stroke::Camera;
 
@@ -90,12 +87,8 @@ pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<Command>, 
         let (lo, hi) = now.mesh.bounds();
         let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
         let plain = prism(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
-        let place = Similarity { shift: Vec3::ZERO, turn: Quat::IDENTITY, scale: 1.0 };
-        let knife = Thing { plain: Arc::new(plain), place };
-        let mut done = joiner::join(&now.mesh, &knife, Operation::Difference, &Job::default())?;
         // What the hands hold stays in them.
-        done.retain(|c| !matches!(c, Command::PutDown));
-        Ok(done)
+        joiner::join(&now.mesh, &plain.to_poly(), false, Operation::Difference, &Job::default())
     })
 }
 
