@@ -4,6 +4,8 @@
 //! pages that were written and shared, and the ratio of the largest clay to the smallest. The tool has 2,000 triangles and is as large as ten of the clay's, so that the same number
 //! of them is cut in any clay. `--hold N`: only N differences out of 2 million, for a profiler.
 
+#![allow(clippy::print_stdout)] // Its table.
+
 use glam::{DMat3, DVec3};
 use sculptd::analysis::boolean::{Operation, Options, local};
 use sculptd::analysis::cancel::Job;
