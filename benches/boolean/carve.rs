@@ -1,8 +1,9 @@
 //! A tool out of clay of several sizes, the clay's pages and trees as they stand: `cargo run --release --example carve`.
 //!
 //! Median and least wall time of a difference and a union until the clay is cut, the part of it that the tick waits for, the
-//! pages that were written and shared, and the ratio of the largest clay to the smallest. The tool has 2,000 triangles and is as large as ten of the clay's, so that the same number
-//! of them is cut in any clay. `--hold N`: only N differences out of 2 million, for a profiler.
+//! pages that were written and shared, and the ratio of the largest clay to the smallest. The tool has 2,000 triangles and is
+//! as large as ten of the clay's, so that the same number of them is cut in any clay. `--hold N`: only N of each out of 2
+//! million, for a profiler.
 
 #![allow(clippy::print_stdout)] // Its table.
 
