@@ -7,8 +7,10 @@ use super::live::{self, LiveRun};
 use super::run::{self, seconds};
 use super::{Fail, Outcome, display};
 use crate::config::Config;
+use crate::daemon::ghost;
+use crate::daemon::live::Journal;
+use crate::daemon::rig::Begun;
 use crate::daemon::stepped::{Pace, Stepped, SteppedOptions, summary};
-use crate::daemon::{ghost, rig};
 use crate::devices::catalogue::Catalogue;
 use crate::devices::{Clock, queue};
 use crate::world::World;
@@ -27,6 +29,9 @@ pub struct DemoArgs {
     /// Sculpt this mesh instead of the ball.
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
+    /// Record everything into this new session file.
+    #[arg(long, value_name = "FILE")]
+    pub session: Option<PathBuf>,
     /// How fast the headless demo runs; the hash is the same.
     #[arg(long, value_enum, default_value_t)]
     pub pace: Pace,
@@ -34,28 +39,31 @@ pub struct DemoArgs {
 
 pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     crate::mesh::io::writable_format(&args.export).map_err(|e| Fail::Usage(e.to_string()))?;
-    if !display::wanted(args.headless) {
-        return headless(args, json);
+    if let Some(path) = args.session.as_ref().filter(|p| p.exists()) {
+        let text = format!("{}: expected the name of a new session: the demo begins anew", path.display());
+        return Err(Fail::Usage(text));
     }
     let config = Config::default();
-    let loaded = run::load_work(args.mesh.as_deref())?;
-    let begun = rig::Begun { world: rig::world(loaded.mesh, &config), journal: None, warnings: vec![] };
+    let begun = run::begin(args.mesh.as_deref(), args.session.as_deref(), &config)?;
+    if !display::wanted(args.headless) {
+        return headless(args, &config, begun, json);
+    }
     let live_run = LiveRun {
         window: true,
         ghosts: true,
         devices: true,
         limit_s: args.limit_s,
         export: Some(args.export.clone()),
+        session: args.session.clone(),
         ..Default::default()
     };
     let catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     run::report(&live::run(live_run, &config, begun, catalogue)?, None, json)
 }
 
-fn headless(args: &DemoArgs, json: bool) -> Outcome {
-    let config = Config::default();
-    let loaded = run::load_work(args.mesh.as_deref())?;
-    let mut world = rig::world(loaded.mesh, &config);
+fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outcome {
+    let mut world = begun.world;
+    let (mut writer, thread) = begun.journal.unzip();
     let clock = Clock::manual();
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
     let (mut feeds, adaptors) = ghost::stepped(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
@@ -74,13 +82,14 @@ fn headless(args: &DemoArgs, json: bool) -> Outcome {
         feeds: &mut feeds,
         receiver: &mut receiver,
         clock: &clock,
-        journal: None,
+        journal: writer.as_mut().map(|w| w as &mut dyn Journal),
         observer: &mut |tick, _, world| progress.tick(tick, world),
         script: &[],
     };
     let figures = stepped.run(&options).map_err(|e| Fail::Check(e.to_string()))?;
     progress.bar.finish_and_clear();
-    drop(adaptors);
+    drop((adaptors, writer));
+    live::close_journal(thread);
     let export = run::export(Some(&args.export), &world)?;
     run::report(&summary(&figures, &world, &receiver, export), None, json)
 }

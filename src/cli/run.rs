@@ -13,7 +13,7 @@ use crate::config::{Config, ConfigError, Resolved};
 use crate::daemon::Summary;
 use crate::daemon::kiosk::KioskConfig;
 use crate::daemon::live::Journal;
-use crate::daemon::rig::{self, Area, BeginError, Begun, Loaded, RecordingFeed, RigError};
+use crate::daemon::rig::{self, Area, BeginError, Begun, RecordingFeed, RigError};
 use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
 use crate::devices::catalogue::Catalogue;
 use crate::devices::recording::{Player, RecordingError};
@@ -106,7 +106,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(kiosk) = &kiosk {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
-    let begun = begin(args, &config)?;
+    let begun = begin(args.mesh.as_deref(), args.session.as_deref(), &config)?;
     if let Some(kiosk) = kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles) {
         let words = kiosk.words().map_err(Fail::Config)?;
         let (most, found) = (kiosk.max_triangles, begun.world.mesh().triangle_count());
@@ -170,16 +170,8 @@ pub fn rig_fail(e: RigError) -> Fail {
     }
 }
 
-pub fn load_work(path: Option<&Path>) -> Result<Loaded, Fail> {
-    let loaded = rig::load(path, &Job::default()).map_err(rig_fail)?;
-    for warning in &loaded.warnings {
-        eprintln!("sculptd: warning: {warning}");
-    }
-    Ok(loaded)
-}
-
-fn begin(args: &RunArgs, config: &Config) -> Result<Begun, Fail> {
-    let begun = rig::begin(args.mesh.as_deref(), args.session.as_deref(), config, &Job::default());
+pub fn begin(mesh: Option<&Path>, session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
+    let begun = rig::begin(mesh, session, config, &Job::default());
     let begun = begun.map_err(|e| match e {
         BeginError::Rig(e) => rig_fail(e),
         e => Fail::Input(e.to_string()),

@@ -22,6 +22,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const KEPT: (u32, u32) = (160, 90);
 /// Mean difference of a kept picture, of 255.
 const TOLERANCE: f64 = 10.0;
+/// Pictures that differ by less than this, of 255 in the mean, show the same: a light stroke of smoothing is twice as much.
+const STILL: f64 = 0.02;
 
 struct Ended(Child);
 
@@ -187,9 +189,9 @@ impl Stage {
             let now = self.look(name);
             // Nothing is drawn yet while all is black.
             let drawn = now.pixels().any(|p| p.0[0] > 0);
-            let moved = drawn && self.last.as_ref().is_none_or(|last| differs(last, &now) > 0.05);
+            let moved = drawn && self.last.as_ref().is_none_or(|last| differs(last, &now) > STILL);
             pause(250);
-            if moved && differs(&now, &self.look(name)) < 0.05 {
+            if moved && differs(&now, &self.look(name)) < STILL {
                 self.last = Some(now.clone());
                 return now;
             }
