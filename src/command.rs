@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::brush::{BrushSettings, MaskAction, Picture};
 use crate::hand::{ReachBox, Similarity};
-use crate::mesh::{Cut, Grafted, Levels, Mesh, TriMesh};
+use crate::mesh::{Cut, Grafted, Levels, Mesh, Page, Rest, TriMesh};
 use crate::stroke::Camera;
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -39,6 +39,46 @@ pub enum Command {
     Place(Similarity),
     /// A Boolean of a small tool: made where the work around it is as it was when the cut was computed, else not at all.
     Cut(Carving),
+    /// The work becomes what it was at another place of its history, as the session file keeps it.
+    Jump(Box<Jump>),
+    /// The session was opened again: what could be taken back or done again is in the file alone.
+    Reopened,
+}
+
+/// To another place of the history. What it needs is in the session file, under the names given here, so that a replay finds
+/// it again; whoever sends it has fetched it already.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Jump {
+    /// The place's number.
+    pub node: u64,
+    /// The lineage and the revision that it was made for: a work that has changed since takes no notice.
+    pub from: (u32, u64),
+    pub lineage: u32,
+    /// Pages that differ, and their revisions; all of them for another work.
+    pub pages: Vec<(u32, u64)>,
+    /// Another work than the one in place.
+    pub other: Option<OtherWork>,
+    /// Taken by the first `step` that sees it.
+    #[serde(skip)]
+    pub fetched: Arc<Mutex<Option<Fetched>>>,
+}
+
+/// What a work brings along besides its pages.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct OtherWork {
+    pub rest: Rest,
+    /// Its middle and bounding radius: the measure of brushes, mirrors and hands.
+    pub middle: glam::Vec3,
+    pub extent: f32,
+    /// Where its levels are kept, if it has any.
+    pub levels: Option<u64>,
+}
+
+/// What a jump needs, out of the file.
+#[derive(Debug)]
+pub enum Fetched {
+    Pages(Vec<(u32, Arc<Page>)>),
+    Work(Box<Mesh>),
 }
 
 /// A cut to be made in the work.

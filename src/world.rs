@@ -7,12 +7,15 @@
 //! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
 
 mod clay;
+mod saved;
 
 use std::sync::Arc;
 
 use glam::{DVec3, Quat, Vec3};
+use serde::{Deserialize, Serialize};
 
 use self::clay::{Clay, Stroke};
+pub use self::saved::{BadState, Deed, Moment, Saved, Side};
 use crate::brush::mask_all::MaskAll;
 use crate::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
 use crate::command::Command;
@@ -40,6 +43,10 @@ pub struct StepReport {
     pub ignored: u64,
     /// A hand asked for the thing that it holds to be joined with the work: for a worker, see [`World::thing`].
     pub join: Option<Choice>,
+    /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the history outside.
+    pub missed: Option<Deed>,
+    /// Jumps within the history that were made.
+    pub jumps: u64,
 }
 
 /// Fixed for the life of a world.
@@ -52,7 +59,7 @@ pub struct WorldOptions {
 }
 
 /// One pen at work.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Seat {
     device: DeviceId,
     track: PenTrack,
@@ -83,6 +90,10 @@ pub struct World {
     works: Works,
     /// Works that were replaced, for somebody else to drop.
     retired: Vec<Mesh>,
+    /// Works put in place so far.
+    lineages: u32,
+    /// What was done in this tick, for whoever keeps the history; `None`: nobody does.
+    moments: Option<Vec<Moment>>,
 }
 
 impl World {
@@ -112,6 +123,8 @@ impl World {
             report: StepReport::default(),
             works: Works::default(),
             retired: Vec::with_capacity(16),
+            lineages: 0,
+            moments: None,
         };
         world.measure();
         world.frame();
@@ -137,6 +150,9 @@ impl World {
     pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
+        if let Some(moments) = &mut self.moments {
+            moments.clear();
+        }
         for command in commands {
             self.obey(command);
         }
@@ -161,14 +177,16 @@ impl World {
             }
             Command::Undo => {
                 self.lift_all();
-                if !self.mesh.undo() {
-                    self.works.back(&mut self.mesh);
+                match self.mesh.undo() || self.works.back(&mut self.mesh) {
+                    true => self.note(Deed::Undo),
+                    false => self.report.missed = Some(Deed::Undo),
                 }
             }
             Command::Redo => {
                 self.lift_all();
-                if !self.mesh.redo() {
-                    self.works.forth(&mut self.mesh);
+                match self.mesh.redo() || self.works.forth(&mut self.mesh) {
+                    true => self.note(Deed::Redo),
+                    false => self.report.missed = Some(Deed::Redo),
                 }
             }
             Command::LiftAll => self.lift_all(),
@@ -189,12 +207,16 @@ impl World {
                     let workers = std::mem::replace(&mut self.workers, Workers::new(1));
                     let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
                     let mut old = std::mem::replace(self, fresh);
+                    self.lineages = old.lineages + 1;
+                    self.mesh.set_lineage(self.lineages);
+                    self.moments = old.moments.take();
                     self.tick = old.tick;
                     self.report = old.report;
                     std::mem::swap(&mut self.retired, &mut old.retired);
                     let retired = &mut self.retired;
                     old.works.forget(|m| retired.push(m));
                     self.retired.push(old.mesh);
+                    self.note(Deed::Begin);
                 }
             }
             Command::Mask(action) => {
@@ -202,7 +224,7 @@ impl World {
                 self.mesh.begin_step();
                 let kernel = MaskAll { action: *action, extent: self.extent };
                 self.mesh.dab(&MaskAction::reach(), &kernel, &self.workers);
-                self.mesh.end_step();
+                self.close();
             }
             Command::Place(place) => {
                 if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {
@@ -213,7 +235,7 @@ impl World {
                 self.lift_all();
                 self.mesh.begin_step();
                 let made = self.mesh.graft(&carving.cut);
-                self.mesh.end_step();
+                self.close();
                 if made.is_some() {
                     let retired = &mut self.retired;
                     self.works.forget_future(|m| retired.push(m));
@@ -231,6 +253,8 @@ impl World {
                 if let Some(mut mesh) = built {
                     mesh.set_undo_bytes(self.options.undo_bytes);
                     mesh.set_levels(new.levels.clone());
+                    self.lineages += 1;
+                    mesh.set_lineage(self.lineages);
                     let World { works, retired, mesh: now, options, .. } = self;
                     if new.keep_camera {
                         works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));
@@ -240,7 +264,13 @@ impl World {
                         self.measure();
                         self.frame();
                     }
+                    self.note(Deed::Replace);
                 }
+            }
+            Command::Jump(jump) => self.jump(jump),
+            Command::Reopened => {
+                self.lift_all();
+                self.forget_steps();
             }
         }
     }
@@ -252,7 +282,14 @@ impl World {
         }
         self.hands.lift();
         self.walk(u64::MAX);
-        self.mesh.end_step();
+        self.close();
+    }
+
+    /// Closes the open step.
+    fn close(&mut self) {
+        if self.mesh.end_step() {
+            self.note(Deed::Step);
+        }
     }
 
     /// A thing appears beside the work, a third as large as it, for the hands to carry.
@@ -336,7 +373,7 @@ impl World {
         let active =
             self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle()) || self.hands.is_touching();
         if !active {
-            self.mesh.end_step();
+            self.close();
         }
     }
 
@@ -437,6 +474,11 @@ impl World {
     /// The pose of every hand that is followed.
     pub fn poses(&self) -> impl Iterator<Item = (DeviceId, i32, Pose)> + '_ {
         self.hands.tracks().map(|t| (t.device, t.id, t.pose))
+    }
+
+    /// What the last step did.
+    pub fn report(&self) -> &StepReport {
+        &self.report
     }
 
     pub fn tick(&self) -> u64 {

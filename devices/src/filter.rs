@@ -45,7 +45,7 @@ fn alpha(cutoff: f32, dt: f32) -> f32 {
 }
 
 /// One place's memory.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PlaceFilter {
     last: Option<(Vec3, Vec3)>,
 }
@@ -72,17 +72,18 @@ impl PlaceFilter {
     }
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct HandFilter {
     id: i32,
     t_us: u64,
+    #[serde(with = "crate::long_array")]
     places: [PlaceFilter; PLACES],
     directions: [PlaceFilter; DIRECTIONS],
     turn: Option<(Quat, f32)>,
 }
 
 /// Filters every hand of a tracker. A hand that appears, or comes back with another id, starts afresh.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct HandsFilter {
     /// May be changed at any time.
     pub figures: OneEuro,

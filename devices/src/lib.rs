@@ -43,6 +43,7 @@ pub mod hid;
 pub mod latency;
 pub mod leap;
 mod lifeline;
+pub mod long_array;
 pub mod pen_state;
 pub mod queue;
 pub mod recording;

@@ -12,6 +12,7 @@ use crate::daemon::kiosk::{KioskConfig, keeper};
 use crate::daemon::live::{Journal, Live};
 use crate::daemon::rig::{Area, Begun, RecordingFeed};
 use crate::daemon::session::Health;
+use crate::daemon::session::history::Handle;
 use crate::daemon::session::writer::WriterThread;
 use crate::daemon::stepped::{Feed, summary};
 use crate::daemon::{Summary, adaptors, ghost};
@@ -61,12 +62,16 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
     });
     let (writer, thread) = begun.journal.unzip();
     let health = thread.as_ref().map(|t| t.health.clone());
+    let history = thread.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
     let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
     let drain = config.channel.drain_per_tick;
     let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)
         .map_err(|e| Fail::Permission(e.to_string()))?;
+    if let Some(history) = &history {
+        history.connect(live.commands.clone());
+    }
     let stop = stop_signal();
-    let _control = control(&live, health.clone(), &stop)?;
+    let _control = control(&live, health.clone(), history, &stop)?;
     #[cfg(unix)]
     let _service = service(&run, &live, health, config)?;
     let ghosts = match run.ghosts {
@@ -157,6 +162,7 @@ fn service(
 fn control(
     live: &Live,
     journal: Option<Health>,
+    history: Option<Handle>,
     stop: &Arc<AtomicBool>,
 ) -> Result<Option<crate::daemon::control::Server>, Fail> {
     use crate::daemon::control::{Host, Server, default_path, server::ServeError};
@@ -167,6 +173,7 @@ fn control(
         thickness: Arc::default(),
         joining: Arc::default(),
         journal,
+        history,
     };
     match Server::start(&default_path(), host) {
         Ok(server) => Ok(Some(server)),
@@ -180,7 +187,7 @@ fn control(
 }
 
 #[cfg(not(unix))]
-fn control(_: &Live, _: Option<Health>, _: &Arc<AtomicBool>) -> Result<Option<()>, Fail> {
+fn control(_: &Live, _: Option<Health>, _: Option<Handle>, _: &Arc<AtomicBool>) -> Result<Option<()>, Fail> {
     Ok(None)
 }
 

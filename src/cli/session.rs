@@ -6,8 +6,11 @@ use serde_json::json;
 
 use super::{Fail, Outcome, answer};
 use crate::config::state_dir;
+
+use crate::daemon::session::history::{Store, StoreError, listing};
 use crate::daemon::session::salvage::{SalvageError, salvage};
 use crate::daemon::session::shelf::{self, Entry};
+use crate::mesh::io::write_beside;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum SessionCommand {
@@ -18,6 +21,13 @@ pub enum SessionCommand {
     },
     /// What a session holds, and how whole it is. Ends with 1 if it is damaged.
     Show { session: PathBuf },
+    /// Every place that the work was at, branches too; `sculptd ctl jump` goes to one of a running daemon's.
+    History {
+        session: PathBuf,
+        /// Write the small picture of each place into this folder, as place-00000.png and on.
+        #[arg(long, value_name = "FOLDER")]
+        pictures: Option<PathBuf>,
+    },
     /// Remove the oldest sessions; says which, and removes them only with --yes.
     Prune {
         folder: Option<PathBuf>,
@@ -47,6 +57,39 @@ fn line(out: &mut dyn std::io::Write, e: &Entry) -> std::io::Result<()> {
     e.damage.as_ref().map_or(Ok(()), |d| writeln!(out, "              damaged: {d}"))
 }
 
+fn history(session: &Path, pictures: Option<&Path>, json: bool) -> Outcome {
+    std::fs::metadata(session).map_err(|e| Fail::io(session, &e))?;
+    let input = |e: StoreError| Fail::Input(format!("{}: {e}", session.display()));
+    let found = listing::read(session).map_err(input)?;
+    let mut written = 0;
+    if let Some(folder) = pictures {
+        std::fs::create_dir_all(folder).map_err(|e| Fail::io(folder, &e))?;
+        let store = Store::read(session).map_err(input)?;
+        for place in &found.places {
+            if let Some(png) = store.sight(place.node).map_err(input)? {
+                let path = folder.join(format!("place-{:05}.png", place.node));
+                write_beside(&path, |out| out.write_all(&png)).map_err(|e| Fail::io(&path, &e))?;
+                written += 1;
+            }
+        }
+    }
+    answer(json, &json!({ "history": found, "pictures": written }), |out| {
+        for p in &found.places {
+            let from = p.parent.map_or("-".into(), |n| n.to_string());
+            let mark = if p.here { "*" } else { " " };
+            let branch = if p.branch { "  branch" } else { "" };
+            let deed = format!("{:?}", p.deed).to_lowercase();
+            writeln!(
+                out,
+                "{mark}{:>6}  after {from:>6}  tick {:>9}  {deed:<8} {:>6} of {} pages{branch}",
+                p.node, p.tick, p.changed, p.pages
+            )?;
+        }
+        writeln!(out, "{} places, {} KiB of pages", found.places.len(), found.bytes.div_ceil(1024))
+    });
+    Ok(())
+}
+
 pub fn run(command: &SessionCommand, json: bool) -> Outcome {
     match command {
         SessionCommand::List { folder } => {
@@ -67,7 +110,15 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 writeln!(out, "start           {:>12} vertices", f.start_vertices)?;
                 writeln!(out, "last tick       {:>12}   at {} Hz", f.last_tick, f.rate_hz)?;
                 writeln!(out, "ticks           {:>12}   that had input", f.ticks)?;
-                writeln!(out, "commands        {:>12}", f.commands)
+                writeln!(out, "commands        {:>12}", f.commands)?;
+                let Some(h) = &entry.history else { return Ok(()) };
+                writeln!(out, "history         {:>12} places, {} on branches", h.places, h.branches)?;
+                writeln!(
+                    out,
+                    "                {:>12} checkpoints, {} KiB of pages",
+                    h.checkpoints,
+                    h.bytes / 1024
+                )
             });
             match entry {
                 Entry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
@@ -78,6 +129,7 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 _ => {}
             }
         }
+        SessionCommand::History { session, pictures } => history(session, pictures.as_deref(), json)?,
         SessionCommand::Prune { folder, keep, yes } => {
             let folder = folder.clone().unwrap_or_else(state_dir);
             let spare = if folder.exists() { shelf::spare(list(&folder)?, *keep) } else { vec![] };

@@ -128,7 +128,7 @@ impl Ticking {
         let mut samples: Vec<Sample> = Vec::with_capacity(self.drain_per_tick);
         let mut commands: Vec<Command> = Vec::with_capacity(COMMANDS_PER_TICK);
         let mut tick = self.world.tick();
-        let mut newest = (0, 0.0);
+        let mut newest = (0, 0, 0.0);
         while !self.stop.load(Relaxed) {
             pacer.wait(&self.clock, &sleeper);
             tick += 1;
@@ -155,9 +155,9 @@ impl Ticking {
             let mut shown = published_figures(&figures, &self.receiver, stepped);
             if let Some(sample) = samples.last() {
                 let took_us = self.clock.now_us().saturating_sub(sample.t_us);
-                newest = (sample.t_us, took_us as f64 / 1e3);
+                newest = (sample.t_us, tick, took_us as f64 / 1e3);
             }
-            (shown.newest_us, shown.input_to_snapshot_ms) = newest;
+            (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = newest;
             self.publisher.publish(Published::of(&mut self.world, shown));
             pacer.done(self.clock.now_us());
             figures.overruns = pacer.overruns;

@@ -67,6 +67,8 @@ pub struct PublishedFigures {
     pub last_tick_ms: f64,
     /// Time of the newest sample in this state, on the clock; 0 before the first.
     pub newest_us: u64,
+    /// The tick that took it.
+    pub newest_tick: u64,
     /// From that sample's time to the end of the tick that took it, ms.
     pub input_to_snapshot_ms: f64,
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec2;
 
 use crate::analysis::cancel::Job;
+use crate::command::Command;
 use crate::config::Config;
 use crate::devices::Body;
 use crate::devices::queue::Sender;
@@ -13,7 +14,9 @@ use crate::mesh::io::{ReadError, read_mesh};
 use crate::mesh::{BuildError, Mesh, TriMesh, Workers, shapes};
 use crate::world::{World, WorldOptions};
 
+use super::live::Journal;
 use super::session::format::Settings;
+use super::session::history::{StoreError, keeper::Keeper};
 use super::session::writer::{CreateError, WriterThread};
 use super::session::{self, OpenError, Opened, SessionWriter};
 use super::stepped::Feed;
@@ -110,12 +113,37 @@ pub fn begin(
                 Err(e) => return Err(opened.err().map_or(BeginError::Salvage(e), BeginError::Open)),
             }
         }
-        let replayed = session::replay::replay(&opened?, None, workers, job)
-            .map_err(|source| RigError::Build { path: path.display().to_string(), source })?;
-        let journal = session::resume(&path)?;
-        return Ok(Begun { world: replayed.world, journal: Some(journal), warnings });
+        let opened = opened?;
+        let count = config.r#loop.worker_count();
+        let (mut replayed, purge, node) = match session::history::reopen(&path, &opened, None, count, job) {
+            Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
+            None => {
+                let replayed = session::replay::replay(&opened, None, workers, job)
+                    .map_err(|source| RigError::Build { path: path.display().to_string(), source })?;
+                let ticks = replayed.ticks;
+                (replayed, ticks, None)
+            }
+        };
+        if replayed.jumps_missed > 0 {
+            warnings.push(format!(
+                "{}: {} jumps within the history could not be made again",
+                path.display(),
+                replayed.jumps_missed
+            ));
+        }
+        let (mut writer, mut thread) = session::resume(&path)?;
+        let world = &mut replayed.world;
+        // What was open ends as a lifted pen; what can be taken back is in the file from here on.
+        let (tick, reopened) = (replayed.ticks + 1, [Command::Reopened]);
+        world.step(tick, &[], &reopened);
+        let keeper = Keeper::start(&path, world, purge, node);
+        keep(keeper, &mut writer, &mut thread, &mut warnings);
+        writer.tick(tick, &[], &reopened, world);
+        return Ok(Begun { world: replayed.world, journal: Some((writer, thread)), warnings });
     }
     let loaded = load(mesh, job)?;
+    let mut warnings = loaded.warnings;
+    let mut world = world(loaded.mesh, config);
     let journal = match session {
         None => None,
         Some(path) => {
@@ -127,10 +155,29 @@ pub fn begin(
                 brush: config.brush,
                 hands: config.hand,
             };
-            Some(session::create(path, &loaded.plain, &settings)?)
+            let (mut writer, mut thread) = session::create(path, &loaded.plain, &settings)?;
+            let keeper = Keeper::start(path, &mut world, 0, None);
+            keep(keeper, &mut writer, &mut thread, &mut warnings);
+            Some((writer, thread))
         }
     };
-    Ok(Begun { world: world(loaded.mesh, config), journal, warnings: loaded.warnings })
+    Ok(Begun { world, journal, warnings })
+}
+
+/// The session goes on without its history where that cannot be written; that is said.
+fn keep(
+    keeper: Result<Keeper, StoreError>,
+    writer: &mut SessionWriter,
+    thread: &mut WriterThread,
+    warnings: &mut Vec<String>,
+) {
+    match keeper {
+        Ok(keeper) => {
+            writer.keep(keeper.handle.clone());
+            thread.history = Some(keeper);
+        }
+        Err(e) => warnings.push(format!("no history is kept, undo goes back as far as memory does: {e}")),
+    }
 }
 
 /// Part of a tablet, in mm.

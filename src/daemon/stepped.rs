@@ -216,6 +216,7 @@ pub fn published_figures(figures: &Figures, receiver: &Receiver, last_tick_ns: u
         losses: Losses { motion: count.lost_motion, transition: count.lost_transition },
         last_tick_ms: last_tick_ns as f64 / 1e6,
         newest_us: 0,
+        newest_tick: 0,
         input_to_snapshot_ms: 0.0,
     }
 }

@@ -1,12 +1,13 @@
 //! What a hand asks of the world, as plain data.
 
 use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::{Similarity, Volume};
 use crate::brush;
 use crate::mesh::Reach;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Act {
     Push(Push),
     Drag(Drag),
@@ -45,7 +46,7 @@ impl Act {
 }
 
 /// A ball swept from one place to another, world units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Push {
     pub from: Vec3,
     pub to: Vec3,
@@ -65,7 +66,7 @@ impl Push {
 }
 
 /// Two fingertips that hold clay and carry it along.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Drag {
     pub from: Vec3,
     pub to: Vec3,
@@ -84,7 +85,7 @@ impl Drag {
 }
 
 /// A palm pressed on the clay: a disc, facing along `normal`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PalmPress {
     pub from: Vec3,
     pub to: Vec3,

@@ -47,7 +47,7 @@ const ENOUGH: usize = 30;
 const MAX_PALMS: usize = 1200;
 
 /// A calibration under way.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Reach {
     since_us: Option<u64>,
     palms: Vec<Vec3>,
@@ -108,7 +108,7 @@ const UPPER_ARM_M: f32 = 0.33;
 const FREE_SHARE: f32 = 0.15;
 
 /// Consumed endurance of one person, 0 fresh to 1 spent.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Fatigue {
     spent: f32,
     last_us: Option<u64>,

@@ -1,13 +1,14 @@
 //! One hand over time: its pose with hold and hysteresis, and how strongly it may act.
 
 use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::pose::{Features, Pose};
 use super::settings::HandSettings;
 use crate::devices::{DeviceId, Hand};
 
 /// One hand as it is followed from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Track {
     pub device: DeviceId,
     /// The tracker's id of the moment.

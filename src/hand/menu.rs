@@ -60,7 +60,7 @@ pub fn ball_mm(i: usize) -> Vec3 {
 }
 
 /// Which ball a fingertip is in, and how far its ring has closed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Menu {
     over: Option<(usize, u64)>,
     /// A choice was just made: the finger must leave before it can choose again.

@@ -29,6 +29,7 @@ pub use volume::Volume;
 use std::collections::VecDeque;
 
 use glam::{Quat, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::devices::filter::HandsFilter;
 use crate::devices::{DeviceId, Hands};
@@ -39,7 +40,7 @@ const MAX_WAITING: usize = 256;
 const MAX_TRACKS: usize = 16;
 
 /// A hand as it was one frame ago, in the world.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Held {
     track: Track,
     /// Where the tool was; `None` just after the pose began.
@@ -55,7 +56,7 @@ struct Held {
 }
 
 /// The state of all hands between samples.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct HandTools {
     pub settings: HandSettings,
     held: Vec<Held>,

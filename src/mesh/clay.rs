@@ -31,8 +31,10 @@ pub struct Mesh {
     pub(super) stale: Stale,
     shelf: Shelf,
     pub(super) revision: u64,
-    vertices: usize,
-    triangles: usize,
+    /// Which work this is, where several took each other's place.
+    pub(super) lineage: u32,
+    pub(super) vertices: usize,
+    pub(super) triangles: usize,
     /// The numbers that the next new vertex and triangle get.
     pub(super) next_vertex: u32,
     pub(super) next_triangle: u32,
@@ -97,6 +99,7 @@ impl Mesh {
             shelf: Shelf::new(&pages),
             pages,
             revision,
+            lineage: 0,
             vertices,
             triangles,
             next_vertex: next[0],
@@ -133,6 +136,15 @@ impl Mesh {
     /// Grows with every change.
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// Which work this is, where several took each other's place: a page's number and revision name it within one of them.
+    pub fn lineage(&self) -> u32 {
+        self.lineage
+    }
+
+    pub fn set_lineage(&mut self, lineage: u32) {
+        self.lineage = lineage;
     }
 
     /// Lower and upper corner of the box around everything.
@@ -175,6 +187,7 @@ impl Mesh {
     fn totals(&self) -> Totals {
         Totals {
             revision: self.revision,
+            lineage: self.lineage,
             vertices: self.vertices,
             triangles: self.triangles,
             pages: self.pages.len(),
@@ -221,9 +234,14 @@ impl Mesh {
         self.history.begin();
     }
 
-    /// Closes the open undo step; one that changed nothing is forgotten.
-    pub fn end_step(&mut self) {
-        self.history.end();
+    /// Closes the open undo step; one that changed nothing is forgotten. Whether there is one more.
+    pub fn end_step(&mut self) -> bool {
+        self.history.end()
+    }
+
+    /// Whether an undo step is open.
+    pub fn is_in_step(&self) -> bool {
+        self.history.is_open()
     }
 
     /// Takes back the newest step. False when there is none.
@@ -331,6 +349,11 @@ impl Mesh {
     /// One number for positions, mask, colours and triangles; costs as much as the clay is large.
     pub fn hash(&self) -> u64 {
         hash(&|i| &self.pages[i as usize], self.totals())
+    }
+
+    /// What the pages weigh, bytes: the same in every run, unlike [`Mesh::memory`].
+    pub fn weight(&self) -> usize {
+        self.pages.iter().map(|p| p.weight() + p.topology.bytes()).sum()
     }
 
     pub fn memory(&self) -> Memory {

@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
+use serde::{Deserialize, Serialize};
 
 use super::boxtree::BoxTree;
 
@@ -17,7 +18,7 @@ use super::boxtree::BoxTree;
 pub const BREAK: u16 = 0x8000;
 
 /// How the triangles lie about a vertex.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Ring {
     /// One closed fan: the last neighbour and the first make a triangle too.
@@ -29,7 +30,7 @@ pub enum Ring {
 }
 
 /// A page from which others are seen: its number, and where its part of the halo begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Neighbour {
     pub page: u32,
     /// Index into [`Topology::halo_sources`]; the part ends where the next neighbour's begins.
@@ -37,7 +38,7 @@ pub struct Neighbour {
 }
 
 /// What stands still while a mesh is only displaced.
-#[derive(Debug, Default, Clone)]
+#[derive(Debug, Default, Clone, Serialize, Deserialize)]
 pub struct Topology {
     pub own: usize,
     /// The own vertices' numbers in the mesh that was loaded.
@@ -226,6 +227,13 @@ impl Page {
         }
         (lo, hi) = (lo.min(least.truncate()), hi.max(most.truncate()));
         (self.lo, self.hi) = (lo, hi);
+    }
+
+    /// What undo counts for the page, bytes: the same however much room its vectors happen to have, for a replay must forget
+    /// the same steps.
+    pub(super) fn weight(&self) -> usize {
+        // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
+        size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4
     }
 
     /// Heap bytes of what a copy on write copies.

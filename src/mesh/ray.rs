@@ -1,6 +1,7 @@
 //! Rays and hits.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// A half-line. `t` counts in lengths of `dir`: with unit length it is a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,7 +11,7 @@ pub struct Ray {
 }
 
 /// Where a ray meets the surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hit {
     /// Distance along the ray.
     pub t: f32,

@@ -36,6 +36,7 @@ impl Chunk {
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Totals {
     pub(super) revision: u64,
+    pub(super) lineage: u32,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) pages: usize,
@@ -98,6 +99,16 @@ impl Snapshot {
 
     pub fn revision(&self) -> u64 {
         self.totals.revision
+    }
+
+    /// As [`super::Mesh::lineage`].
+    pub fn lineage(&self) -> u32 {
+        self.totals.lineage
+    }
+
+    /// The numbers that the next new vertex and triangle get.
+    pub fn next_numbers(&self) -> [u32; 2] {
+        self.totals.next
     }
 
     pub fn vertex_count(&self) -> usize {

@@ -26,7 +26,7 @@ pub(super) struct History {
 }
 
 fn cost(step: &Step) -> u64 {
-    step.iter().map(|(_, p)| p.bytes() as u64).sum()
+    step.iter().map(|(_, p)| p.weight() as u64).sum()
 }
 
 impl History {
@@ -61,7 +61,7 @@ impl History {
             return Some(page);
         }
         *touched = (self.stamp, step.len() as u32);
-        self.bytes += page.bytes() as u64;
+        self.bytes += page.weight() as u64;
         step.push((index, page));
         None
     }
@@ -79,14 +79,30 @@ impl History {
     }
 
     /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to the dropping thread.
-    pub(super) fn end(&mut self) {
-        let Some(step) = self.open.take() else { return };
+    /// Whether there is a step more.
+    pub(super) fn end(&mut self) -> bool {
+        let Some(step) = self.open.take() else { return false };
         if step.is_empty() {
-            return;
+            return false;
         }
         self.forget_redo();
         self.undo.push_back(step);
         self.trim();
+        true
+    }
+
+    pub(super) fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// Nothing can be taken back or done again.
+    pub(super) fn forget(&mut self) {
+        self.open = None;
+        self.forget_redo();
+        for gone in self.undo.drain(..) {
+            discard(Garbage::Pages(gone));
+        }
+        self.bytes = 0;
     }
 
     pub(super) fn forget_redo(&mut self) {

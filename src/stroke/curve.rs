@@ -3,6 +3,7 @@
 //! without its corners: one piece, ends held, parameters mended by Newton's step).
 
 use glam::{DVec2, Vec2};
+use serde::{Deserialize, Serialize};
 
 use super::spacer::PenPoint;
 
@@ -14,7 +15,7 @@ const ROUNDS: usize = 6;
 pub const PIECES: usize = 64;
 
 /// A path while it is drawn, and the curve afterwards.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Curve {
     path: Vec<PenPoint>,
     /// Where on the curve each point lies, 0 to 1.

@@ -10,11 +10,12 @@
 //! surface jumps (a silhouette, a hole) the run ends and a new one begins at the first point beyond.
 
 use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::mesh::Hit;
 
 /// A pen at an instant, mapped to the view.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PenPoint {
     /// View coordinates, (0, 0) top left to (1, 1) bottom right.
     pub view: Vec2,
@@ -90,7 +91,7 @@ const MAX_BISECTIONS: u32 = 12;
 const BLIND_STEP: f32 = 0.004;
 
 /// Where a stroke stands between two pen points.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Spacer {
     /// The last dab: its view point and where the surface stood after it.
     last: Option<(Vec2, Vec3)>,

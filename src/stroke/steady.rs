@@ -1,6 +1,7 @@
 //! A steadier hand: the lazy rope, and the moving average.
 
 use glam::Vec2;
+use serde::{Deserialize, Serialize};
 
 use super::spacer::PenPoint;
 use crate::brush::PathSettings;
@@ -9,9 +10,10 @@ use crate::brush::PathSettings;
 const MOST: usize = 64;
 
 /// What lies between the pen and the brush.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Steady {
     /// The newest reports, in a ring.
+    #[serde(with = "crate::devices::long_array")]
     seen: [PenPoint; MOST],
     count: usize,
     next: usize,

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use glam::Vec2;
+use serde::{Deserialize, Serialize};
 
 use super::curve::{Curve, PIECES};
 use super::spacer::{Flow, PenPoint, Spacer, Surface, Way};
@@ -15,7 +16,7 @@ use crate::devices::{Pen, Tool};
 const MAX_WAITING: usize = 2048;
 
 /// What a pen sample means for a stroke.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum PenEvent {
     Down(PenPoint),
     Move(PenPoint),
@@ -23,7 +24,7 @@ pub enum PenEvent {
 }
 
 /// A pen's stroke between its samples and its dabs.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct PenTrack {
     waiting: VecDeque<PenEvent>,
     steady: Steady,

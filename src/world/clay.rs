@@ -1,6 +1,7 @@
 //! The clay as a stroke sees it: from a place over the view to dabs, with all their images.
 
 use glam::{Mat3, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::StepReport;
 use crate::brush::dab::IMAGES;
@@ -13,7 +14,7 @@ use crate::stroke::{Camera, Flow, PenPoint, Surface, Way};
 const MOST_CUTS: usize = 2000;
 
 /// What one pen's stroke remembers from dab to dab.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Stroke {
     /// Which stroke of the world it is, and its dabs so far.
     pub(super) number: u32,
@@ -28,7 +29,7 @@ pub(super) struct Stroke {
 }
 
 /// Where a held brush took hold, and how far it was drawn.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Held {
     from: PenPoint,
     hit: Hit,

@@ -40,6 +40,7 @@ impl Rig {
             thickness: Arc::default(),
             joining: Arc::default(),
             journal: None,
+            history: None,
             stop: Arc::default(),
         };
         Rig { host, commands, dir: tempfile::tempdir().expect("a folder") }

@@ -11,6 +11,7 @@ mod control;
 mod field;
 mod golden;
 mod hands;
+mod history;
 mod io;
 mod io_files;
 mod kiosk;

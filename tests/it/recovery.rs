@@ -42,8 +42,8 @@ fn replay(session: &Path, until: Option<u64>) -> Value {
     serde_json::from_slice(&out.stdout).expect("one JSON object")
 }
 
-/// One daemon with a simulated pen on a pseudo-terminal, killed after `ms`.
-fn one_kill(ms: u64) {
+/// One daemon with a simulated pen on a pseudo-terminal, killed after `ms`. Returns the ticks that it knew and lost.
+fn one_kill(ms: u64) -> u64 {
     let dir = tempfile::tempdir().expect("a folder");
     let journal = sim::journal();
     let config = sim::SerialPenConfig {
@@ -87,21 +87,22 @@ fn one_kill(ms: u64) {
     daemon.child.wait().expect("gone");
     let tick = known["tick"].as_u64().expect("a tick");
     let whole = replay(&session, None);
+    // The last tick that had input: on a loaded machine the pen itself may be late.
     let (recovered, last) =
-        (whole["ticks"].as_u64().expect("ticks"), status["tick"].as_u64().expect("a tick"));
+        (whole["ticks"].as_u64().expect("ticks"), status["heard"].as_u64().expect("a tick"));
     assert_eq!(whole["loss"], Value::Null);
-    // 250 ms at 120 Hz are 30 ticks; the pen speaks at 133 Hz, so every tick has input.
+    // 250 ms at 120 Hz are 30 ticks.
     assert!(recovered + 30 >= last, "recovered up to tick {recovered}, acknowledged {last}");
     assert_eq!(replay(&session, Some(tick))["hash"], known["hash"], "at tick {tick}");
+    last.saturating_sub(recovered)
 }
 
 #[test]
 fn a_killed_daemon_loses_a_quarter_of_a_second_at_most() {
     let kills = if std::env::var_os("SCULPTD_LONG").is_some() { 200 } else { 3 };
     let mut rng = sim::faults::Rng::new(7);
-    for _ in 0..kills {
-        one_kill(rng.below(1500));
-    }
+    let worst = (0..kills).map(|_| one_kill(rng.below(1500))).max().unwrap_or(0);
+    println!("{kills} kills, at most {worst} ticks of 120 a second lost ({} ms)", worst * 1000 / 120);
 }
 
 #[test]

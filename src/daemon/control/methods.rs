@@ -15,6 +15,7 @@ use crate::analysis::cancel::Job;
 use crate::analysis::thickness::live::LiveMap;
 use crate::brush::{BrushKind, MaskAction, Picture};
 use crate::command::{Command, NewClay};
+use crate::daemon::session::history::{Handle, Want, listing};
 use crate::daemon::{Published, joiner, rig, trim};
 use crate::devices::Clock;
 use crate::hand::{Choice, ReachBox};
@@ -35,6 +36,8 @@ pub const METHODS: &[(&str, &str)] = &[
     ("camera", "{target?, yaw?, pitch?, distance?, fov_y?, aspect?, orthographic?}: likewise"),
     ("undo", "{}: takes back one step"),
     ("redo", "{}: does it again"),
+    ("history", "{}: every place that the work was at, branches too, as the session keeps them"),
+    ("jump", "{node}: back or forth to a place of the history"),
     ("load", "{path}: another work from a file"),
     ("export", "{path}: writes the work; the name's ending says the format"),
     ("hash", "{}: one number for the whole clay"),
@@ -87,6 +90,12 @@ enum LevelTo {
 #[serde(deny_unknown_fields)]
 struct LevelParam {
     to: LevelTo,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JumpParam {
+    node: u64,
 }
 
 #[derive(Deserialize)]
@@ -216,6 +225,11 @@ fn safe(path: &Path) -> Result<(), RpcError> {
     Ok(())
 }
 
+fn kept(host: &Host) -> Result<&Handle, RpcError> {
+    let none = || RpcError::new(Code::Failed, "no history is kept: the daemon runs without --session");
+    host.history.as_ref().ok_or_else(none)
+}
+
 /// Answers one request. Runs on the client's thread: slow work here delays that client only.
 pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError> {
     let send = |command: Command| {
@@ -248,6 +262,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             });
             Ok(json!({
                 "protocol": PROTOCOL, "version": env!("CARGO_PKG_VERSION"), "tick": state.tick,
+                "heard": f.newest_tick,
                 "samples": f.samples, "dabs": f.dabs, "vertices_moved": f.vertices_moved, "overruns": f.overruns,
                 "losses": f.losses, "tick_ms": f.tick_ms,
                 "vertices": state.mesh.vertex_count(), "triangles": state.mesh.triangle_count(),
@@ -309,6 +324,20 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "undo" | "redo" => {
             read::<Nothing>(params)?;
             send(if method == "undo" { Command::Undo } else { Command::Redo })?;
+            Ok(json!({ "sent": true }))
+        }
+        "history" => {
+            read::<Nothing>(params)?;
+            let tree = kept(host)?.tree();
+            Ok(json!({ "here": tree.cursor, "places": listing::places(&tree) }))
+        }
+        "jump" => {
+            let node = read::<JumpParam>(params)?.node;
+            let history = kept(host)?;
+            if history.tree().way(node).is_none() {
+                return Err(failed(format!("no way leads to {node}; 'history' lists the places")));
+            }
+            history.want(Want::Node(node));
             Ok(json!({ "sent": true }))
         }
         "load" => {

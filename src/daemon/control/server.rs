@@ -29,6 +29,8 @@ pub struct Host {
     pub joining: Arc<Mutex<Option<Arc<crate::analysis::cancel::Job>>>>,
     /// How the session file stands; `None`: the run is not recorded.
     pub journal: Option<crate::daemon::session::Health>,
+    /// The history of the session, if one is kept.
+    pub history: Option<crate::daemon::session::history::Handle>,
     /// Raised by `shutdown`.
     pub stop: Arc<AtomicBool>,
 }

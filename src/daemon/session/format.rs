@@ -18,7 +18,6 @@ pub const TABLES: &str = "
         crc INTEGER NOT NULL,
         data BLOB NOT NULL
     );
-    CREATE TABLE thumbnail (tick INTEGER PRIMARY KEY, png BLOB NOT NULL);
 ";
 
 /// Keys of `meta`.

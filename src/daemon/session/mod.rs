@@ -7,6 +7,7 @@
 //! * What was written is never rewritten: a group is a row, a row carries its checksum, a torn tail is dropped and said.
 
 pub mod format;
+pub mod history;
 pub mod reader;
 pub mod replay;
 pub mod salvage;
@@ -22,7 +23,7 @@ pub use writer::{Fault, Health, SessionWriter, create, resume};
 pub const GROUP_MS: u64 = 50;
 
 /// The version of the file's layout. A newer file is refused by name, an older one is read.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// "SCLP": tells a session from any other SQLite file (`PRAGMA application_id`).
 pub const APPLICATION_ID: i32 = 0x53_43_4c_50;

@@ -28,6 +28,8 @@ pub enum OpenError {
 /// A session, read.
 #[derive(Debug)]
 pub struct Opened {
+    /// The file; its history is read when it is asked for.
+    pub path: std::path::PathBuf,
     pub start: TriMesh,
     pub settings: Settings,
     pub input: Vec<TickInput>,
@@ -122,7 +124,7 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
     let (input, cause) = read_log(&db);
     let loss =
         cause.map(|cause| Loss { kept: input.last().map_or(0, |t| t.tick), last: last_named(&db), cause });
-    Ok(Opened { start, settings, input, loss })
+    Ok(Opened { path: path.into(), start, settings, input, loss })
 }
 
 /// The last tick that any readable row names.

@@ -1,8 +1,13 @@
 //! Replaying a session: the same world, the same input, tick by tick.
 
+use std::sync::{Arc, Mutex};
+
+use super::history::Store;
+use super::history::keeper::assemble;
 use super::reader::Opened;
 use crate::analysis::cancel::Job;
-use crate::mesh::{BuildError, Mesh, Workers};
+use crate::command::{Command, Fetched, Jump};
+use crate::mesh::{BuildError, Mesh, Snapshot, Workers};
 use crate::world::{World, WorldOptions};
 
 /// A session that was replayed to its end, or to the tick asked for.
@@ -11,6 +16,8 @@ pub struct Replayed {
     pub world: World,
     /// The last tick that was stepped.
     pub ticks: u64,
+    /// Jumps within the history that were not made: what they name is not in the file, or the work was another.
+    pub jumps_missed: u64,
 }
 
 /// Ticks without any input over which a resting pen is followed: ten minutes at 120 a second.
@@ -35,40 +42,101 @@ pub fn replay_seen(
     job: &Job,
     see: &mut dyn FnMut(u64, &mut World),
 ) -> Result<Replayed, BuildError> {
-    let mesh = Mesh::build(&opened.start, job)?;
+    let mut mesh = Mesh::build(&opened.start, job)?;
     let s = &opened.settings;
     let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
-    let mut world = World::new(mesh, s.camera, s.brush, workers, options);
-    see(0, &mut world);
-    let until = until.unwrap_or(u64::MAX);
-    let mut tick = 0;
-    let (mut busy, mut waits) = (false, false);
-    let total = opened.input.len().max(1) as f32;
-    for (i, input) in opened.input.iter().enumerate() {
-        if input.tick > until || job.cancelled() {
-            break;
+    let base = mesh.snapshot();
+    let world = World::new(mesh, s.camera, s.brush, workers, options);
+    let store = Store::read(&opened.path).ok();
+    Ok(Run { opened, base: &base, store: store.as_ref(), until }.from(world, job, see))
+}
+
+/// What a replay reads.
+#[derive(Debug)]
+pub struct Run<'a> {
+    pub opened: &'a Opened,
+    /// The work that the session began with.
+    pub base: &'a Snapshot,
+    /// Where jumps find their pages.
+    pub store: Option<&'a Store>,
+    pub until: Option<u64>,
+}
+
+impl Run<'_> {
+    /// Goes on from a world with the input after its tick.
+    pub fn from(&self, mut world: World, job: &Job, see: &mut dyn FnMut(u64, &mut World)) -> Replayed {
+        see(world.tick(), &mut world);
+        let until = self.until.unwrap_or(u64::MAX);
+        let mut tick = world.tick();
+        let (mut busy, mut waits) = (false, false);
+        let mut jumps_missed = 0;
+        let input = &self.opened.input;
+        let first = input.partition_point(|t| t.tick <= tick);
+        let total = (input.len() - first).max(1) as f32;
+        for (i, input) in input[first..].iter().enumerate() {
+            if input.tick > until || job.cancelled() {
+                break;
+            }
+            // The ticks between two inputs: stepped while the last one left work, or while a hand may let go by time.
+            while busy && tick + 1 < input.tick {
+                tick += 1;
+                let report = *world.step(tick, &[], &[]);
+                busy = report.paused || report.resting;
+                see(tick, &mut world);
+            }
+            tick = input.tick;
+            let mut wanted = 0;
+            for command in &input.commands {
+                if let Command::Jump(jump) = command {
+                    wanted += 1;
+                    self.fetch(jump);
+                }
+            }
+            let report = *world.step(tick, &input.samples, &input.commands);
+            jumps_missed += wanted.max(report.jumps) - report.jumps;
+            busy = report.paused || report.resting;
+            waits = report.paused;
+            see(tick, &mut world);
+            job.progress(i as f32 / total);
         }
-        // The ticks between two inputs: stepped while the last one left work, or while a hand may let go by time.
-        while busy && tick + 1 < input.tick {
+        // A pen that rests at the end goes on resting as long as was asked for, and no longer than anybody rests.
+        let rested = if until == u64::MAX { tick } else { until.min(tick.saturating_add(RESTING)) };
+        while tick < until && (waits || busy && tick < rested) {
             tick += 1;
             let report = *world.step(tick, &[], &[]);
-            busy = report.paused || report.resting;
             see(tick, &mut world);
+            (waits, busy) = (report.paused, report.paused || report.resting);
         }
-        tick = input.tick;
-        let report = *world.step(tick, &input.samples, &input.commands);
-        busy = report.paused || report.resting;
-        waits = report.paused;
-        see(tick, &mut world);
-        job.progress(i as f32 / total);
+        Replayed { world, ticks: tick, jumps_missed }
     }
-    // A pen that rests at the end goes on resting as long as was asked for, and no longer than anybody rests.
-    let rested = if until == u64::MAX { tick } else { until.min(tick.saturating_add(RESTING)) };
-    while tick < until && (waits || busy && tick < rested) {
-        tick += 1;
-        let report = *world.step(tick, &[], &[]);
-        see(tick, &mut world);
-        (waits, busy) = (report.paused, report.paused || report.resting);
+
+    /// Gives a jump what it names; where that is not to be had, the world takes no notice of it, and it is counted.
+    fn fetch(&self, jump: &Jump) {
+        let Some(store) = self.store else { return };
+        let lineage = jump.lineage;
+        let fetched = match &jump.other {
+            Some(other) => assemble(store, self.base, &other.rest, &jump.pages, other.levels)
+                .map(|mesh| Fetched::Work(Box::new(mesh))),
+            None => jump
+                .pages
+                .iter()
+                .map(|&(i, revision)| {
+                    let near = (lineage == self.base.lineage() && (i as usize) < self.base.page_count())
+                        .then(|| (self.base.page(i), 0));
+                    Ok((i, store.page((lineage, i, revision), near)?.0))
+                })
+                .collect::<Result<Vec<_>, _>>()
+                .map(Fetched::Pages),
+        };
+        match fetched {
+            Ok(fetched) => set(&jump.fetched, fetched),
+            Err(e) => tracing::warn!("a jump to {} cannot be replayed: {e}", jump.node),
+        }
     }
-    Ok(Replayed { world, ticks: tick })
+}
+
+fn set(slot: &Arc<Mutex<Option<Fetched>>>, fetched: Fetched) {
+    if let Ok(mut slot) = slot.lock() {
+        *slot = Some(fetched);
+    }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::history::listing;
 use super::reader::open;
 
 /// The ending of a session file's name.
@@ -21,6 +22,17 @@ pub struct Entry {
     pub facts: Option<Facts>,
     /// What could not be read, or why nothing could.
     pub damage: Option<String>,
+    /// Places of the history, branches among them, and the bytes of their pages.
+    pub history: Option<Kept>,
+}
+
+/// The history, in figures.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Kept {
+    pub places: usize,
+    pub branches: usize,
+    pub checkpoints: u64,
+    pub bytes: u64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,6 +78,12 @@ pub fn look(path: &Path) -> std::io::Result<Entry> {
         written_s: since.map_or(0, |d| d.as_secs()),
         facts,
         damage,
+        history: listing::read(path).ok().filter(|h| !h.places.is_empty()).map(|h| Kept {
+            places: h.places.len(),
+            branches: h.places.iter().filter(|p| p.branch).count(),
+            checkpoints: h.checkpoints,
+            bytes: h.bytes,
+        }),
     })
 }
 

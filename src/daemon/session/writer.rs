@@ -14,6 +14,7 @@ use crossbeam_channel as cc;
 use rusqlite::Connection;
 
 use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TABLES, append};
+use super::history::{Handle, keeper::Keeper};
 use super::syncer::Syncer;
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::command::Command;
@@ -59,6 +60,17 @@ pub struct SessionWriter {
     /// Ticks that found no free buffer, while the disk is slow; handed over with the next that finds one.
     carry: Vec<u8>,
     carry_ticks: (u64, u64),
+    history: Option<Handle>,
+    /// A checkpoint is to be made as soon as the world is at rest.
+    owed: bool,
+}
+
+impl SessionWriter {
+    /// From now on the history is kept too, a checkpoint first.
+    pub fn keep(&mut self, history: Handle) {
+        self.history = Some(history);
+        self.owed = true;
+    }
 }
 
 /// The writing thread, to be waited for at the end.
@@ -66,13 +78,16 @@ pub struct SessionWriter {
 pub struct WriterThread {
     thread: JoinHandle<()>,
     pub health: Health,
+    /// The history, if it is kept.
+    pub history: Option<Keeper>,
 }
 
 impl WriterThread {
     /// Waits until all that was handed over is written. Call it after the loop, and with it the [`SessionWriter`], has ended.
     pub fn finish(self) -> Option<String> {
+        let history = self.history.and_then(Keeper::finish);
         let _ = self.thread.join();
-        self.health.trouble()
+        self.health.trouble().or_else(|| history.map(|why| format!("the history is not whole: {why}")))
     }
 }
 
@@ -199,12 +214,32 @@ fn start_thread(
         .spawn(move || writing.run(&inbox))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     let lost = health.lost.clone();
-    let writer = SessionWriter { full, empty, lost, carry: Vec::new(), carry_ticks: (0, 0) };
-    Ok((writer, WriterThread { thread, health }))
+    let writer = SessionWriter {
+        full,
+        empty,
+        lost,
+        carry: Vec::new(),
+        carry_ticks: (0, 0),
+        history: None,
+        owed: false,
+    };
+    Ok((writer, WriterThread { thread, health, history: None }))
 }
 
 impl Journal for SessionWriter {
-    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], _: &World) {
+    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &World) {
+        self.log(tick, samples, commands);
+        if let Some(history) = &self.history {
+            self.owed |= history.tick(tick, world);
+            if self.owed && history.checkpoint(world) {
+                self.owed = false;
+            }
+        }
+    }
+}
+
+impl SessionWriter {
+    fn log(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) {
         if samples.is_empty() && commands.is_empty() && self.carry.is_empty() {
             return;
         }

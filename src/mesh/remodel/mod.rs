@@ -212,10 +212,8 @@ impl Mesh {
         owners
     }
 
-    fn push_empty(&mut self) {
-        let mut empty = Page { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY, ..Page::default() };
-        empty.tree.reset(0);
-        self.pages.push(Arc::new(empty));
+    pub(super) fn push_empty(&mut self) {
+        self.pages.push(Arc::new(Page::nothing()));
     }
 
     /// Makes a cut where the clay is, around it, as it was when the cut was computed: part of the open undo step, if there is one,

@@ -1,0 +1,367 @@
+//! The thread that keeps the history: it writes a node for every step, and fetches what undo asks for beyond memory.
+//!
+//! The tick thread hands it moments and never waits; where the disk is far behind, moments are left out and the next one that
+//! is kept stands for all of them.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, OnceLock};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam_channel as cc;
+
+use super::ledger::Ledger;
+use super::store::{Store, StoreError};
+use super::tree::{Node, Tree, Way};
+use crate::analysis::cancel::Job;
+use crate::command::{Command, Fetched, Jump, OtherWork};
+use crate::devices::Clock;
+use crate::mesh::{Levels, Mesh, Rest, Snapshot};
+use crate::world::{Deed, Moment, Saved, World};
+
+/// Moments that may wait for the disk, each holding the pages of its time.
+const WAITING: usize = 64;
+/// How often a disk that takes nothing is tried again.
+const RETRY: Duration = Duration::from_millis(1000);
+/// A jump that the world took no notice of for so long was for a work that had changed.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// Undos that wait for the one under way.
+const WANTS: usize = 64;
+
+/// Where somebody wants to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Want {
+    Undo,
+    Redo,
+    Node(u64),
+}
+
+#[derive(Debug)]
+enum Message {
+    Moment { tick: u64, moment: Moment },
+    State(Box<Saved>),
+    Want(Want),
+    End,
+}
+
+/// The history as others reach it.
+#[derive(Debug, Clone)]
+pub struct Handle {
+    inbox: cc::Sender<Message>,
+    commands: Arc<OnceLock<cc::Sender<Command>>>,
+    tree: Arc<Mutex<Tree>>,
+    fault: Arc<Mutex<Option<String>>>,
+    path: Arc<PathBuf>,
+    /// Raised when nobody waits for a disk that takes nothing.
+    ending: Arc<AtomicBool>,
+    /// Messages that were handed over and are not yet dealt with.
+    busy: Arc<AtomicUsize>,
+}
+
+impl Handle {
+    /// Jumps are sent here; before it is known, none are.
+    pub fn connect(&self, commands: cc::Sender<Command>) {
+        let _ = self.commands.set(commands);
+    }
+
+    /// Hands over what a tick did. Never waits. Whether a checkpoint is owed.
+    pub fn tick(&self, tick: u64, world: &World) -> bool {
+        let mut owed = false;
+        for moment in world.moments() {
+            owed = true;
+            if self.inbox.len() < WAITING {
+                self.send(Message::Moment { tick, moment: moment.clone() });
+            }
+        }
+        match world.report().missed {
+            Some(Deed::Undo) => self.want(Want::Undo),
+            Some(Deed::Redo) => self.want(Want::Redo),
+            _ => {}
+        }
+        owed
+    }
+
+    /// Hands over the world at rest. False where it is not at rest, or the disk is behind.
+    pub fn checkpoint(&self, world: &World) -> bool {
+        if self.inbox.len() >= WAITING || !world.is_at_rest() {
+            return false;
+        }
+        world.save().is_some_and(|saved| self.send(Message::State(Box::new(saved))))
+    }
+
+    fn send(&self, message: Message) -> bool {
+        self.busy.fetch_add(1, Relaxed);
+        self.inbox.send(message).is_ok()
+    }
+
+    pub fn want(&self, want: Want) {
+        if self.inbox.len() < WAITING {
+            self.send(Message::Want(want));
+        }
+    }
+
+    /// The tree as it is written by now.
+    pub fn tree(&self) -> Tree {
+        self.tree.lock().map(|t| t.clone()).unwrap_or_default()
+    }
+
+    /// The picture of a node, PNG.
+    pub fn sight(&self, node: u64) -> Option<Vec<u8>> {
+        Store::read(&self.path).ok()?.sight(node).ok()?
+    }
+
+    /// Whether all that was handed over is written, and no jump is under way.
+    pub fn is_idle(&self) -> bool {
+        self.busy.load(Relaxed) == 0
+    }
+
+    /// What stands in the way, if anything.
+    pub fn trouble(&self) -> Option<String> {
+        self.fault.lock().ok().and_then(|f| f.clone())
+    }
+}
+
+/// The thread, to be waited for at the end.
+#[derive(Debug)]
+pub struct Keeper {
+    thread: JoinHandle<()>,
+    pub handle: Handle,
+}
+
+impl Keeper {
+    /// Begins or goes on with the history of a session that the world was made of. `purge`: nodes after this tick are no part
+    /// of what was recovered. `at`: the node that the world was at, before what was replayed.
+    ///
+    /// # Errors
+    /// Where the file cannot be written.
+    pub fn start(path: &Path, world: &mut World, purge: u64, at: Option<u64>) -> Result<Keeper, StoreError> {
+        world.keep_moments();
+        let first = world.moment(Deed::Step);
+        let mut ledger = Ledger::open(Store::write(path)?, purge, first.work.clone())?;
+        ledger.begin(world.tick(), &first, at)?;
+        let keeping = Keeping {
+            shown: Arc::new(Mutex::new(ledger.tree.clone())),
+            ledger,
+            path: path.to_path_buf(),
+            wants: VecDeque::new(),
+            sent: None,
+            clock: Clock::monotonic(),
+        };
+        let (outbox, inbox) = cc::unbounded();
+        let handle = Handle {
+            inbox: outbox,
+            commands: Arc::default(),
+            tree: keeping.shown.clone(),
+            fault: Arc::default(),
+            path: Arc::new(path.to_path_buf()),
+            ending: Arc::default(),
+            busy: Arc::default(),
+        };
+        let (fault, commands, ending, busy) =
+            (handle.fault.clone(), handle.commands.clone(), handle.ending.clone(), handle.busy.clone());
+        let thread = std::thread::Builder::new()
+            .name("sculptd-history".into())
+            .spawn(move || keeping.run(&inbox, &fault, &commands, &ending, &busy))
+            .map_err(|e| StoreError::Damaged(format!("no thread for the history: {e}")))?;
+        Ok(Keeper { thread, handle })
+    }
+
+    /// Waits until all that was handed over is written.
+    pub fn finish(self) -> Option<String> {
+        self.handle.ending.store(true, Relaxed);
+        let _ = self.handle.inbox.send(Message::End);
+        let _ = self.thread.join();
+        self.handle.trouble()
+    }
+}
+
+struct Keeping {
+    ledger: Ledger,
+    path: PathBuf,
+    shown: Arc<Mutex<Tree>>,
+    wants: VecDeque<Want>,
+    /// When a jump was sent that did not come back yet.
+    sent: Option<u64>,
+    clock: Clock,
+}
+
+impl Keeping {
+    fn run(
+        mut self,
+        inbox: &cc::Receiver<Message>,
+        fault: &Mutex<Option<String>>,
+        commands: &OnceLock<cc::Sender<Command>>,
+        ending: &AtomicBool,
+        busy: &AtomicUsize,
+    ) {
+        crate::daemon::live::raise_priority_below();
+        loop {
+            let message = match inbox.recv_timeout(RETRY) {
+                Ok(message) => message,
+                Err(cc::RecvTimeoutError::Timeout) => {
+                    self.serve(commands);
+                    continue;
+                }
+                Err(cc::RecvTimeoutError::Disconnected) => break,
+            };
+            match &message {
+                Message::End => break,
+                Message::Want(want) => {
+                    if self.wants.len() < WANTS {
+                        self.wants.push_back(*want);
+                    }
+                }
+                Message::Moment { .. } | Message::State(_) => {
+                    // A disk that takes nothing now may later: the moment is kept till then.
+                    while let Err(e) = self.take(&message) {
+                        let first = fault.lock().is_ok_and(|mut f| f.replace(e.to_string()).is_none());
+                        if first {
+                            tracing::error!("history: {e}");
+                        }
+                        self.ledger.recover();
+                        // The log holds it still.
+                        if ending.load(Relaxed) {
+                            return;
+                        }
+                        let (_keep, quiet) = cc::bounded::<()>(0);
+                        let _ = quiet.recv_timeout(RETRY);
+                    }
+                    if let Ok(mut f) = fault.lock() {
+                        *f = None;
+                    }
+                }
+            }
+            self.serve(commands);
+            busy.fetch_sub(1, Relaxed);
+        }
+        // Closing takes the rest of the log over, and syncs as it should.
+        let _ = self.ledger.store.db.pragma_update(None, "synchronous", "full");
+    }
+
+    fn take(&mut self, message: &Message) -> Result<(), StoreError> {
+        match message {
+            Message::Moment { tick, moment } => {
+                self.ledger.moment(*tick, moment)?;
+                self.sent = None;
+                self.show();
+                Ok(())
+            }
+            Message::State(saved) => self.ledger.state(saved),
+            _ => Ok(()),
+        }
+    }
+
+    fn show(&self) {
+        if let Ok(mut shown) = self.shown.lock() {
+            shown.clone_from(&self.ledger.tree);
+        }
+    }
+
+    /// Sends the next jump that is wanted, unless one is under way.
+    fn serve(&mut self, commands: &OnceLock<cc::Sender<Command>>) {
+        let now = self.clock.now_us();
+        if self.sent.is_some_and(|at| now < at + PATIENCE.as_micros() as u64) {
+            return;
+        }
+        self.sent = None;
+        let Some(commands) = commands.get() else { return };
+        while let Some(want) = self.wants.pop_front() {
+            let to = match want {
+                Want::Undo => self.ledger.tree.before(),
+                Want::Redo => self.ledger.tree.after(),
+                Want::Node(id) => Some(id).filter(|id| *id != self.ledger.tree.cursor),
+            };
+            let Some(to) = to else { continue };
+            match self.fetch(to) {
+                Ok(Some(jump)) => {
+                    if commands.try_send(Command::Jump(Box::new(jump))).is_ok() {
+                        self.sent = Some(now);
+                        return;
+                    }
+                }
+                Ok(None) => tracing::warn!("history: there is no way to {to} from here"),
+                Err(e) => tracing::warn!("history: {to} cannot be fetched: {e}"),
+            }
+        }
+    }
+
+    fn fetch(&self, to: u64) -> Result<Option<Jump>, StoreError> {
+        let (Some(way), Some(node)) = (self.ledger.tree.way(to), self.ledger.tree.node(to)) else {
+            return Ok(None);
+        };
+        let from = (self.ledger.now.lineage(), self.ledger.now.revision());
+        let jump = |pages, other, fetched| Jump {
+            node: to,
+            from,
+            lineage: node.lineage,
+            pages,
+            other,
+            fetched: Arc::new(Mutex::new(Some(fetched))),
+        };
+        match way {
+            Way::Pages(pages) => {
+                let mut got = Vec::with_capacity(pages.len());
+                for &(i, revision) in &pages {
+                    let t = self.ledger.topology.get(&i).copied().unwrap_or(0);
+                    let near =
+                        ((i as usize) < self.ledger.now.page_count()).then(|| (self.ledger.now.page(i), t));
+                    got.push((i, self.ledger.store.page((node.lineage, i, revision), near)?.0));
+                }
+                Ok(Some(jump(pages, None, Fetched::Pages(got))))
+            }
+            Way::Other => {
+                let (rest, names) = describe(&self.ledger.tree, node);
+                let base = base(&self.path)?;
+                let mesh = assemble(&self.ledger.store, &base, &rest, &names, node.levels)?;
+                let other = OtherWork { rest, middle: node.middle, extent: node.extent, levels: node.levels };
+                Ok(Some(jump(names, Some(other), Fetched::Work(Box::new(mesh)))))
+            }
+        }
+    }
+}
+
+/// A work's pages by name, and what it is besides: revisions go on above all that its lineage ever had.
+fn describe(tree: &Tree, node: &Node) -> (Rest, Vec<(u32, u64)>) {
+    let of_work = || tree.nodes().filter(|n| n.lineage == node.lineage);
+    let revision = of_work().flat_map(|n| &n.changes).map(|c| c.2).max().unwrap_or(0) + 1;
+    let next = of_work().fold(node.next, |a, n| [a[0].max(n.next[0]), a[1].max(n.next[1])]);
+    let rest = Rest { pages: node.pages, revision, lineage: node.lineage, next, empty: Vec::new() };
+    let versions = tree.versions(node.id);
+    let names = (0..node.pages).map(|i| (i, versions.get(&i).copied().unwrap_or(0))).collect();
+    (rest, names)
+}
+
+/// The work that the session began with.
+fn base(path: &Path) -> Result<Snapshot, StoreError> {
+    let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
+    let opened = crate::daemon::session::open(path).map_err(|e| damaged(&e))?;
+    let mut mesh = Mesh::build(&opened.start, &Job::default()).map_err(|e| damaged(&e))?;
+    Ok(mesh.snapshot())
+}
+
+/// A whole work out of the file.
+pub(in crate::daemon::session) fn assemble(
+    store: &Store,
+    base: &Snapshot,
+    rest: &Rest,
+    names: &[(u32, u64)],
+    levels: Option<u64>,
+) -> Result<Mesh, StoreError> {
+    let mut pages = Vec::with_capacity(names.len());
+    for &(i, revision) in names {
+        let first =
+            (rest.lineage == base.lineage() && (i as usize) < base.page_count()).then(|| base.page(i));
+        pages.push(match first {
+            Some(page) if revision == page.revision() => page.clone(),
+            _ => store.page((rest.lineage, i, revision), first.map(|p| (p, 0)))?.0,
+        });
+    }
+    let empty = (0u32..).zip(&pages).filter(|(_, p)| p.own() == 0).map(|(i, _)| i).collect();
+    let rest = Rest { empty, ..rest.clone() };
+    let mut mesh =
+        Mesh::of_stored(pages, &rest).map_err(|_| StoreError::Damaged("the pages of a work".into()))?;
+    mesh.set_levels(levels.map(|id| store.side::<Levels>(id)).transpose()?.map(Arc::new));
+    Ok(mesh)
+}

@@ -1,0 +1,69 @@
+//! The history as a list, for people and for other programs.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::store::{Store, StoreError};
+use super::tree::Tree;
+use crate::world::Deed;
+
+/// One place of the history.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Place {
+    pub node: u64,
+    /// The place before; none where a work begins.
+    pub parent: Option<u64>,
+    pub tick: u64,
+    pub deed: Deed,
+    /// Pages that the step changed, of all.
+    pub changed: usize,
+    pub pages: u32,
+    /// Whether another branch goes off at the place before.
+    pub branch: bool,
+    /// Whether the work is here.
+    pub here: bool,
+}
+
+/// What a session's history holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct History {
+    pub places: Vec<Place>,
+    /// Bytes of the stored pages.
+    pub bytes: u64,
+    pub checkpoints: u64,
+}
+
+/// Every place, in the order in which they were made.
+pub fn places(tree: &Tree) -> Vec<Place> {
+    tree.nodes()
+        .map(|n| Place {
+            node: n.id,
+            parent: n.parent,
+            tick: n.tick,
+            deed: n.deed,
+            changed: n.changes.len(),
+            pages: n.pages,
+            branch: n.parent.is_some_and(|p| tree.children(p).len() > 1),
+            here: n.id == tree.cursor,
+        })
+        .collect()
+}
+
+/// Reads a session's history. A session without one has none.
+///
+/// # Errors
+/// Where the file cannot be read.
+pub fn read(path: &Path) -> Result<History, StoreError> {
+    let store = Store::read(path)?;
+    if !store.has_tables() {
+        return Ok(History { places: Vec::new(), bytes: 0, checkpoints: 0 });
+    }
+    let mut tree = store.tree()?;
+    let all = store.checkpoints(u64::MAX)?;
+    // Where it was when the file was last written.
+    if let Some(newest) = all.first().and_then(|id| store.checkpoint(*id).ok()) {
+        tree.cursor = newest.node;
+    }
+    Ok(History { places: places(&tree), bytes: store.bytes()?, checkpoints: all.len() as u64 })
+}

@@ -1,0 +1,79 @@
+//! Opening a session at its newest checkpoint: the pages that were stored, the state, and the replay of what follows.
+//!
+//! Guaranteed: the world is, to the bit, the one that a replay from the start gives, but for undo, which a reopened session
+//! keeps in the file. Where that cannot be known (a damaged page, an undo that went back beyond the checkpoint in memory),
+//! there is no answer, and the caller replays from the start.
+
+use std::path::Path;
+
+use super::super::reader::Opened;
+use super::super::replay::{Replayed, Run};
+use super::keeper::assemble;
+use super::store::{Store, StoreError};
+use crate::analysis::cancel::Job;
+use crate::mesh::{Mesh, Workers};
+use crate::world::{Deed, World, WorldOptions};
+
+/// Checkpoints that are tried, from the newest back.
+const TRIED: usize = 4;
+
+/// A world, and the node of the checkpoint that it was opened at.
+#[derive(Debug)]
+pub struct Reopened {
+    pub replayed: Replayed,
+    pub checkpoint: u64,
+    pub node: u64,
+}
+
+/// `until`: the tick to stop at. `None`: no checkpoint serves.
+pub fn reopen(
+    path: &Path,
+    opened: &Opened,
+    until: Option<u64>,
+    workers: usize,
+    job: &Job,
+) -> Option<Reopened> {
+    let store = Store::read(path).ok().filter(Store::has_tables)?;
+    // A checkpoint of ticks that the log does not hold is no part of what is there.
+    let last = opened.input.last().map_or(0, |t| t.tick).min(until.unwrap_or(u64::MAX));
+    let tree = store.tree().ok()?;
+    let mut base = Mesh::build(&opened.start, job).ok()?;
+    let base = base.snapshot();
+    for id in store.checkpoints(last).ok()?.into_iter().take(TRIED) {
+        let made = || -> Result<Option<Reopened>, StoreError> {
+            let c = store.checkpoint(id)?;
+            let Some(node) = tree.node(c.node) else { return Ok(None) };
+            let versions = tree.versions(node.id);
+            let names: Vec<(u32, u64)> =
+                (0..c.rest.pages).map(|i| (i, versions.get(&i).copied().unwrap_or(0))).collect();
+            let (checkpoint, at) = (c.tick, c.node);
+            let empty = c.rest.empty.clone();
+            let mut mesh = assemble(&store, &base, &c.rest, &names, None)?;
+            mesh.set_empty(empty);
+            let saved = store.saved(c)?;
+            let steps = saved.steps;
+            let s = &opened.settings;
+            let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
+            let damaged = |_| StoreError::Damaged("a checkpoint's state".into());
+            let world = World::restore(mesh, saved, Workers::new(workers), options).map_err(damaged)?;
+            let mut odd = false;
+            let mut see = |_: u64, world: &mut World| {
+                odd |= match world.report().missed {
+                    Some(Deed::Undo) => steps.0 > 0,
+                    Some(Deed::Redo) => steps.1 > 0,
+                    _ => false,
+                };
+            };
+            let run = Run { opened, base: &base, store: Some(&store), until };
+            let replayed = run.from(world, job, &mut see);
+            let sound = !odd && replayed.jumps_missed == 0 && !job.cancelled();
+            Ok(sound.then_some(Reopened { replayed, checkpoint, node: at }))
+        };
+        match made() {
+            Ok(Some(reopened)) => return Some(reopened),
+            Ok(None) => {}
+            Err(e) => tracing::warn!("{}: checkpoint {id} does not serve: {e}", path.display()),
+        }
+    }
+    None
+}

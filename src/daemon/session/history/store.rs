@@ -1,0 +1,306 @@
+//! The history's tables: nodes, pages, checkpoints, pictures. Every row carries the checksum of its bytes.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use rusqlite::{Connection, OpenFlags, OptionalExtension};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::tree::{NOTHING, Node, Tree};
+use crate::brush::Picture;
+use crate::mesh::page::Topology;
+use crate::mesh::{Levels, Page, Rest, TriMesh};
+use crate::world::{Saved, Side};
+
+/// Added to a session's tables; a session from before them has none and is replayed.
+pub const TABLES: &str = "
+    CREATE TABLE IF NOT EXISTS node (id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS page (
+        lineage INTEGER NOT NULL,
+        number INTEGER NOT NULL,
+        revision INTEGER NOT NULL,
+        topology INTEGER NOT NULL,
+        crc INTEGER NOT NULL,
+        data BLOB NOT NULL
+    );
+    CREATE UNIQUE INDEX IF NOT EXISTS page_name ON page (lineage, number, revision, topology);
+    CREATE TABLE IF NOT EXISTS topology (
+        lineage INTEGER NOT NULL,
+        number INTEGER NOT NULL,
+        revision INTEGER NOT NULL,
+        crc INTEGER NOT NULL,
+        data BLOB NOT NULL,
+        PRIMARY KEY (lineage, number, revision)
+    );
+    CREATE TABLE IF NOT EXISTS side (id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS checkpoint (
+        id INTEGER PRIMARY KEY,
+        tick INTEGER NOT NULL,
+        crc INTEGER NOT NULL,
+        data BLOB NOT NULL
+    );
+    CREATE TABLE IF NOT EXISTS sight (node INTEGER PRIMARY KEY, png BLOB NOT NULL);
+";
+
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    #[error("the session file: {0}")]
+    Sql(#[from] rusqlite::Error),
+    #[error("the session file: {0} is damaged or missing")]
+    Damaged(String),
+}
+
+/// The name of a page's version.
+pub type Name = (u32, u32, u64);
+
+/// A state of the world, as it lies in the file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    pub tick: u64,
+    pub node: u64,
+    pub rest: Rest,
+    pub core: Vec<u8>,
+    /// The sides: thing, picture, levels.
+    pub sides: [Option<u64>; 3],
+    pub steps: (u32, u32),
+}
+
+/// The tables, through a connection of their own.
+#[derive(Debug)]
+pub struct Store {
+    pub(super) db: Connection,
+}
+
+fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, StoreError> {
+    bytes.map_err(|e| StoreError::Sql(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
+}
+
+impl Store {
+    /// For reading; changes nothing.
+    pub fn read(path: &Path) -> Result<Store, StoreError> {
+        let db = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+        db.busy_timeout(std::time::Duration::from_secs(2))?;
+        Ok(Store { db })
+    }
+
+    /// For the keeper: synced by the session's own thread, see [`super::super::syncer`].
+    pub fn write(path: &Path) -> Result<Store, StoreError> {
+        let db = Connection::open(path)?;
+        db.busy_timeout(std::time::Duration::from_secs(2))?;
+        db.pragma_update(None, "wal_autocheckpoint", 0)?;
+        db.pragma_update(None, "synchronous", "off")?;
+        db.execute_batch(TABLES)?;
+        Ok(Store { db })
+    }
+
+    /// Whether there is any history.
+    pub fn has_tables(&self) -> bool {
+        self.db.prepare("SELECT id FROM node LIMIT 1").is_ok()
+    }
+
+    /// Every node whose parents are there too. A damaged one ends its branch.
+    pub fn tree(&self) -> Result<Tree, StoreError> {
+        let mut tree = Tree::default();
+        let mut query = self.db.prepare("SELECT crc, data FROM node ORDER BY id")?;
+        let mut rows = query.query([])?;
+        while let Some(row) = rows.next()? {
+            let (crc, data): (u32, Vec<u8>) = (row.get(0)?, row.get(1)?);
+            if crc32fast::hash(&data) != crc {
+                continue;
+            }
+            if let Ok(node) = postcard::from_bytes::<Node>(&data)
+                && node.parent.is_none_or(|p| tree.node(p).is_some())
+            {
+                tree.cursor = node.id;
+                tree.add(node);
+            }
+        }
+        Ok(tree)
+    }
+
+    fn checked<T: DeserializeOwned>(&self, what: &str, row: Option<(u32, Vec<u8>)>) -> Result<T, StoreError> {
+        let damaged = || StoreError::Damaged(what.into());
+        let (crc, data) = row.ok_or_else(damaged)?;
+        if crc32fast::hash(&data) != crc {
+            return Err(damaged());
+        }
+        postcard::from_bytes(&data).map_err(|_| damaged())
+    }
+
+    /// The checkpoints at or before a tick, the newest first.
+    pub fn checkpoints(&self, until: u64) -> Result<Vec<u64>, StoreError> {
+        let mut query =
+            self.db.prepare("SELECT id FROM checkpoint WHERE tick <= ?1 ORDER BY tick DESC, id DESC")?;
+        let until = i64::try_from(until).unwrap_or(i64::MAX);
+        let all = query.query_map([until], |r| r.get::<_, i64>(0))?;
+        all.map(|id| Ok(id? as u64)).collect()
+    }
+
+    pub fn checkpoint(&self, id: u64) -> Result<Checkpoint, StoreError> {
+        let row = self
+            .db
+            .query_row("SELECT crc, data FROM checkpoint WHERE id = ?1", [id as i64], |r| {
+                Ok((r.get(0)?, r.get(1)?))
+            })
+            .optional()?;
+        self.checked("a checkpoint", row)
+    }
+
+    /// The state of a checkpoint, with its sides.
+    pub fn saved(&self, c: Checkpoint) -> Result<Saved, StoreError> {
+        let [thing, picture, levels] = c.sides;
+        Ok(Saved {
+            tick: c.tick,
+            rest: c.rest,
+            core: c.core,
+            thing: thing.map(|id| self.side::<TriMesh>(id)).transpose()?.map(Arc::new),
+            picture: picture.map(|id| self.side::<Picture>(id)).transpose()?.map(Arc::new),
+            levels: levels.map(|id| self.side::<Levels>(id)).transpose()?.map(Arc::new),
+            steps: c.steps,
+        })
+    }
+
+    pub fn side<T: DeserializeOwned>(&self, id: u64) -> Result<T, StoreError> {
+        let row = self
+            .db
+            .query_row("SELECT crc, data FROM side WHERE id = ?1", [id as i64], |r| {
+                Ok((r.get(0)?, r.get(1)?))
+            })
+            .optional()?;
+        self.checked("a thing beside the work", row)
+    }
+
+    pub fn put_side(&self, id: u64, side: &Side) -> Result<(), StoreError> {
+        let data = plain(match side {
+            Side::Thing(t) => postcard::to_stdvec(t.as_ref()),
+            Side::Picture(p) => postcard::to_stdvec(p.as_ref()),
+            Side::Levels(l) => postcard::to_stdvec(l.as_ref()),
+        })?;
+        let row = (id as i64, crc32fast::hash(&data), data);
+        self.db.execute("INSERT OR REPLACE INTO side (id, crc, data) VALUES (?1, ?2, ?3)", row)?;
+        Ok(())
+    }
+
+    pub fn next_side(&self) -> Result<u64, StoreError> {
+        let last: Option<i64> = self.db.query_row("SELECT max(id) FROM side", [], |r| r.get(0))?;
+        Ok(last.map_or(0, |l| l as u64 + 1))
+    }
+
+    pub fn put_node(&self, node: &Node) -> Result<(), StoreError> {
+        let data = plain(postcard::to_stdvec(node))?;
+        let row = (node.id as i64, crc32fast::hash(&data), data);
+        self.db.execute("INSERT OR REPLACE INTO node (id, crc, data) VALUES (?1, ?2, ?3)", row)?;
+        Ok(())
+    }
+
+    pub fn put_sight(&self, node: u64, png: &[u8]) -> Result<(), StoreError> {
+        self.db.execute("INSERT OR REPLACE INTO sight (node, png) VALUES (?1, ?2)", (node as i64, png))?;
+        Ok(())
+    }
+
+    /// The small picture of a node, PNG.
+    pub fn sight(&self, node: u64) -> Result<Option<Vec<u8>>, StoreError> {
+        let found = self
+            .db
+            .query_row("SELECT png FROM sight WHERE node = ?1", [node as i64], |r| r.get(0))
+            .optional();
+        Ok(found?)
+    }
+
+    pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<(), StoreError> {
+        let data = plain(postcard::to_stdvec(c))?;
+        let row = (c.tick as i64, crc32fast::hash(&data), data);
+        self.db.execute("INSERT INTO checkpoint (tick, crc, data) VALUES (?1, ?2, ?3)", row)?;
+        Ok(())
+    }
+
+    /// The versions of pages that are stored, with the revision of the topology of each.
+    pub fn names(&self) -> Result<BTreeMap<Name, u64>, StoreError> {
+        let mut query = self.db.prepare("SELECT lineage, number, revision, topology FROM page")?;
+        let rows = query.query_map([], |r| {
+            let name = (r.get(0)?, r.get(1)?, r.get::<_, i64>(2)? as u64);
+            Ok((name, r.get::<_, i64>(3)? as u64))
+        })?;
+        rows.map(|r| Ok(r?)).collect()
+    }
+
+    /// The topologies that are stored.
+    pub fn topologies(&self) -> Result<std::collections::BTreeSet<Name>, StoreError> {
+        let mut query = self.db.prepare("SELECT lineage, number, revision FROM topology")?;
+        let rows = query.query_map([], |r| Ok((r.get(0)?, r.get(1)?, r.get::<_, i64>(2)? as u64)))?;
+        rows.map(|r| Ok(r?)).collect()
+    }
+
+    pub fn put_page(&self, name: Name, topology: u64, page: &Page) -> Result<usize, StoreError> {
+        let data = page.to_bytes();
+        let mut put = self.db.prepare_cached(
+            "INSERT OR IGNORE INTO page (lineage, number, revision, topology, crc, data)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+        )?;
+        put.execute((name.0, name.1, name.2 as i64, topology as i64, crc32fast::hash(&data), &data))?;
+        Ok(data.len())
+    }
+
+    pub fn put_topology(&self, name: Name, topology: &Topology) -> Result<usize, StoreError> {
+        let data = topology.to_bytes();
+        let mut put = self.db.prepare_cached(
+            "INSERT OR IGNORE INTO topology (lineage, number, revision, crc, data) VALUES (?1, ?2, ?3, ?4, ?5)",
+        )?;
+        put.execute((name.0, name.1, name.2 as i64, crc32fast::hash(&data), &data))?;
+        Ok(data.len())
+    }
+
+    fn topology(&self, name: Name) -> Result<Arc<Topology>, StoreError> {
+        let damaged = || StoreError::Damaged(format!("the topology of page {}", name.1));
+        let row: Option<(u32, Vec<u8>)> = self
+            .db
+            .prepare_cached(
+                "SELECT crc, data FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = ?3",
+            )?
+            .query_row((name.0, name.1, name.2 as i64), |r| Ok((r.get(0)?, r.get(1)?)))
+            .optional()?;
+        let (crc, data) = row.ok_or_else(damaged)?;
+        if crc32fast::hash(&data) != crc {
+            return Err(damaged());
+        }
+        Ok(Arc::new(Topology::from_bytes(&data).map_err(|_| damaged())?))
+    }
+
+    /// A page's version. `near`: the page of that number in a work at hand and the revision of its topology, to share it.
+    pub fn page(&self, name: Name, near: Option<(&Arc<Page>, u64)>) -> Result<(Arc<Page>, u64), StoreError> {
+        if name.2 == NOTHING {
+            return Ok((Arc::new(Page::nothing()), 0));
+        }
+        let damaged = || StoreError::Damaged(format!("page {} of revision {}", name.1, name.2));
+        let row: Option<(i64, u32, Vec<u8>)> = self
+            .db
+            .prepare_cached(
+                "SELECT topology, crc, data FROM page WHERE lineage = ?1 AND number = ?2 AND revision = ?3",
+            )?
+            .query_row((name.0, name.1, name.2 as i64), |r| Ok((r.get(0)?, r.get(1)?, r.get(2)?)))
+            .optional()?;
+        let (topology, crc, data) = row.ok_or_else(damaged)?;
+        if crc32fast::hash(&data) != crc {
+            return Err(damaged());
+        }
+        let shape = match near.filter(|(_, t)| *t == topology as u64) {
+            Some((page, _)) => page.topology().clone(),
+            None => self.topology((name.0, name.1, topology as u64))?,
+        };
+        let page = Page::from_bytes(&data, shape, name.2).map_err(|_| damaged())?;
+        Ok((Arc::new(page), topology as u64))
+    }
+
+    /// Bytes of all stored pages and topologies.
+    pub fn bytes(&self) -> Result<u64, StoreError> {
+        let sum: i64 = self.db.query_row(
+            "SELECT (SELECT coalesce(sum(length(data)), 0) FROM page)
+                  + (SELECT coalesce(sum(length(data)), 0) FROM topology)",
+            [],
+            |r| r.get(0),
+        )?;
+        Ok(sum as u64)
+    }
+}

@@ -1,0 +1,204 @@
+//! Which node follows which, and what lies between two of them.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::world::Deed;
+
+/// The revision of a page that was not there yet.
+pub const NOTHING: u64 = u64::MAX;
+
+/// A page that a step changed: its number, its revision before, and after.
+pub type Change = (u32, u64, u64);
+
+/// The work after a step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Node {
+    pub id: u64,
+    pub parent: Option<u64>,
+    pub tick: u64,
+    pub deed: Deed,
+    pub lineage: u32,
+    /// Against the parent; of a work that took another's place, all pages, from [`NOTHING`].
+    pub changes: Vec<Change>,
+    /// All pages of the work.
+    pub pages: u32,
+    pub middle: Vec3,
+    pub extent: f32,
+    /// Numbers that the next new vertex and triangle get.
+    pub next: [u32; 2],
+    pub levels: Option<u64>,
+}
+
+/// All nodes, and where the work is.
+#[derive(Debug, Clone, Default)]
+pub struct Tree {
+    nodes: BTreeMap<u64, Node>,
+    children: BTreeMap<u64, Vec<u64>>,
+    /// The child of each node that was left last: where redo leads.
+    latest: BTreeMap<u64, u64>,
+    pub cursor: u64,
+}
+
+/// The way from one node to another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Way {
+    /// The pages to put in place, within one work.
+    Pages(Vec<(u32, u64)>),
+    /// Another work.
+    Other,
+}
+
+impl Tree {
+    pub fn add(&mut self, node: Node) {
+        if let Some(parent) = node.parent {
+            let beside = self.children.entry(parent).or_default();
+            if !beside.contains(&node.id) {
+                beside.push(node.id);
+            }
+            self.latest.insert(parent, node.id);
+        }
+        self.nodes.insert(node.id, node);
+    }
+
+    pub fn node(&self, id: u64) -> Option<&Node> {
+        self.nodes.get(&id)
+    }
+
+    pub fn here(&self) -> Option<&Node> {
+        self.nodes.get(&self.cursor)
+    }
+
+    /// In the order in which they were made.
+    pub fn nodes(&self) -> impl Iterator<Item = &Node> {
+        self.nodes.values()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub fn next_id(&self) -> u64 {
+        self.nodes.last_key_value().map_or(0, |(id, _)| id + 1)
+    }
+
+    pub fn children(&self, id: u64) -> &[u64] {
+        self.children.get(&id).map_or(&[], Vec::as_slice)
+    }
+
+    /// Where undo leads from here; `None` at the beginning.
+    pub fn before(&self) -> Option<u64> {
+        self.here()?.parent
+    }
+
+    /// Where redo leads from here.
+    pub fn after(&self) -> Option<u64> {
+        self.latest.get(&self.cursor).copied()
+    }
+
+    /// The work is at this node now; redo leads back to where it came from along the way.
+    pub fn go(&mut self, id: u64) {
+        let mut at = id;
+        while let Some(parent) = self.nodes.get(&at).and_then(|n| n.parent) {
+            self.latest.insert(parent, at);
+            at = parent;
+        }
+        self.cursor = id;
+    }
+
+    /// The nodes from this one up to its root.
+    pub fn line(&self, id: u64) -> impl Iterator<Item = &Node> {
+        std::iter::successors(self.nodes.get(&id), |n| n.parent.and_then(|p| self.nodes.get(&p)))
+    }
+
+    /// From the cursor to a node; `None` where there is no way, for they do not hang together.
+    pub fn way(&self, to: u64) -> Option<Way> {
+        let target = self.nodes.get(&to)?;
+        let up: Vec<&Node> = self.line(self.cursor).collect();
+        let mut down: Vec<&Node> = Vec::new();
+        let mut meet = None;
+        for node in self.line(to) {
+            if let Some(k) = up.iter().position(|n| n.id == node.id) {
+                meet = Some(k);
+                break;
+            }
+            down.push(node);
+        }
+        let up = &up[..meet?];
+        let lineage = self.here()?.lineage;
+        if target.lineage != lineage || up.iter().chain(&down).any(|n| n.deed == Deed::Replace) {
+            return Some(Way::Other);
+        }
+        let mut pages = BTreeMap::new();
+        for node in up {
+            pages.extend(node.changes.iter().map(|c| (c.0, c.1)));
+        }
+        for node in down.iter().rev() {
+            pages.extend(node.changes.iter().map(|c| (c.0, c.2)));
+        }
+        Some(Way::Pages(pages.into_iter().collect()))
+    }
+
+    /// The revision of every page that any step changed since the work was put in place; the others are as they were then.
+    pub fn versions(&self, id: u64) -> BTreeMap<u32, u64> {
+        let mut found = BTreeMap::new();
+        for node in self.line(id) {
+            for (page, _, after) in &node.changes {
+                found.entry(*page).or_insert(*after);
+            }
+            if node.deed == Deed::Replace {
+                break;
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(id: u64, parent: Option<u64>, changes: &[Change]) -> Node {
+        Node {
+            id,
+            parent,
+            tick: id * 10,
+            deed: Deed::Step,
+            lineage: 0,
+            changes: changes.to_vec(),
+            pages: 9,
+            middle: Vec3::ZERO,
+            extent: 1.0,
+            next: [0, 0],
+            levels: None,
+        }
+    }
+
+    #[test]
+    fn the_way_from_branch_to_branch_puts_every_page_right() {
+        let mut tree = Tree::default();
+        tree.add(node(0, None, &[]));
+        tree.add(node(1, Some(0), &[(1, 0, 1), (2, 0, 1)]));
+        tree.add(node(2, Some(1), &[(2, 1, 2)]));
+        // After taking both back: a branch.
+        tree.add(node(3, Some(0), &[(2, 0, 5), (4, 0, 5)]));
+        tree.cursor = 2;
+        assert_eq!(tree.way(3), Some(Way::Pages(vec![(1, 0), (2, 5), (4, 5)])));
+        assert_eq!(tree.way(0), Some(Way::Pages(vec![(1, 0), (2, 0)])));
+        assert_eq!(tree.way(2), Some(Way::Pages(vec![])));
+        tree.go(3);
+        assert_eq!(tree.way(1), Some(Way::Pages(vec![(1, 1), (2, 1), (4, 0)])));
+        assert_eq!((tree.before(), tree.after()), (Some(0), None));
+        tree.go(1);
+        tree.go(0);
+        assert_eq!(tree.after(), Some(1), "redo leads where one was last");
+        assert_eq!(tree.versions(2), [(1, 1), (2, 2)].into());
+        assert_eq!(tree.way(77), None);
+    }
+}
