@@ -36,6 +36,9 @@ pub struct RenderArgs {
     /// How strongly hollows are darkened and ridges lightened, 0 to 2.
     #[arg(long, default_value_t = 1.0)]
     pub cavity: f32,
+    /// How strongly forms shade their own hollows and each other, 0 to 2.
+    #[arg(long, default_value_t = 1.0)]
+    pub shade: f32,
     /// Edges of triangles over the clay.
     #[arg(long)]
     pub wireframe: bool,
@@ -112,6 +115,7 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
         material: MATERIALS.iter().position(|m| m.name == args.matcap).unwrap_or(0),
         flat: args.flat,
         cavity: args.cavity,
+        shade: args.shade,
         wireframe: args.wireframe,
         ..Default::default()
     };
@@ -121,7 +125,15 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
         let turn = frame as f32 / frames as f32 * std::f32::consts::TAU;
         let camera = Camera { yaw: camera.yaw + turn, ..camera };
         let path = if args.turntable.is_some() { numbered(&args.output, frame) } else { args.output.clone() };
-        let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
+        let scene = Scene {
+            mesh: &snapshot,
+            camera: &camera,
+            brush: None,
+            lines: &[],
+            look,
+            values: None,
+            beside: Default::default(),
+        };
         let picture = painter.paint(&scene, width, height).map_err(no_adapter)?;
         write_png(&path, &picture).map_err(|e| Fail::io(&path, &e))?;
         files.push(path);

@@ -1,8 +1,8 @@
 //! The scale of the map that the clay shows, with its unit.
 
-use egui::{Color32, Mesh, Rect, pos2, vec2};
+use egui::{Rect, pos2, vec2};
 
-use super::Desk;
+use super::{Desk, measure};
 use crate::viewer::look::Map;
 
 pub fn ui(ctx: &egui::Context, desk: &Desk, free: Rect) {
@@ -22,27 +22,16 @@ pub fn ui(ctx: &egui::Context, desk: &Desk, free: Rect) {
             ui.strong(map.title());
             let (rect, _) = ui.allocate_exact_size(vec2(92.0, 120.0), egui::Sense::hover());
             let bar = Rect::from_min_size(rect.min + vec2(0.0, 6.0), vec2(16.0, 108.0));
-            let mut mesh = Mesh::default();
-            const STEPS: u32 = 32;
-            for i in 0..=STEPS {
-                let x = i as f32 / STEPS as f32;
-                let [r, g, b] = map.colour(x, 0.0, 1.0);
-                let y = bar.bottom() - x * bar.height();
-                for side in [bar.left(), bar.right()] {
-                    mesh.colored_vertex(pos2(side, y), Color32::from_rgb(r, g, b));
-                }
-                if i > 0 {
-                    let k = i * 2;
-                    mesh.add_triangle(k - 2, k - 1, k);
-                    mesh.add_triangle(k - 1, k, k + 1);
-                }
-            }
-            ui.painter().add(mesh);
+            measure::bar(ui.painter(), bar, |x| map.colour(x, 0.0, 1.0));
             let font = egui::FontId::proportional(12.0);
             let colour = ui.visuals().text_color();
             for i in 0..=2 {
                 let x = i as f32 / 2.0;
-                let text = format!("{:.2}{unit}", low + (high - low) * x);
+                let value = low + (high - low) * x;
+                let text = match map {
+                    Map::Distance => format!("{value:+.3}{unit}"),
+                    _ => format!("{value:.2}{unit}"),
+                };
                 let at = pos2(bar.right() + 6.0, bar.bottom() - x * bar.height());
                 ui.painter().text(at, egui::Align2::LEFT_CENTER, text, font.clone(), colour);
             }

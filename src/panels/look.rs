@@ -34,17 +34,20 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_
     ui.checkbox(&mut look.flat, "Facets").on_hover_text(Action::Facets.tip());
     ui.add(egui::Slider::new(&mut look.cavity, 0.0..=2.0).text("Cavity"))
         .on_hover_text("Hollows darker, ridges lighter");
+    ui.add(egui::Slider::new(&mut look.shade, 0.0..=2.0).text("Shade"))
+        .on_hover_text(Action::Shade.tip() + ": forms darken their own hollows and each other");
     ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(Action::Wireframe.tip());
     ui.checkbox(&mut look.grid, "Grid").on_hover_text(Action::Grid.tip());
     ui.checkbox(&mut desk.prefs.smooth_edges, "Smooth edges")
         .on_hover_text("Four samples a pixel; costs time where no graphics card draws");
     ui.add_space(8.0);
     ui.strong("Map");
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (map, name, tip) in [
             (Map::None, "None", "The clay itself".to_owned()),
             (Map::Mask, "Mask", Action::Mask.tip()),
             (Map::Thickness, "Thickness", Action::Thickness.tip()),
+            (Map::Distance, "Distance", Action::Distance.tip()),
         ] {
             ui.selectable_value(&mut desk.look.map, map, name).on_hover_text(tip);
         }

@@ -2,6 +2,7 @@
 
 pub mod action;
 pub mod analysis;
+pub mod balls;
 pub mod brush;
 pub mod cube;
 pub mod curve;
@@ -13,6 +14,7 @@ pub mod kiosk;
 pub mod legend;
 pub mod look;
 pub mod masks;
+pub mod measure;
 pub mod messages;
 pub mod modal;
 pub mod preferences;
@@ -22,6 +24,7 @@ pub mod search;
 pub mod symmetry;
 pub mod theme;
 pub mod timing;
+pub mod trim;
 
 use std::path::PathBuf;
 
@@ -29,6 +32,7 @@ use glam::Vec3;
 
 use crate::command::Command;
 use crate::daemon::Published;
+use crate::daemon::trim::Part;
 use crate::hand::Choice;
 use crate::stroke::Camera;
 use crate::viewer::look::{Look, MATERIALS, Map};
@@ -64,6 +68,14 @@ pub enum Ask {
     Export(PathBuf),
     /// The thing is joined with the work.
     Join(Choice),
+    /// What is seen in this part of the view is cut off.
+    Trim(Part),
+    /// The work one level finer, or coarser.
+    Level(bool),
+    /// Distances are those to the work as it is now.
+    Reference,
+    /// The shadow's outline is written.
+    Outline(PathBuf),
     /// For the window: dialogs and pictures.
     Do(Action),
 }
@@ -75,16 +87,18 @@ pub enum Tab {
     Look,
     Scene,
     Walls,
+    Measure,
     Files,
     Devices,
     Loop,
     More,
 }
 
-const TABS: [(Tab, &str, &str); 7] = [
+const TABS: [(Tab, &str, &str); 8] = [
     (Tab::Look, "Look", "How the clay is shown"),
-    (Tab::Scene, "Scene", "A second thing, and joining it with the work"),
+    (Tab::Scene, "Scene", "A second thing and joining it with the work, levels, trimming"),
     (Tab::Walls, "Walls", "Wall thickness and thin spots"),
+    (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
     (Tab::Files, "Files", "Open, export, pictures"),
     (Tab::Devices, "Pens", "Devices and their live values"),
     (Tab::Loop, "Loop", "Timing of the loop and of this window"),
@@ -107,6 +121,11 @@ pub struct Desk {
     pub devices: devices::Trace,
     /// A Boolean is under way.
     pub joining: bool,
+    pub trial: scene::Trial,
+    pub trim: Option<trim::Trim>,
+    pub sizes: measure::Sizes,
+    /// Pictures of steps, by step.
+    pub history: Vec<history::Thumb>,
     /// The screen of an installation.
     pub pad: kiosk::Pad,
     /// A theme and scale that are in force, so that they are set once.
@@ -151,6 +170,8 @@ pub fn all(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<As
         }
     }
     let free = ui.available_rect_before_wrap();
+    trim::ui(&ctx, desk, free, out);
+    balls::ui(&ctx, view, free);
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, desk, free);
     hints::ui(&ctx, &desk.prefs.done, view.ghosts, free);
@@ -180,7 +201,7 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
     ui.add_space(8.0);
     masks::ui(ui, out);
     ui.add_space(8.0);
-    history::ui(ui, view, out);
+    history::ui(ui, view, desk, out);
 }
 
 fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
@@ -198,8 +219,15 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
     ui.separator();
     match desk.tab {
         Tab::Look => look::ui(ui, desk, out, view),
-        Tab::Scene => scene::ui(ui, view, desk.joining, out),
+        Tab::Scene => {
+            scene::ui(ui, view, desk, out);
+            ui.add_space(8.0);
+            trim::levels(ui, view, desk, out);
+            ui.add_space(8.0);
+            trim::buttons(ui, desk);
+        }
         Tab::Walls => analysis::ui(ui, view, desk, out),
+        Tab::Measure => measure::ui(ui, view, desk, out),
         Tab::Files => files::ui(ui, view, desk, out),
         Tab::Devices => devices::ui(ui, view, &desk.devices),
         Tab::Loop => timing::ui(ui, view),
@@ -250,9 +278,17 @@ pub fn act(action: Action, ctx: &egui::Context, view: &View<'_>, desk: &mut Desk
         Action::DragStrength => modal::begin(ctx, view, desk, modal::What::Strength),
         Action::NextMaterial => desk.look.material = (desk.look.material + 1) % MATERIALS.len(),
         Action::Facets => desk.look.flat = !desk.look.flat,
+        Action::Shade => desk.look.shade = if desk.look.shade > 0.0 { 0.0 } else { 1.0 },
         Action::Wireframe => desk.look.wireframe = !desk.look.wireframe,
         Action::Grid => desk.look.grid = !desk.look.grid,
         Action::Thickness => toggle(&mut desk.look.map, Map::Thickness),
+        Action::Distance => toggle(&mut desk.look.map, Map::Distance),
+        Action::TrimBox | Action::TrimLine => {
+            let shape = if action == Action::TrimBox { trim::Shape::Box } else { trim::Shape::Line };
+            desk.trim = Some(trim::Trim { shape, from: None });
+        }
+        Action::Finer => out.push(Ask::Level(true)),
+        Action::Coarser => out.push(Ask::Level(false)),
         Action::Mask => toggle(&mut desk.look.map, Map::Mask),
         Action::Search => desk.search = desk.search.take().is_none().then(search::Search::default),
         Action::Panels => desk.hidden = !desk.hidden,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, EulerRot, Quat};
 
-use super::{Ask, View, theme};
+use super::{Ask, Desk, View, theme};
 use crate::command::Command;
 use crate::hand::Choice;
 use crate::mesh::{PolyMesh, shapes};
@@ -24,7 +24,25 @@ const JOINS: [(Choice, &str, &str); 3] = [
     (Choice::Keep, "Keep", "Only what lies in both stays"),
 ];
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, busy: bool, out: &mut Vec<Ask>) {
+/// What a join would make, shown while the thing is carried.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trial {
+    pub choice: Option<Choice>,
+    pub said: Said,
+}
+
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Said {
+    #[default]
+    Nothing,
+    UnderWay,
+    /// Triangles that the thing has made.
+    Shown(usize),
+    Wrong(String),
+}
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+    let busy = desk.joining;
     let quiet = theme::quiet(ui);
     let s = view.state;
     ui.strong("Work");
@@ -69,6 +87,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, busy: bool, out: &mut Vec<Ask>) {
         out.push(Ask::World(Command::Place(place)));
     }
     ui.add_space(4.0);
+    preview(ui, desk, out);
+    ui.add_space(4.0);
     ui.horizontal(|ui| {
         for (choice, name, tip) in JOINS {
             if ui.add_enabled(!busy, egui::Button::new(name)).on_hover_text(tip).clicked() {
@@ -82,4 +102,33 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, busy: bool, out: &mut Vec<Ask>) {
     if busy {
         ui.colored_label(quiet, "joining in the background: go on sculpting");
     }
+}
+
+fn preview(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>) {
+    let busy = desk.joining;
+    let trial = &mut desk.trial;
+    let title = trial.choice.map_or("off", |c| JOINS.iter().find(|j| j.0 == c).map_or("", |j| j.1));
+    egui::ComboBox::from_label("Preview").selected_text(title).width(110.0).show_ui(ui, |ui| {
+        ui.selectable_value(&mut trial.choice, None, "off");
+        for (choice, name, tip) in JOINS {
+            ui.selectable_value(&mut trial.choice, Some(choice), name).on_hover_text(tip);
+        }
+    });
+    let Some(choice) = trial.choice else { return };
+    let (text, wrong) = match &trial.said {
+        Said::Nothing | Said::UnderWay => ("computing ...".to_owned(), false),
+        Said::Shown(n) => (format!("{n} triangles of the thing"), false),
+        Said::Wrong(why) => (why.clone(), true),
+    };
+    let colour = if wrong { theme::alarm(ui) } else { theme::quiet(ui) };
+    ui.colored_label(colour, text);
+    ui.horizontal(|ui| {
+        if ui.add_enabled(!busy, egui::Button::new("Apply")).on_hover_text("Make it so").clicked() {
+            out.push(Ask::Join(choice));
+            trial.choice = None;
+        }
+        if ui.button("Dismiss").on_hover_text("The work as it is; the thing stays").clicked() {
+            trial.choice = None;
+        }
+    });
 }

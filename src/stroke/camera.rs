@@ -150,16 +150,22 @@ impl Camera {
         }
     }
 
+    /// The least and the largest depth before the eye that [`Camera::view_projection`] keeps.
+    pub fn depth_range(&self, radius: f32) -> (f32, f32) {
+        let far = (self.distance + radius * 2.0).max(1e-3);
+        let near = (self.distance - radius * 2.0).max(far * 1e-4);
+        if self.orthographic { (-far, far) } else { (near, far) }
+    }
+
     /// World to clip space, depth 0 to 1, near and far set about a sphere of `radius` round the target.
     pub fn view_projection(&self, radius: f32) -> Mat4 {
         let eye = self.eye();
         let view = rh::view::look_at_mat4(eye, self.target, Vec3::Y);
-        let far = (self.distance + radius * 2.0).max(1e-3);
-        let near = (self.distance - radius * 2.0).max(far * 1e-4);
+        let (near, far) = self.depth_range(radius);
         let proj = if self.orthographic {
             let h = self.half_height(self.distance);
             let w = h * self.aspect;
-            rh::proj::directx::orthographic(-w, w, -h, h, -far, far)
+            rh::proj::directx::orthographic(-w, w, -h, h, near, far)
         } else {
             rh::proj::directx::perspective(self.fov_y, self.aspect, near, far)
         };

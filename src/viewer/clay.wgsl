@@ -119,6 +119,15 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
     return vec4<f32>(colour, 1.0);
 }
 
+// What is not of the work: its own colour, and the work through it; denser towards its outline.
+@fragment
+fn ghost_fragment(in: Corner) -> @location(0) vec4<f32> {
+    let n = normalize(in.normal);
+    let view = vec3<f32>(dot(n, frame.right.xyz), dot(n, frame.up.xyz), dot(n, frame.back.xyz));
+    let edge = pow(1.0 - clamp(view.z, 0.0, 1.0), 2.0);
+    return vec4<f32>(lit(view, in.colour.rgb), mix(in.colour.a, 1.0, edge * 0.6));
+}
+
 struct LineCorner {
     @builtin(position) clip: vec4<f32>,
     @location(0) colour: vec4<f32>,

@@ -5,8 +5,9 @@ use glam::{Vec2, Vec3};
 use super::flight::Flight;
 use super::look::Map;
 use super::overlay;
+use super::pages::MapValues;
 use super::pointer::Drag;
-use super::renderer::{LineEnd, Renderer, Scene};
+use super::renderer::{Beside, LineEnd, Renderer, Scene};
 use super::window::{Open, Wiring};
 use super::work::{Done, Purpose};
 use crate::command::Command;
@@ -104,6 +105,8 @@ impl Open {
             self.renderer = Renderer::new(&self.gpu, self.config.format, samples);
             self.samples = samples;
         }
+        self.wish(&state, wiring);
+        self.ghosts(&state);
         self.shots(&state);
         let (lines, brush) = self.lines(&state);
         let view = texture.texture.create_view(&Default::default());
@@ -115,7 +118,8 @@ impl Open {
             brush,
             lines: &lines,
             look: self.desk.look,
-            values: self.values.as_ref(),
+            values: shown(&self.desk, &self.values, &self.distances),
+            beside: Beside { preview: self.preview.as_ref(), ghosts: Some(&self.ghosts) },
         };
         self.renderer.draw(&self.gpu, &mut encoder, &view, size, &scene);
         self.uploaded = self.renderer.uploaded;
@@ -125,6 +129,9 @@ impl Open {
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
         self.measure(&state, own_ms, wiring);
+        if wiring.kiosk.is_none() {
+            self.thumb(&state, now);
+        }
         for ask in asks {
             self.answer(ask, &state, wiring);
         }
@@ -154,10 +161,16 @@ impl Open {
                 Done::Joined => self.desk.joining = false,
                 Done::Used(path) => self.desk.prefs.used(path),
                 Done::Map(values, about) => {
-                    self.desk.look.scale = (about.min, about.high);
                     self.values = Some(values);
                     self.desk.walls.found = Some(about);
                 }
+                Done::Opened => self.opened = Some(wiring.clock.now_us()),
+                Done::Preview(done) => self.previewed(done),
+                Done::Distances(values, about) => {
+                    self.desk.sizes.distances = Some(about);
+                    self.distances = Some(values);
+                }
+                Done::Measured(found) => self.desk.sizes.found = Some(found),
                 Done::Chosen(Purpose::Open, path) => self.work.load(path, wiring.commands.clone()),
                 Done::Chosen(Purpose::Export, path) => {
                     self.desk.files.export = path.display().to_string();
@@ -165,9 +178,27 @@ impl Open {
                 }
             }
         }
+        // The loop takes a work that was sent a tick or two later.
+        let now = wiring.clock.now_us();
+        if self.opened.is_some_and(|since| now.saturating_sub(since) > 100_000) {
+            self.opened = None;
+            self.before = Some(state.mesh.clone());
+        }
+        if self.distances.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
+            self.distances = None;
+        }
         if self.values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
             self.values = None;
         }
+        self.desk.look.scale = match (self.desk.look.map, &self.desk.walls.found, self.desk.sizes.distances) {
+            (Map::Thickness, Some(found), _) => (found.min, found.high),
+            // Both ends as far from nothing; a work that did not change is pale all over.
+            (Map::Distance, _, Some(d)) => {
+                let most = (d.rms * 2.5).min(d.max.max(-d.min)).max(state.extent * 1e-5);
+                (-most, most)
+            }
+            _ => (0.0, 1.0),
+        };
         if self.desk.look.map == Map::Thickness {
             let wanted = (state.mesh.revision(), self.desk.walls.limit);
             if self.asked_map != Some(wanted) || self.values.is_none() && self.asked_map.is_none() {
@@ -200,6 +231,20 @@ impl Open {
             Ask::Join(choice) => {
                 self.desk.joining = true;
                 self.work.join(choice, wiring.published.clone(), wiring.commands.clone());
+            }
+            Ask::Trim(part) => {
+                self.desk.joining = true;
+                self.work.trim(part, wiring.published.clone(), wiring.commands.clone());
+            }
+            Ask::Level(finer) => {
+                self.desk.joining = true;
+                self.work.level(finer, wiring.published.clone(), wiring.commands.clone());
+            }
+            Ask::Reference => self.before = Some(state.mesh.clone()),
+            Ask::Outline(path) => {
+                if let Some(found) = &self.desk.sizes.found {
+                    self.work.outline(path, &found.outline);
+                }
             }
             Ask::Do(Action::Open) => self.work.ask(Purpose::Open),
             Ask::Do(Action::Export) => self.work.ask(Purpose::Export),
@@ -271,4 +316,13 @@ impl Open {
         }
         asks
     }
+}
+
+/// The values of the map that is shown.
+pub(super) fn shown<'a>(
+    desk: &panels::Desk,
+    thickness: &'a Option<MapValues>,
+    distances: &'a Option<MapValues>,
+) -> Option<&'a MapValues> {
+    if desk.look.map == Map::Distance { distances.as_ref() } else { thickness.as_ref() }
 }

@@ -43,6 +43,7 @@ impl Lapse {
             lines: &[],
             look: Look::default(),
             values: None,
+            beside: Default::default(),
         };
         let picture = self.painter.paint(&scene, self.size.0, self.size.1).map_err(|e| e.to_string())?;
         while self.next <= tick {

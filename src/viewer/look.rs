@@ -37,7 +37,13 @@ pub enum Map {
     Mask,
     /// Wall thickness in the mesh's unit.
     Thickness,
+    /// To another form, in the mesh's unit: negative within it, positive outside.
+    Distance,
 }
+
+/// Stops of the distance's scale, sRGB: blue within, pale where both are one, red outside.
+const DISTANCE: [[u8; 3]; 5] =
+    [[24, 62, 150], [104, 160, 214], [238, 236, 228], [228, 138, 92], [158, 28, 32]];
 
 /// Stops of the mask's scale, sRGB: free is pale, held is deep blue.
 const MASK: [[u8; 3]; 2] = [[232, 226, 214], [28, 52, 110]];
@@ -56,6 +62,15 @@ impl Map {
                     (a + (b - a) * x).round() as u8
                 })
             }
+            Map::Distance => {
+                let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
+                let at = x * (DISTANCE.len() - 1) as f32;
+                let i = (at as usize).min(DISTANCE.len() - 2);
+                std::array::from_fn(|k| {
+                    let (a, b) = (f32::from(DISTANCE[i][k]), f32::from(DISTANCE[i + 1][k]));
+                    (a + (b - a) * (at - i as f32)).round() as u8
+                })
+            }
         }
     }
 
@@ -69,6 +84,7 @@ impl Map {
             Map::None => "",
             Map::Mask => "Mask",
             Map::Thickness => "Thickness",
+            Map::Distance => "Distance",
         }
     }
 }
@@ -91,6 +107,8 @@ pub struct Look {
     pub flat: bool,
     /// How strongly hollows are darkened and ridges lightened, 0 none to 2.
     pub cavity: f32,
+    /// How strongly forms shade their own hollows and each other, 0 none to 2.
+    pub shade: f32,
     /// Edges of triangles over the clay.
     pub wireframe: bool,
     /// The floor under the work.
@@ -109,6 +127,7 @@ impl Default for Look {
             material: 0,
             flat: false,
             cavity: 1.0,
+            shade: 1.0,
             wireframe: false,
             grid: false,
             map: Map::None,
@@ -130,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_scale_runs_from_its_low_to_its_high_colour() {
-        for map in [Map::Mask, Map::Thickness] {
+        for map in [Map::Mask, Map::Thickness, Map::Distance] {
             assert_eq!(map.scale()[0], linear(map.colour(0.0, 0.0, 1.0)));
             assert_eq!(map.scale()[SCALE - 1], linear(map.colour(1.0, 0.0, 1.0)));
             assert_ne!(map.scale()[0], map.scale()[SCALE - 1]);

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 
 use crate::mesh::{Page, Snapshot};
 
@@ -15,6 +16,13 @@ pub struct Vertex {
     /// Normal and mask, 16 bits each, -1 to 1.
     normal: [i16; 4],
     colour: [u8; 4],
+}
+
+impl Vertex {
+    pub fn new(place: Vec3, normal: Vec3, mask: f32, colour: [u8; 4]) -> Vertex {
+        let n = (normal * 32767.0).to_array().map(|c| c as i16);
+        Vertex { place: place.to_array(), normal: [n[0], n[1], n[2], (mask * 32767.0) as i16], colour }
+    }
 }
 
 pub const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
@@ -187,14 +195,8 @@ impl Pages {
             self.rows.take(i, page.own(), &mut self.runs);
             for run in &self.runs {
                 self.scratch.clear();
-                self.scratch.extend(run.clone().map(|v| {
-                    let n = (page.normal(v) * 32767.0).to_array().map(|c| c as i16);
-                    Vertex {
-                        place: page.point(v).to_array(),
-                        normal: [n[0], n[1], n[2], (page.mask(v) * 32767.0) as i16],
-                        colour: page.colour(v),
-                    }
-                }));
+                let vertex = |v| Vertex::new(page.point(v), page.normal(v), page.mask(v), page.colour(v));
+                self.scratch.extend(run.clone().map(vertex));
                 let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
                 let at = (i as usize * self.slot + run.start) * size_of::<Vertex>();
                 queue.write_buffer(&self.vertices, at as u64, bytes);
@@ -249,13 +251,13 @@ impl Pages {
     }
 
     /// Draws every page whose bounds `visible` accepts; returns how many.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(&Page) -> bool) -> usize {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(u32, &Page) -> bool) -> usize {
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         self.runs(pass, &self.ranges, visible)
     }
 
     /// The edges of every page whose bounds `visible` accepts, if there are edges.
-    pub fn draw_edges(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(&Page) -> bool) {
+    pub fn draw_edges(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(u32, &Page) -> bool) {
         if let Some((edges, ranges)) = &self.edges {
             pass.set_index_buffer(edges.slice(..), wgpu::IndexFormat::Uint32);
             self.runs(pass, ranges, visible);
@@ -267,15 +269,15 @@ impl Pages {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         ranges: &[std::ops::Range<u32>],
-        visible: impl Fn(&Page) -> bool,
+        visible: impl Fn(u32, &Page) -> bool,
     ) -> usize {
         let Some(mesh) = &self.seen else { return 0 };
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_vertex_buffer(1, self.values.slice(..));
         let mut drawn = 0;
         let mut run: Option<std::ops::Range<u32>> = None;
-        for (range, page) in ranges.iter().zip(mesh.pages()) {
-            let shown = visible(page);
+        for (i, (range, page)) in ranges.iter().zip(mesh.pages()).enumerate() {
+            let shown = visible(i as u32, page);
             drawn += usize::from(shown);
             run = match run {
                 Some(r) if shown => Some(r.start..range.end),

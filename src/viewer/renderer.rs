@@ -1,11 +1,16 @@
 //! Drawing a frame: sky, clay, lines. The same for a window and for a picture.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
 use super::gpu::Gpu;
 use super::look::{Look, Map, SCALE, linear};
+use super::loose::{Loose, Triangles};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
+use super::preview::Preview;
+use super::shade::Shade;
 use crate::mesh::{Page, Snapshot};
 use crate::stroke::Camera;
 
@@ -49,7 +54,20 @@ pub struct Scene<'a> {
     pub look: Look,
     /// The map that `look` may ask for.
     pub values: Option<&'a MapValues>,
+    pub beside: Beside<'a>,
 }
+
+/// What is drawn beside the clay.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside<'a> {
+    /// In the place of the pages that it hides.
+    pub preview: Option<&'a Arc<Preview>>,
+    /// Over the clay, seen through.
+    pub ghosts: Option<&'a Triangles>,
+}
+
+/// Depth, samples where there are several a pixel, pixels.
+type Targets = (wgpu::TextureView, Option<wgpu::TextureView>, (u32, u32));
 
 #[derive(Debug)]
 pub struct Renderer {
@@ -59,11 +77,20 @@ pub struct Renderer {
     clay: wgpu::RenderPipeline,
     line: wgpu::RenderPipeline,
     edge: wgpu::RenderPipeline,
+    ghost: wgpu::RenderPipeline,
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
     samples: u32,
     format: wgpu::TextureFormat,
-    targets: Option<(wgpu::TextureView, Option<wgpu::TextureView>, (u32, u32))>,
+    targets: Option<Targets>,
+    /// Those of another size: a window's and its small pictures' take turns.
+    others: Option<Targets>,
+    /// The preview that was sent last.
+    previewed: Option<Arc<Preview>>,
+    preview: Loose,
+    ghosts: Loose,
+    /// Made when it is first asked for.
+    shade: Option<Shade>,
     /// Bytes of pages sent with the last frame, and pages that still wait.
     pub uploaded: u64,
     pub waiting: usize,
@@ -117,12 +144,13 @@ impl Renderer {
         };
         let pipeline =
             |name: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], lines: bool, depth: bool| {
+                let ghost = name == "ghost";
                 device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                     label: Some(name),
                     layout: Some(&pipeline_layout),
                     vertex: wgpu::VertexState {
                         module: &shader,
-                        entry_point: Some(&format!("{name}_vertex")),
+                        entry_point: Some(&format!("{}_vertex", if ghost { "clay" } else { name })),
                         compilation_options: Default::default(),
                         buffers,
                     },
@@ -132,11 +160,13 @@ impl Renderer {
                         } else {
                             wgpu::PrimitiveTopology::TriangleList
                         },
+                        // What is seen through shows its near side alone.
+                        cull_mode: ghost.then_some(wgpu::Face::Back),
                         ..Default::default()
                     },
                     depth_stencil: Some(wgpu::DepthStencilState {
                         format: DEPTH,
-                        depth_write_enabled: Some(depth && !lines),
+                        depth_write_enabled: Some(depth && !lines && !ghost),
                         depth_compare: Some(if depth {
                             wgpu::CompareFunction::LessEqual
                         } else {
@@ -152,7 +182,7 @@ impl Renderer {
                         compilation_options: Default::default(),
                         targets: &[Some(wgpu::ColorTargetState {
                             format,
-                            blend: lines.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                            blend: (lines || ghost).then_some(wgpu::BlendState::ALPHA_BLENDING),
                             write_mask: wgpu::ColorWrites::ALL,
                         })],
                     }),
@@ -165,6 +195,7 @@ impl Renderer {
             clay: pipeline("clay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             line: pipeline("line", &[Some(line_layout)], true, true),
             edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
+            ghost: pipeline("ghost", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             frame,
             group,
             line_ends,
@@ -172,6 +203,11 @@ impl Renderer {
             samples,
             format,
             targets: None,
+            others: None,
+            previewed: None,
+            preview: Loose::default(),
+            ghosts: Loose::default(),
+            shade: None,
             uploaded: 0,
             waiting: 0,
             drawn: (0, 0),
@@ -187,7 +223,14 @@ impl Renderer {
         if self.targets.as_ref().is_some_and(|t| t.2 == size) {
             return;
         }
-        let view = |format| {
+        std::mem::swap(&mut self.targets, &mut self.others);
+        if let Some(shade) = &mut self.shade {
+            shade.turn();
+        }
+        if self.targets.as_ref().is_some_and(|t| t.2 == size) {
+            return;
+        }
+        let view = |format, more| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("target"),
                 size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
@@ -195,12 +238,16 @@ impl Renderer {
                 sample_count: self.samples,
                 dimension: wgpu::TextureDimension::D2,
                 format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | more,
                 view_formats: &[],
             });
             texture.create_view(&Default::default())
         };
-        self.targets = Some((view(DEPTH), (self.samples > 1).then(|| view(self.format)), size));
+        let (none, read) = (wgpu::TextureUsages::empty(), wgpu::TextureUsages::TEXTURE_BINDING);
+        if let Some(shade) = &mut self.shade {
+            shade.forget();
+        }
+        self.targets = Some((view(DEPTH, read), (self.samples > 1).then(|| view(self.format, none)), size));
     }
 
     /// Draws into `target`, which has `size` pixels.
@@ -226,9 +273,9 @@ impl Renderer {
         let (right, up) = scene.camera.axes();
         let m = scene.look.material();
         let kind = match (scene.look.map, scene.values) {
-            (Map::None, _) | (Map::Thickness, None) => 0.0,
+            (Map::None, _) | (_, None) if scene.look.map != Map::Mask => 0.0,
             (Map::Mask, _) => 1.0,
-            (Map::Thickness, Some(_)) => 2.0,
+            _ => 2.0,
         };
         let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
         // The ground: a quiet dusk, or paper.
@@ -260,50 +307,107 @@ impl Renderer {
                 pages.need_edges(&gpu.device, &gpu.queue);
             }
         }
+        let preview = self.beside(gpu, scene);
+        let hidden =
+            |i: u32| preview.is_some_and(|p| p.hidden.as_ref().is_none_or(|h| h.binary_search(&i).is_ok()));
+        let shown = |i: u32, page: &Page| !hidden(i) && in_view(&matrix, page);
         let Some((depth, smooth, _)) = &self.targets else { return };
-        let (view, resolve) = match smooth {
-            Some(smooth) => (smooth, Some(target)),
-            None => (target, None),
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("clay"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: resolve,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.group, &[]);
-        pass.set_pipeline(&self.sky);
-        pass.draw(0..3, 0..1);
-        if let Some(pages) = &self.pages {
-            pass.set_pipeline(&self.clay);
-            let drawn = pages.draw(&mut pass, |page| in_view(&matrix, page));
-            self.drawn = (drawn, scene.mesh.page_count());
-            if scene.look.wireframe {
-                pass.set_pipeline(&self.edge);
-                pages.draw_edges(&mut pass, |page| in_view(&matrix, page));
+        let view = smooth.as_ref().unwrap_or(target);
+        let resolve = smooth.as_ref().map(|_| target);
+        // Over a map a little: its colours are to be read beside its scale.
+        let shade = scene.look.shade.clamp(0.0, 2.0) * if kind > 0.0 { 0.5 } else { 1.0 };
+        let shaded = shade > 0.0 && lo.cmple(hi).all();
+        {
+            // What is shaded is not finished yet: lines and the mean of its samples come after.
+            let resolve = if shaded { None } else { resolve };
+            let mut pass = begin(encoder, view, resolve, depth, (true, shaded));
+            pass.set_bind_group(0, &self.group, &[]);
+            pass.set_pipeline(&self.sky);
+            pass.draw(0..3, 0..1);
+            if let Some(pages) = &self.pages {
+                pass.set_pipeline(&self.clay);
+                let drawn = pages.draw(&mut pass, shown);
+                self.drawn = (drawn, scene.mesh.page_count());
+                if preview.is_some() {
+                    self.preview.draw(&mut pass);
+                }
+                if scene.look.wireframe {
+                    pass.set_pipeline(&self.edge);
+                    pages.draw_edges(&mut pass, shown);
+                }
+            }
+            if !shaded {
+                self.over(scene, &mut pass, lines.len() as u32);
+                return;
             }
         }
-        if !lines.is_empty() {
-            pass.set_pipeline(&self.line);
-            pass.set_vertex_buffer(0, self.line_ends.slice(..));
-            pass.draw(0..lines.len() as u32, 0..1);
+        let extent = (hi - lo).length() * 0.5;
+        let between = scene.camera.depth_range(radius);
+        let size_of = (view, depth, size);
+        let passes = self.shade.get_or_insert_with(|| Shade::new(gpu, self.format, self.samples));
+        passes.draw(gpu, encoder, size_of, scene.camera, between, (extent, shade));
+        if resolve.is_some() || !lines.is_empty() || scene.beside.ghosts.is_some() {
+            let mut pass = begin(encoder, view, resolve, depth, (false, false));
+            pass.set_bind_group(0, &self.group, &[]);
+            self.over(scene, &mut pass, lines.len() as u32);
         }
     }
+
+    /// Sends what is beside the clay and is not there yet; a preview of another work is none.
+    fn beside<'s>(&mut self, gpu: &Gpu, scene: &Scene<'s>) -> Option<&'s Arc<Preview>> {
+        if let Some(ghosts) = scene.beside.ghosts {
+            self.ghosts.keep(gpu, ghosts);
+        }
+        let preview = scene.beside.preview.filter(|p| p.pages == scene.mesh.page_count());
+        if let Some(new) = preview
+            && !self.previewed.as_ref().is_some_and(|old| Arc::ptr_eq(old, new))
+        {
+            self.preview.set(gpu, &new.vertices, &new.triangles);
+            self.previewed = Some(new.clone());
+        }
+        preview
+    }
+
+    /// What lies over the clay.
+    fn over(&self, scene: &Scene<'_>, pass: &mut wgpu::RenderPass<'_>, ends: u32) {
+        if scene.beside.ghosts.is_some() {
+            pass.set_pipeline(&self.ghost);
+            self.ghosts.draw(pass);
+        }
+        if ends > 0 {
+            pass.set_pipeline(&self.line);
+            pass.set_vertex_buffer(0, self.line_ends.slice(..));
+            pass.draw(0..ends, 0..1);
+        }
+    }
+}
+
+/// A pass over the picture and its depth; `first` clears both, `keep` leaves the depth for others to read.
+fn begin<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    view: &wgpu::TextureView,
+    resolve_target: Option<&wgpu::TextureView>,
+    depth: &wgpu::TextureView,
+    (first, keep): (bool, bool),
+) -> wgpu::RenderPass<'e> {
+    let colour = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
+    let load = if first { wgpu::LoadOp::Clear(1.0) } else { wgpu::LoadOp::Load };
+    let store = if keep { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("clay"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target,
+            ops: wgpu::Operations { load: colour, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load, store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
 }
 
 /// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is `b` times the share.

@@ -67,7 +67,8 @@ impl Open {
             brush: None,
             lines: &[],
             look: self.desk.look,
-            values: self.values.as_ref(),
+            values: super::frame::shown(&self.desk, &self.values, &self.distances),
+            beside: Default::default(),
         };
         match paint(&self.gpu, &mut self.renderer, &scene, width, height) {
             Ok(picture) => self.work.picture(path, picture, quiet),

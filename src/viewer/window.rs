@@ -6,17 +6,20 @@ use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
-use glam::Vec2;
+use egui_winit::accesskit_winit::WindowEvent as Heard;
+use glam::{DVec3, Vec2};
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, MouseScrollDelta, Touch, TouchPhase, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::keyboard::ModifiersState;
 use winit::window::{Window, WindowId};
 
 use super::flight::Flight;
 use super::gpu::{Gpu, NoViewer, instance};
+use super::loose::Triangles;
 use super::pages::MapValues;
 use super::pointer::Pointer;
+use super::preview::Preview;
 use super::remember::Remembered;
 use super::renderer::Renderer;
 use super::work::Work;
@@ -24,6 +27,9 @@ use crate::command::Command;
 use crate::daemon::Published;
 use crate::devices::queue::Sender;
 use crate::devices::{Clock, DeviceId};
+use crate::hand::{Choice, Similarity};
+use crate::mesh::Snapshot;
+use crate::panels::balls::Ball;
 use crate::panels::{Desk, timing::FrameFigures};
 use crate::stroke::Camera;
 
@@ -59,8 +65,8 @@ const FRAME: [Duration; 2] = [Duration::from_micros(16_667), Duration::from_mill
 
 /// Opens the window and runs until it is closed or `stop` is raised.
 pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
-    let events = EventLoop::new().map_err(|e| NoViewer::Window(e.to_string()))?;
-    let mut app = App { wiring, open: None, failed: None };
+    let events = EventLoop::<Told>::with_user_event().build().map_err(|e| NoViewer::Window(e.to_string()))?;
+    let mut app = App { wiring, told: events.create_proxy(), open: None, failed: None };
     events.run_app(&mut app).map_err(|e| NoViewer::Window(e.to_string()))?;
     if let Some(mut open) = app.open {
         open.remembered.keep(&open.desk);
@@ -68,11 +74,18 @@ pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
     app.failed.map_or(Ok(()), Err)
 }
 
+/// What a screen reader asks for, from its own thread.
+type Told = egui_winit::accesskit_winit::Event;
+
 struct App {
     wiring: Wiring,
+    told: EventLoopProxy<Told>,
     open: Option<Open>,
     failed: Option<NoViewer>,
 }
+
+/// What the ghosts were made from: the thing and its place, whether a join is tried, the menu.
+type GhostKey = (Option<(usize, Similarity)>, Option<Choice>, Vec<Ball>);
 
 /// An open window and all that it draws with.
 pub(super) struct Open {
@@ -101,15 +114,31 @@ pub(super) struct Open {
     pub(super) shown: Option<(u64, u64)>,
     pub(super) uploaded: u64,
     pub(super) figures: FrameFigures,
+    pub(super) wishes: super::wishes::Wishes,
+    /// The newest preview, and what was asked for, when.
+    pub(super) preview: Option<Arc<Preview>>,
+    pub(super) asked_preview: Option<((u64, Similarity, Choice), u64)>,
+    /// What distances are to; the revision, its revision and the thing's place that they were last asked for.
+    pub(super) before: Option<Snapshot>,
+    pub(super) asked_distance: Option<(u64, u64, Option<Similarity>)>,
+    pub(super) asked_sizes: Option<(u64, DVec3)>,
+    /// The newest revision, and since when.
+    pub(super) rested: (u64, u64),
+    /// When a work was opened that may not be shown yet.
+    pub(super) opened: Option<u64>,
+    pub(super) distances: Option<MapValues>,
+    pub(super) thumbs: super::thumbs::Thumbs,
+    pub(super) ghosts: Triangles,
+    pub(super) ghost_key: GhostKey,
     /// A turntable under way.
     pub(super) turning: Option<super::shots::Turntable>,
     pub(super) screenshot: bool,
 }
 
-impl ApplicationHandler for App {
+impl ApplicationHandler<Told> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_none() {
-            match Open::new(events, &self.wiring) {
+            match Open::new(events, &self.wiring, &self.told) {
                 Ok(open) => self.open = Some(open),
                 Err(e) => {
                     self.failed = Some(e);
@@ -117,6 +146,17 @@ impl ApplicationHandler for App {
                 }
             }
         }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, told: Told) {
+        let Some(open) = &mut self.open else { return };
+        let context = open.egui.egui_ctx();
+        match told.window_event {
+            Heard::InitialTreeRequested => context.enable_accesskit(),
+            Heard::ActionRequested(request) => open.egui.on_accesskit_action_request(request),
+            Heard::AccessibilityDeactivated => context.disable_accesskit(),
+        }
+        open.window.request_redraw();
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
@@ -190,9 +230,9 @@ impl ApplicationHandler for App {
 }
 
 impl Open {
-    fn new(events: &ActiveEventLoop, wiring: &Wiring) -> Result<Open, NoViewer> {
+    fn new(events: &ActiveEventLoop, wiring: &Wiring, told: &EventLoopProxy<Told>) -> Result<Open, NoViewer> {
         let no_window = |e: String| NoViewer::Window(e);
-        let mut wanted = Window::default_attributes().with_title("sculptd");
+        let mut wanted = Window::default_attributes().with_title("sculptd").with_visible(false);
         // A window manager may be absent (a kiosk): the size is set as well as the mode.
         let monitor = events.primary_monitor().or_else(|| events.available_monitors().next());
         wanted = match (wiring.full_screen, monitor) {
@@ -208,10 +248,6 @@ impl Open {
             _ => wanted.with_inner_size(winit::dpi::LogicalSize::new(1280.0, 720.0)),
         };
         let window = Arc::new(events.create_window(wanted).map_err(|e| no_window(e.to_string()))?);
-        if wiring.full_screen {
-            // Without a window manager nobody else gives it the keyboard.
-            window.focus_window();
-        }
         let instance = instance();
         let surface = instance.create_surface(window.clone()).map_err(|e| no_window(e.to_string()))?;
         let gpu = Gpu::new(instance, Some(&surface))?;
@@ -233,7 +269,15 @@ impl Open {
         let renderer = Renderer::new(&gpu, config.format, samples);
         let context = egui::Context::default();
         let scale = window.scale_factor() as f32;
-        let egui = egui_winit::State::new(context, egui::ViewportId::ROOT, &window, Some(scale), None, None);
+        let mut egui =
+            egui_winit::State::new(context, egui::ViewportId::ROOT, &window, Some(scale), None, None);
+        // A screen reader meets a window that is not shown yet, else it would miss its first state.
+        egui.init_accesskit(events, &window, told.clone());
+        window.set_visible(true);
+        if wiring.full_screen {
+            // Without a window manager nobody else gives it the keyboard.
+            window.focus_window();
+        }
         let paint = egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
         let mut camera = wiring.published.load().camera;
         camera.aspect = size.width.max(1) as f32 / size.height.max(1) as f32;
@@ -261,6 +305,18 @@ impl Open {
             shown: None,
             uploaded: 0,
             figures: FrameFigures::default(),
+            wishes: Default::default(),
+            preview: None,
+            asked_preview: None,
+            before: None,
+            asked_distance: None,
+            asked_sizes: None,
+            rested: (0, 0),
+            opened: None,
+            distances: None,
+            thumbs: Default::default(),
+            ghosts: Triangles::default(),
+            ghost_key: Default::default(),
             turning: None,
             screenshot: false,
         };

@@ -10,14 +10,19 @@ use crossbeam_channel as cc;
 use glam::Vec3;
 
 use super::pages::MapValues;
+use super::preview::Preview;
 use crate::analysis::cancel::Job;
+use crate::analysis::projection::{self, Polygon};
 use crate::analysis::thickness::live::LiveMap;
 use crate::command::{Command, NewClay};
+use crate::daemon::joiner::JoinError;
+use crate::daemon::trim::{self, Part};
 use crate::daemon::{Published, joiner, rig};
 use crate::hand::Choice;
 use crate::mesh::Snapshot;
-use crate::mesh::io::write_mesh;
+use crate::mesh::io::{write_beside, write_mesh};
 use crate::panels::analysis::{Spot, Thickness};
+use crate::panels::measure::{Distances, Measured};
 
 /// What slow work says when it is done.
 #[derive(Debug)]
@@ -29,6 +34,11 @@ pub enum Done {
     Map(MapValues, Box<Thickness>),
     /// A Boolean has ended, well or not.
     Joined,
+    /// A work was opened: distances are to it from now on.
+    Opened,
+    Preview(Result<Option<Arc<Preview>>, String>),
+    Distances(MapValues, Distances),
+    Measured(Box<Measured>),
     /// A dialog's answer.
     Chosen(Purpose, PathBuf),
 }
@@ -84,6 +94,7 @@ impl Work {
                     // Waits where the loop has many commands: this thread may.
                     match commands.send(Command::Replace(new)) {
                         Ok(()) => {
+                            let _ = say.send(Done::Opened);
                             let _ = say.send(Done::Used(path));
                             Done::Said(text, false)
                         }
@@ -133,6 +144,57 @@ impl Work {
             let _ = say.send(Done::Said(text, wrong));
             let _ = say.send(Done::Joined);
         });
+    }
+
+    /// Sends the commands of what changes the whole work, and says how it went.
+    fn change(
+        &self,
+        name: &'static str,
+        commands: cc::Sender<Command>,
+        of: impl FnOnce() -> Result<(Vec<Command>, String), JoinError> + Send + 'static,
+    ) {
+        let say = self.say.clone();
+        thread(name, move || {
+            let (text, wrong) = match of() {
+                Ok((all, text)) => match all.into_iter().try_for_each(|c| commands.send(c)) {
+                    Ok(()) => (text, false),
+                    Err(_) => (JoinError::Ended.to_string(), true),
+                },
+                Err(e) => (e.to_string(), true),
+            };
+            let _ = say.send(Done::Said(text, wrong));
+            let _ = say.send(Done::Joined);
+        });
+    }
+
+    /// Cuts off what is seen in a part of the view.
+    pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+        self.change("sculptd-trim", commands, move || Ok((trim::at_rest(&shown, &part)?, "Trimmed".into())));
+    }
+
+    /// The work one level finer or coarser.
+    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+        self.change("sculptd-level", commands, move || {
+            let (command, (at, of)) = joiner::level(&shown, finer)?;
+            Ok((vec![command], format!("Level {} of {of}", at + 1)))
+        });
+    }
+
+    /// Writes the shadow's outline.
+    pub fn outline(&self, path: PathBuf, outline: &[Polygon]) {
+        let (say, drawing) = (self.say.clone(), projection::svg(outline));
+        thread("sculptd-outline", move || {
+            let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {
+                Ok(()) => (format!("Saved {}", path.display()), false),
+                Err(e) => (format!("{}: {e}", path.display()), true),
+            };
+            let _ = say.send(Done::Said(text, wrong));
+        });
+    }
+
+    /// For threads that follow the work.
+    pub fn said(&self) -> cc::Sender<Done> {
+        self.say.clone()
     }
 
     /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where there is no desktop.

@@ -80,6 +80,21 @@ impl Cut {
         self.seen.len()
     }
 
+    /// Page and index of each triangle that goes.
+    pub fn removed(&self) -> &[(u32, u32)] {
+        &self.removed
+    }
+
+    /// The triangles that come.
+    pub fn added(&self) -> &[[Corner; 3]] {
+        &self.added
+    }
+
+    /// The vertices that come with them.
+    pub fn new_vertices(&self) -> &[NewVertex] {
+        &self.new
+    }
+
     /// Whether it can be made in this clay: it fits, and the pages around can hold the result. Costs about as much as making it.
     pub fn can_be_made(&self, clay: &Snapshot) -> bool {
         self.fits(clay) && super::splice::remake(clay, self).is_some()

@@ -5,12 +5,18 @@
 use egui::epaint::{ClippedShape, Shape};
 use egui::{Color32, Rect};
 use egui_kittest::Harness;
+use sculptd::command::Command;
+use sculptd::hand::Choice;
 use sculptd::panels::Tab;
+use sculptd::panels::measure::Distances;
+use sculptd::panels::scene::Said;
+use sculptd::viewer::look::Map;
 
 use super::panels::{State, show, state};
 
 const SCREENS: [(f32, f32); 3] = [(1280.0, 720.0), (1920.0, 1080.0), (3840.0, 2160.0)];
-const TABS: [Tab; 7] = [Tab::Look, Tab::Scene, Tab::Walls, Tab::Files, Tab::Devices, Tab::Loop, Tab::More];
+const TABS: [Tab; 8] =
+    [Tab::Look, Tab::Scene, Tab::Walls, Tab::Measure, Tab::Files, Tab::Devices, Tab::Loop, Tab::More];
 
 /// A piece of text as it is painted.
 #[derive(Debug)]
@@ -95,7 +101,7 @@ fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<Str
         }
         let ratio = contrast(t.colour, t.ground);
         // A button that cannot be pressed says so by being faint (WCAG 2 asks nothing of it).
-        if !(disabled_ok && ["Undo", "Redo", "Open"].contains(&t.what.as_str())) {
+        if !(disabled_ok && ["Undo", "Redo", "Open", "Coarser", "to the thing"].contains(&t.what.as_str())) {
             least = least.min(ratio);
             if ratio < 4.5 {
                 wrong.push(format!("'{}' has {ratio:.2}:1, {:?} on {:?}", t.what, t.colour, t.ground));
@@ -112,6 +118,35 @@ fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<Str
     (wrong, least)
 }
 
+/// A page with everything that it can show.
+fn fill(s: &mut State, tab: Tab) {
+    let mut world = super::world(2_000);
+    match tab {
+        Tab::Scene => {
+            let plain = sculptd::mesh::shapes::sphere_of_about(200);
+            world.step(1, &[], &[Command::TakeUp(std::sync::Arc::new(plain))]);
+            s.published = super::published(&mut world);
+            s.desk.trial.choice = Some(Choice::Carve);
+            s.desk.trial.said = Said::Wrong("B is open: 1234 edges lack a partner; mend it first".into());
+        }
+        Tab::Measure => {
+            let found =
+                sculptd::viewer::field::measure(&s.published.mesh, glam::DVec3::NEG_X, &Default::default())
+                    .expect("not cancelled");
+            s.desk.sizes.found = Some(Box::new(found));
+            s.desk.look.map = Map::Distance;
+            s.desk.look.scale = (-123.25, 123.25);
+            s.desk.sizes.distances = Some(Distances { min: -123.25, max: 99.5, rms: 0.1, known: (50, 100) });
+        }
+        Tab::Look => {
+            s.published.hands = Some(Default::default());
+            s.published.menu = Some((1, 0.4));
+            s.published.camera.distance = 9.0;
+        }
+        _ => {}
+    }
+}
+
 #[test]
 fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
     let (mut table, mut bad) = (Vec::new(), Vec::new());
@@ -126,6 +161,7 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                         "A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: connected"
                             .into(),
                     ];
+                    fill(&mut s, tab);
                     s.published.undo_steps = 4;
                     s.published.redo_steps = 2;
                     let mut harness = Harness::builder()

@@ -3,10 +3,18 @@
 use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use glam::{DVec2, DVec3};
+use sculptd::analysis::projection::Polygon;
 use sculptd::brush::BrushKind;
 use sculptd::command::Command;
 use sculptd::daemon::Published;
+use sculptd::daemon::trim::Part;
+use sculptd::hand::Choice;
 use sculptd::panels::action::Action;
+use sculptd::panels::history::Thumb;
+use sculptd::panels::measure::{Distances, Measured};
+use sculptd::panels::scene::Said;
+use sculptd::panels::trim::{Shape, Trim};
 use sculptd::panels::{Ask, Desk, Tab, View, all, timing::FrameFigures};
 use sculptd::viewer::look::Map;
 
@@ -265,4 +273,162 @@ fn the_cube_looks_along_an_axis() {
     h.run_steps(2);
     let Some(Ask::Camera(c)) = h.state().asked.last() else { panic!("{:?}", h.state().asked) };
     assert_eq!((c.yaw, c.pitch), (0.0, 0.0));
+}
+
+#[test]
+fn a_join_is_tried_then_applied_or_dismissed() {
+    let mut world = super::world(2_000);
+    let take = Command::TakeUp(std::sync::Arc::new(sculptd::mesh::shapes::sphere_of_about(200)));
+    world.step(1, &[], std::slice::from_ref(&take));
+    let mut h = harness(Tab::Scene);
+    h.state_mut().published = super::published(&mut world);
+    h.run_steps(2);
+    assert!(h.query_by_label("Apply").is_none(), "nothing is tried yet");
+    h.get_by_role_and_label(Role::ComboBox, "Preview").click();
+    h.run_steps(3);
+    let cut = h.get_all_by_label("Cut").last().expect("a choice");
+    cut.click();
+    h.run_steps(3);
+    assert_eq!(h.state().desk.trial.choice, Some(Choice::Carve));
+    h.state_mut().desk.trial.said = Said::Shown(321);
+    h.run_steps(2);
+    assert!(h.query_by_label("321 triangles of the thing").is_some());
+    h.state_mut().desk.trial.said = Said::Wrong("B is open: 3 edges lack a partner; mend it first".into());
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("B is open").is_some());
+    h.get_by_label("Dismiss").click();
+    h.run_steps(2);
+    assert_eq!(h.state().desk.trial.choice, None);
+    assert!(h.state().asked.is_empty());
+    h.state_mut().desk.trial.choice = Some(Choice::Add);
+    h.run_steps(2);
+    h.get_by_label("Apply").click();
+    h.run_steps(2);
+    assert!(matches!(h.state().asked[..], [Ask::Join(Choice::Add)]), "{:?}", h.state().asked);
+}
+
+#[test]
+fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
+    let mut h = harness(Tab::Scene);
+    assert!(h.query_by_label_contains("level 1 of 1").is_some());
+    h.get_by_label("Coarser").click();
+    h.run_steps(2);
+    assert!(h.state().asked.is_empty(), "there is no coarser one");
+    h.get_by_label("Finer").click();
+    h.run_steps(2);
+    assert!(matches!(h.state().asked[..], [Ask::Level(true)]), "{:?}", h.state().asked);
+    h.state_mut().asked.clear();
+    // The solid "Box" stands above the trim's.
+    h.get_all_by_label("Box").last().expect("a button").click();
+    h.run_steps(3);
+    assert!(h.state().desk.trim.is_some());
+    h.drag_at(egui::pos2(480.0, 180.0));
+    h.run_steps(2);
+    h.hover_at(egui::pos2(640.0, 360.0));
+    h.run_steps(2);
+    h.drop_at(egui::pos2(640.0, 360.0));
+    h.run_steps(3);
+    let [Ask::Trim(Part::Box(part))] = h.state().asked[..] else { panic!("{:?}", h.state().asked) };
+    let want = [480.0 / 1280.0, 0.25, 0.5, 0.5];
+    assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-3), "{part:?}");
+    assert!(h.state().desk.trim.is_none());
+    // Escape leaves the work as it is.
+    h.state_mut().desk.trim = Some(Trim { shape: Shape::Line, from: None });
+    h.run_steps(2);
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    assert!(h.state().desk.trim.is_none());
+}
+
+#[test]
+fn sizes_are_told_with_their_units_and_the_outline_is_written() {
+    let mut h = harness(Tab::Measure);
+    assert!(h.query_by_label_contains("Measured when the work rests").is_some());
+    let ring = vec![DVec2::ZERO, DVec2::new(3.0, 0.0), DVec2::new(3.0, 2.0), DVec2::ZERO];
+    h.state_mut().desk.sizes.found = Some(Box::new(Measured {
+        revision: h.state().published.mesh.revision(),
+        volume: 4.18879,
+        area: 12.56637,
+        dimensions: [2.0, 3.0, 4.0],
+        projected: [3.14, 3.15, 3.16],
+        direction: DVec3::NEG_Z,
+        shadow: 3.0,
+        outline: vec![Polygon { outer: ring, holes: vec![] }],
+    }));
+    h.run_steps(2);
+    assert!(h.query_by_label("4.1888 mm³").is_some());
+    assert!(h.query_by_label("12.5664 mm²").is_some());
+    assert!(h.query_by_label_contains("3.0000 x 2.0000 mm, 0 holes").is_some());
+    assert!(h.query_by_label("Outline of the shadow").is_some());
+    h.get_by_label("shadow along x").click();
+    h.run_steps(2);
+    assert_eq!(h.state().desk.sizes.direction, DVec3::NEG_X);
+    h.get_by_label("From here").click();
+    h.run_steps(2);
+    let back = h.state().published.camera.backward().as_dvec3();
+    assert!((h.state().desk.sizes.direction + back).length() < 1e-6);
+    h.get_by_label("SVG").click();
+    h.run_steps(2);
+    let asked = &h.state().asked;
+    assert!(matches!(&asked[..], [Ask::Outline(p)] if p.ends_with("outline.svg")), "{asked:?}");
+}
+
+#[test]
+fn distances_have_a_map_a_legend_and_a_reference() {
+    let mut h = harness(Tab::Measure);
+    h.get_by_label("Live distance map").click();
+    h.run_steps(2);
+    assert_eq!(h.state().desk.look.map, Map::Distance);
+    h.state_mut().desk.look.scale = (-0.25, 0.25);
+    h.state_mut().desk.sizes.distances =
+        Some(Distances { min: -0.125, max: 0.5, rms: 0.1, known: (50, 100) });
+    h.run_steps(2);
+    assert!(h.query_by_label("-0.1250 mm").is_some());
+    assert!(h.query_by_label("+0.5000 mm").is_some());
+    assert!(h.query_by_label("50 %").is_some());
+    let shown = format!("{:?}", h.output().shapes);
+    assert!(shown.contains("+0.250 mm") && shown.contains("-0.250 mm"), "the legend has its ends");
+    h.get_by_label("Compare with now").click();
+    h.run_steps(2);
+    assert!(matches!(h.state().asked[..], [Ask::Reference]), "{:?}", h.state().asked);
+}
+
+#[test]
+fn the_hands_menu_has_its_words_at_its_balls() {
+    let mut h = harness(Tab::Look);
+    assert!(h.query_by_label("cylinder").is_none(), "no hands, no menu");
+    let s = h.state_mut();
+    s.published.hands = Some(sculptd::devices::Hands::default());
+    s.published.menu = Some((1, 0.4));
+    // Seen from the front, with the work's volume wholly in view.
+    s.published.camera.distance = 9.0;
+    (s.published.camera.yaw, s.published.camera.pitch) = (0.0, 0.0);
+    h.run_steps(2);
+    for choice in Choice::EMPTY {
+        assert!(h.query_by_label(choice.label()).is_some(), "{}", choice.label());
+    }
+    let balls = sculptd::panels::balls::balls(&h.state().published);
+    assert_eq!(balls.iter().map(|b| b.ring).collect::<Vec<_>>(), [None, Some(0.4), None, None, None]);
+    assert!(balls.windows(2).all(|b| b[1].place.y > b[0].place.y), "one over the other");
+}
+
+#[test]
+fn a_step_is_gone_to_by_its_picture() {
+    let mut h = harness(Tab::Look);
+    let image = egui::ColorImage::filled([8, 5], egui::Color32::from_rgb(120, 60, 40));
+    let texture = h.ctx.load_texture("thumb", image, Default::default());
+    let s = h.state_mut();
+    (s.published.undo_steps, s.published.redo_steps) = (4, 2);
+    s.desk.history = (0..=8).map(|step| Thumb { step, mark: 0, texture: texture.clone() }).collect();
+    h.run_steps(2);
+    assert!(h.query_by_label("After step 7").is_none(), "there is no such step any more");
+    h.get_by_label("After step 1").click();
+    h.run_steps(2);
+    let undone = |a: &Ask| matches!(a, Ask::World(Command::Undo));
+    assert!(h.state().asked.len() == 3 && h.state().asked.iter().all(undone), "{:?}", h.state().asked);
+    h.state_mut().asked.clear();
+    h.get_by_label("After step 6").click();
+    h.run_steps(2);
+    let redone = |a: &Ask| matches!(a, Ask::World(Command::Redo));
+    assert!(h.state().asked.len() == 2 && h.state().asked.iter().all(redone), "{:?}", h.state().asked);
 }

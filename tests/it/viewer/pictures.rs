@@ -51,8 +51,15 @@ fn the_clay_is_drawn_with_every_material_and_differently() {
     for material in 0..MATERIALS.len() {
         for flat in [false, true] {
             let look = Look { material, flat, wireframe: flat, ..Look::default() };
-            let scene =
-                Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
+            let scene = Scene {
+                mesh: &snapshot,
+                camera: &camera,
+                brush: None,
+                lines: &[],
+                look,
+                values: None,
+                beside: Default::default(),
+            };
             let picture = painter.paint(&scene, 160, 160).expect("a picture");
             let middle = picture.get_pixel(80, 80).0;
             // The ball fills the middle; the corners are the ground.
@@ -75,8 +82,15 @@ fn a_map_paints_each_vertex_by_its_own_value() {
     let pages = snapshot.pages().map(|p| (0..p.own()).map(|v| p.point(v).y).collect()).collect();
     let values = MapValues { pages };
     let look = Look { map: Map::Thickness, scale: (-1.0, 1.0), cavity: 0.0, ..Look::default() };
-    let scene =
-        Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: Some(&values) };
+    let scene = Scene {
+        mesh: &snapshot,
+        camera: &camera,
+        brush: None,
+        lines: &[],
+        look,
+        values: Some(&values),
+        beside: Default::default(),
+    };
     let picture = painter.paint(&scene, 200, 200).expect("a picture");
     let (top, bottom) = (picture.get_pixel(100, 60).0, picture.get_pixel(100, 140).0);
     // The scale runs from dark red to pale yellow.
@@ -93,7 +107,15 @@ fn only_changed_rows_are_sent_and_the_picture_is_right_afterwards() {
     let draw = |painter: &mut Painter, mesh: &mut Mesh| {
         let snapshot = mesh.snapshot();
         let look = Look::default();
-        let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
+        let scene = Scene {
+            mesh: &snapshot,
+            camera: &camera,
+            brush: None,
+            lines: &[],
+            look,
+            values: None,
+            beside: Default::default(),
+        };
         (painter.paint(&scene, 128, 128).expect("a picture"), painter.renderer().uploaded)
     };
     let before = mesh.snapshot();
@@ -153,7 +175,15 @@ fn an_idle_frame_of_a_million_triangles_costs_little() {
     for _ in 0..12 {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let look = Look::default();
-        let scene = Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
+        let scene = Scene {
+            mesh: &snapshot,
+            camera: &camera,
+            brush: None,
+            lines: &[],
+            look,
+            values: None,
+            beside: Default::default(),
+        };
         let begun = clock.now_ns();
         renderer.draw(gpu, &mut encoder, &target, (64, 64), &scene);
         times.push((clock.now_ns() - begun) as f64 / 1e6);
@@ -170,7 +200,15 @@ fn an_idle_frame_of_a_million_triangles_costs_little() {
     // Looking away leaves all of it out.
     let away = Camera { target: Vec3::new(0.0, 50.0, 0.0), distance: 1.0, ..camera };
     let look = Look::default();
-    let scene = Scene { mesh: &snapshot, camera: &away, brush: None, lines: &[], look, values: None };
+    let scene = Scene {
+        mesh: &snapshot,
+        camera: &away,
+        brush: None,
+        lines: &[],
+        look,
+        values: None,
+        beside: Default::default(),
+    };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     renderer.draw(gpu, &mut encoder, &target, (64, 64), &scene);
     assert_eq!(renderer.drawn.0, 0);
@@ -209,8 +247,15 @@ fn large_works_are_drawn_at_interactive_rates() {
             dab(&mut mesh, 0.05);
             let snapshot = mesh.snapshot();
             let look = Look::default();
-            let scene =
-                Scene { mesh: &snapshot, camera: &camera, brush: None, lines: &[], look, values: None };
+            let scene = Scene {
+                mesh: &snapshot,
+                camera: &camera,
+                brush: None,
+                lines: &[],
+                look,
+                values: None,
+                beside: Default::default(),
+            };
             let begun = clock.now_ns();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             renderer.draw(gpu, &mut encoder, &target, (1920, 1080), &scene);
