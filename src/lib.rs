@@ -38,6 +38,7 @@
 //! | workers | [`mesh::Workers`] | parts of a large dab | the tick thread |
 //! | one a tablet, one a serial port, one a tracker | the adaptors in `devices` | read, parse, push | its device |
 //! | `sculptd-join` | [`daemon::joiner`] | Booleans of the work with the thing in the hands, sent back as commands | a wish |
+//! | `sculptd-preview`, `-distance`, `-thickness`, `-measure` | `viewer::wishes`, `viewer::work` | follow the newest snapshot for the window | a wish; a newer one replaces it |
 //! | journal | [`daemon::session`] | writes samples and commands in groups | the tick thread's data, the disk |
 //! | `sculptd-drop` | [`daemon::live`] | frees what was replaced | the tick thread's leavings |
 //!

@@ -1,7 +1,7 @@
 //! The words of the hands' menu, at its balls, and the ring that closes while a fingertip dwells in one. The balls themselves
 //! stand in the world.
 
-use egui::{Align2, Color32, FontId, Rect, Stroke, pos2, vec2};
+use egui::{Color32, FontId, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use super::View;
@@ -45,13 +45,12 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             continue;
         };
         let reach = (side - at).length().max((above - at).length());
-        let word = pos2(at.x, at.y + reach + 10.0);
-        if !free.contains(at) || !free.contains(word) {
+        if !free.contains(at) {
             continue;
         }
-        let area = egui::Area::new(egui::Id::unique(("ball", ball.choice.label())))
-            .fixed_pos(at)
-            .interactable(false);
+        let word = pos2(at.x, at.y + reach + 10.0);
+        let id = egui::Id::unique(("ball", ball.choice.label()));
+        let area = egui::Area::new(id).fixed_pos(at).interactable(false).constrain(false);
         area.show(ctx, |ui| {
             let v = ui.visuals();
             let (text, ground) = match ball.ring {
@@ -60,10 +59,16 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             };
             let painter = ui.painter().clone().with_clip_rect(free);
             let font = FontId::proportional(13.0);
-            let galley = painter.layout_no_wrap(ball.choice.label().to_owned(), font, text);
-            let rect = Align2::CENTER_CENTER.anchor_size(word, galley.size());
+            let size = painter.layout_no_wrap(ball.choice.label().to_owned(), font.clone(), text).size();
+            // Wholly in view where the ball is at the side.
+            let room = free.shrink2(size * 0.5 + vec2(8.0, 4.0));
+            if !room.is_positive() {
+                return;
+            }
+            let rect = Rect::from_center_size(room.clamp(word), size);
             painter.rect_filled(rect.expand2(vec2(6.0, 2.0)), 6.0, ground);
-            painter.galley(rect.min, galley, text);
+            let label = egui::RichText::new(ball.choice.label()).font(font).color(text);
+            ui.put(rect, egui::Label::new(label).selectable(false).extend());
             if let Some(ring) = ball.ring {
                 let corner = |k: usize| {
                     let turn = k as f32 / 48.0 * std::f32::consts::TAU;
@@ -72,9 +77,6 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
                 let arc = (0..=(ring * 48.0).round() as usize).map(corner).collect();
                 painter.add(egui::Shape::line(arc, Stroke::new(3.0, Color32::from_rgb(255, 206, 110))));
             }
-            // A word is a label for who cannot see it.
-            let response = ui.interact(rect, ui.scope_id().with(ball.choice.label()), egui::Sense::hover());
-            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, ball.choice.label()));
         });
     }
 }

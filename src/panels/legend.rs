@@ -29,6 +29,7 @@ pub fn ui(ctx: &egui::Context, desk: &Desk, free: Rect) {
                 let x = i as f32 / 2.0;
                 let value = low + (high - low) * x;
                 let text = match map {
+                    Map::Distance if i == 1 => format!("0{unit}"),
                     Map::Distance => format!("{value:+.3}{unit}"),
                     _ => format!("{value:.2}{unit}"),
                 };

@@ -287,6 +287,9 @@ pub fn act(action: Action, ctx: &egui::Context, view: &View<'_>, desk: &mut Desk
             let shape = if action == Action::TrimBox { trim::Shape::Box } else { trim::Shape::Line };
             desk.trim = Some(trim::Trim { shape, from: None });
         }
+        Action::TryAdd => desk.trial.turn(Choice::Add),
+        Action::TryCut => desk.trial.turn(Choice::Carve),
+        Action::TryKeep => desk.trial.turn(Choice::Keep),
         Action::Finer => out.push(Ask::Level(true)),
         Action::Coarser => out.push(Ask::Level(false)),
         Action::Mask => toggle(&mut desk.look.map, Map::Mask),

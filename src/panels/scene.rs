@@ -31,6 +31,13 @@ pub struct Trial {
     pub said: Said,
 }
 
+impl Trial {
+    /// Tries this, or no more.
+    pub fn turn(&mut self, choice: Choice) {
+        self.choice = (self.choice != Some(choice)).then_some(choice);
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Said {
     #[default]

@@ -194,7 +194,7 @@ impl Open {
             (Map::Thickness, Some(found), _) => (found.min, found.high),
             // Both ends as far from nothing; a work that did not change is pale all over.
             (Map::Distance, _, Some(d)) => {
-                let most = (d.rms * 2.5).min(d.max.max(-d.min)).max(state.extent * 1e-5);
+                let most = d.max.max(-d.min).max(state.extent * 1e-5);
                 (-most, most)
             }
             _ => (0.0, 1.0),
@@ -277,7 +277,10 @@ impl Open {
         let desk = &mut self.desk;
         let context = self.egui.egui_ctx().clone();
         let out = context.run_ui(input, |ui| match &wiring.kiosk {
-            Some(screen) => panels::kiosk::ui(ui, &view, screen, desk, &mut asks),
+            Some(screen) => {
+                panels::kiosk::ui(ui, &view, screen, desk, &mut asks);
+                panels::balls::ui(ui.ctx(), &view, ui.ctx().content_rect());
+            }
             None => panels::all(ui, &view, desk, &mut asks),
         });
         self.egui.handle_platform_output(&self.window, out.platform_output);

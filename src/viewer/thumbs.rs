@@ -17,6 +17,8 @@ const SIZE: (u32, u32) = (128, 80);
 const MOST_ON_A_PROCESSOR: usize = 1_500_000;
 /// The work rests once it has not changed for so long.
 const REST_US: u64 = 150_000;
+/// A pen does not stand still for so long.
+const LONG_REST_US: u64 = 2_000_000;
 
 #[derive(Debug)]
 struct Pending {
@@ -47,15 +49,17 @@ impl Open {
     pub(super) fn thumb(&mut self, state: &Published, now: u64) {
         self.fetch();
         let revision = state.mesh.revision();
-        let rests = now.saturating_sub(self.rested.1) > REST_US;
-        let touched = state.pens.iter().flatten().any(|(_, p)| p.pressure > 0.0);
+        let resting_us = now.saturating_sub(self.rested.1);
         let large = self.gpu.software && state.mesh.triangle_count() > MOST_ON_A_PROCESSOR;
         let t = &mut self.thumbs;
-        if t.pending.is_some() || t.seen == Some(revision) || !rests || touched || large {
+        let (step, ahead) = (state.undo_steps, state.redo_steps);
+        // Other clay after as many steps: a stroke that is not done yet, or another work.
+        let known = t.steps == (step, ahead) && self.desk.history.iter().any(|k| k.step == step);
+        let rests = resting_us > if known { LONG_REST_US } else { REST_US };
+        if t.pending.is_some() || t.seen == Some(revision) || !rests || large {
             return;
         }
         t.seen = Some(revision);
-        let (step, ahead) = (state.undo_steps, state.redo_steps);
         let (before, before_ahead) = std::mem::replace(&mut t.steps, (step, ahead));
         let mark = mark(&state.mesh);
         let kept = &mut self.desk.history;
@@ -97,7 +101,11 @@ impl Open {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let camera = Camera { aspect: SIZE.0 as f32 / SIZE.1 as f32, ..self.camera };
+        let mut camera = Camera { aspect: SIZE.0 as f32 / SIZE.1 as f32, ..self.camera };
+        let (lo, hi) = state.mesh.bounds();
+        if lo.cmple(hi).all() {
+            camera.frame(lo, hi);
+        }
         let look = Look { map: Map::None, wireframe: false, grid: false, shade: 0.0, ..self.desk.look };
         let scene = Scene {
             mesh: &state.mesh,

@@ -281,6 +281,55 @@ fn the_first_minutes_in_a_real_window() {
     assert_eq!(read.mesh.triangulate().0.triangles.len() as u64, s.figure("triangles"));
 }
 
+/// Types an action's name into the search and takes the first that is found.
+fn act(s: &Stage, name: &str) {
+    s.drive(&["key", "ctrl+k"]);
+    pause(300);
+    s.drive(&["type", "--delay", "40", name]);
+    pause(300);
+    s.drive(&["key", "Return"]);
+}
+
+#[test]
+fn what_would_come_is_seen_before_it_is_made() {
+    let Some(mut s) = Stage::open(&[]) else { return };
+    let (ball, tool) = (s.dir.path().join("ball.obj"), s.dir.path().join("tool.obj"));
+    write_mesh(&ball, &shapes::sphere_of_about(20_000).to_poly()).expect("written");
+    write_mesh(&tool, &shapes::sphere_of_about(2_000).to_poly()).expect("written");
+    let begun = s.figure("vertices");
+    s.seen("a1-start");
+    s.ask("load", &json!({ "path": ball }));
+    s.until("the ball is there", |s| s.figure("vertices") != begun);
+    s.drive(&["key", "Home"]);
+    s.ask("take-up", &json!({ "path": tool }));
+    s.seen("a2-thing");
+    let (triangles, hash) = (s.figure("triangles"), s.ask("hash", &Value::Null)["hash"].clone());
+    act(&s, "try to cut");
+    s.seen("a3-preview");
+    assert_eq!(s.ask("hash", &Value::Null)["hash"], hash, "a preview is of the window alone");
+    act(&s, "try to cut");
+    s.seen("a4-dismissed");
+    s.ask("join", &json!({ "operation": "carve" }));
+    s.until("it is cut", |s| s.figure("triangles") != triangles);
+    s.seen("a5-cut");
+    // Distances are to the work as it was opened: where it was cut it lies within.
+    s.drive(&["key", "shift+d"]);
+    s.seen("a6-distance");
+    s.drive(&["key", "shift+d"]);
+    s.seen("a7-clay");
+    let cut = s.figure("triangles");
+    act(&s, "trim by a box");
+    s.drag((-150, 60), (150, 250));
+    s.until("it is trimmed", |s| s.figure("triangles") != cut);
+    s.seen("a8-trimmed");
+    let trimmed = s.figure("triangles");
+    act(&s, "finer");
+    s.until("it is finer", |s| s.figure("triangles") == trimmed * 4);
+    s.seen("a9-finer");
+    act(&s, "coarser");
+    s.until("it is coarser", |s| s.figure("triangles") == trimmed);
+}
+
 #[test]
 fn the_installation_s_screen() {
     let dir = tempfile::tempdir().expect("a folder");
