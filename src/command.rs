@@ -43,6 +43,8 @@ pub enum Command {
     Jump(Box<Jump>),
     /// The session was opened again: what could be taken back or done again is in the file alone.
     Reopened,
+    /// As [`Command::Replace`], with a mask for each vertex: what made the new work keeps what was protected so.
+    Remake(NewClay, Arc<Vec<f32>>),
 }
 
 /// To another place of the history. What it needs is in the session file, under the names given here, so that a replay finds

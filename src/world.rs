@@ -18,7 +18,7 @@ use self::clay::{Clay, Stroke};
 pub use self::saved::{BadState, Deed, Moment, Saved, Side};
 use crate::brush::mask_all::MaskAll;
 use crate::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
-use crate::command::Command;
+use crate::command::{Command, NewClay};
 use crate::devices::{Body, DeviceId, Hands, Sample};
 use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
 use crate::mesh::{Kernel, Mesh, PolyMesh, Reach, TriMesh, Workers, shapes};
@@ -247,32 +247,34 @@ impl World {
                     let _ = answer.try_send(made);
                 }
             }
-            Command::Replace(new) => {
-                self.lift_all();
-                let built = new.take().or_else(|| Mesh::build(&new.plain, &Default::default()).ok());
-                if let Some(mut mesh) = built {
-                    mesh.set_undo_bytes(self.options.undo_bytes);
-                    mesh.set_levels(new.levels.clone());
-                    self.lineages += 1;
-                    mesh.set_lineage(self.lineages);
-                    let World { works, retired, mesh: now, options, .. } = self;
-                    if new.keep_camera {
-                        works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));
-                    } else {
-                        works.forget(|m| retired.push(m));
-                        retired.push(std::mem::replace(now, mesh));
-                        self.measure();
-                        self.frame();
-                    }
-                    self.note(Deed::Replace);
-                }
-            }
+            Command::Replace(new) => self.replace(new, &[]),
+            Command::Remake(new, masks) => self.replace(new, masks),
             Command::Jump(jump) => self.jump(jump),
             Command::Reopened => {
                 self.lift_all();
                 self.forget_steps();
             }
         }
+    }
+
+    fn replace(&mut self, new: &NewClay, masks: &[f32]) {
+        self.lift_all();
+        let build = || Mesh::build_masked(&new.plain, masks, &Default::default()).ok();
+        let Some(mut mesh) = new.take().or_else(build) else { return };
+        mesh.set_undo_bytes(self.options.undo_bytes);
+        mesh.set_levels(new.levels.clone());
+        self.lineages += 1;
+        mesh.set_lineage(self.lineages);
+        let World { works, retired, mesh: now, options, .. } = self;
+        if new.keep_camera {
+            works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));
+        } else {
+            works.forget(|m| retired.push(m));
+            retired.push(std::mem::replace(now, mesh));
+            self.measure();
+            self.frame();
+        }
+        self.note(Deed::Replace);
     }
 
     /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must see the strokes ended.

@@ -71,15 +71,23 @@ pub fn join(
     {
         return Ok(vec![Command::Cut(Carving { cut: Arc::new(cut), put_down: held, answer: None })]);
     }
+    let masks = work.masks();
     let work = work.to_tri().to_poly();
+    job.check().map_err(boolean::Error::from)?;
     let (solids, _) = boolean::compute([&work, tool], &[operation], &options, job, || 0.0)?;
     let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
     if solid.mesh.face_count() == 0 {
         return Err(JoinError::Nothing);
     }
     let plain: TriMesh = solid.mesh.triangulate().0;
-    let built = Mesh::build(&plain, job).map_err(|e| JoinError::Build(e.to_string()))?;
-    let mut out = vec![Command::Replace(NewClay::new(Arc::new(plain), built, true))];
+    let masks = masks.map(|m| boolean::mixed(&solid, &work, &m));
+    let built = Mesh::build_masked(&plain, masks.as_deref().unwrap_or(&[]), job);
+    let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
+    let new = NewClay::new(Arc::new(plain), built, true);
+    let mut out = vec![match masks {
+        Some(masks) => Command::Remake(new, Arc::new(masks)),
+        None => Command::Replace(new),
+    }];
     out.extend(held.then_some(Command::PutDown));
     Ok(out)
 }
@@ -199,7 +207,9 @@ pub fn carry_out(
         }
         if shown.load().mesh.revision() == before.mesh.revision() {
             let pages = done.iter().find_map(|c| match c {
-                Command::Replace(new) => Some(new.plain.positions.len().div_ceil(PAGE_VERTICES)),
+                Command::Replace(new) | Command::Remake(new, _) => {
+                    Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
+                }
                 _ => None,
             });
             done.into_iter().try_for_each(send)?;

@@ -1,15 +1,16 @@
 //! Trimming: what is seen within a box, or on one side of a line, is cut off the work, all the way through, by a Boolean.
 
 use arc_swap::ArcSwap;
+use crossbeam_channel as cc;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
-use super::joiner::{self, JoinError};
+use super::joiner::{self, JoinError, Joined};
 use super::published::Published;
 use crate::analysis::boolean::Operation;
 use crate::analysis::cancel::Job;
 use crate::command::Command;
-use crate::mesh::TriMesh;
+use crate::mesh::{PolyMesh, TriMesh};
 use crate::stroke::Camera;
 
 /// A part of the view, (0, 0) top left to (1, 1) bottom right.
@@ -84,12 +85,27 @@ pub fn prism(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<
 /// Cuts the part off the work as it is seen now: the commands that put the result in place.
 pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<Command>, JoinError> {
     joiner::settled(shown, |now| {
-        let (lo, hi) = now.mesh.bounds();
-        let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
-        let plain = prism(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
         // What the hands hold stays in them.
-        joiner::join(&now.mesh, &plain.to_poly(), false, Operation::Difference, &Job::default())
+        joiner::join(&now.mesh, &tool(now, part)?, false, Operation::Difference, &Job::default())
     })
+}
+
+/// Cuts the part off the work and waits for the loop to say what came of it: again where the work was changed there meanwhile.
+pub fn carry_out(
+    shown: &ArcSwap<Published>,
+    part: &Part,
+    job: &Job,
+    commands: &cc::Sender<Command>,
+) -> Result<Joined, JoinError> {
+    joiner::carry_out(shown, |now| tool(now, part), false, Operation::Difference, job, commands)
+}
+
+/// What is cut off, as a solid around all of the work that is seen there.
+fn tool(now: &Published, part: &Part) -> Result<PolyMesh, JoinError> {
+    let (lo, hi) = now.mesh.bounds();
+    let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
+    let plain = prism(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
+    Ok(plain.to_poly())
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ pub mod flat;
 pub mod io;
 mod kernel;
 pub mod levels;
+mod masks;
 pub mod mend;
 mod normals;
 pub mod page;

@@ -5,6 +5,7 @@ mod local;
 mod oracle;
 mod pairs;
 mod random;
+mod socket;
 mod solids;
 
 use glam::{DMat3, DVec3};

@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::Solid;
 use super::emit::Origin;
 use crate::mesh::{PolyMesh, triangulate};
 
@@ -37,12 +38,38 @@ pub fn carry(mesh: &mut PolyMesh, origins: &[Origin], operands: [&PolyMesh; 2]) 
     }
 }
 
+/// A number for each vertex of a result from one for each vertex of A, such as a mask: mixed by place within the face that it
+/// came from; 0 where it came from B alone.
+pub fn mixed(solid: &Solid, a: &PolyMesh, values: &[f32]) -> Vec<f32> {
+    let mut out: Vec<Option<f32>> = vec![None; solid.mesh.positions.len()];
+    for (f, o) in solid.origins.iter().enumerate().filter(|(_, o)| o.operand == 0) {
+        for &v in solid.mesh.face(f) {
+            let slot = &mut out[v as usize];
+            if slot.is_none() {
+                let shares = shares(a, o.face as usize, solid.mesh.positions[v as usize]);
+                let sum = shares.iter().map(|&(v, w)| f64::from(values[v as usize]) * w).sum::<f64>();
+                *slot = Some(sum as f32);
+            }
+        }
+    }
+    out.into_iter().map(Option::unwrap_or_default).collect()
+}
+
 /// The colour of a face at a place in it.
 fn colour(mesh: &PolyMesh, face: usize, place: DVec3) -> [u8; 4] {
     let Some(colours) = &mesh.colours else { return [255; 4] };
+    let shares = shares(mesh, face, place);
+    [0, 1, 2, 3].map(|k| {
+        shares.iter().map(|&(v, w)| f64::from(colours[v as usize][k]) * w).sum::<f64>().round() as u8
+    })
+}
+
+/// Corners of a face, and how much of a place in it is theirs.
+fn shares(mesh: &PolyMesh, face: usize, place: DVec3) -> [(u32, f64); 3] {
     let corners = mesh.face(face);
+    let first = corners.first().copied().unwrap_or(0);
     if let Some(&v) = corners.iter().find(|&&v| mesh.positions[v as usize] == place) {
-        return colours[v as usize];
+        return [(v, 1.0), (v, 0.0), (v, 0.0)];
     }
     let mut parts = Vec::new();
     match *corners {
@@ -65,13 +92,10 @@ fn colour(mesh: &PolyMesh, face: usize, place: DVec3) -> [u8; 4] {
             best = Some((least, t, w));
         }
     }
-    let Some((_, t, w)) = best else { return corners.first().map_or([255; 4], |&v| colours[v as usize]) };
+    let Some((_, t, w)) = best else { return [(first, 1.0), (first, 0.0), (first, 0.0)] };
     let w = w.map(|x| x.max(0.0));
     let sum: f64 = w.iter().sum();
-    [0, 1, 2, 3].map(|k| {
-        let mixed: f64 = (0..3).map(|i| w[i] * f64::from(colours[t[i] as usize][k])).sum();
-        (mixed / sum).round().clamp(0.0, 255.0) as u8
-    })
+    [0, 1, 2].map(|k| (t[k], w[k] / sum))
 }
 
 #[cfg(test)]

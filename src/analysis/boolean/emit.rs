@@ -4,7 +4,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::fans;
 use super::points::Sets;
+use crate::analysis::cancel::{Cancelled, Job};
 use crate::mesh::PolyMesh;
 use crate::mesh::triangulate::area_vector;
 
@@ -30,18 +32,38 @@ pub struct Facts {
 }
 
 /// Makes the chosen faces, whose corners index `at`, a mesh of its own, and says what it is.
-pub fn finish(mesh: &mut PolyMesh, at: &[DVec3]) -> Facts {
-    let closed = separate(mesh, at);
-    let mut shells = Sets::new(mesh.positions.len());
-    for f in 0..mesh.face_count() {
-        let c = mesh.face(f);
-        for k in 1..c.len() {
-            shells.join(c[0], c[k]);
+pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Cancelled> {
+    let closed = match fans::degrees(mesh, at.len(), job)? {
+        Some(degrees) => {
+            compact(mesh, at, &degrees);
+            true
         }
-    }
-    let components = (0..mesh.positions.len() as u32).filter(|&v| shells.root(v) == v).count();
-    let (volume, area) = measure(mesh);
-    Facts { volume, area, components, closed, manifold: closed }
+        None => separate(mesh, at),
+    };
+    job.check()?;
+    let count = || {
+        let mut shells = Sets::new(mesh.positions.len());
+        mesh.faces().for_each(|f| f.windows(2).for_each(|w| shells.join(w[0], w[1])));
+        (0..mesh.positions.len() as u32).filter(|&v| shells.root(v) == v).count()
+    };
+    let (components, (volume, area)) = rayon::join(count, || measure(mesh));
+    job.check()?;
+    Ok(Facts { volume, area, components, closed, manifold: closed })
+}
+
+/// Drops the points without a corner.
+fn compact(mesh: &mut PolyMesh, at: &[DVec3], degrees: &[u32]) {
+    let mut next = 0;
+    let names: Vec<u32> = degrees
+        .iter()
+        .map(|&d| {
+            let own = next;
+            next += u32::from(d > 0);
+            own
+        })
+        .collect();
+    mesh.positions = at.iter().zip(degrees).filter(|(_, d)| **d > 0).map(|(p, _)| *p).collect();
+    mesh.corners.par_iter_mut().for_each(|c| *c = names[*c as usize]);
 }
 
 /// Drops unused points, doubles vertices where the surface touches itself, and where that leaves one edge between two pairs of
@@ -189,16 +211,18 @@ pub fn measure(mesh: &PolyMesh) -> (f64, f64) {
     let (lo, hi) =
         mesh.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
     let centre = (lo + hi) * 0.5;
-    let (triangles, _) = mesh.triangles();
-    let part = |t: &[[u32; 3]]| {
-        t.iter().fold((0.0, 0.0), |(v, s), t| {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize] - centre);
+    let part = |t: &[u32]| {
+        t.chunks_exact(3).fold((0.0, 0.0), |(v, s), t| {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|i| mesh.positions[i as usize] - centre);
             let n = (b - a).cross(c - a);
             (v + a.dot(n), s + n.length())
         })
     };
     // Sums of fixed blocks, in order: the same bits with any number of workers.
-    let sums: Vec<(f64, f64)> = triangles.par_chunks(4096).map(part).collect();
+    let blocks = |c: &[u32]| c.par_chunks(3 * 4096).map(part).collect();
+    let plain = mesh.corners.len() == 3 * mesh.face_count() && mesh.faces().all(|f| f.len() == 3);
+    let sums: Vec<(f64, f64)> =
+        if plain { blocks(&mesh.corners) } else { blocks(mesh.triangles().0.as_flattened()) };
     let (v, s) = sums.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
     (v / 6.0, s / 2.0)
 }

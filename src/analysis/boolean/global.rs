@@ -75,11 +75,14 @@ impl Engine {
             Ok(out.get_mesh_gl64(-1))
         });
         job.check()?;
-        Ok(out.map(|gl| self.polygons(&gl)))
+        match out {
+            Ok(gl) => self.polygons(&gl, job).map(Ok),
+            Err(why) => Ok(Err(why)),
+        }
     }
 
     /// Triangles of one input face as that face again, or in as few polygons as join.
-    fn polygons(&self, gl: &MeshGL64) -> Made {
+    fn polygons(&self, gl: &MeshGL64, job: &Job) -> Result<Made, Cancelled> {
         let at = points(gl);
         let mut names: Vec<u32> = (0..at.len() as u32).collect();
         for (&from, &to) in gl.merge_from_vert.iter().zip(&gl.merge_to_vert) {
@@ -105,8 +108,8 @@ impl Engine {
                 origins.push(Origin { operand, face });
             }
         }
-        let facts = finish(&mut mesh, &at);
-        (mesh, origins, facts)
+        let facts = finish(&mut mesh, &at, job)?;
+        Ok((mesh, origins, facts))
     }
 }
 

@@ -8,7 +8,7 @@
 use glam::{DVec3, Vec3};
 
 use super::arrange::Arrangement;
-use super::pieces::crossings;
+use super::place::crossings;
 use super::points::Map;
 use super::{Error, NAMES, Operation, Options, check};
 use crate::analysis::cancel::Job;

@@ -5,16 +5,7 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
 use super::points::{Map, Points};
-use super::tree::{Span, Tree};
 use crate::analysis::cancel::{Cancelled, Job};
-
-/// One operand, in triangles over the common points.
-#[derive(Debug)]
-pub struct Side {
-    pub triangles: Vec<[u32; 3]>,
-    pub spans: Vec<Span>,
-    pub tree: Tree,
-}
 
 /// What happened to one triangle.
 #[derive(Debug, Default, Clone)]
@@ -39,11 +30,10 @@ pub struct Meeting {
     pub edges: Vec<Edge>,
     /// Triangle to its marks, a side each.
     pub marks: [Map<u32, Marks>; 2],
-    pub pairs: Vec<(u32, u32)>,
     /// Pieces of the curve in which the surfaces meet, lesser end first: between two points that both have, and nothing between.
     pub curve: Map<(u32, u32), ()>,
-    /// Points on both surfaces.
-    pub shared: Map<u32, ()>,
+    /// Points on both surfaces; one a point.
+    pub shared: Vec<bool>,
 }
 
 pub fn c3(p: DVec3) -> Coord3D<f64> {
@@ -58,16 +48,19 @@ struct Finder<'a> {
     piercings: Map<(u32, u32, u32), Option<u32>>,
 }
 
-pub fn meet(sides: &[Side; 2], points: &mut Points, eps: f64, job: &Job) -> Result<Meeting, Cancelled> {
-    let mut pairs = Vec::new();
-    let [a, b] = sides;
-    a.tree.pairs(&a.spans, &b.tree, &b.spans, 2.0 * eps, |i, j| pairs.push((i, j)));
-    job.check()?;
+/// Where the triangles of the pairs (ascending) meet.
+pub fn meet(
+    triangles: [&[[u32; 3]]; 2],
+    mut pairs: Vec<(u32, u32)>,
+    points: &mut Points,
+    eps: f64,
+    job: &Job,
+) -> Result<Meeting, Cancelled> {
+    let [a, b] = triangles;
     pairs.retain(|&(i, j)| {
-        let (s, t) = (a.triangles[i as usize], b.triangles[j as usize]);
+        let (s, t) = (a[i as usize], b[j as usize]);
         near_plane(&points.at, s, t, eps) && near_plane(&points.at, t, s, eps)
     });
-    pairs.sort_unstable();
     job.check()?;
     let mut f =
         Finder { points, eps, m: Meeting::default(), crossings: Map::default(), piercings: Map::default() };
@@ -75,7 +68,7 @@ pub fn meet(sides: &[Side; 2], points: &mut Points, eps: f64, job: &Job) -> Resu
         if n % 1024 == 0 {
             job.check()?;
         }
-        f.events([i, j], [a.triangles[i as usize], b.triangles[j as usize]]);
+        f.events([i, j], [a[i as usize], b[j as usize]]);
     }
     let mut m = f.m;
     for e in &mut m.edges {
@@ -86,13 +79,12 @@ pub fn meet(sides: &[Side; 2], points: &mut Points, eps: f64, job: &Job) -> Resu
         e.inner.dedup();
         e.inner.retain(|&i| i != p && i != q);
     }
-    m.pairs = pairs;
-    for n in 0..m.pairs.len() {
+    m.shared.resize(points.at.len(), false);
+    for (n, &(i, j)) in pairs.iter().enumerate() {
         if n % 1024 == 0 {
             job.check()?;
         }
-        let (i, j) = m.pairs[n];
-        m.segments(&points.at, [i, j], [a.triangles[i as usize], b.triangles[j as usize]], eps);
+        m.segments(&points.at, [i, j], [a[i as usize], b[j as usize]], eps);
     }
     Ok(m)
 }
@@ -293,7 +285,7 @@ impl Meeting {
         self.closure(1, ids[1], tris[1], &mut y);
         x.retain(|i| y.binary_search(i).is_ok());
         for &i in &x {
-            self.shared.insert(i, ());
+            self.shared[i as usize] = true;
         }
         if x.len() < 2 {
             return;

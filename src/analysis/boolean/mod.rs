@@ -11,21 +11,27 @@
 
 mod arrange;
 mod attributes;
+mod common;
 mod curve;
 mod emit;
+mod fans;
 mod global;
 mod local;
 mod meet;
 mod merge;
+mod near;
 mod parts;
 mod pieces;
+mod place;
 mod planar;
 mod points;
 mod tree;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use arrange::Arrangement;
+pub use attributes::mixed;
 pub use emit::{Facts, Origin};
 pub use local::local;
 pub use parts::{shells, split};
@@ -130,15 +136,12 @@ pub fn compute(
     now: impl Fn() -> f64,
 ) -> Result<(Vec<Solid>, Report), Error> {
     let mut report = Report::default();
-    let mut volumes = [0.0; 2];
     let start = now();
-    for s in 0..2 {
-        job.check()?;
-        volumes[s] = check(operands[s], NAMES[s])?;
-    }
+    job.check()?;
+    let (a, b) = rayon::join(|| check(operands[0], NAMES[0]), || check(operands[1], NAMES[1]));
+    let volumes = [a?, b?];
     report.phases.push(("check", now() - start));
-    let reach =
-        operands.iter().flat_map(|m| m.positions.iter()).fold(0.0f64, |r, p| r.max(p.abs().max_element()));
+    let reach = operands.iter().map(|m| reach(&m.positions)).fold(0.0, f64::max);
     let floor = reach * 2f64.powi(-49);
     let wanted = options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
     let mut why = String::new();
@@ -164,6 +167,12 @@ pub fn compute(
     report.tolerance = wanted;
     let solids = globally(operands, volumes, operations, wanted, job, &now, &mut report)?;
     Ok((solids, report))
+}
+
+/// The largest coordinate.
+fn reach(at: &[DVec3]) -> f64 {
+    let part = |c: &[DVec3]| c.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
+    at.par_chunks(1 << 15).map(part).reduce(|| 0.0, f64::max)
 }
 
 /// The four results by the global engine, held against each other as the others are.
@@ -201,9 +210,52 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Error> {
 
 /// Closed, oriented outwards, finite: the volume, or what is wrong.
 fn check(mesh: &PolyMesh, operand: &'static str) -> Result<f64, Error> {
-    if !mesh.positions.iter().all(|p| p.is_finite()) {
+    if !mesh.positions.par_iter().all(|p| p.is_finite()) {
         return Err(Error::NotFinite { operand });
     }
+    if !balanced(mesh) {
+        let edges = open_edges(mesh);
+        if edges > 0 {
+            return Err(Error::Open { operand, edges });
+        }
+    }
+    let (volume, _) = emit::measure(mesh);
+    if volume < 0.0 { Err(Error::InsideOut { operand, volume }) } else { Ok(volume) }
+}
+
+/// Whether the edges, each as a number of 128 bits with its direction as its sign, add up to nothing: so they do where each has
+/// its partners, and else all but never.
+fn balanced(mesh: &PolyMesh) -> bool {
+    let mix = |x: u64, by: u64| {
+        let z = (x ^ (x >> 32)).wrapping_mul(by);
+        (z ^ (z >> 29)).wrapping_mul(0x94d0_49bb_1331_11eb)
+    };
+    let number = |a: u32, b: u32| {
+        let edge = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+        let n = u128::from(mix(edge, 0xbf58_476d_1ce4_e5b9)) << 64
+            | u128::from(mix(edge.wrapping_add(0x9e37_79b9_7f4a_7c15), 0xff51_afd7_ed55_8ccd));
+        match a.cmp(&b) {
+            std::cmp::Ordering::Less => n,
+            std::cmp::Ordering::Equal => 0,
+            std::cmp::Ordering::Greater => n.wrapping_neg(),
+        }
+    };
+    let part = |starts: &[u32]| {
+        starts.windows(2).fold(0u128, |sum, w| {
+            let f = &mesh.corners[w[0] as usize..w[1] as usize];
+            let Some(&last) = f.last() else { return sum };
+            f.iter().fold((sum, last), |(sum, a), &b| (sum.wrapping_add(number(a, b)), b)).0
+        })
+    };
+    const BLOCK: usize = 1 << 14;
+    let blocks = mesh.face_count().div_ceil(BLOCK);
+    let block =
+        |i: usize| part(&mesh.face_starts[i * BLOCK..mesh.face_starts.len().min((i + 1) * BLOCK + 1)]);
+    (0..blocks).into_par_iter().map(block).reduce(|| 0, u128::wrapping_add) == 0
+}
+
+/// Edges that lack a partner.
+fn open_edges(mesh: &PolyMesh) -> usize {
     let mut half: Vec<(u32, u32, i32)> = Vec::with_capacity(mesh.corners.len());
     for f in mesh.faces() {
         for (i, &a) in f.iter().enumerate() {
@@ -211,16 +263,10 @@ fn check(mesh: &PolyMesh, operand: &'static str) -> Result<f64, Error> {
             half.push((a.min(b), a.max(b), if a < b { 1 } else { -1 }));
         }
     }
-    rayon::slice::ParallelSliceMut::par_sort_unstable(&mut half[..]);
-    let edges = half
-        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
+    half.par_sort_unstable();
+    half.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
         .filter(|g| g[0].0 != g[0].1 && g.iter().map(|h| h.2).sum::<i32>() != 0)
-        .count();
-    if edges > 0 {
-        return Err(Error::Open { operand, edges });
-    }
-    let (volume, _) = emit::measure(mesh);
-    if volume < 0.0 { Err(Error::InsideOut { operand, volume }) } else { Ok(volume) }
+        .count()
 }
 
 /// With one tolerance. The inner error says why the arrangement is not consistent.
@@ -245,14 +291,16 @@ fn attempt(
     let mut solids = Vec::new();
     for &operation in operations {
         job.check()?;
-        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
+        let faces = operands.iter().map(|m| m.face_count()).sum();
+        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::with_capacity(faces));
+        mesh.face_starts.reserve(faces);
+        mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
         a.faces(operation, options.keep_contact, |origin, corners, _| {
             mesh.push_face(corners);
             origins.push(origin);
         });
         job.check()?;
-        let facts = emit::finish(&mut mesh, &a.points.at);
-        job.check()?;
+        let facts = emit::finish(&mut mesh, &a.points.at, job)?;
         if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }
@@ -274,8 +322,8 @@ fn attempt(
 fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<String> {
     let of = |o| solids.iter().find(|s| s.operation == o).map(|s| s.facts.volume);
     let area: f64 = solids.iter().map(|s| s.facts.area).sum();
-    let span = Span::of(at.iter().copied());
-    let slack = (a + b) * 5e-13 + area * eps + (span.hi - span.lo).length().powi(3) * 1e-16;
+    let size = at.par_chunks(1 << 15).map(|c| Span::of(c.iter().copied())).reduce(|| Span::EMPTY, Span::join);
+    let slack = (a + b) * 5e-13 + area * eps + (size.hi - size.lo).length().powi(3) * 1e-16;
     let (u, i) = (of(Operation::Union), of(Operation::Intersection));
     let (d, r) = (of(Operation::Difference), of(Operation::ReverseDifference));
     let sums = [

@@ -1,11 +1,9 @@
-//! The faces of both operands, whole where nothing cuts them, in cells where something does; and where each piece lies.
+//! The faces of both operands near the cut: whole where nothing cuts them, in cells where something does.
 
 use glam::DVec3;
-use robust::orient3d;
 
-use super::meet::{Meeting, Side, c3};
+use super::meet::Meeting;
 use super::planar::{Cell, cells, flatten};
-use super::points::{Map, Points, Sets};
 use crate::analysis::cancel::{Cancelled, Job};
 use crate::mesh::PolyMesh;
 use crate::mesh::triangulate::area_vector;
@@ -48,35 +46,32 @@ impl Piece {
     }
 }
 
-/// Cuts one operand. `mesh` has its corners over the common points; `starts[f]` is the first triangle of face `f`.
+/// Cuts the faces of one operand that the other may meet. `mesh` has its corners over the common points; `starts[f]` is the
+/// first triangle of face `f`. A face with a corner on the other surface is among them.
 pub fn cut(
     mesh: &PolyMesh,
     side: usize,
-    s: &Side,
+    triangles: &[[u32; 3]],
     starts: &[u32],
     m: &Meeting,
     points: &[DVec3],
     flat: impl Fn(usize) -> bool,
     job: &Job,
 ) -> Result<Vec<Piece>, Cancelled> {
-    let mut out = Vec::with_capacity(mesh.face_count());
+    let mut out = Vec::new();
     let marks = &m.marks[side];
-    for f in 0..mesh.face_count() {
-        if f % 4096 == 0 {
+    let mut near: Vec<u32> = marks.keys().map(|t| starts.partition_point(|s| s <= t) as u32 - 1).collect();
+    near.sort_unstable();
+    near.dedup();
+    for (n, f) in near.into_iter().map(|f| f as usize).enumerate() {
+        if n % 1024 == 0 {
             job.check()?;
         }
         let mut push = |shape| out.push(Piece { face: f as u32, shape, place: Place::Outside });
         let range = starts[f]..starts[f + 1];
-        if range.is_empty() {
-            continue;
-        }
-        if !range.clone().any(|t| marks.contains_key(&t)) {
-            push(Shape::Whole);
-            continue;
-        }
+        let own = &triangles[range.start as usize..range.end as usize];
         let split = range.clone().any(|t| marks.get(&t).is_some_and(|k| k.flat || !k.segments.is_empty()))
-            || (range.len() > 1
-                && along_diagonal(mesh.face(f), &s.triangles[range.start as usize..range.end as usize], m));
+            || (range.len() > 1 && along_diagonal(mesh.face(f), own, m));
         if !split {
             let border = ring(mesh.face(f), m);
             if border.len() == mesh.face(f).len() {
@@ -89,7 +84,7 @@ pub fn cut(
             }
         }
         for t in range {
-            let tri = s.triangles[t as usize];
+            let tri = triangles[t as usize];
             let ring = ring(&tri, m);
             let none = Vec::new();
             let segments = marks.get(&t).map_or(&none, |k| &k.segments);
@@ -143,153 +138,6 @@ fn ring(corners: &[u32], m: &Meeting) -> Vec<u32> {
         }
     }
     out
-}
-
-/// One name for a piece's borders, whichever way they run, and whether it was turned.
-fn key(loops: &[&[u32]], reverse: bool) -> Vec<u32> {
-    let mut rings: Vec<Vec<u32>> = loops
-        .iter()
-        .map(|l| {
-            let mut v = l.to_vec();
-            if reverse {
-                v.reverse();
-            }
-            let least = (0..v.len()).min_by_key(|&i| v[i]).unwrap_or(0);
-            v.rotate_left(least);
-            v
-        })
-        .collect();
-    rings.sort();
-    rings.join(&u32::MAX)
-}
-
-/// Decides the place of every piece: pieces in contact by their borders, all others by one ray for each part of the
-/// surface that the cut leaves connected.
-pub fn place(
-    meshes: &[PolyMesh; 2],
-    sides: &[Side; 2],
-    pieces: &mut [Vec<Piece>; 2],
-    m: &Meeting,
-    points: &Points,
-    around: Option<super::arrange::Around<'_>>,
-    job: &Job,
-) -> Result<(), Cancelled> {
-    let at = &points.at;
-    let shared = |p: u32| m.shared.contains_key(&p);
-    let mut contact: Map<Vec<u32>, usize> = Map::default();
-    let mut borders: [Map<(u32, u32), Vec<u32>>; 2] = Default::default();
-    for s in 0..2 {
-        for (i, p) in pieces[s].iter().enumerate() {
-            if i % 4096 == 0 {
-                job.check()?;
-            }
-            let loops = p.loops(|f| meshes[s].face(f as usize));
-            for l in &loops {
-                for k in 0..l.len() {
-                    let (a, b) = (l[k], l[(k + 1) % l.len()]);
-                    if shared(a) && shared(b) {
-                        borders[s].entry((a.min(b), a.max(b))).or_default().push(i as u32);
-                    }
-                }
-            }
-            if s == 0 && loops.iter().all(|l| l.iter().all(|&v| shared(v))) {
-                contact.insert(key(&loops, false), i);
-            }
-        }
-    }
-    let mut settled = [vec![false; pieces[0].len()], vec![false; pieces[1].len()]];
-    for i in 0..pieces[1].len() {
-        let loops = pieces[1][i].loops(|f| meshes[1].face(f as usize));
-        if !loops.iter().all(|l| l.iter().all(|&v| shared(v))) {
-            continue;
-        }
-        for (reverse, place) in [(false, Place::Same), (true, Place::Against)] {
-            if let Some(&j) = contact.get(&key(&loops, reverse)) {
-                pieces[1][i].place = place;
-                pieces[0][j].place = place;
-                settled[0][j] = true;
-                settled[1][i] = true;
-                break;
-            }
-        }
-    }
-    for s in 0..2 {
-        job.check()?;
-        let count = pieces[s].len();
-        let mut sets = Sets::new(count + at.len());
-        for (i, p) in pieces[s].iter().enumerate().filter(|&(i, _)| !settled[s][i]) {
-            if i % 4096 == 0 {
-                job.check()?;
-            }
-            for l in p.loops(|f| meshes[s].face(f as usize)) {
-                for &v in l.iter().filter(|&&v| !shared(v)) {
-                    sets.join(i as u32, count as u32 + v);
-                }
-            }
-        }
-        for (edge, around) in &borders[s] {
-            if !m.curve.contains_key(edge) {
-                let free: Vec<u32> = around.iter().copied().filter(|&i| !settled[s][i as usize]).collect();
-                free.windows(2).for_each(|w| sets.join(w[0], w[1]));
-            }
-        }
-        job.check()?;
-        // The largest triangle of each part asks for all.
-        let mut largest: Map<u32, (f64, DVec3)> = Map::default();
-        for (i, p) in pieces[s].iter().enumerate().filter(|&(i, _)| !settled[s][i]) {
-            let root = sets.root(i as u32);
-            let loops = p.loops(|f| meshes[s].face(f as usize));
-            let (size, spot) = probe(&loops, at);
-            let best = largest.entry(root).or_insert((-1.0, spot));
-            if size > best.0 {
-                *best = (size, spot);
-            }
-        }
-        let mut answers: Map<u32, Place> = Map::default();
-        for i in (0..count).filter(|&i| !settled[s][i]) {
-            let root = sets.root(i as u32);
-            let place = match answers.get(&root) {
-                Some(&p) => p,
-                None => {
-                    job.check()?;
-                    let spot = largest[&root].1;
-                    let w = match around {
-                        Some(around) if s == 1 => around(spot),
-                        _ => winding(&sides[1 - s], at, spot),
-                    };
-                    let p = if w > 0 { Place::Inside } else { Place::Outside };
-                    answers.insert(root, p);
-                    p
-                }
-            };
-            pieces[s][i].place = place;
-        }
-    }
-    Ok(())
-}
-
-/// A place in a triangle that nobody draws an edge through: an edge of the other surface may lie in this one.
-fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
-    a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
-}
-
-/// A point inside the piece and how much room there is.
-fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
-    let l = loops[0];
-    if l.len() == 3 && loops.len() == 1 {
-        let [a, b, c] = [l[0], l[1], l[2]].map(|i| at[i as usize]);
-        return ((b - a).cross(c - a).length(), within(a, b, c));
-    }
-    let n: DVec3 = loops.iter().map(|l| area_vector(at, l)).sum();
-    let mut best = (-1.0, at[l[0] as usize]);
-    for t in triangles(loops, n, at) {
-        let [a, b, c] = t.map(|i| at[i as usize]);
-        let size = (b - a).cross(c - a).length();
-        if size > best.0 {
-            best = (size, within(a, b, c));
-        }
-    }
-    best
 }
 
 /// The triangles of a polygon with holes.
@@ -350,50 +198,6 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
         ring = next;
     }
     ring
-}
-
-/// How often the surface goes around a point.
-pub fn winding(side: &Side, at: &[DVec3], o: DVec3) -> i32 {
-    let span = side.tree.span();
-    if !(span.lo.cmple(o).all() && o.cmple(span.hi).all()) {
-        return 0;
-    }
-    crossings(o, (span.hi - span.lo).length() * 2.0, |p, visit| {
-        side.tree.along(o, p, |t| visit(side.triangles[t as usize].map(|i| at[i as usize])));
-    })
-}
-
-/// Signed crossings of a segment of length `reach` that leaves the surface's box, decided exactly; a segment that meets an
-/// edge is tried anew in another direction. `along` shows the triangles near the segment to `o`'s far end until told false.
-pub fn crossings(o: DVec3, reach: f64, along: impl Fn(DVec3, &mut dyn FnMut([DVec3; 3]) -> bool)) -> i32 {
-    for attempt in 0..64 {
-        let k = attempt as f64;
-        let d = DVec3::new((k * 1.7 + 0.4).sin(), (k * 2.3 + 1.1).sin(), (k * 0.9 + 2.2).cos());
-        let p = o + d.normalize_or(DVec3::X) * reach;
-        let (mut sum, mut good) = (0, true);
-        along(p, &mut |[a, b, c]| {
-            let (x, y) = (orient3d(c3(a), c3(b), c3(c), c3(o)), orient3d(c3(a), c3(b), c3(c), c3(p)));
-            if (x > 0.0 && y > 0.0) || (x < 0.0 && y < 0.0) {
-                return true;
-            }
-            let turn = |i: DVec3, j: DVec3| orient3d(c3(o), c3(p), c3(i), c3(j));
-            let w = [turn(a, b), turn(b, c), turn(c, a)];
-            if w.iter().any(|&v| v > 0.0) && w.iter().any(|&v| v < 0.0) {
-                return true;
-            }
-            if x == 0.0 || y == 0.0 || w.contains(&0.0) {
-                good = false;
-                return false;
-            }
-            // robust's orient3d is positive below the plane: the point is on the inner side.
-            sum += if x > 0.0 { 1 } else { -1 };
-            true
-        });
-        if good {
-            return sum;
-        }
-    }
-    0
 }
 
 #[cfg(test)]

@@ -48,6 +48,10 @@ impl Points {
         Points { at, eps, cells: Map::default() }
     }
 
+    pub fn tolerance(&self) -> f64 {
+        self.eps
+    }
+
     fn cell(&self, p: DVec3) -> [i64; 3] {
         let q = p / (self.eps * 4.0);
         [q.x.floor() as i64, q.y.floor() as i64, q.z.floor() as i64]

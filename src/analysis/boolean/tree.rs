@@ -60,10 +60,6 @@ impl Tree {
         Ok(Tree { nodes, items: items.into_iter().map(|(i, _)| i).collect() })
     }
 
-    pub fn span(&self) -> Span {
-        self.nodes.first().map_or(Span::EMPTY, |n| n.span)
-    }
-
     /// Calls `f(item of self, item of other)` for all pairs whose boxes, grown by `slack`, meet.
     pub fn pairs(
         &self,
@@ -71,13 +67,19 @@ impl Tree {
         other: &Tree,
         others: &[Span],
         slack: f64,
+        job: &Job,
         mut f: impl FnMut(u32, u32),
-    ) {
+    ) -> Result<(), Cancelled> {
         if self.nodes.is_empty() || other.nodes.is_empty() {
-            return;
+            return Ok(());
         }
         let mut stack = vec![(0u32, 0u32)];
+        let mut steps = 0u32;
         while let Some((i, j)) = stack.pop() {
+            steps = steps.wrapping_add(1);
+            if steps % 65_536 == 0 {
+                job.check()?;
+            }
             let (a, b) = (self.nodes[i as usize], other.nodes[j as usize]);
             if !a.span.grown(slack).meets(&b.span) {
                 continue;
@@ -100,6 +102,7 @@ impl Tree {
                 stack.extend([(i, j + 1), (i, b.at)]);
             }
         }
+        Ok(())
     }
 
     /// Calls `f` for items whose leaf's box the segment from `o` to `p` may cross; stops when it returns false.

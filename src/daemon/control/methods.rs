@@ -50,7 +50,7 @@ pub const METHODS: &[(&str, &str)] = &[
     ("join", "{operation}: add, carve or keep: the thing in the hands and the work become one"),
     (
         "trim",
-        "{part: {box: [x, y, x, y]} | {line: [x, y, x, y]}}: cuts off what is seen there, or to the left of the line",
+        "{part: {box: [x, y, x, y]} | {line: [x, y, x, y]}}: cuts off what is seen there, or to the left of the line; answers as boolean",
     ),
     (
         "level",
@@ -404,9 +404,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         }
         "trim" => {
             let p: TrimParam = read(params)?;
-            let done = trim::at_rest(&host.published, &p.part).map_err(|e| failed(e.to_string()))?;
-            done.into_iter().try_for_each(send)?;
-            Ok(json!({ "sent": true }))
+            watched(host, |job| trim::carry_out(&host.published, &p.part, job, &host.commands))
         }
         "level" => {
             let p: LevelParam = read(params)?;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::{DVec3, Vec3};
 use sculptd::analysis::boolean::Operation;
 use sculptd::analysis::cancel::Job;
-use sculptd::brush::Gaussian;
+use sculptd::brush::{Gaussian, MaskAction};
 use sculptd::command::{Carving, Command};
 use sculptd::config::{Config, LoopConfig};
 use sculptd::daemon::joiner::{JoinError, carry_out, join};
@@ -102,6 +102,40 @@ fn a_replay_makes_the_same_cut() {
     }
     assert_eq!(live.mesh().hash(), again.mesh().hash());
     sound(&again);
+}
+
+#[test]
+fn what_is_protected_stays_so_the_long_way_too() {
+    let (mut live, mut again) = (world(30), world(30));
+    for w in [&mut live, &mut again] {
+        w.step(1, &[], &[Command::Mask(MaskAction::Fill)]);
+    }
+    let tool = ball(0.9, DVec3::new(0.5, 0.1, 0.05));
+    let done = join(&live.snapshot(), &tool, false, Operation::Intersection, &Job::default());
+    let done = done.expect("a result");
+    assert!(matches!(&done[..], [Command::Remake(..)]), "not with masks: {} commands", done.len());
+    let bytes = postcard::to_allocvec(&done).expect("written");
+    live.step(2, &[], &done);
+    let read: Vec<Command> = postcard::from_bytes(&bytes).expect("read");
+    again.step(2, &[], &read);
+    assert_eq!(live.mesh().hash(), again.mesh().hash());
+    sound(&live);
+    let now = live.snapshot();
+    let (at, masks) = (now.to_tri().positions, now.masks().expect("some"));
+    let (mut own, mut tools) = (0, 0);
+    for (p, mask) in at.iter().zip(masks) {
+        // Inside the ball are only corners that came with the tool.
+        if p.length() > 0.998 {
+            assert!((mask - 1.0).abs() < 1e-6, "{p}: {mask}");
+            own += 1;
+        } else if p.length() < 0.98 {
+            assert_eq!(mask, 0.0, "{p}");
+            tools += 1;
+        }
+    }
+    assert!(own > 100 && tools > 100, "{own} {tools}");
+    live.step(3, &[], &[Command::Undo]);
+    assert!(live.snapshot().masks().is_some_and(|m| m.iter().all(|&m| m == 1.0)));
 }
 
 #[test]
