@@ -23,6 +23,9 @@ pub struct Crossings {
     pub triangles: usize,
 }
 
+/// Pairs that cross whatever is beside them, and what to ask their neighbours.
+type Found = (Vec<(u32, u32)>, Vec<Touch>);
+
 /// All crossing pairs, the lower triangle first, sorted.
 pub fn pairs(positions: &[DVec3], triangles: &[[u32; 3]], job: &Job) -> Result<Vec<(u32, u32)>, Cancelled> {
     if triangles.len() < 2 {
@@ -50,7 +53,7 @@ pub fn pairs(positions: &[DVec3], triangles: &[[u32; 3]], job: &Job) -> Result<V
     job.check()?;
     job.progress(0.6);
     // In the tree's order neighbours in the list are neighbours in space: the walk stays in the cache.
-    let found: Result<Vec<(Vec<(u32, u32)>, Vec<Touch>)>, Cancelled> = tree
+    let found: Result<Vec<Found>, Cancelled> = tree
         .primitive_indices
         .par_chunks(1024)
         .map(|block| {

@@ -30,17 +30,6 @@ impl Surface<'_> {
         let [a, b, c] = self.corners(t);
         Span { lo: a.min(b).min(c), hi: a.max(b).max(c) }
     }
-
-    /// The box around all that the triangles use.
-    pub fn bounds(&self) -> Span {
-        let part = |ts: &[[u32; 3]]| {
-            ts.iter().flatten().fold(Span::EMPTY, |s, v| {
-                let p = self.at[(v - self.base) as usize];
-                Span { lo: s.lo.min(p), hi: s.hi.max(p) }
-            })
-        };
-        self.triangles.par_chunks(1 << 14).map(part).reduce(|| Span::EMPTY, Span::join)
-    }
 }
 
 /// Pairs of one triangle of each whose boxes, grown by `slack`, meet: ascending.
@@ -164,7 +153,7 @@ mod tests {
                 Surface { triangles: &tb, at: &moved, base: 0 },
             ];
             let got =
-                pairs(surfaces, [surfaces[0].bounds(), surfaces[1].bounds()], 1e-6, &job).expect("runs");
+                pairs(surfaces, surfaces.map(|s| Span::of(s.at.iter().copied())), 1e-6, &job).expect("runs");
             let mut want = Vec::new();
             for i in 0..ta.len() as u32 {
                 let s = surfaces[0].span(i).grown(1e-6);

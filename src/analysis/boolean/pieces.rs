@@ -6,7 +6,6 @@ use super::meet::Meeting;
 use super::planar::{Cell, cells, flatten};
 use crate::analysis::cancel::{Cancelled, Job};
 use crate::mesh::PolyMesh;
-use crate::mesh::triangulate::area_vector;
 
 /// Where a piece lies as seen from the other operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -203,6 +202,7 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::triangulate::area_vector;
 
     #[test]
     fn a_thin_hole_is_left_out_once() {

@@ -42,6 +42,7 @@ fn asked_watched_and_ended_over_the_socket() {
         thickness: Arc::default(),
         joining: Arc::default(),
         journal: None,
+        history: None,
         stop: Arc::default(),
     };
     let dir = tempfile::tempdir().expect("a folder");
@@ -65,7 +66,7 @@ fn asked_watched_and_ended_over_the_socket() {
     let before = call(&socket, "hash", &json!({}));
     let revision = live.published.load().mesh.revision();
     let long = {
-        let (socket, large) = (socket.clone(), large.clone());
+        let socket = socket.clone();
         std::thread::spawn(move || {
             call(&socket, "boolean", &json!({ "operation": "union", "path": large, "at": [0.3, 0.2, 0.1] }))
         })
