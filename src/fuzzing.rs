@@ -15,6 +15,16 @@ pub fn mesh_bytes(kind: &str, data: &[u8]) {
     }
 }
 
+/// A page of a work and what stands still in it, as a session's history keeps them: four bytes that say how long the latter is,
+/// then it, then the page.
+pub fn page_bytes(data: &[u8]) {
+    let Some((length, rest)) = data.split_first_chunk::<4>() else { return };
+    let (shape, points) = rest.split_at(u32::from_le_bytes(*length) as usize % (rest.len() + 1));
+    if let Ok(topology) = crate::mesh::page::Topology::from_bytes(shape) {
+        let _ = crate::mesh::Page::from_bytes(points, std::sync::Arc::new(topology), 1);
+    }
+}
+
 /// One line for the control socket.
 #[cfg(unix)]
 pub fn rpc_bytes(data: &[u8]) {
@@ -34,7 +44,8 @@ pub fn config_bytes(data: &[u8]) {
     }
 }
 
-/// A session file, put into `folder` (which must be empty): opened, or else salvaged; and replayed.
+/// A session file, put into `folder` (which must be empty): its history listed; opened, or else salvaged; replayed; opened at
+/// its newest checkpoint.
 pub fn session_bytes(folder: &Path, data: &[u8]) {
     use crate::daemon::session;
     let path = folder.join("input.sculpt");
@@ -42,10 +53,12 @@ pub fn session_bytes(folder: &Path, data: &[u8]) {
     if written.is_err() {
         return;
     }
+    let _ = session::history::listing::read(&path);
     let opened = session::open(&path)
         .or_else(|e| session::salvage(&path).map_err(|_| e).and_then(|saved| session::open(&saved.path)));
     if let Ok(opened) = opened {
         let workers = crate::mesh::Workers::new(1);
         let _ = session::replay::replay(&opened, Some(400), workers, &Job::default());
+        let _ = session::history::reopen(&opened.path, &opened, Some(400), 1, &Job::default());
     }
 }

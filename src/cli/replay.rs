@@ -8,12 +8,13 @@ use super::run::export;
 use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::LoopConfig;
+use crate::daemon::session::film::Film;
 use crate::daemon::session::replay::{Replayed, replay_seen};
 use crate::daemon::session::{self, OpenError, Opened};
 use crate::mesh::{BuildError, Workers};
+use crate::world::World;
 
 /// Pixels of a picture.
-#[cfg(feature = "viewer")]
 const PICTURE: (u32, u32) = (1280, 720);
 
 #[derive(Debug, clap::Args)]
@@ -51,35 +52,59 @@ struct Answer {
 
 type Done = Result<(Replayed, u32), Fail>;
 
-#[cfg(feature = "viewer")]
+/// Takes pictures: with a GPU as the window shows the work, else on the CPU.
+enum Camera {
+    None,
+    Plain(Film),
+    #[cfg(feature = "viewer")]
+    Gpu(Box<crate::viewer::lapse::Lapse>),
+}
+
+impl Camera {
+    fn of(args: &ReplayArgs, rate_hz: u32) -> Result<Camera, Fail> {
+        let Some(folder) = &args.frames else { return Ok(Camera::None) };
+        let every = (args.every * f64::from(rate_hz)).round() as u64;
+        #[cfg(feature = "viewer")]
+        match crate::viewer::lapse::Lapse::new(folder, every, PICTURE) {
+            Ok(lapse) => return Ok(Camera::Gpu(Box::new(lapse))),
+            Err(e) => eprintln!("sculptd: warning: pictures are drawn on the CPU: {e}"),
+        }
+        Film::new(folder, every, PICTURE).map(Camera::Plain).map_err(Fail::Input)
+    }
+
+    fn see(&mut self, tick: u64, world: &mut World) -> Result<(), String> {
+        match self {
+            Camera::None => Ok(()),
+            Camera::Plain(film) => film.see(tick, world),
+            #[cfg(feature = "viewer")]
+            Camera::Gpu(lapse) => lapse.see(tick, world),
+        }
+    }
+
+    fn frames(&self) -> u32 {
+        match self {
+            Camera::None => 0,
+            Camera::Plain(film) => film.frames,
+            #[cfg(feature = "viewer")]
+            Camera::Gpu(lapse) => lapse.frames,
+        }
+    }
+}
+
 fn replay(args: &ReplayArgs, opened: &Opened, workers: Workers) -> Done {
-    use crate::viewer::lapse::Lapse;
-    let every = (args.every * f64::from(opened.settings.rate_hz)).round() as u64;
-    let mut lapse = match &args.frames {
-        None => None,
-        Some(folder) => Some(Lapse::new(folder, every, PICTURE).map_err(Fail::Device)?),
-    };
+    let mut camera = Camera::of(args, opened.settings.rate_hz)?;
     let mut failed = None;
-    let mut see = |tick, world: &mut crate::world::World| {
-        if let Some(Err(e)) = lapse.as_mut().filter(|_| failed.is_none()).map(|l| l.see(tick, world)) {
-            failed = Some(e);
+    let mut see = |tick, world: &mut World| {
+        if failed.is_none() {
+            failed = camera.see(tick, world).err();
         }
     };
     let replayed =
         replay_seen(opened, args.until, workers, &Job::default(), &mut see).map_err(|e| cannot(args, &e))?;
     match failed {
         Some(e) => Err(Fail::Input(e)),
-        None => Ok((replayed, lapse.map_or(0, |l| l.frames))),
+        None => Ok((replayed, camera.frames())),
     }
-}
-
-#[cfg(not(feature = "viewer"))]
-fn replay(args: &ReplayArgs, opened: &Opened, workers: Workers) -> Done {
-    if args.frames.is_some() {
-        return Err(Fail::Device("this build draws no pictures (the feature `viewer` is off)".into()));
-    }
-    let replayed = replay_seen(opened, args.until, workers, &Job::default(), &mut |_, _| {});
-    Ok((replayed.map_err(|e| cannot(args, &e))?, 0))
 }
 
 fn cannot(args: &ReplayArgs, e: &BuildError) -> Fail {

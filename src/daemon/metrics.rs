@@ -17,7 +17,7 @@ use crate::devices::Clock;
 /// Longest request head, bytes.
 const MAX_HEAD: usize = 4096;
 /// Longest time that one client may take.
-const PATIENCE: Duration = Duration::from_secs(2);
+pub(super) const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The page, from what the loop published and how the journal stands.
 pub fn page(p: &Published, journal: Option<&super::session::Health>) -> String {
@@ -122,7 +122,8 @@ impl Drop for Metrics {
     }
 }
 
-fn serve(mut stream: TcpStream, at: SocketAddr, watched: &Watched) -> std::io::Result<()> {
+/// The head of a request; `None` where nobody says anything in time.
+pub(super) fn read_head(stream: &mut TcpStream) -> std::io::Result<Option<Vec<u8>>> {
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     stream.set_read_timeout(Some(PATIENCE))?;
@@ -133,10 +134,15 @@ fn serve(mut stream: TcpStream, at: SocketAddr, watched: &Watched) -> std::io::R
         let n = stream.read(&mut part)?;
         // Also one that sends a byte a second.
         if n == 0 || clock.now_us() - begun > PATIENCE.as_micros() as u64 {
-            return Ok(());
+            return Ok(None);
         }
         head.extend_from_slice(&part[..n]);
     }
+    Ok(Some(head))
+}
+
+fn serve(mut stream: TcpStream, at: SocketAddr, watched: &Watched) -> std::io::Result<()> {
+    let Some(head) = read_head(&mut stream)? else { return Ok(()) };
     let (status, body) = match judge(&head, at) {
         Ok(()) => ("200 OK", page(&watched.published.load(), watched.journal.as_ref())),
         Err((status, why)) => (status, format!("{why}\n")),
@@ -153,6 +159,14 @@ type Refusal = (&'static str, &'static str);
 
 /// Whether a request may have the page.
 fn judge(head: &[u8], at: SocketAddr) -> Result<(), Refusal> {
+    match request(head, at, "")? {
+        "/metrics" => Ok(()),
+        _ => Err(("404 Not Found", "the figures are at /metrics")),
+    }
+}
+
+/// The path of a request that may have an answer: a GET of our own host, not by a web page. `name`: one more name of ours.
+pub(super) fn request<'a>(head: &'a [u8], at: SocketAddr, name: &str) -> Result<&'a str, Refusal> {
     const BAD: Refusal = ("400 Bad Request", "not a request");
     if head.len() > MAX_HEAD {
         return Err(("431 Request Header Fields Too Large", "too long"));
@@ -177,17 +191,22 @@ fn judge(head: &[u8], at: SocketAddr) -> Result<(), Refusal> {
         return Err(("403 Forbidden", "no web page may read this"));
     }
     match hosts[..] {
-        [host] if ours(host, at) => {}
+        [host] if ours(host, at) || named(host, at, name) => {}
         [_] => return Err(("403 Forbidden", "another host was asked for")),
         _ => return Err(BAD),
     }
     if method != Some("GET") {
         return Err(("405 Method Not Allowed", "GET only"));
     }
-    if path != Some("/metrics") {
-        return Err(("404 Not Found", "the figures are at /metrics"));
-    }
-    Ok(())
+    path.filter(|p| p.starts_with('/')).ok_or(BAD)
+}
+
+/// The name that the settings give us, with our port.
+fn named(host: &str, at: SocketAddr, name: &str) -> bool {
+    !name.is_empty()
+        && host.rsplit_once(':').is_some_and(|(n, port)| {
+            n.trim_matches(['[', ']']).eq_ignore_ascii_case(name) && port.parse() == Ok(at.port())
+        })
 }
 
 /// An address that can be ours, or `localhost`, with our port: a name that somebody else gives out is not.

@@ -44,7 +44,13 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, screen: &Screen, desk: &mut Desk, 
         door(&ctx, free, words, now.locked, screen, pad);
     }
     match now.stage {
-        Stage::Attract => said(&ctx, free, &words.welcome, 44.0),
+        Stage::Attract => {
+            said(&ctx, free, &words.welcome, 44.0);
+            #[cfg(unix)]
+            if let Some(link) = screen.desk.link.lock().ok().and_then(|l| l.clone()) {
+                kept(&ctx, free, words, &link);
+            }
+        }
         Stage::Working => tools(&ctx, free, view, words, screen, out),
         Stage::Countdown => {
             let text = words.countdown.replace("{seconds}", &now.seconds_left.to_string());
@@ -72,6 +78,33 @@ fn place(ctx: &egui::Context, name: &str, free: egui::Rect, align: Align2, what:
 fn said(ctx: &egui::Context, free: egui::Rect, text: &str, size: f32) {
     place(ctx, "said", free, Align2::CENTER_BOTTOM, |ui| {
         ui.add(egui::Label::new(RichText::new(text).size(size)).extend());
+    });
+}
+
+/// The last visitor's work: where it is, and the code that takes it home.
+#[cfg(unix)]
+fn kept(ctx: &egui::Context, free: egui::Rect, words: &Language, link: &crate::daemon::kiosk::share::Link) {
+    place(ctx, "kept", free, Align2::RIGHT_CENTER, |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
+            ui.add_space(10.0);
+            // Four squares of quiet on each side, as the standard asks.
+            let squares = link.code.side + 8;
+            let square = (360.0 / squares as f32).floor().max(4.0);
+            let (rect, _) =
+                ui.allocate_exact_size(egui::Vec2::splat(square * squares as f32), egui::Sense::hover());
+            let paint = ui.painter();
+            paint.rect_filled(rect, 0.0, egui::Color32::WHITE);
+            for (i, _) in link.code.dark.iter().enumerate().filter(|(_, dark)| **dark) {
+                let (x, y) = (i % link.code.side + 4, i / link.code.side + 4);
+                let min = rect.min + vec2(x as f32, y as f32) * square;
+                let one = egui::Rect::from_min_size(min, egui::Vec2::splat(square));
+                paint.rect_filled(one, 0.0, egui::Color32::BLACK);
+            }
+            ui.add_space(10.0);
+            ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
+            ui.label(RichText::new(&link.url).size(13.0).monospace());
+        });
     });
 }
 

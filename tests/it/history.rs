@@ -353,3 +353,37 @@ fn a_checkpoint_costs_what_moved() {
     let ratio = a_stroke[1] / a_stroke[0];
     assert!(ratio < 2.5, "{}-fold work, {ratio:.2}-fold bytes", sizes[1] / sizes[0]);
 }
+
+#[test]
+fn a_session_becomes_a_film_at_even_steps_of_time() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut s = Studio::begin(dir.path(), 3000, 1 << 26);
+    for k in 0..6 {
+        s.stroke(Vec2::new(-0.1 + 0.04 * k as f32, 0.0));
+    }
+    let ticks = s.world.tick();
+    let path = s.end();
+    let frames = dir.path().join("film");
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_sculptd"))
+        .arg("replay")
+        .arg(&path)
+        .arg("--frames")
+        .arg(&frames)
+        .args(["--every", "0.1", "--json"])
+        .output()
+        .expect("runs");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let said: serde_json::Value = serde_json::from_slice(&out.stdout).expect("one object");
+    // Twelve ticks a picture, the first of the beginning; after the last input nothing is replayed.
+    let count = said["frames"].as_u64().expect("a number");
+    assert!(count == said["ticks"].as_u64().expect("ticks") / 12 + 1 && count >= ticks / 12, "{said}");
+    let picture = |n: u64| {
+        let bytes = std::fs::read(frames.join(format!("frame-{n:05}.png"))).expect("a frame");
+        image::load_from_memory(&bytes).expect("a PNG").to_rgb8()
+    };
+    let (first, last) = (picture(0), picture(count - 1));
+    assert_eq!(first.dimensions(), (1280, 720));
+    assert_eq!(std::fs::read_dir(&frames).expect("listed").count() as u64, count);
+    let changed = first.pixels().zip(last.pixels()).filter(|(a, b)| a != b).count();
+    assert!((500..400_000).contains(&changed), "{changed} pixels changed");
+}

@@ -9,6 +9,8 @@ mod clay;
 #[cfg(unix)]
 mod control;
 mod field;
+#[cfg(unix)]
+mod gallery;
 mod golden;
 mod hands;
 mod history;

@@ -157,6 +157,19 @@ fn config() {
 }
 
 #[test]
+fn stored_pages() {
+    let mesh =
+        sculptd::mesh::Mesh::build(&shapes::sphere_of_about(1200), &Default::default()).expect("a ball");
+    let seeds: Vec<Vec<u8>> = (0..mesh.page_count() as u32)
+        .map(|i| {
+            let (shape, points) = (mesh.page(i).topology().to_bytes(), mesh.page(i).to_bytes());
+            [&(shape.len() as u32).to_le_bytes()[..], &shape, &points].concat()
+        })
+        .collect();
+    torment("stored pages", &seeds, 1500, fuzzing::page_bytes);
+}
+
+#[test]
 fn session_file() {
     use sculptd::command::Command;
     let dir = tempfile::tempdir().expect("a folder");
@@ -173,9 +186,19 @@ fn session_file() {
     let start = shapes::sphere_of_about(60);
     let (mut writer, thread) = session::create(&path, &start, &settings).expect("created");
     let mesh = sculptd::mesh::Mesh::build(&start, &Default::default()).expect("a ball");
-    let world = sculptd::daemon::rig::world(mesh, &config);
+    let mut world = sculptd::daemon::rig::world(mesh, &config);
+    let mut thread = thread;
+    let keeper = session::history::Keeper::start(&path, &mut world, 0, None).expect("a history");
+    writer.keep(keeper.handle.clone());
+    thread.history = Some(keeper);
     for tick in 1..200 {
-        writer.tick(tick, &[], &[Command::Brush(config.brush), Command::Undo], &world);
+        let mut commands = vec![Command::Brush(config.brush), Command::Undo];
+        if tick % 50 == 0 {
+            commands.push(Command::Mask(sculptd::brush::MaskAction::Fill));
+            commands.push(Command::Mask(sculptd::brush::MaskAction::Invert));
+        }
+        world.step(tick, &[], &commands);
+        writer.tick(tick, &[], &commands, &world);
     }
     drop(writer);
     assert_eq!(thread.finish(), None);

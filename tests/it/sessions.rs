@@ -245,6 +245,45 @@ fn the_session_tools_tell_and_mend() {
 }
 
 #[test]
+fn a_disk_that_keeps_everybody_waiting_costs_a_kill_nothing() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut script = Script::begin(dir.path());
+    script.group(30);
+    // Somebody else writes, for longer than the journal is patient: no group is committed.
+    let other = rusqlite::Connection::open(&script.path).expect("opens");
+    other.execute_batch("BEGIN IMMEDIATE").expect("held");
+    let before = script.written();
+    for _ in 0..200 {
+        script.tick();
+    }
+    let last = script.hashes.len() as u64 - 1;
+    // The thread that only copies is there at once.
+    for _ in 0..500 {
+        let found = session::open(&script.path).expect("opens").input.last().map_or(0, |t| t.tick);
+        if found == last {
+            break;
+        }
+        pause(2);
+    }
+    let opened = session::open(&script.path).expect("opens");
+    assert_eq!((opened.input.last().map(|t| t.tick), script.written()), (Some(last), before));
+    assert_eq!(hash_of(&opened), script.hashes[last as usize]);
+    // As the kill leaves it, in a file of its own; it goes on from there.
+    let copy = dir.path().join("c.sculpt");
+    for ending in ["", "-wal"] {
+        let from = format!("{}{ending}", script.path.display());
+        std::fs::copy(from, format!("{}{ending}", copy.display())).expect("copied");
+    }
+    let (writer, thread) = session::resume(&copy).expect("goes on");
+    drop(writer);
+    assert_eq!(thread.finish(), None);
+    assert_eq!(session::tail::of(&copy).map(session::tail::read).map_or(0, |t| t.len()), 0, "let go");
+    assert_eq!(hash_of(&session::open(&copy).expect("opens")), script.hashes[last as usize]);
+    drop(other);
+    script.end();
+}
+
+#[test]
 fn a_second_writer_of_the_same_session_is_refused() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut script = Script::begin(dir.path());
@@ -327,6 +366,8 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
     let dir = tempfile::tempdir().expect("a folder");
     let mut rng = Rng::new(seed);
     let mut script = Script::begin(dir.path());
+    // Memory is gone with the power.
+    session::tail::of(&script.path).into_iter().for_each(session::tail::remove);
     script.group(5);
     let (mut lost, mut checkpoints) = (0, 0);
     for n in 0..cuts {

@@ -9,6 +9,9 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::film::Film;
+#[cfg(unix)]
+use super::share;
+use super::spool::Spool;
 use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
 use crate::analysis::cancel::Job;
 use crate::brush::BrushSettings;
@@ -53,6 +56,9 @@ pub struct Desk {
     pub finished: AtomicBool,
     /// What staff typed.
     pub typed: Mutex<Option<String>>,
+    /// Where the last visitor's work can be fetched, until somebody else comes.
+    #[cfg(unix)]
+    pub link: Mutex<Option<share::Link>>,
 }
 
 /// What the window of an installation shows.
@@ -87,6 +93,9 @@ struct Keeping {
     playing: bool,
     began_us: u64,
     dabs_before: u64,
+    spool: Option<Spool>,
+    #[cfg(unix)]
+    share: Option<share::Share>,
 }
 
 /// Starts keeping. A recording that cannot be played is an error here and not in front of visitors.
@@ -112,6 +121,20 @@ pub fn start(
     if films.is_empty() {
         films.push(Film::own(DeviceId(ATTRACT_IDS.start)));
     }
+    let spool = match config.gallery_store.as_str() {
+        "" => None,
+        place => Some(Spool::start(&config.gallery, place)?),
+    };
+    #[cfg(unix)]
+    let share = match config.share.as_str() {
+        "" => None,
+        at => {
+            let lasts = Duration::from_secs_f64(config.share_minutes * 60.0);
+            let at = crate::daemon::metrics::address(at).map_err(|e| format!("share: {e}"))?;
+            let share = share::Share::start(at, &config.share_name, lasts, clock.clone());
+            Some(share.map_err(|e| format!("share {at}: {e}"))?)
+        }
+    };
     let desk = Arc::new(Desk::default());
     let mut keeping = Keeping {
         config,
@@ -127,6 +150,9 @@ pub fn start(
         playing: false,
         began_us: 0,
         dabs_before: 0,
+        spool,
+        #[cfg(unix)]
+        share,
     };
     let run = move || keeping.run();
     let thread =
@@ -171,6 +197,8 @@ impl Keeping {
                 if std::mem::take(&mut self.playing) {
                     self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
                 }
+                #[cfg(unix)]
+                self.show_link(None);
                 self.dabs_before = self.published.load().figures.dabs;
                 self.put_back();
             }
@@ -181,7 +209,10 @@ impl Keeping {
                 if dabs > 0 && !self.config.gallery.as_os_str().is_empty() {
                     let mesh = state.mesh.to_tri().to_poly();
                     match gallery::keep(&self.config.gallery, &mesh) {
-                        Ok(_) => kept = true,
+                        Ok(path) => {
+                            kept = true;
+                            self.pass_on(&path);
+                        }
                         Err(e) => tracing::error!("{}: {e}", self.config.gallery.display()),
                     }
                 }
@@ -193,6 +224,29 @@ impl Keeping {
                 }
                 self.put_back();
             }
+        }
+    }
+
+    /// The work is in the gallery: on to where it is kept for good, and to the visitor.
+    fn pass_on(&self, path: &std::path::Path) {
+        if let (Some(spool), Some(name)) = (&self.spool, path.file_name().and_then(|n| n.to_str()))
+            && let Err(e) = spool.offer(name)
+        {
+            tracing::error!("{}: {e}", path.display());
+        }
+        #[cfg(unix)]
+        if let Some(share) = &self.share {
+            match share.link(path) {
+                Ok(link) => self.show_link(Some(link)),
+                Err(e) => tracing::error!("{}: {e}", path.display()),
+            }
+        }
+    }
+
+    #[cfg(unix)]
+    fn show_link(&self, link: Option<share::Link>) {
+        if let Ok(mut shown) = self.desk.link.lock() {
+            *shown = link;
         }
     }
 

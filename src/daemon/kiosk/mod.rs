@@ -10,6 +10,9 @@ pub mod film;
 pub mod gallery;
 pub mod keeper;
 pub mod settings;
+#[cfg(unix)]
+pub mod share;
+pub mod spool;
 
 pub use cycle::{Act, Cycle, Stage, View};
 pub use settings::{KioskConfig, Language};

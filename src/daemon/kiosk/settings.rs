@@ -25,6 +25,10 @@ pub struct KioskConfig {
     pub languages: Vec<PathBuf>,
     pub staff_pin: String,
     pub gallery: PathBuf,
+    pub gallery_store: String,
+    pub share: String,
+    pub share_name: String,
+    pub share_minutes: f64,
     pub audit: PathBuf,
     pub attract: Vec<PathBuf>,
 }
@@ -40,6 +44,10 @@ impl Default for KioskConfig {
             languages: vec![],
             staff_pin: String::new(),
             gallery: PathBuf::new(),
+            gallery_store: String::new(),
+            share: String::new(),
+            share_name: String::new(),
+            share_minutes: 30.0,
             audit: PathBuf::new(),
             attract: vec![],
         }
@@ -67,6 +75,12 @@ impl KioskConfig {
         }
         if self.undo_bytes < 1 << 20 {
             return Err(format!("undo_bytes = {}: expected at least 1048576", self.undo_bytes));
+        }
+        if !(1.0..=1440.0).contains(&self.share_minutes) {
+            return Err(format!("share_minutes = {}: expected a number from 1 to 1440", self.share_minutes));
+        }
+        if self.gallery.as_os_str().is_empty() && !(self.gallery_store.is_empty() && self.share.is_empty()) {
+            return Err("gallery_store and share need a gallery: works are kept there first".into());
         }
         let digits = self.staff_pin.chars().all(|c| c.is_ascii_digit());
         if !(self.staff_pin.is_empty() || digits && self.staff_pin.len() >= 4) {
@@ -123,6 +137,7 @@ pub struct Language {
     pub go_on: String,
     pub finish: String,
     pub kept: String,
+    pub fetch: String,
     pub too_large: String,
     pub draw: String,
     pub carve: String,

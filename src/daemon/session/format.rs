@@ -23,6 +23,8 @@ pub const TABLES: &str = "
 /// Keys of `meta`.
 pub const META_START: &str = "start_mesh";
 pub const META_SETTINGS: &str = "settings";
+/// Names what lies in memory beside the file, see [`super::tail`]; eight bytes.
+pub const META_TAIL: &str = "tail";
 /// The CRC-32 of both, in that order. Files from before it was written go unchecked.
 pub const META_SUMS: &str = "sums";
 

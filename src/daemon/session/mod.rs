@@ -3,9 +3,11 @@
 //!
 //! Laws kept here:
 //! * The tick thread only hands over data and never waits ([`writer`]).
-//! * Input is committed at most [`GROUP_MS`] after its tick, safe from a kill, and then synced, safe from a power cut.
+//! * Input is safe from a kill as soon as the journal has it ([`tail`]), is committed at most [`GROUP_MS`] after its tick, and
+//!   then synced, safe from a power cut.
 //! * What was written is never rewritten: a group is a row, a row carries its checksum, a torn tail is dropped and said.
 
+pub mod film;
 pub mod format;
 pub mod history;
 pub mod reader;
@@ -13,6 +15,7 @@ pub mod replay;
 pub mod salvage;
 pub mod shelf;
 mod syncer;
+pub mod tail;
 pub mod writer;
 
 pub use reader::{Loss, OpenError, Opened, open};

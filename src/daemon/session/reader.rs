@@ -4,8 +4,8 @@ use std::path::Path;
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
-use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TickInput, ticks};
-use super::{APPLICATION_ID, VERSION};
+use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TickInput, ticks};
+use super::{APPLICATION_ID, VERSION, tail};
 use crate::mesh::TriMesh;
 
 /// Largest start mesh that is read back, bytes; more than the 24 GiB machine's working set makes no session.
@@ -121,7 +121,13 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
         return Err(damaged(META_START, "an index is out of range".into()));
     }
     let settings = postcard::from_bytes(&settings_bytes).map_err(|e| damaged(META_SETTINGS, e.into()))?;
-    let (input, cause) = read_log(&db);
+    let (mut input, cause) = read_log(&db);
+    if cause.is_none()
+        && let Ok(Some(tail)) = meta(META_TAIL)
+        && let Ok(name) = tail.try_into().map(u64::from_le_bytes)
+    {
+        tail::lengthen(&mut input, &tail::read(name));
+    }
     let loss =
         cause.map(|cause| Loss { kept: input.last().map_or(0, |t| t.tick), last: last_named(&db), cause });
     Ok(Opened { path: path.into(), start, settings, input, loss })

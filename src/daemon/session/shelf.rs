@@ -116,7 +116,9 @@ pub fn in_use(path: &Path) -> bool {
 
 /// Removes a session with what belongs to it.
 pub fn remove(path: &Path) -> std::io::Result<()> {
+    let tail = super::tail::of(path);
     std::fs::remove_file(path)?;
+    tail.into_iter().for_each(super::tail::remove);
     for ending in ["-wal", "-shm"] {
         let mut name = path.as_os_str().to_owned();
         name.push(ending);

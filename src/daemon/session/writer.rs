@@ -11,11 +11,12 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crossbeam_channel as cc;
-use rusqlite::Connection;
+use rusqlite::{Connection, OptionalExtension};
 
-use super::format::{META_SETTINGS, META_START, META_SUMS, Settings, TABLES, append};
+use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TABLES, TickInput, append};
 use super::history::{Handle, keeper::Keeper};
 use super::syncer::Syncer;
+use super::tail::{self, Tail};
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::command::Command;
 use crate::daemon::live::{Journal, raise_priority_below};
@@ -194,13 +195,26 @@ fn start_thread(
         let _ = recycle.try_send(Vec::with_capacity(BUFFER_BYTES));
     }
     let health = Health::default();
+    let sql = |source| CreateError::Store { path: path.display().to_string(), source };
+    let (log_end, tail) = begin_tail(&db).map_err(sql)?;
+    let committed = tail.as_ref().map(|t| t.committed.clone()).unwrap_or_default();
+    committed.store(log_end, Relaxed);
+    let tail_name = tail.as_ref().map(Tail::name);
     let syncer = Syncer::start(path, health.written.clone())
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     // From here on the syncer does it, and no commit waits for a disk.
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     db.pragma_update(None, "synchronous", "off").map_err(store)?;
+    // Two threads: the first only copies, and never waits for a disk.
+    let (onward, groups) = cc::unbounded();
+    std::thread::Builder::new()
+        .name("sculptd-tail".into())
+        .spawn(move || copy_on(tail, &inbox, &onward))
+        .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     let mut writing = Writing {
         db,
+        tail: tail_name,
+        committed,
         syncer: Some(syncer),
         _lock: lock,
         recycle,
@@ -211,7 +225,7 @@ fn start_thread(
     };
     let thread = std::thread::Builder::new()
         .name("sculptd-journal".into())
-        .spawn(move || writing.run(&inbox))
+        .spawn(move || writing.run(&groups))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     let lost = health.lost.clone();
     let writer = SessionWriter {
@@ -294,8 +308,59 @@ struct Group {
     data: Vec<u8>,
 }
 
+/// Gives the session a tail of a new name; what the old one still holds is written first. Also the last tick of the log.
+fn begin_tail(db: &Connection) -> rusqlite::Result<(u64, Option<Tail>)> {
+    let old: Option<Vec<u8>> =
+        db.query_row("SELECT value FROM meta WHERE key = ?1", [META_TAIL], |r| r.get(0)).optional()?;
+    let last: Option<i64> = db.query_row("SELECT max(last_tick) FROM log", [], |r| r.get(0))?;
+    let mut last = last.map_or(0, |l| l as u64);
+    let old = old.and_then(|o| o.try_into().ok()).map(u64::from_le_bytes);
+    if let Some(name) = old {
+        let mut input = vec![TickInput { tick: last, samples: Vec::new(), commands: Vec::new() }];
+        tail::lengthen(&mut input, &tail::read(name));
+        let mut data = Vec::new();
+        for t in &input[1..] {
+            append(&mut data, t.tick, &t.samples, &t.commands);
+        }
+        if let [_, first, ..] = input.as_slice() {
+            let end = input.last().map_or(last, |t| t.tick);
+            let row = (first.tick as i64, end as i64, crc32fast::hash(&data), &data);
+            db.execute("INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)", row)?;
+            last = end;
+        }
+    }
+    let name = tail::new_name();
+    let made = Tail::create(name, last);
+    db.execute(
+        "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)",
+        (META_TAIL, name.to_le_bytes().as_slice()),
+    )?;
+    if let Some(old) = old {
+        tail::remove(old);
+    }
+    Ok((last, made))
+}
+
+/// Copies what comes into the tail and hands it on to whoever writes it.
+fn copy_on(mut tail: Option<Tail>, inbox: &cc::Receiver<Message>, onward: &cc::Sender<Message>) {
+    raise_priority_below();
+    for message in inbox {
+        let Message::Ticks(first, last, data) = &message;
+        if let Some(tail) = &mut tail {
+            tail.put(*first, *last, data);
+        }
+        if onward.send(message).is_err() {
+            return;
+        }
+    }
+}
+
 struct Writing {
     db: Connection,
+    /// The tail's name, to remove it once the file has everything.
+    tail: Option<u64>,
+    /// The last tick in the file: the tail may let go of what came before.
+    committed: Arc<AtomicU64>,
     /// Taken at the end.
     syncer: Option<Syncer>,
     /// After `db`: closing another handle of the file first would give back SQLite's own locks.
@@ -355,7 +420,11 @@ impl Writing {
     fn end(&mut self) {
         // Closing takes the rest of the log over, and syncs as it should.
         let _ = self.db.pragma_update(None, "synchronous", "full");
-        let Some(why) = self.syncer.take().and_then(Syncer::finish) else { return };
+        let why = self.syncer.take().and_then(Syncer::finish);
+        if let Some(name) = self.tail.filter(|_| self.groups.is_empty() && !self.closed) {
+            tail::remove(name);
+        }
+        let Some(why) = why else { return };
         if let Ok(mut fault) = self.health.fault.lock() {
             fault.get_or_insert(format!("the session file was not synced: {why}"));
         }
@@ -367,8 +436,11 @@ impl Writing {
         let text = match result {
             Ok(last) => {
                 self.groups.clear();
-                if let (Some(last), Some(syncer)) = (last, &self.syncer) {
-                    syncer.committed(last);
+                if let Some(last) = last {
+                    self.committed.fetch_max(last, Relaxed);
+                    if let Some(syncer) = &self.syncer {
+                        syncer.committed(last);
+                    }
                 }
                 let unsynced = self.syncer.as_ref().and_then(Syncer::trouble);
                 unsynced.map(|e| format!("the session file cannot be synced: {e}"))

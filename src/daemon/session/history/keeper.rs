@@ -266,6 +266,9 @@ impl Keeping {
             return;
         }
         self.sent = None;
+        if self.ledger.closed {
+            self.wants.clear();
+        }
         let Some(commands) = commands.get() else { return };
         while let Some(want) = self.wants.pop_front() {
             let to = match want {

@@ -27,6 +27,8 @@ pub struct Ledger {
     next_side: u64,
     /// Bytes in the open transaction.
     open: usize,
+    /// Another person's work began: no history is kept from there on.
+    pub closed: bool,
 }
 
 fn same(a: &Side, b: &Side) -> bool {
@@ -87,6 +89,7 @@ impl Ledger {
             sides: Vec::new(),
             next_side,
             open: 0,
+            closed: false,
         })
     }
 
@@ -185,10 +188,15 @@ impl Ledger {
     /// Goes where a deed led, or writes a node for it.
     pub fn moment(&mut self, tick: u64, moment: &Moment) -> Result<(), StoreError> {
         let work = &moment.work;
+        // Visitors come and go: nothing of one is kept for the next.
+        if self.closed || moment.deed == Deed::Begin {
+            self.closed = true;
+            self.now = work.clone();
+            return Ok(());
+        }
         let changes = self.differences(work);
         let known = match moment.deed {
             Deed::Jump(id) => self.tree.node(id).map(|n| n.id),
-            Deed::Begin => None,
             _ if changes.as_ref().is_some_and(|c| c.is_empty()) => Some(self.tree.cursor),
             Deed::Undo => self.tree.here().and_then(|here| {
                 let back = |c: &Change| (c.0, c.2, c.1);
@@ -207,19 +215,15 @@ impl Ledger {
                     n.lineage == work.lineage() && changes.as_ref().is_none_or(|c| *c == n.changes)
                 })
             }),
-            Deed::Step | Deed::Replace => None,
+            Deed::Step | Deed::Replace | Deed::Begin => None,
         };
         if let Some(id) = known {
             self.tree.go(id);
             self.stand(work);
             return Ok(());
         }
-        let parent = (moment.deed != Deed::Begin).then_some(self.tree.cursor);
-        let deed = match (moment.deed, &changes) {
-            (Deed::Begin, _) => Deed::Begin,
-            (_, None) => Deed::Replace,
-            _ => Deed::Step,
-        };
+        let parent = Some(self.tree.cursor);
+        let deed = if changes.is_none() { Deed::Replace } else { Deed::Step };
         let mut node = self.node(tick, moment, parent, deed);
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         self.open = 0;
@@ -335,7 +339,8 @@ impl Ledger {
     /// Writes a checkpoint.
     pub fn state(&mut self, saved: &Saved) -> Result<(), StoreError> {
         // After moments that were left out, this is not the work at the cursor.
-        if (saved.rest.lineage, saved.rest.revision) != (self.now.lineage(), self.now.revision()) {
+        let now = (self.now.lineage(), self.now.revision());
+        if self.closed || (saved.rest.lineage, saved.rest.revision) != now {
             return Ok(());
         }
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;

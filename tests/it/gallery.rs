@@ -1,0 +1,158 @@
+//! Finished works on their way: a place that refuses for a while, restarts in between, and links that expire.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::path::Path;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::{Duration, SystemTime};
+
+use sculptd::daemon::kiosk::share::{Code, Share};
+use sculptd::daemon::kiosk::{gallery, spool, spool::Spool};
+use sculptd::devices::Clock;
+use sculptd::mesh::shapes;
+
+fn until(what: &str, mut so: impl FnMut() -> bool) {
+    let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
+    for _ in 0..2000 {
+        if so() {
+            return;
+        }
+        let _ = quiet.recv_timeout(Duration::from_millis(5));
+    }
+    panic!("never: {what}");
+}
+
+#[test]
+fn a_dead_network_loses_nothing_and_the_order_is_kept() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (here, there) = (dir.path().join("works"), dir.path().join("store"));
+    let place = there.display().to_string();
+    let work = |n: u32| shapes::uv_sphere(1.0, 4 + n, 8);
+    let keep = |n: u32, spool: Option<&Spool>| {
+        let path = gallery::keep(&here, &work(n)).expect("kept");
+        let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
+        match spool {
+            Some(spool) => spool.offer(&name).expect("offered"),
+            // The program is not running: the mark is there all the same.
+            None => spool::offer(&here, &name).expect("offered"),
+        }
+    };
+    let first = Spool::start(&here, &place).expect("a place");
+    keep(1, Some(&first));
+    until("the first work arrives", || first.stand.sent.load(Relaxed) == 1);
+    // The place is gone: in its stead a file, in which nothing can be put.
+    std::fs::rename(&there, dir.path().join("moved")).expect("moved");
+    #[allow(clippy::disallowed_methods)] // It stands for a network that is down.
+    std::fs::write(&there, b"").expect("written");
+    keep(2, Some(&first));
+    keep(3, Some(&first));
+    until("the place refuses", || first.stand.refused.load(Relaxed) >= 2);
+    assert_eq!(spool::waiting(&here), ["work-000002.glb", "work-000003.glb"]);
+    // The machine is switched off, and a work is finished before the network is back.
+    drop(first);
+    keep(4, None);
+    std::fs::remove_file(&there).expect("removed");
+    std::fs::rename(dir.path().join("moved"), &there).expect("back");
+    let second = Spool::start(&here, &place).expect("a place");
+    until("all is sent", || spool::waiting(&here).is_empty());
+    drop(second);
+    let names: Vec<String> = (1..=4).map(|n| format!("work-{n:06}.glb")).collect();
+    assert_eq!(gallery::works(&there).expect("listed"), names);
+    let mut before = SystemTime::UNIX_EPOCH;
+    for name in &names {
+        let (a, b) = (std::fs::read(here.join(name)), std::fs::read(there.join(name)));
+        assert!(a.expect("here") == b.expect("there"), "{name} is another one there");
+        let at = std::fs::metadata(there.join(name)).and_then(|m| m.modified()).expect("a time");
+        assert!(at >= before, "{name} came before the one before it");
+        before = at;
+    }
+    let page = std::fs::read_to_string(there.join("index.html")).expect("the page");
+    assert!(page.contains("4 works"));
+}
+
+#[test]
+fn a_place_that_is_none_is_said_before_visitors_come() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let said = |place: &str| Spool::start(dir.path(), place).expect_err("refused");
+    assert!(said("nonsense://x").contains("nonsense://x"));
+    if cfg!(not(feature = "s3")) {
+        assert!(said("s3://bucket/works").contains("feature `s3`"));
+    }
+}
+
+/// Status and body of a request.
+fn get(at: SocketAddr, path: &str, head: &str) -> (u16, Vec<u8>) {
+    let mut stream = TcpStream::connect(at).expect("listens");
+    write!(stream, "GET {path} HTTP/1.1\r\n{head}\r\n\r\n").expect("sent");
+    let mut all = Vec::new();
+    stream.read_to_end(&mut all).expect("an answer");
+    let end = all.windows(4).position(|w| w == b"\r\n\r\n").expect("a head") + 4;
+    let status = std::str::from_utf8(&all[9..12]).ok().and_then(|s| s.parse().ok()).expect("a status");
+    (status, all[end..].to_vec())
+}
+
+#[test]
+fn a_link_gives_one_work_to_whoever_has_it_until_it_expires() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = gallery::keep(dir.path(), &shapes::uv_sphere(1.0, 6, 8)).expect("kept");
+    gallery::keep(dir.path(), &shapes::uv_sphere(1.0, 9, 8)).expect("another");
+    let clock = Clock::manual();
+    let at = "127.0.0.1:0".parse().expect("an address");
+    let share = Share::start(at, "", Duration::from_secs(60), clock.clone()).expect("listens");
+    let at = share.address();
+    let link = share.link(&path).expect("a link");
+    let rest = link.url.strip_prefix(&format!("http://{at}")).expect("our address").to_owned();
+    assert_eq!(rest.len(), 33, "128 bits: {rest}");
+    assert_ne!(share.link(&path).expect("another").url, link.url);
+    let host = format!("Host: {at}");
+    let (status, page) = get(at, &rest, &host);
+    let page = String::from_utf8(page).expect("text");
+    assert!(status == 200 && page.contains(&format!("href=\"{rest}/work-000001.glb\"")), "{page}");
+    let file = format!("{rest}/work-000001.glb");
+    assert_eq!(get(at, &file, &host), (200, std::fs::read(&path).expect("read")));
+    // Nothing else, for nobody else.
+    for path in ["/", "/index.html", "/00000000000000000000000000000000", "/work-000001.glb"] {
+        assert_eq!(get(at, path, &host).0, 404, "{path}");
+    }
+    for other in ["work-000002.glb", "../work-000002.glb", "index.html", "..", "%2e%2e/index.html"] {
+        assert_eq!(get(at, &format!("{rest}/{other}"), &host).0, 404, "{other}");
+    }
+    assert_eq!(get(at, &file, "Host: evil.example").0, 403);
+    assert_eq!(get(at, &file, &format!("{host}\r\nOrigin: http://evil.example")).0, 403);
+    clock.set_us(59_000_000);
+    assert_eq!(get(at, &file, &host).0, 200);
+    clock.set_us(61_000_000);
+    assert_eq!(get(at, &file, &host).0, 404);
+    check_code(&link.code);
+}
+
+/// The three eyes of a QR code, seven squares each, at three corners and not at the fourth.
+fn check_code(code: &Code) {
+    let dark = |x: usize, y: usize| code.dark[y * code.side + x];
+    let eye = |x0: usize, y0: usize| {
+        (0..7).all(|y| {
+            (0..7).all(|x| {
+                let ring = x == 0 || y == 0 || x == 6 || y == 6;
+                let middle = (2..5).contains(&x) && (2..5).contains(&y);
+                dark(x0 + x, y0 + y) == (ring || middle)
+            })
+        })
+    };
+    let far = code.side - 7;
+    assert!(eye(0, 0) && eye(far, 0) && eye(0, far) && !eye(far, far));
+    // Version n has 17 + 4n squares a side.
+    assert!(code.side >= 21 && (code.side - 17) % 4 == 0);
+}
+
+#[test]
+fn a_name_of_ours_is_answered_to() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = gallery::keep(Path::new(dir.path()), &shapes::uv_sphere(1.0, 6, 8)).expect("kept");
+    let at = "127.0.0.1:0".parse().expect("an address");
+    let share = Share::start(at, "museum.local", Duration::from_secs(60), Clock::manual()).expect("listens");
+    let at = share.address();
+    let link = share.link(&path).expect("a link");
+    let rest = link.url.strip_prefix(&format!("http://museum.local:{}", at.port())).expect("our name");
+    assert_eq!(get(at, rest, &format!("Host: museum.local:{}", at.port())).0, 200);
+    assert_eq!(get(at, rest, "Host: museum.local:1").0, 403);
+}
