@@ -102,3 +102,30 @@ fn staff_types_a_number_that_is_not_shown() {
     assert_eq!(screen.desk.typed.lock().expect("a desk").as_deref(), Some("4711"));
     assert!(h.query_by_label("OK").is_none(), "the keypad is closed");
 }
+
+#[cfg(unix)]
+#[test]
+fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
+    use sculptd::daemon::kiosk::share::{Code, Link};
+    let screen = screen();
+    let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
+    let code = Code::of(&url).expect("a code");
+    *screen.desk.link.lock().expect("a desk") = Some(Link { url: url.clone(), code });
+    for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
+        at(&screen, Stage::Attract, 0);
+        let mut h = harness(&screen, size);
+        let inside = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        for (i, language) in screen.words.iter().enumerate() {
+            h.state_mut().desk.pad.language = i;
+            h.run_steps(3);
+            for text in [&language.kept, &language.fetch, &url] {
+                let rect = h.get_by_label(text).rect();
+                assert!(inside.contains_rect(rect), "{text} is cut: {rect:?}");
+            }
+        }
+        // Gone with the next visitor's first touch, whatever the keeper still holds.
+        at(&screen, Stage::Working, 0);
+        h.run_steps(3);
+        assert!(h.query_by_label(&url).is_none());
+    }
+}
