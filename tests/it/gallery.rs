@@ -74,7 +74,7 @@ fn a_dead_network_loses_nothing_and_the_order_is_kept() {
 fn a_place_that_is_none_is_said_before_visitors_come() {
     let dir = tempfile::tempdir().expect("a folder");
     let said = |place: &str| Spool::start(dir.path(), place).expect_err("refused");
-    assert!(said("nonsense://x").contains("nonsense://x"));
+    assert!(said("nonsense://x").contains("nonsense://x"), "the place is named");
     if cfg!(not(feature = "s3")) {
         assert!(said("s3://bucket/works").contains("feature `s3`"));
     }

@@ -5,6 +5,8 @@
 //! * A reset leaves nothing of the visitor before: the world is begun anew by [`crate::command::Command::Begin`].
 //! * What is written (gallery, audit) appears whole or not at all, and says nothing of who was here.
 
+#[cfg(feature = "s3")]
+pub mod bucket;
 pub mod cycle;
 pub mod film;
 pub mod gallery;

@@ -12,8 +12,6 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crossbeam_channel as cc;
-use object_store::path::Path as StorePath;
-use object_store::{ObjectStore, ObjectStoreExt, PutPayload};
 
 use crate::mesh::io::write_beside;
 
@@ -52,27 +50,38 @@ pub fn waiting(folder: &Path) -> Vec<String> {
     super::gallery::works(&folder.join(OUTGOING)).unwrap_or_default()
 }
 
-/// Opens where works go to: a folder, `file:///folder`, or another place that this build knows.
-///
-/// # Errors
-/// In words, where nothing of that kind is known.
-pub fn open(place: &str) -> Result<(Arc<dyn ObjectStore>, StorePath), String> {
-    let said = |e: object_store::Error| format!("{place}: {e}");
-    if place.contains("://") {
-        let url = url::Url::parse(place).map_err(|e| format!("{place}: {e}"))?;
-        if url.scheme() == "s3" && !cfg!(feature = "s3") {
-            return Err(format!("{place}: this build sends to no bucket (the feature `s3` is off)"));
+/// Where works go to.
+#[derive(Debug)]
+enum Place {
+    Folder(PathBuf),
+    #[cfg(feature = "s3")]
+    Bucket(Box<super::bucket::Bucket>),
+}
+
+impl Place {
+    fn open(place: &str) -> Result<Place, String> {
+        #[cfg(feature = "s3")]
+        if place.contains("://") {
+            return super::bucket::Bucket::open(place).map(|b| Place::Bucket(Box::new(b)));
         }
-        // Keys of a bucket come from the environment, as everywhere: no secret stands in a settings file.
-        let keys = std::env::vars().filter(|(k, _)| k.starts_with("AWS_"));
-        let (store, path) =
-            object_store::parse_url_opts(&url, keys.map(|(k, v)| (k.to_ascii_lowercase(), v)))
-                .map_err(said)?;
-        return Ok((Arc::from(store), path));
+        if place.contains("://") {
+            return Err(format!("{place}: this build sends to folders only (the feature `s3` is off)"));
+        }
+        std::fs::create_dir_all(place).map_err(|e| format!("{place}: {e}"))?;
+        Ok(Place::Folder(place.into()))
     }
-    std::fs::create_dir_all(place).map_err(|e| format!("{place}: {e}"))?;
-    let store = object_store::local::LocalFileSystem::new_with_prefix(place).map_err(said)?;
-    Ok((Arc::new(store), StorePath::default()))
+
+    /// Puts one file, whole or not at all.
+    fn put(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
+        match self {
+            Place::Folder(folder) => {
+                // A share that is not mounted is an empty folder above it: it is not made up here.
+                write_beside(&folder.join(name), |out| out.write_all(bytes)).map_err(|e| e.to_string())
+            }
+            #[cfg(feature = "s3")]
+            Place::Bucket(bucket) => bucket.put(name, bytes),
+        }
+    }
 }
 
 impl Spool {
@@ -81,11 +90,7 @@ impl Spool {
     /// # Errors
     /// In words, where `place` is nothing that can be sent to.
     pub fn start(folder: &Path, place: &str) -> Result<Spool, String> {
-        let (store, prefix) = open(place)?;
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()
-            .map_err(|e| format!("{place}: {e}"))?;
+        let to = Place::open(place)?;
         let (wake, calls) = cc::bounded::<()>(1);
         let stand = Arc::new(Stand::default());
         let (shown, from) = (stand.clone(), folder.to_path_buf());
@@ -95,7 +100,7 @@ impl Spool {
             .spawn(move || {
                 let mut wait = WAIT;
                 while !shown.stop.load(Relaxed) {
-                    match send_next(&runtime, store.as_ref(), &prefix, &from) {
+                    match send_next(&to, &from) {
                         Ok(true) => {
                             shown.sent.fetch_add(1, Relaxed);
                             wait = WAIT;
@@ -143,12 +148,7 @@ impl Drop for Spool {
 }
 
 /// Sends the oldest work that waits, and the page after it. False: none waits.
-fn send_next(
-    runtime: &tokio::runtime::Runtime,
-    store: &dyn ObjectStore,
-    prefix: &StorePath,
-    folder: &Path,
-) -> Result<bool, String> {
+fn send_next(to: &Place, folder: &Path) -> Result<bool, String> {
     let all = waiting(folder);
     let Some(name) = all.first() else { return Ok(false) };
     let mark = folder.join(OUTGOING).join(name);
@@ -161,13 +161,9 @@ fn send_next(
         }
         Err(e) => return Err(e.to_string()),
     };
-    let put = |name: &str, bytes: Vec<u8>| {
-        let to = prefix.clone().join(name);
-        runtime.block_on(store.put(&to, PutPayload::from(bytes))).map_err(|e| e.to_string())
-    };
-    put(name, bytes)?;
+    to.put(name, &bytes)?;
     if let Ok(page) = std::fs::read(folder.join("index.html")) {
-        put("index.html", page)?;
+        to.put("index.html", &page)?;
     }
     std::fs::remove_file(&mark).map_err(|e| e.to_string())?;
     Ok(true)
