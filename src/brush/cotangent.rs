@@ -8,9 +8,7 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::mesh::PageIn;
-
-/// Cotangents beyond 20 belong to angles under 3 degrees: needles, whose weights would rule the ring.
-pub const MAX_COT: f32 = 20.0;
+use crate::simd::cotangents::MAX_COT;
 
 /// Neighbours that are weighed together.
 pub const LANES: usize = 8;

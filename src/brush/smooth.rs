@@ -6,13 +6,18 @@
 //! With `b` and `c` relative to `p`, the triangle's doubled area `|b x c|` is under both its cotangents:
 //! at `c` it is `(c.c - b.c) / |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use super::cotangent::{LANES, MAX_COT, closed};
+use super::cotangent::{LANES, closed};
 use super::dab::{Brush, Change, Dab, Spot};
 use super::ground::Ground;
 use super::tool::Tool;
+use super::weights::Weights;
 use crate::mesh::{Kernel, PageIn, PageOut};
+use crate::simd::cotangents::MAX_COT;
+
+/// Vertices looked at together.
+const BLOCK: usize = 64;
 
 #[derive(Debug, Clone, Copy)]
 pub struct Smooth {
@@ -71,26 +76,45 @@ fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
 
 #[inline(always)]
 fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
-    if page.is_closed(v) && page.ring(v).len() <= LANES { closed(page, v) } else { any(page, v, p) }
+    if let Some(sum) = page.cotangents(v) {
+        (sum.truncate(), sum.w)
+    } else if page.is_closed(v) && page.ring(v).len() <= LANES {
+        closed(page, v)
+    } else {
+        any(page, v, p)
+    }
 }
 
 impl Kernel for Smooth {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         let radius2 = self.radius * self.radius;
-        for i in 0..page.own() {
-            let p = page.positions.get(i);
-            let d2 = (p - self.centre).length_squared();
-            if d2 >= radius2 {
-                continue;
-            }
-            out.visit();
-            let (sum, weights) = around(page, i, p);
-            if weights > 0.0 {
+        let (mut who, mut sums) = ([0u16; BLOCK], [Vec4::ZERO; BLOCK]);
+        Weights::with(|w| {
+            let fade = |d2: f32| {
                 let fade = 1.0 - d2 / radius2;
-                out.set(i, p + sum * (self.lambda * fade * fade * (1.0 - page.mask(i)) / weights));
+                self.lambda * (fade * fade)
+            };
+            out.visit_many(w.sphere(page, self.centre, radius2, fade));
+            let weights = w.of(page);
+            for first in (0..weights.len()).step_by(BLOCK) {
+                let (mut count, mut regular) = (0, 0);
+                for (v, &w) in weights.iter().enumerate().skip(first).take(BLOCK) {
+                    who[count] = v as u16;
+                    count += usize::from(w != 0.0);
+                    regular += usize::from(w != 0.0 && v < page.regular());
+                }
+                page.cotangents_of(&who[..regular], &mut sums[..regular]);
+                for (i, &v) in who[..count].iter().enumerate() {
+                    let (v, p) = (v as usize, page.point(v));
+                    let (sum, all) =
+                        if i < regular { (sums[i].truncate(), sums[i].w) } else { around(page, v, p) };
+                    if all > 0.0 {
+                        out.set(v, p + sum * (weights[v] / all));
+                    }
+                }
             }
-        }
+        });
     }
 }
 

@@ -4,8 +4,9 @@
 //! One type serves both levels: over a page's triangles (a leaf is eight triangles) and over the clay's pages (a leaf is a page).
 //! Memory: 192 bytes for eight leaves, an eighth more for the levels above.
 
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4};
 
+use crate::simd::leaves::Leaves;
 use crate::simd::wide::Prepared;
 
 /// The triangles of one leaf of a page's tree.
@@ -229,21 +230,18 @@ impl BoxTree {
         if root > 0.0 { self.nodes.iter().map(Planes::area).sum::<f32>() / root } else { 0.0 }
     }
 
-    /// The leaves' boxes from the vertices that each has, and everything above them. `corners[ends[i - 1]..ends[i]]` are
-    /// leaf `i`'s.
+    /// The leaves' boxes from the vertices that each has, and everything above them. Of eight leaves in a row that `moved`
+    /// does not take, the boxes stay.
     #[inline(always)]
-    pub(super) fn refit_leaves(&mut self, corners: &[u16], ends: &[u16], points: &[Vec4]) -> (Vec3, Vec3) {
-        let mut from = 0;
-        for (eight, node) in ends.chunks(8).zip(&mut self.nodes) {
-            for (lane, &end) in eight.iter().enumerate() {
-                let some = &corners[from..end as usize];
-                from = end as usize;
-                let (mut lo, mut hi) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-                for &v in some {
-                    let p = points[v as usize];
-                    (lo, hi) = (lo.min(p), hi.max(p));
-                }
-                node.set(lane, lo.xyz(), hi.xyz());
+    pub(super) fn refit_leaves(
+        &mut self,
+        leaves: &Leaves,
+        points: &[Vec4],
+        moved: impl Fn(usize) -> bool,
+    ) -> (Vec3, Vec3) {
+        for (i, node) in self.nodes.iter_mut().enumerate().take(leaves.len().div_ceil(8)) {
+            if moved(i) {
+                leaves.boxes(i, points, &mut node.0);
             }
         }
         self.refit_all()

@@ -16,7 +16,7 @@ use glam::Vec4;
 use super::clay::Mesh;
 use super::kernel::{Kernel, PageIn, PageOut};
 use super::normals::{MOVED, PAINTED, TURNED, around_moved};
-use super::page::Page;
+use super::page::{BLOCK, Page, block_of};
 use super::reach::Reach;
 use super::workers::Workers;
 use crate::simd::wide::{Wide, WideWork, dispatch};
@@ -52,10 +52,12 @@ pub struct PhaseTimes {
 struct Slot {
     index: u32,
     page: Arc<Page>,
-    /// One a row of the page: [`MOVED`] and so on.
+    /// One an own vertex: [`MOVED`] and so on.
     marks: Vec<u8>,
-    /// All marks, joined.
+    /// All marks, joined, those of the halo's homes too.
     any: u8,
+    /// The blocks in which something moved.
+    touched: u32,
     moved: usize,
     affected: usize,
     /// The page holds the old page's normals and tree already.
@@ -67,9 +69,33 @@ struct Slot {
 /// A page at work: what only its own task touches.
 #[derive(Debug)]
 struct Side {
-    /// Halo rows to take over, and the marks they come with.
-    incoming: Vec<(u16, u8, Vec4)>,
+    /// Parts of the halo to take over.
+    incoming: Vec<Part>,
+    /// Their rows, one part after the other.
+    rows: Vec<Vec4>,
     colours: Vec<(u16, [u8; 4])>,
+}
+
+/// Halo rows in a row that one home gives.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    first: u16,
+    count: u16,
+    /// The marks they come with, joined.
+    marks: u8,
+}
+
+impl Side {
+    /// Each part with its rows.
+    #[inline(always)]
+    fn parts(&self) -> impl Iterator<Item = (Part, &[Vec4])> {
+        let mut rows = self.rows.as_slice();
+        self.incoming.iter().map(move |&part| {
+            let (one, rest) = rows.split_at(part.count as usize);
+            rows = rest;
+            (part, one)
+        })
+    }
 }
 
 /// The memory of dabs.
@@ -99,13 +125,19 @@ impl Bench {
             page: self.blank.clone(),
             marks: Vec::with_capacity(self.rows),
             any: 0,
+            touched: 0,
             moved: 0,
             affected: 0,
             complete: false,
             normals_ns: 0,
             bvh_ns: 0,
         };
-        (slot, Side { incoming: Vec::with_capacity(self.rows), colours: Vec::new() })
+        let side = Side {
+            incoming: Vec::with_capacity(16),
+            rows: Vec::with_capacity(self.rows),
+            colours: Vec::new(),
+        };
+        (slot, side)
     }
 
     pub(super) fn grow(&mut self, pages: usize) {
@@ -117,9 +149,10 @@ impl Bench {
         slot.index = index;
         slot.page = page;
         slot.marks.clear();
-        (slot.any, slot.moved, slot.affected, slot.complete) = (0, 0, 0, false);
+        (slot.any, slot.touched, slot.moved, slot.affected, slot.complete) = (0, 0, 0, 0, false);
         (slot.normals_ns, slot.bvh_ns) = (0, 0);
         side.incoming.clear();
+        side.rows.clear();
         side.colours.clear();
         self.slots.push(slot);
         self.sides.push(side);
@@ -304,8 +337,8 @@ struct Turn<'a> {
 impl WideWork for Turn<'_> {
     type Out = ();
     #[inline(always)]
-    fn run<W: Wide>(self, _: W) {
-        turn(self.slot, self.side, self.old, self.now);
+    fn run<W: Wide>(self, w: W) {
+        turn(w, self.slot, self.side, self.old, self.now);
     }
 }
 
@@ -315,37 +348,39 @@ fn displace<K: Kernel>(slot: &mut Slot, side: &mut Side, old: &Page, before: Opt
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
     page.points.clear();
     page.points.extend_from_slice(&old.points);
-    slot.marks.resize(old.points.len(), 0);
     let own = old.topology.own;
+    slot.marks.resize(own, 0);
     let before = before.filter(|b| Arc::ptr_eq(&b.topology, &old.topology)).map_or(old, |b| b);
     let mut out = PageOut {
         points: &mut page.points[..own],
-        marks: &mut slot.marks[..own],
+        marks: &mut slot.marks,
         colours: &mut side.colours,
         affected: 0,
     };
     kernel.page(&PageIn::new(slot.index, old, before), &mut out);
     slot.affected = out.affected;
-    (slot.any, slot.moved) = tally(&slot.marks[..own]);
+    tally(slot);
 }
 
-/// All marks joined, and how many there are.
-fn tally(marks: &[u8]) -> (u8, usize) {
-    let (mut any, mut count) = (0, 0);
-    for chunk in marks.chunks(128) {
-        let mut few = 0u8;
+/// Joins all marks, counts them, and finds the blocks in which something moved.
+#[inline(always)]
+fn tally(slot: &mut Slot) {
+    for (b, chunk) in slot.marks.chunks(BLOCK).enumerate() {
+        let (mut any, mut few) = (0, 0u8);
         for &m in chunk {
             any |= m;
             few += u8::from(m != 0);
         }
-        count += few as usize;
+        slot.any |= any;
+        slot.moved += few as usize;
+        slot.touched |= if any & MOVED != 0 { block_of(b * BLOCK) } else { 0 };
     }
-    (any, count)
 }
 
 /// Collects what changed at the homes of slot `s`'s halo.
 fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, kinds: u8) {
     side.incoming.clear();
+    side.rows.clear();
     let t = &old.topology;
     for (home, part) in t.halo_parts() {
         let Some(from) = Bench::changed(slots, slot_of, home, kinds) else { continue };
@@ -353,20 +388,20 @@ fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, 
             continue;
         }
         let from = &slots[from];
-        let rows = if kinds & MOVED != 0 { &from.page.points } else { &from.page.normals };
-        for k in part {
-            let local = t.halo_sources[k] as usize;
-            let mark = from.marks[local] & kinds;
-            if mark != 0 {
-                side.incoming.push(((t.own + k) as u16, mark, rows[local]));
-            }
+        let marks = t.halo_sources[part.clone()].iter().fold(0, |m, &l| m | from.marks[l as usize]) & kinds;
+        if marks != 0 {
+            // All of the part: what did not change is the same there and here.
+            let rows = if kinds & MOVED != 0 { &from.page.points } else { &from.page.normals };
+            side.rows.extend(t.halo_sources[part.clone()].iter().map(|&l| rows[l as usize]));
+            let first = (t.own + part.start) as u16;
+            side.incoming.push(Part { first, count: part.len() as u16, marks });
         }
     }
 }
 
 /// Takes over the halo's new places, and computes the normals and the tree.
 #[inline(always)]
-fn turn(slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -> u64) {
+fn turn<W: Wide>(w: W, slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -> u64) {
     if slot.any == 0 && side.incoming.is_empty() {
         return;
     }
@@ -375,29 +410,38 @@ fn turn(slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -> u64) {
     if slot.marks.is_empty() {
         page.points.clear();
         page.points.extend_from_slice(&old.points);
-        slot.marks.resize(old.points.len(), 0);
+        slot.marks.resize(old.topology.own, 0);
     }
-    copy_rest(page, old);
+    for (part, rows) in side.parts() {
+        let first = part.first as usize;
+        page.points[first..first + rows.len()].copy_from_slice(rows);
+        slot.any |= part.marks;
+        if part.marks & MOVED != 0 {
+            (first..first + rows.len()).step_by(BLOCK).for_each(|row| slot.touched |= block_of(row));
+            slot.touched |= block_of(first + rows.len() - 1);
+        }
+    }
     slot.complete = true;
-    for &(k, mark, row) in &side.incoming {
-        page.points[k as usize] = row;
-        slot.marks[k as usize] = mark;
-        slot.any |= mark;
+    if !Arc::ptr_eq(&page.topology, &old.topology) {
+        page.topology = old.topology.clone();
+    }
+    let moved = slot.any & MOVED != 0;
+    if moved {
+        around_moved(w, page, &old.normals, &mut slot.marks, slot.touched);
+        slot.any |= TURNED;
+    } else {
+        page.normals.clear();
+        page.normals.extend_from_slice(&old.normals);
     }
     for &(v, colour) in &side.colours {
         page.normals[v as usize].w = f32::from_bits(u32::from_le_bytes(colour));
     }
-    if slot.any & MOVED == 0 {
-        page.tree.copy_from(&old.tree);
-        (page.lo, page.hi) = (old.lo, old.hi);
-        slot.normals_ns = now() - t0;
-        return;
-    }
-    around_moved(page, &mut slot.marks, slot.moved == old.topology.own);
-    slot.any |= TURNED;
     let t1 = now();
-    page.tree.reset(old.tree.leaves());
-    page.refit();
+    page.tree.copy_from(&old.tree);
+    (page.lo, page.hi) = (old.lo, old.hi);
+    if moved {
+        page.refit(slot.touched);
+    }
     slot.normals_ns = t1 - t0;
     slot.bvh_ns = now() - t1;
 }
@@ -409,22 +453,16 @@ fn settle(slot: &mut Slot, side: &mut Side, old: &Page) {
     }
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
     if !slot.complete {
+        page.topology.clone_from(&old.topology);
         page.points.clear();
         page.points.extend_from_slice(&old.points);
-        copy_rest(page, old);
+        page.normals.clear();
+        page.normals.extend_from_slice(&old.normals);
         page.tree.copy_from(&old.tree);
         (page.lo, page.hi) = (old.lo, old.hi);
     }
-    for &(k, mark, row) in &side.incoming {
-        page.normals[k as usize] = row;
-        slot.any |= mark;
+    for (part, rows) in side.parts() {
+        page.normals[part.first as usize..][..rows.len()].copy_from_slice(rows);
+        slot.any |= part.marks;
     }
-}
-
-fn copy_rest(page: &mut Page, old: &Page) {
-    if !Arc::ptr_eq(&page.topology, &old.topology) {
-        page.topology = old.topology.clone();
-    }
-    page.normals.clear();
-    page.normals.extend_from_slice(&old.normals);
 }

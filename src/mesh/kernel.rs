@@ -1,9 +1,10 @@
 //! What a brush sees of a page, and where it writes.
 
-use glam::{Vec3, Vec4};
+use glam::{BVec4A, Vec3, Vec4};
 
 use super::normals::{MOVED, PAINTED};
-use super::page::{BREAK, Page, Points, Ring};
+use super::page::{BLOCK, BREAK, Page, Points, Ring};
+use crate::simd::cotangents;
 
 /// What a brush does to one page. Called once for each page that the dab may reach, on any thread, in any order; it sees the
 /// state before the dab everywhere, also of neighbours in other pages, so that the order cannot show.
@@ -119,6 +120,23 @@ impl<'a> PageIn<'a> {
         self.page.topology.ring(own).iter().map(|k| k & !BREAK)
     }
 
+    /// Cotangent-weighted sums about an own vertex with a closed ring of six: see [`cotangents::about`].
+    #[inline(always)]
+    pub fn cotangents(&self, own: usize) -> Option<Vec4> {
+        cotangents::about(&self.page.topology.hexes, &self.page.points, own)
+    }
+
+    /// The same of several; those before [`PageIn::regular`] only.
+    #[inline(always)]
+    pub fn cotangents_of(&self, who: &[u16], out: &mut [Vec4]) {
+        cotangents::about_each(&self.page.topology.hexes, &self.page.points, who, out);
+    }
+
+    /// Own vertices from the first on that are known to have a closed ring of six each.
+    pub fn regular(&self) -> usize {
+        self.page.topology.hexes.len()
+    }
+
     /// The two other corners of each triangle about an own vertex, counter-clockwise.
     #[inline(always)]
     pub fn wedges(&self, own: usize) -> impl Iterator<Item = [u16; 2]> + 'a {
@@ -189,11 +207,26 @@ impl PageOut<'_> {
     #[inline(always)]
     pub fn push_all(&mut self, offset: Vec3, weights: &[f32]) {
         let offset = offset.extend(0.0);
-        for ((row, mark), &w) in self.points.iter_mut().zip(self.marks.iter_mut()).zip(weights) {
-            let new = *row + offset * w;
-            let moved = new != *row && new.is_finite();
-            *mark |= if moved { MOVED } else { 0 };
-            *row = if moved { new } else { *row };
+        let blocks =
+            self.points.chunks_mut(BLOCK).zip(self.marks.chunks_mut(BLOCK)).zip(weights.chunks(BLOCK));
+        for ((rows, marks), weights) in blocks {
+            if weights.iter().fold(0, |bits, w| bits | w.to_bits()) == 0 {
+                continue;
+            }
+            let mut news = [Vec4::ZERO; BLOCK];
+            let mut finite = BVec4A::TRUE;
+            for ((new, row), &w) in news.iter_mut().zip(&*rows).zip(weights) {
+                *new = *row + offset * w;
+                finite &= new.abs().cmplt(Vec4::INFINITY);
+            }
+            let all = finite.all();
+            for ((row, mark), new) in rows.iter_mut().zip(marks).zip(news) {
+                if all || new.is_finite() {
+                    let differs = new.cmpne(*row);
+                    *mark |= if differs.any() { MOVED } else { 0 };
+                    *row = Vec4::select(differs, new, *row);
+                }
+            }
         }
     }
 }

@@ -4,34 +4,25 @@
 //! `yzx(a * yzx(b) - yzx(a) * b)`, so one shuffle a neighbour and one at the end suffice. The order of the sum is the
 //! ring's, which the topology fixes: the same bits whoever computes it.
 
-use glam::{Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4, Vec4Swizzles};
 
-use super::page::{BREAK, Page, Ring, Topology};
+use super::page::{BLOCK, BREAK, Page, Ring, Topology};
+use crate::simd::rings::{self, LENGTHS, Rows};
+use crate::simd::wide::Wide;
 
 /// A vertex whose position changed.
 pub(super) const MOVED: u8 = 1;
-/// A vertex whose normal was computed anew.
+/// A vertex whose normal is another now.
 pub(super) const TURNED: u8 = 2;
 /// A vertex whose mask or colour changed.
 pub(super) const PAINTED: u8 = 4;
 
-/// Below this squared length the sum is scaled up first, so that tiny triangles do not underflow.
-const TINY: f32 = 1e-30;
-
-/// The sum of area vectors about own vertex `v`, twice the area each.
+/// The sum of area vectors about own vertex `v` of any ring but those in [`Topology::hexes`], twice the area each.
 #[inline(always)]
 fn area_sum(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
     let ring = t.ring(v);
     let p = points[v];
     let mut sum = Vec4::ZERO;
-    if let (Ring::Closed, &[a, b, c, d, e, f]) = (t.kinds[v], ring) {
-        // Most vertices of most meshes. Two neighbouring terms share a factor: d0 x d1 + d1 x d2 = d1 x (d2 - d0).
-        // Written out: an array's `map` is not always inlined into code for wider instructions.
-        let (a, c, e) = (points[a as usize], points[c as usize], points[e as usize]);
-        let (b, d, f) = (points[b as usize] - p, points[d as usize] - p, points[f as usize] - p);
-        let term = |u: Vec4, v: Vec4| u * v.yzxw() - u.yzxw() * v;
-        return (term(b, c - a) + term(d, e - c) + term(f, a - e)).yzxw();
-    }
     let [first, rest @ ..] = ring else { return sum };
     let first = points[*first as usize] - p;
     let first_turned = first.yzxw();
@@ -63,11 +54,7 @@ fn area_sum(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
 #[inline(always)]
 fn unit(sum: Vec4) -> Vec4 {
     let length2 = sum.x * sum.x + sum.y * sum.y + sum.z * sum.z;
-    if length2 >= TINY && length2 < f32::INFINITY {
-        sum * (1.0 / length2.sqrt())
-    } else {
-        unit_of_extremes(sum)
-    }
+    if LENGTHS.contains(&length2) { sum * (1.0 / length2.sqrt()) } else { unit_of_extremes(sum) }
 }
 
 /// As [`unit`], for sums whose squared length leaves the range of single precision.
@@ -82,68 +69,126 @@ fn unit_of_extremes(sum: Vec4) -> Vec4 {
     }
 }
 
-/// The unit normal of own vertex `v`; zero where all its triangles are degenerate. The fourth lane is nothing.
+/// The unit normals of own vertices `first..first + out.len()`, at most [`BLOCK`] of them; zero where all triangles are
+/// degenerate. The fourth lanes are nothing.
 #[inline(always)]
-pub(super) fn of_vertex(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
-    unit(area_sum(t, points, v))
+fn of_block(t: &Topology, points: &[Vec4], first: usize, out: &mut [Vec4]) {
+    let regular = t.hexes.len().saturating_sub(first).min(out.len());
+    rings::sums(&t.hexes, points, first.min(t.hexes.len()), &mut out[..regular]);
+    for (i, sum) in out.iter_mut().enumerate().skip(regular) {
+        *sum = area_sum(t, points, first + i);
+    }
+    // Square roots and divisions of several overlap in wide instructions.
+    let mut inverse = [0.0f32; BLOCK];
+    for (inverse, sum) in inverse.iter_mut().zip(&*out) {
+        *inverse = sum.x * sum.x + sum.y * sum.y + sum.z * sum.z;
+    }
+    let odd = inverse[..out.len()].iter().fold(false, |odd, l| odd | !LENGTHS.contains(l));
+    for inverse in &mut inverse {
+        *inverse = 1.0 / inverse.sqrt();
+    }
+    for (sum, inverse) in out.iter_mut().zip(inverse) {
+        *sum = if odd { unit(*sum) } else { *sum * inverse };
+    }
+}
+
+/// The unit normal of own vertex `v`, zero where all its triangles are degenerate.
+pub(super) fn of_vertex(t: &Topology, points: &[Vec4], v: usize) -> Vec3 {
+    let mut one = [Vec4::ZERO];
+    of_block(t, points, v, &mut one);
+    one[0].truncate()
 }
 
 /// Computes every own normal of a page.
 pub(super) fn all(page: &mut Page) {
-    let Page { topology, points, normals, .. } = page;
-    for v in 0..topology.own {
-        let n = of_vertex(topology, points, v);
-        normals[v] = n.xyz().extend(normals[v].w);
+    let Page { topology: t, points, normals, .. } = page;
+    for first in (0..t.own).step_by(BLOCK) {
+        let mut fresh = [Vec4::ZERO; BLOCK];
+        let rows = &mut normals[first..t.own.min(first + BLOCK)];
+        of_block(t, points, first, &mut fresh[..rows.len()]);
+        for (row, n) in rows.iter_mut().zip(fresh) {
+            *row = n.truncate().extend(row.w);
+        }
     }
 }
 
-/// Normals brought to unit length together: the square roots and divisions of several overlap in wide instructions.
-const BATCH: usize = 32;
-
-/// Computes the normals of moved vertices and of those with a moved neighbour, and marks them [`TURNED`].
-/// `marks`: one a vertex, own and halo.
+/// Writes all normals of a page whose vertices in the blocks `touched` moved: the own ones that they bear on anew, all else
+/// from `old`. Marks own vertices whose normal is another now [`TURNED`].
 #[inline(always)]
-pub(super) fn around_moved(page: &mut Page, marks: &mut [u8], all_moved: bool) {
-    let Page { topology, points, normals, .. } = page;
-    let marks = &mut marks[..points.len()];
-    let mut sums = [Vec4::ZERO; BATCH];
-    let mut who = [0u16; BATCH];
-    let mut inverse = [0.0f32; BATCH];
-    let mut waiting = 0;
-    for v in 0..topology.own {
-        let near = if all_moved || marks[v] & MOVED != 0 {
-            MOVED
-        } else {
-            match *topology.ring(v) {
-                [a, b, c, d, e, f] => {
-                    let at = |k: u16| marks[(k & !BREAK) as usize];
-                    (at(a) | at(b)) | (at(c) | at(d)) | (at(e) | at(f))
-                }
-                ref ring => ring.iter().fold(0, |m, &k| m | marks[(k & !BREAK) as usize]),
-            }
-        };
-        if near & MOVED != 0 {
-            sums[waiting] = area_sum(topology, points, v);
-            who[waiting] = v as u16;
-            waiting += 1;
-        }
-        if waiting < BATCH && v + 1 < topology.own {
+pub(super) fn around_moved<W: Wide>(w: W, page: &mut Page, old: &[Vec4], marks: &mut [u8], touched: u32) {
+    let Page { topology: t, points, normals, .. } = page;
+    normals.resize(old.len(), Vec4::ZERO);
+    let (own, halo) = normals.split_at_mut(t.own);
+    let (old, old_halo) = old.split_at(t.own);
+    halo.copy_from_slice(old_halo);
+    let blocks =
+        own.chunks_mut(BLOCK).zip(old.chunks(BLOCK)).zip(marks.chunks_mut(BLOCK)).zip(&t.ring_blocks);
+    for (b, (((rows, old), marks), &near)) in blocks.enumerate() {
+        if near & touched == 0 {
+            rows.copy_from_slice(old);
             continue;
         }
-        for (inverse, sum) in inverse.iter_mut().zip(&sums) {
-            *inverse = sum.x * sum.x + sum.y * sum.y + sum.z * sum.z;
+        let first = b * BLOCK;
+        let done = w.ring_normals(&t.hexes, points, &mut Rows { first, old, rows, marks, mark: TURNED });
+        if done == rows.len() {
+            continue;
         }
-        let odd = inverse[..waiting].iter().any(|l| !(TINY..f32::INFINITY).contains(l));
-        for inverse in &mut inverse {
-            *inverse = 1.0 / inverse.sqrt();
+        let (rows, old, marks) = (&mut rows[done..], &old[done..], &mut marks[done..]);
+        let mut fresh = [Vec4::ZERO; BLOCK];
+        of_block(t, points, first + done, &mut fresh[..rows.len()]);
+        for (((row, old), mark), n) in rows.iter_mut().zip(old).zip(marks).zip(fresh) {
+            let bits = |v: Vec4| v.to_array().map(f32::to_bits);
+            let ([x, y, z, _], [ox, oy, oz, colour]) = (bits(n), bits(*old));
+            *mark |= if (x ^ ox) | (y ^ oy) | (z ^ oz) != 0 { TURNED } else { 0 };
+            *row = n.truncate().extend(f32::from_bits(colour));
         }
-        for i in 0..waiting {
-            let n = if odd { unit(sums[i]) } else { sums[i] * inverse[i] };
-            let v = who[i] as usize;
-            let row = &mut normals[v];
-            *row = n.xyz().extend(row.w);
-            marks[v] |= TURNED;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Mesh, shapes};
+    use super::*;
+    use crate::simd::wide::{WideWork, dispatch};
+
+    struct Around<'a>(&'a mut Page, &'a [Vec4], &'a mut [u8], u32);
+
+    impl WideWork for Around<'_> {
+        type Out = ();
+        #[inline(always)]
+        fn run<W: Wide>(self, w: W) {
+            around_moved(w, self.0, self.1, self.2, self.3);
         }
-        waiting = 0;
+    }
+
+    /// Moved vertices, some onto one another: tiny triangles and none.
+    fn disturbed(page: &Page) -> Page {
+        let mut page = page.copy();
+        for v in 0..page.points.len() {
+            let k = v as f32;
+            let nudge = Vec4::new((k * 0.7).sin(), (k * 1.3).cos(), (k * 2.1).sin(), 0.0);
+            page.points[v] += nudge * if v % 7 == 0 { 0.0 } else { 0.003 };
+            if v % 11 < 6 && v > 200 {
+                page.points[v] *= Vec4::new(1e-18, 1e-18, 1e-18, 1.0);
+            }
+        }
+        page
+    }
+
+    #[test]
+    fn wide_and_plain_normals_are_the_same_bits() {
+        let clay = Mesh::build(&shapes::icosphere(1.0, 5), &Default::default()).unwrap();
+        for (touched, page) in [(u32::MAX, &clay.pages[3]), (0b1011, &clay.pages[5])] {
+            let (mut wide, mut plain) = (disturbed(page), disturbed(page));
+            let own = page.own();
+            let (mut wide_marks, mut plain_marks) = (vec![0; own], vec![0; own]);
+            dispatch(false, Around(&mut wide, &page.normals, &mut wide_marks, touched));
+            dispatch(true, Around(&mut plain, &page.normals, &mut plain_marks, touched));
+            let bits =
+                |page: &Page| page.normals.iter().map(|n| n.to_array().map(f32::to_bits)).collect::<Vec<_>>();
+            assert_eq!(bits(&wide), bits(&plain));
+            assert_eq!(wide_marks, plain_marks);
+            assert!(wide_marks.iter().any(|&m| m == TURNED));
+        }
     }
 }

@@ -12,10 +12,21 @@ use std::sync::Arc;
 use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
-use super::boxtree::BoxTree;
+use super::boxtree::{BoxTree, LEAF};
+use crate::simd::leaves::Leaves;
+use crate::simd::rings::Hexes;
 
 /// The bit of a ring's entry that says: between the entry before and this one there is no triangle.
 pub const BREAK: u16 = 0x8000;
+
+/// Vertices, own and halo in a row, that are told apart no further when what moved is looked for.
+pub(super) const BLOCK: usize = 32;
+
+/// The bit of the block that a row is in. All beyond the last bit share it.
+#[inline(always)]
+pub(super) fn block_of(row: usize) -> u32 {
+    1 << (row / BLOCK).min(31)
+}
 
 /// How the triangles lie about a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,15 +56,22 @@ pub struct Topology {
     pub ids: Box<[u32]>,
     /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight make a leaf.
     pub triangles: Box<[[u16; 3]]>,
-    /// The vertices of each leaf of the page's tree, each once: `leaf_corners[leaf_ends[i - 1]..leaf_ends[i]]`.
-    pub leaf_corners: Box<[u16]>,
-    pub leaf_ends: Box<[u16]>,
+    /// The vertices of each leaf of the page's tree.
+    pub leaves: Leaves,
     /// The triangles' numbers in the mesh that was loaded.
     pub triangle_ids: Box<[u32]>,
-    /// The neighbours of own vertex `v` are `rings[ring_starts[v]..ring_starts[v + 1]]`, counter-clockwise.
+    /// The rings of the first own vertices: they have a closed one of six each, as most vertices of most meshes have.
+    pub hexes: Hexes,
+    /// The rings of the others: vertex `hexes.len() + i` has `rings[ring_starts[i]..ring_starts[i + 1]]`.
     pub ring_starts: Box<[u16]>,
     pub rings: Box<[u16]>,
     pub kinds: Box<[Ring]>,
+    /// For each [`BLOCK`] of own vertices the blocks that they and their rings lie in.
+    pub ring_blocks: Box<[u32]>,
+    /// For each eight leaves of the page's tree the blocks that their vertices lie in.
+    pub leaf_blocks: Box<[u32]>,
+    /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does not know them.
+    pub loose: Box<[u16]>,
     /// Local index of each halo vertex in its home page.
     pub halo_sources: Box<[u16]>,
     /// The homes of the halo, ascending. Neighbourhood is mutual.
@@ -61,10 +79,39 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// The neighbours of own vertex `v`, [`BREAK`] bits included.
-    #[inline]
+    /// The neighbours of own vertex `v`, counter-clockwise, [`BREAK`] bits included.
+    #[inline(always)]
     pub fn ring(&self, v: usize) -> &[u16] {
-        &self.rings[self.ring_starts[v] as usize..self.ring_starts[v + 1] as usize]
+        match self.hexes.get(v) {
+            Some(ring) => ring,
+            None => {
+                let i = v - self.hexes.len();
+                &self.rings[self.ring_starts[i] as usize..self.ring_starts[i + 1] as usize]
+            }
+        }
+    }
+
+    /// Fills in what follows from the rest: which blocks lie where, and what the tree does not know.
+    pub(super) fn index(&mut self) {
+        self.ring_blocks = (0..self.own.div_ceil(BLOCK))
+            .map(|b| {
+                (b * BLOCK..self.own.min((b + 1) * BLOCK)).fold(block_of(b * BLOCK), |bits, v| {
+                    self.ring(v).iter().fold(bits, |bits, &k| bits | block_of((k & !BREAK) as usize))
+                })
+            })
+            .collect();
+        self.leaf_blocks = self
+            .triangles
+            .chunks(8 * LEAF)
+            .map(|some| some.iter().flatten().fold(0, |bits, &v| bits | block_of(v as usize)))
+            .collect();
+        let mut known = vec![false; self.own];
+        for &v in self.triangles.iter().flatten() {
+            if let Some(known) = known.get_mut(v as usize) {
+                *known = true;
+            }
+        }
+        self.loose = (0..self.own as u16).filter(|&v| !known[v as usize]).collect();
     }
 
     /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index there.
@@ -85,9 +132,11 @@ impl Topology {
         size_of::<Topology>()
             + self.ids.len() * 4
             + self.triangles.len() * 10
+            + self.hexes.len() * 12
+            + (self.ring_blocks.len() + self.leaf_blocks.len()) * 4
+            + self.loose.len() * 2
             + self.ring_starts.len() * 2
-            + self.leaf_corners.len() * 2
-            + self.leaf_ends.len() * 2
+            + self.leaves.bytes()
             + self.rings.len() * 2
             + self.kinds.len()
             + self.halo_sources.len() * 2
@@ -215,17 +264,16 @@ impl Page {
         self.revision
     }
 
-    /// Brings the page's tree and bounds up to date.
+    /// Brings the page's tree and bounds up to date after vertices in the blocks `touched` moved.
     #[inline(always)]
-    pub(super) fn refit(&mut self) {
-        let Page { topology, points, tree, .. } = self;
-        let (mut lo, mut hi) = tree.refit_leaves(&topology.leaf_corners, &topology.leaf_ends, points);
-        // Own vertices whose triangles all belong to other pages are found by themselves.
-        let (mut least, mut most) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        for &p in &points[..topology.own] {
-            (least, most) = (least.min(p), most.max(p));
+    pub(super) fn refit(&mut self, touched: u32) {
+        let Page { topology: t, points, tree, .. } = self;
+        let (mut lo, mut hi) =
+            tree.refit_leaves(&t.leaves, points, |eight| t.leaf_blocks[eight] & touched != 0);
+        for &v in &t.loose {
+            let p = points[v as usize].truncate();
+            (lo, hi) = (lo.min(p), hi.max(p));
         }
-        (lo, hi) = (lo.min(least.truncate()), hi.max(most.truncate()));
         (self.lo, self.hi) = (lo, hi);
     }
 

@@ -1,12 +1,11 @@
 //! Whether everything in the clay agrees with everything else. For tests and simulation runs: costs as much as the clay is
 //! large.
 
-use glam::Vec4Swizzles;
-
 use super::boxtree::{BoxTree, LEAF};
+use super::build::PAGE_VERTICES;
 use super::clay::Mesh;
 use super::normals;
-use super::page::BREAK;
+use super::page::{BREAK, Topology};
 
 impl Mesh {
     /// Every halo says what its home says, every normal is what the positions give, every tree and bound fits, every
@@ -15,12 +14,22 @@ impl Mesh {
         for (i, page) in self.pages.iter().enumerate() {
             let t = &page.topology;
             let rows = t.own + t.halo_sources.len();
+            if t.own > PAGE_VERTICES {
+                return Err(format!("page {i}: {} own vertices are too many", t.own));
+            }
             if page.points.len() != rows || page.normals.len() != rows {
                 return Err(format!("page {i}: {rows} rows expected, it has {}", page.points.len()));
             }
-            let corners = t.triangles.iter().flatten().chain(t.rings.iter());
+            let corners = t.triangles.iter().flatten().chain(t.rings.iter()).chain(t.hexes.flat());
             if let Some(&v) = corners.into_iter().find(|&&v| (v & !BREAK) as usize >= rows) {
                 return Err(format!("page {i}: local vertex {v} does not exist"));
+            }
+            let mut indexed = Topology::clone(t);
+            indexed.index();
+            if (&indexed.ring_blocks, &indexed.leaf_blocks, &indexed.loose)
+                != (&t.ring_blocks, &t.leaf_blocks, &t.loose)
+            {
+                return Err(format!("page {i}: its blocks are out of date"));
             }
             for k in 0..t.halo_sources.len() {
                 let (home, local) = t.halo_home(k);
@@ -46,16 +55,15 @@ impl Mesh {
                 if !(0.0..=1.0).contains(&page.mask(v)) {
                     return Err(format!("page {i}: vertex {v} has mask {}", page.mask(v)));
                 }
-                if normals::of_vertex(t, &page.points, v).xyz() != page.normal(v) {
+                if normals::of_vertex(t, &page.points, v) != page.normal(v) {
                     return Err(format!("page {i}: the normal of vertex {v} is out of date"));
                 }
             }
             let mut fresh = BoxTree::default();
             fresh.reset(page.tree.leaves());
-            fresh.refit_leaves(&t.leaf_corners, &t.leaf_ends, &page.points);
+            fresh.refit_leaves(&t.leaves, &page.points, |_| true);
             for (i, eight) in t.triangles.chunks(LEAF).enumerate() {
-                let from = if i == 0 { 0 } else { t.leaf_ends[i - 1] as usize };
-                let own = &t.leaf_corners[from..t.leaf_ends[i] as usize];
+                let own = t.leaves.corners(i);
                 if eight.iter().flatten().any(|v| !own.contains(v)) {
                     return Err(format!("page {i}: a leaf does not know its triangles' vertices"));
                 }
@@ -64,9 +72,8 @@ impl Mesh {
                 return Err(format!("page {i}: its tree is out of date"));
             }
         }
-        let sum = |of: &dyn Fn(&super::page::Topology) -> usize| {
-            self.pages.iter().map(|p| of(p.topology())).sum::<usize>()
-        };
+        let sum =
+            |of: &dyn Fn(&Topology) -> usize| self.pages.iter().map(|p| of(p.topology())).sum::<usize>();
         if (sum(&|t| t.own), sum(&|t| t.triangles.len())) != (self.vertex_count(), self.triangle_count()) {
             return Err("the totals are out of date".into());
         }

@@ -3,4 +3,7 @@
 //! gives the same bits: no fused multiply-add, the same order of operations.
 #![allow(unsafe_code)]
 
+pub mod cotangents;
+pub mod leaves;
+pub mod rings;
 pub mod wide;

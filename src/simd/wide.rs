@@ -8,6 +8,10 @@
 //! their difference is exact or the difference is zero; zero counts as inside on both sides. So a ray cannot slip through
 //! an edge or a vertex of a closed surface.
 
+use glam::Vec4;
+
+use super::rings::{Hexes, Rows};
+
 /// One vertex coordinate of four triangles, and so on: `v[corner][axis][lane]`. Lanes without a triangle hold NaN, which
 /// fails every comparison, and the id [`NO_TRIANGLE`].
 #[derive(Debug, Clone, Copy)]
@@ -126,6 +130,8 @@ pub trait Wide: Copy {
     /// near as `high`. `slack` is the rounding's share of the largest distance of a corner. A sliver of which single
     /// precision cannot tell gets 0 and infinity, and so does an empty lane.
     fn near_triangles(self, p: [f32; 3], pack: &Pack, slack: f32, low: &mut [f32; 4], high: &mut [f32; 4]);
+    /// Writes the normals of as many vertices of `to`, from the first on, as go fast, and says how many.
+    fn ring_normals(self, hexes: &Hexes, points: &[Vec4], to: &mut Rows<'_>) -> usize;
 }
 
 /// Plain Rust.
@@ -224,16 +230,26 @@ impl Wide for Scalar {
             high[i] = min(if inside && wide { flat } else { near }.sqrt() + room, f32::INFINITY);
         }
     }
+
+    #[inline(always)]
+    fn ring_normals(self, _: &Hexes, _: &[Vec4], _: &mut Rows<'_>) -> usize {
+        0
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
+pub(super) use avx2::Avx2;
+
+#[cfg(target_arch = "x86_64")]
 mod avx2 {
+    use super::super::rings::{self, Hexes, Rows};
     use super::{Node, Pack, PackHits, Prepared, WIDE, WIDEN, Wide};
+    use glam::Vec4;
     use std::arch::x86_64::*;
 
     /// Proof that the processor has AVX2: made only after the check in [`super::dispatch`].
     #[derive(Debug, Clone, Copy)]
-    pub(super) struct Avx2(pub(super) ());
+    pub(in crate::simd) struct Avx2(pub(super) ());
 
     impl Wide for Avx2 {
         #[inline(always)]
@@ -386,6 +402,11 @@ mod avx2 {
                 _mm_storeu_ps(high.as_mut_ptr(), _mm_min_ps(above, inf));
             }
         }
+
+        #[inline(always)]
+        fn ring_normals(self, hexes: &Hexes, points: &[Vec4], to: &mut Rows<'_>) -> usize {
+            rings::normals_avx2(self, hexes, points, to)
+        }
     }
 }
 
@@ -399,7 +420,7 @@ pub trait WideWork {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn with_avx2<J: WideWork>(work: J) -> J::Out {
-    work.run(avx2::Avx2(()))
+    work.run(Avx2(()))
 }
 
 /// Runs `work` compiled for AVX2 where the processor has it (and `scalar` is not asked for), else in plain Rust.
@@ -416,7 +437,7 @@ pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Out {
 /// AVX2 came together with BMI in every processor (Haswell, Excavator); both are checked all the same, once.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn has_fast() -> bool {
+pub(super) fn has_fast() -> bool {
     use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
     static KNOWN: AtomicU8 = AtomicU8::new(0);
     match KNOWN.load(Relaxed) {

@@ -9,6 +9,8 @@ use super::super::boxtree::{BoxTree, LEAF};
 use super::super::normals;
 use super::super::page::{BREAK, Neighbour, Page, Ring, Topology};
 use super::{BuildError, Homes, order};
+use crate::simd::leaves::Leaves;
+use crate::simd::rings::Hexes;
 
 /// Opaque white.
 const WHITE: [u8; 4] = [255; 4];
@@ -95,9 +97,18 @@ pub(in crate::mesh) fn assemble(
     let mut rings = Vec::with_capacity(edges.len() + 8);
     let mut ring_starts = Vec::with_capacity(count + 1);
     let mut kinds = Vec::with_capacity(count);
+    let mut hexes = Vec::with_capacity(count);
     for v in 0..count {
-        ring_starts.push(rings.len().min(u16::MAX as usize) as u16);
-        kinds.push(fans(&mut edges[starts[v] as usize..starts[v + 1] as usize], &mut rings));
+        let start = rings.len();
+        let kind = fans(&mut edges[starts[v] as usize..starts[v + 1] as usize], &mut rings);
+        kinds.push(kind);
+        match (kind, &rings[start..]) {
+            (Ring::Closed, &[a, b, c, d, e, f]) if hexes.len() == v => {
+                hexes.push([a, b, c, d, e, f]);
+                rings.clear();
+            }
+            _ => ring_starts.push(start.min(u16::MAX as usize) as u16),
+        }
     }
     if rings.len() > u16::MAX as usize {
         return Err(tangled("too many edges", u16::MAX as usize));
@@ -117,17 +128,14 @@ pub(in crate::mesh) fn assemble(
     order::order_runs(&mut mine, LEAF);
     let triangles: Box<[[u16; 3]]> = mine.iter().map(|m| locals[m.1 as usize]).collect();
 
-    let (mut leaf_corners, mut leaf_ends) = (Vec::with_capacity(count * 3), Vec::new());
-    for eight in triangles.chunks(LEAF) {
+    let each_once = |eight: &[[u16; 3]]| {
         let mut some: Vec<u16> = eight.iter().flatten().copied().collect();
         some.sort_unstable();
         some.dedup();
-        leaf_corners.extend(some);
-        leaf_ends.push(leaf_corners.len().min(u16::MAX as usize) as u16);
-    }
-    if leaf_corners.len() > u16::MAX as usize {
-        return Err(tangled("too many corners", u16::MAX as usize));
-    }
+        some
+    };
+    let leaves = Leaves::new(triangles.chunks(LEAF).map(each_once))
+        .ok_or_else(|| tangled("too many corners", u16::MAX as usize))?;
 
     let everyone = || own.iter().copied().chain(halo.iter().map(|h| h.2));
     let points: Vec<Vec4> = everyone().map(|v| tri.positions[v as usize].extend(0.0)).collect();
@@ -139,20 +147,23 @@ pub(in crate::mesh) fn assemble(
         .collect();
     let mut tree = BoxTree::default();
     tree.reset(triangles.len().div_ceil(LEAF));
+    let mut topology = Topology {
+        own: count,
+        ids: own.into(),
+        triangle_ids: mine.iter().map(|m| touching[m.1 as usize]).collect(),
+        triangles,
+        leaves,
+        hexes: Hexes::new(hexes),
+        ring_starts: ring_starts.into(),
+        rings: rings.into(),
+        kinds: kinds.into(),
+        halo_sources: halo.iter().map(|h| h.1).collect(),
+        neighbours: neighbours.into(),
+        ..Topology::default()
+    };
+    topology.index();
     let mut out = Page {
-        topology: Arc::new(Topology {
-            own: count,
-            ids: own.into(),
-            triangle_ids: mine.iter().map(|m| touching[m.1 as usize]).collect(),
-            triangles,
-            leaf_corners: leaf_corners.into(),
-            leaf_ends: leaf_ends.into(),
-            ring_starts: ring_starts.into(),
-            rings: rings.into(),
-            kinds: kinds.into(),
-            halo_sources: halo.iter().map(|h| h.1).collect(),
-            neighbours: neighbours.into(),
-        }),
+        topology: Arc::new(topology),
         points,
         normals,
         tree,
@@ -161,7 +172,7 @@ pub(in crate::mesh) fn assemble(
         revision: 0,
     };
     normals::all(&mut out);
-    out.refit();
+    out.refit(u32::MAX);
     Ok(Arc::new(out))
 }
 

@@ -235,13 +235,13 @@ fn lay_out(
     }
     let mut next = old.page_count() as u32;
     while !fresh.is_empty() {
-        // The last few go with those before.
-        let most = if fresh.len() < PAGE_VERTICES * 3 / 2 { fresh.len() } else { PAGE_VERTICES };
-        layout.push((next, fresh.drain(..most).collect()));
+        // As even as can be: no page of a few.
+        let count = fresh.len().div_ceil(fresh.len().div_ceil(PAGE_VERTICES));
+        layout.push((next, fresh.drain(..count).collect()));
         next += 1;
     }
     for (p, own) in &layout {
-        if own.is_empty() || own.len() >= u16::MAX as usize / 4 {
+        if own.is_empty() || own.len() > PAGE_VERTICES {
             return None;
         }
         for (l, &r) in own.iter().enumerate() {
