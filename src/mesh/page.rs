@@ -56,8 +56,6 @@ pub struct Topology {
     pub ids: Box<[u32]>,
     /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight make a leaf.
     pub triangles: Box<[[u16; 3]]>,
-    /// The vertices of each leaf of the page's tree.
-    pub leaves: Leaves,
     /// The triangles' numbers in the mesh that was loaded.
     pub triangle_ids: Box<[u32]>,
     /// The rings of the first own vertices: they have a closed one of six each, as most vertices of most meshes have.
@@ -66,11 +64,17 @@ pub struct Topology {
     pub ring_starts: Box<[u16]>,
     pub rings: Box<[u16]>,
     pub kinds: Box<[Ring]>,
+    /// The vertices of each leaf of the page's tree. This and what comes after follows from the rest: [`Topology::index`].
+    #[serde(skip)]
+    pub leaves: Leaves,
     /// For each [`BLOCK`] of own vertices the blocks that they and their rings lie in.
+    #[serde(skip)]
     pub ring_blocks: Box<[u32]>,
     /// For each eight leaves of the page's tree the blocks that their vertices lie in.
+    #[serde(skip)]
     pub leaf_blocks: Box<[u32]>,
     /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does not know them.
+    #[serde(skip)]
     pub loose: Box<[u16]>,
     /// Local index of each halo vertex in its home page.
     pub halo_sources: Box<[u16]>,
@@ -91,8 +95,18 @@ impl Topology {
         }
     }
 
-    /// Fills in what follows from the rest: which blocks lie where, and what the tree does not know.
-    pub(super) fn index(&mut self) {
+    /// Fills in what follows from the rest: the leaves, which blocks lie where, and what the tree does not know. False where the
+    /// leaves have too many corners.
+    #[must_use]
+    pub(super) fn index(&mut self) -> bool {
+        let each_once = |eight: &[[u16; 3]]| {
+            let mut some: Vec<u16> = eight.iter().flatten().copied().collect();
+            some.sort_unstable();
+            some.dedup();
+            some
+        };
+        let Some(leaves) = Leaves::new(self.triangles.chunks(LEAF).map(each_once)) else { return false };
+        self.leaves = leaves;
         self.ring_blocks = (0..self.own.div_ceil(BLOCK))
             .map(|b| {
                 (b * BLOCK..self.own.min((b + 1) * BLOCK)).fold(block_of(b * BLOCK), |bits, v| {
@@ -112,6 +126,7 @@ impl Topology {
             }
         }
         self.loose = (0..self.own as u16).filter(|&v| !known[v as usize]).collect();
+        true
     }
 
     /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index there.

@@ -39,21 +39,18 @@ impl Topology {
     /// # Errors
     /// [`BadPage`] where anything points outside.
     pub fn from_bytes(bytes: &[u8]) -> Result<Topology, BadPage> {
-        let t: Topology = postcard::from_bytes(bytes).map_err(|_| BadPage)?;
+        let mut t: Topology = postcard::from_bytes(bytes).map_err(|_| BadPage)?;
         let halo = t.halo_sources.len();
         let all = t.own.checked_add(halo).filter(|n| *n < BREAK as usize).ok_or(BadPage)?;
         let ascending = |ends: &[u16]| ends.windows(2).all(|w| w[0] <= w[1]);
-        let leaves = t.triangles.len().div_ceil(LEAF);
         let sane = t.ids.len() == t.own
             && t.kinds.len() == t.own
             && t.triangle_ids.len() == t.triangles.len()
             && t.triangles.iter().flatten().all(|&v| (v as usize) < all)
-            && t.leaf_corners.iter().all(|&v| (v as usize) < all)
-            && t.leaf_ends.len() == leaves
-            && ascending(&t.leaf_ends)
-            && t.leaf_ends.last().is_none_or(|e| *e as usize == t.leaf_corners.len())
+            && t.hexes.len() <= t.own
+            && t.hexes.rows() <= all
             // A page without anything has no starts at all.
-            && (t.ring_starts.len() == t.own + 1 || t.own == 0)
+            && (t.ring_starts.len() == t.own - t.hexes.len() + 1 || t.own == 0)
             && ascending(&t.ring_starts)
             && t.ring_starts.last().is_none_or(|e| *e as usize == t.rings.len())
             && t.rings.iter().all(|&v| ((v & !BREAK) as usize) < all)
@@ -61,7 +58,7 @@ impl Topology {
             && t.neighbours.first().is_none_or(|n| n.first == 0)
             && t.neighbours.iter().all(|n| n.first as usize <= halo)
             && (halo == 0 || !t.neighbours.is_empty());
-        sane.then_some(t).ok_or(BadPage)
+        if sane && t.index() { Ok(t) } else { Err(BadPage) }
     }
 }
 
@@ -103,7 +100,7 @@ impl Page {
         if page.topology.own == 0 && page.topology.triangles.is_empty() {
             (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         } else {
-            page.refit();
+            page.refit(u32::MAX);
         }
         Ok(page)
     }

@@ -25,9 +25,9 @@ impl Mesh {
                 return Err(format!("page {i}: local vertex {v} does not exist"));
             }
             let mut indexed = Topology::clone(t);
-            indexed.index();
-            if (&indexed.ring_blocks, &indexed.leaf_blocks, &indexed.loose)
-                != (&t.ring_blocks, &t.leaf_blocks, &t.loose)
+            if !indexed.index()
+                || (&indexed.ring_blocks, &indexed.leaf_blocks, &indexed.loose)
+                    != (&t.ring_blocks, &t.leaf_blocks, &t.loose)
             {
                 return Err(format!("page {i}: its blocks are out of date"));
             }

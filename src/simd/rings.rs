@@ -8,7 +8,8 @@ use glam::{Vec4, Vec4Swizzles};
 
 /// Rings of six neighbours each, counter-clockwise, one a vertex from vertex 0 on. Whoever has as many rows as
 /// [`Hexes::rows`] says can follow every index: that is known from the start, so the inner loop does not ask.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+#[serde(from = "Vec<[u16; 6]>", into = "Vec<[u16; 6]>")]
 pub struct Hexes {
     rings: Box<[[u16; 6]]>,
     rows: usize,
@@ -43,6 +44,18 @@ impl Hexes {
     /// All indices, ring by ring.
     pub fn flat(&self) -> &[u16] {
         self.rings.as_flattened()
+    }
+}
+
+impl From<Vec<[u16; 6]>> for Hexes {
+    fn from(rings: Vec<[u16; 6]>) -> Self {
+        Hexes::new(rings)
+    }
+}
+
+impl From<Hexes> for Vec<[u16; 6]> {
+    fn from(hexes: Hexes) -> Self {
+        hexes.rings.into()
     }
 }
 

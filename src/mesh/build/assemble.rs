@@ -9,7 +9,6 @@ use super::super::boxtree::{BoxTree, LEAF};
 use super::super::normals;
 use super::super::page::{BREAK, Neighbour, Page, Ring, Topology};
 use super::{BuildError, Homes, order};
-use crate::simd::leaves::Leaves;
 use crate::simd::rings::Hexes;
 
 /// Opaque white.
@@ -39,7 +38,8 @@ pub(in crate::mesh) fn assemble(
     let count = own.len();
     let place = |v: u32| (homes.page[v as usize], homes.local[v as usize]);
     let corners = |t: u32| tri.triangles[t as usize];
-    let tangled = |reason, limit| BuildError::Tangled { vertex: own[0], reason, limit };
+    let first = own[0];
+    let tangled = |reason, limit| BuildError::Tangled { vertex: first, reason, limit };
 
     // The halo, by home.
     let mut halo: Vec<(u32, u16, u32)> = touching
@@ -128,15 +128,6 @@ pub(in crate::mesh) fn assemble(
     order::order_runs(&mut mine, LEAF);
     let triangles: Box<[[u16; 3]]> = mine.iter().map(|m| locals[m.1 as usize]).collect();
 
-    let each_once = |eight: &[[u16; 3]]| {
-        let mut some: Vec<u16> = eight.iter().flatten().copied().collect();
-        some.sort_unstable();
-        some.dedup();
-        some
-    };
-    let leaves = Leaves::new(triangles.chunks(LEAF).map(each_once))
-        .ok_or_else(|| tangled("too many corners", u16::MAX as usize))?;
-
     let everyone = || own.iter().copied().chain(halo.iter().map(|h| h.2));
     let points: Vec<Vec4> = everyone().map(|v| tri.positions[v as usize].extend(0.0)).collect();
     let normals: Vec<Vec4> = everyone()
@@ -152,7 +143,6 @@ pub(in crate::mesh) fn assemble(
         ids: own.into(),
         triangle_ids: mine.iter().map(|m| touching[m.1 as usize]).collect(),
         triangles,
-        leaves,
         hexes: Hexes::new(hexes),
         ring_starts: ring_starts.into(),
         rings: rings.into(),
@@ -161,7 +151,9 @@ pub(in crate::mesh) fn assemble(
         neighbours: neighbours.into(),
         ..Topology::default()
     };
-    topology.index();
+    if !topology.index() {
+        return Err(tangled("too many corners", u16::MAX as usize));
+    }
     let mut out = Page {
         topology: Arc::new(topology),
         points,
