@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn wide_and_plain_normals_are_the_same_bits() {
-        let clay = Mesh::build(&shapes::icosphere(1.0, 5), &Default::default()).unwrap();
+        let clay = Mesh::build(&shapes::sphere_of_about(10_000), &Default::default()).unwrap();
         for (touched, page) in [(u32::MAX, &clay.pages[3]), (0b1011, &clay.pages[5])] {
             let (mut wide, mut plain) = (disturbed(page), disturbed(page));
             let own = page.own();
