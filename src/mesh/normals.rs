@@ -188,7 +188,7 @@ mod tests {
                 |page: &Page| page.normals.iter().map(|n| n.to_array().map(f32::to_bits)).collect::<Vec<_>>();
             assert_eq!(bits(&wide), bits(&plain));
             assert_eq!(wide_marks, plain_marks);
-            assert!(wide_marks.iter().any(|&m| m == TURNED));
+            assert!(wide_marks.contains(&TURNED));
         }
     }
 }
