@@ -65,11 +65,13 @@ impl Arrangement {
         Ok(Arrangement { points, meshes, triangles, starts, pieces, fates, meeting, own, eps, floor })
     }
 
-    /// Calls `take(origin, corners, whole)` for each face of a result; `whole`: an operand's face as it came.
+    /// Calls `take(origin, corners, whole)` for each face of a result; `whole`: an operand's face as it came. A cancelled job
+    /// leaves faces out.
     pub fn faces(
         &self,
         operation: Operation,
         keep_contact: bool,
+        job: &Job,
         mut take: impl FnMut(Origin, &[u32], bool),
     ) {
         let takes = |s: usize, place| operation.takes(s, place, keep_contact);
@@ -89,6 +91,9 @@ impl Arrangement {
         for s in 0..2 {
             let mut pieces = self.pieces[s].iter().peekable();
             for face in 0..self.meshes[s].face_count() as u32 {
+                if face % 65_536 == 0 && job.cancelled() {
+                    return;
+                }
                 let mut whole = self.fates[s].of(face);
                 while let Some(p) = pieces.next_if(|p| p.face == face) {
                     whole = matches!(p.shape, Shape::Whole).then_some(p.place);

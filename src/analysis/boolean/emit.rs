@@ -38,7 +38,7 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Can
             compact(mesh, at, &degrees);
             true
         }
-        None => separate(mesh, at),
+        None => separate(mesh, at, job)?,
     };
     job.check()?;
     let count = || {
@@ -69,7 +69,7 @@ fn compact(mesh: &mut PolyMesh, at: &[DVec3], degrees: &[u32]) {
 /// Drops unused points, doubles vertices where the surface touches itself, and where that leaves one edge between two pairs of
 /// faces, gives one pair a corner in the middle. Corners of `mesh` index `at`. Returns whether each edge found its partner:
 /// then the mesh is closed, oriented and manifold.
-pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> bool {
+pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Cancelled> {
     let n = mesh.corners.len();
     let mut face_of = vec![0u32; n];
     let mut next = vec![0u32; n];
@@ -87,7 +87,13 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> bool {
             ((a.min(b) as u64) << 32 | a.max(b) as u64, c)
         })
         .collect();
-    half.par_sort_unstable();
+    // In parts, to be ended between them; then the runs are one.
+    for part in half.chunks_mut(1 << 18) {
+        part.par_sort_unstable();
+        job.check()?;
+    }
+    half.sort();
+    job.check()?;
     let mut closed = true;
     let mut several: Vec<(u32, u32)> = Vec::new();
     let mut sets = Sets::new(n);
@@ -115,6 +121,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> bool {
         }
         i = j;
     }
+    job.check()?;
     // One vertex a fan, numbered by first use.
     let mut id = vec![u32::MAX; n];
     let mut corners = vec![0u32; n];
@@ -164,7 +171,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3]) -> bool {
             mesh.push_face(&face);
         }
     }
-    closed
+    Ok(closed)
 }
 
 /// Partners around an edge with more than two faces: those with the solid between them, as Requicha's regularised boundary

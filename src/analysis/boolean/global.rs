@@ -6,8 +6,13 @@
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam_channel::{RecvTimeoutError, bounded};
 
 use glam::DVec3;
+use manifold_rust::cancel::CancelToken;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGL64, OpType, WindingRule};
 
@@ -37,8 +42,47 @@ fn sound(m: Manifold) -> Result<Manifold, String> {
     }
 }
 
+/// How often the one who waits looks whether it was cancelled.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// What `what` gives, on a thread of its own: the crate looks for its end only here and there, and this wait ends at once. What
+/// is left behind ends at its next look at the token or the job that it is given.
+fn aside<T: Send + 'static>(
+    job: &Job,
+    what: impl FnOnce(&CancelToken, &Job) -> Result<T, String> + Send + 'static,
+) -> Result<Result<T, String>, Cancelled> {
+    job.check()?;
+    let (token, inner) = (CancelToken::new(), Arc::new(Job::default()));
+    let (say, hear) = bounded(1);
+    let (own, ours) = (token.clone(), inner.clone());
+    let begun = std::thread::Builder::new().name("sculptd-global".into()).spawn(move || {
+        let _ = say.send(guarded(|| what(&own, &ours)));
+    });
+    if let Err(e) = begun {
+        return Ok(Err(format!("no thread for the global engine: {e}")));
+    }
+    loop {
+        match hear.recv_timeout(LOOK) {
+            Ok(done) => return job.check().map(|()| done),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Ok(Err("the global engine's thread ended".into()));
+            }
+            Err(RecvTimeoutError::Timeout) if job.cancelled() => {
+                token.cancel();
+                inner.cancel();
+                return Err(Cancelled);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+    }
+}
+
 /// Both operands as the crate holds them.
 pub struct Engine {
+    held: Arc<Held>,
+}
+
+struct Held {
     operands: [Manifold; 2],
     ids: [u32; 2],
     meshes: [PolyMesh; 2],
@@ -48,39 +92,37 @@ pub struct Engine {
 impl Engine {
     /// Takes closed operands; the inner error says why the crate refuses one.
     pub fn new(operands: [&PolyMesh; 2], eps: f64, job: &Job) -> Result<Result<Engine, String>, Cancelled> {
-        let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
-        let mut made = Vec::new();
-        for s in 0..2 {
-            job.check()?;
-            match guarded(|| sound(Manifold::from_mesh_gl64(&plain(operands[s], ids[s])))) {
-                Ok(m) => made.push(m),
-                Err(why) => return Ok(Err(why)),
-            }
-        }
-        let [a, b] = <[Manifold; 2]>::try_from(made).unwrap_or_default();
-        Ok(Ok(Engine { operands: [a, b], ids, meshes: operands.map(PolyMesh::clone), eps }))
+        let meshes = operands.map(PolyMesh::clone);
+        let made = aside(job, move |_, job| {
+            let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
+            let one = |s: usize| {
+                let given = plain(&meshes[s], ids[s], job).map_err(|e| e.to_string())?;
+                sound(Manifold::from_mesh_gl64(&given))
+            };
+            let operands = [one(0)?, one(1)?];
+            Ok(Held { operands, ids, meshes, eps })
+        })?;
+        Ok(made.map(|held| Engine { held: Arc::new(held) }))
     }
 
     pub fn run(&self, operation: Operation, job: &Job) -> Result<Result<Made, String>, Cancelled> {
-        job.check()?;
-        let [a, b] = &self.operands;
-        let (first, second, kind) = match operation {
-            Operation::Union => (a, b, OpType::Add),
-            Operation::Intersection => (a, b, OpType::Intersect),
-            Operation::Difference => (a, b, OpType::Subtract),
-            Operation::ReverseDifference => (b, a, OpType::Subtract),
-        };
-        let out = guarded(|| {
-            let out = sound(first.boolean_with_engine(second, kind, BooleanEngine::Exact))?;
-            Ok(out.get_mesh_gl64(-1))
-        });
-        job.check()?;
-        match out {
-            Ok(gl) => self.polygons(&gl, job).map(Ok),
-            Err(why) => Ok(Err(why)),
-        }
+        let held = self.held.clone();
+        aside(job, move |token, job| {
+            let [a, b] = &held.operands;
+            let (first, second, kind) = match operation {
+                Operation::Union => (a, b, OpType::Add),
+                Operation::Intersection => (a, b, OpType::Intersect),
+                Operation::Difference => (a, b, OpType::Subtract),
+                Operation::ReverseDifference => (b, a, OpType::Subtract),
+            };
+            let engine = BooleanEngine::Exact;
+            let out = sound(first.boolean_with_engine_and_token(second, kind, engine, Some(token)))?;
+            held.polygons(&out.get_mesh_gl64(-1), job).map_err(|e| e.to_string())
+        })
     }
+}
 
+impl Held {
     /// Triangles of one input face as that face again, or in as few polygons as join.
     fn polygons(&self, gl: &MeshGL64, job: &Job) -> Result<Made, Cancelled> {
         let at = points(gl);
@@ -119,12 +161,12 @@ fn points(gl: &MeshGL64) -> Vec<DVec3> {
 }
 
 /// As the crate takes it: manifold triangles, each with its face's number.
-fn plain(mesh: &PolyMesh, id: u32) -> MeshGL64 {
+fn plain(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
     let mut own =
         PolyMesh { face_starts: mesh.face_starts.clone(), corners: mesh.corners.clone(), ..PolyMesh::new() };
-    separate(&mut own, &mesh.positions);
+    separate(&mut own, &mesh.positions, job)?;
     let (triangles, of) = own.triangles();
-    MeshGL64 {
+    Ok(MeshGL64 {
         num_prop: 3,
         vert_properties: own.positions.iter().flat_map(|p| p.to_array()).collect(),
         tri_verts: triangles.iter().flatten().map(|&v| u64::from(v)).collect(),
@@ -132,31 +174,29 @@ fn plain(mesh: &PolyMesh, id: u32) -> MeshGL64 {
         run_original_id: vec![id],
         face_id: of.iter().map(|&f| u64::from(f)).collect(),
         ..MeshGL64::default()
-    }
+    })
 }
 
 /// A surface that crosses itself as the solid of all places that it goes around (positively): what `--solve winding` asks for.
 /// Faces come in triangles.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Cancelled> {
-    job.check()?;
-    let solved = guarded(|| {
-        let raw = sound(Manifold::from_mesh_gl64_robust(&plain(mesh, Manifold::reserve_ids(1))))?;
-        Ok(sound(raw.rebuild_solid(WindingRule::Positive))?.get_mesh_gl64(-1))
-    });
-    job.check()?;
-    let gl = match solved {
-        Ok(gl) => gl,
-        Err(why) => return Ok(Err(why)),
-    };
-    let at = points(&gl);
-    let mut merged: Map<u32, u32> = Map::default();
-    merged.extend(gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)));
-    let mut out = PolyMesh::new();
-    for t in gl.tri_verts.chunks_exact(3) {
-        let t = [0, 1, 2].map(|k| merged.get(&(t[k] as u32)).copied().unwrap_or(t[k] as u32));
-        out.push_face(&t);
-    }
-    Ok(if separate(&mut out, &at) { Ok(out) } else { Err("the solved surface is not closed".into()) })
+    let mesh = mesh.clone();
+    aside(job, move |token, job| {
+        let said = |e: Cancelled| e.to_string();
+        let given = plain(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
+        let raw = sound(Manifold::from_mesh_gl64_robust(&given))?;
+        let gl = sound(raw.rebuild_solid_with_token(WindingRule::Positive, Some(token)))?.get_mesh_gl64(-1);
+        let at = points(&gl);
+        let mut merged: Map<u32, u32> = Map::default();
+        merged.extend(gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)));
+        let mut out = PolyMesh::new();
+        for t in gl.tri_verts.chunks_exact(3) {
+            let t = [0, 1, 2].map(|k| merged.get(&(t[k] as u32)).copied().unwrap_or(t[k] as u32));
+            out.push_face(&t);
+        }
+        let closed = separate(&mut out, &at, job).map_err(said)?;
+        if closed { Ok(out) } else { Err("the solved surface is not closed".into()) }
+    })
 }
 
 #[cfg(test)]
@@ -169,6 +209,27 @@ mod tests {
         let said = guarded(|| Ok(broken[broken.len()])).expect_err("it panicked");
         assert!(said.contains("index out of bounds"), "{said}");
         assert_eq!(guarded(|| Ok(7)), Ok(7));
+    }
+
+    #[test]
+    fn a_wait_ends_at_once() {
+        let job = Arc::new(Job::default());
+        let (begun, started) = bounded(1);
+        let (release, held) = bounded::<()>(1);
+        let other = job.clone();
+        let ender = std::thread::spawn(move || {
+            started.recv().expect("begun");
+            other.cancel();
+        });
+        let ended = aside(&job, move |token, inner| {
+            begun.send(()).expect("heard");
+            let _ = held.recv();
+            assert!(token.is_cancelled() && inner.cancelled());
+            Ok(())
+        });
+        assert_eq!(ended, Err(Cancelled));
+        ender.join().expect("ends");
+        drop(release);
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub fn local(
     if !matches!(operation, Operation::Union | Operation::Difference) {
         return Ok(None);
     }
-    check(tool, NAMES[1])?;
+    check(tool, NAMES[1], job)?;
     let (lo, hi) = clay.bounds();
     let reach = tool
         .positions
@@ -39,7 +39,7 @@ pub fn local(
     for factor in [1.0, 0.125, 1.0 / 64.0] {
         let eps = (wanted * factor).max(floor);
         let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(&around), job, &mut |_| ())?;
-        if let Some(change) = patch.change(&a, clay, operation, options.keep_contact) {
+        if let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job) {
             job.check()?;
             return Ok(Some(Cut::new(clay, patch.bounds, change.removed, change.added, change.new)));
         }
@@ -105,11 +105,12 @@ impl Patch {
         clay: &Snapshot,
         operation: Operation,
         keep_contact: bool,
+        job: &Job,
     ) -> Option<Change> {
         let mut kept = vec![false; self.triangles.len()];
         let mut added: Vec<[u32; 3]> = Vec::new();
         let mut from: Vec<Option<u32>> = Vec::new();
-        a.faces(operation, keep_contact, |origin, corners, whole| {
+        a.faces(operation, keep_contact, job, |origin, corners, whole| {
             let clay = origin.operand == 0;
             if clay && whole && self.mesh.face(origin.face as usize) == corners {
                 kept[origin.face as usize] = true;

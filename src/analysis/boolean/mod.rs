@@ -138,7 +138,7 @@ pub fn compute(
     let mut report = Report::default();
     let start = now();
     job.check()?;
-    let (a, b) = rayon::join(|| check(operands[0], NAMES[0]), || check(operands[1], NAMES[1]));
+    let (a, b) = rayon::join(|| check(operands[0], NAMES[0], job), || check(operands[1], NAMES[1], job));
     let volumes = [a?, b?];
     report.phases.push(("check", now() - start));
     let reach = operands.iter().map(|m| reach(&m.positions)).fold(0.0, f64::max);
@@ -209,16 +209,18 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Error> {
 }
 
 /// Closed, oriented outwards, finite: the volume, or what is wrong.
-fn check(mesh: &PolyMesh, operand: &'static str) -> Result<f64, Error> {
+fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, Error> {
     if !mesh.positions.par_iter().all(|p| p.is_finite()) {
         return Err(Error::NotFinite { operand });
     }
+    job.check()?;
     if !balanced(mesh) {
         let edges = open_edges(mesh);
         if edges > 0 {
             return Err(Error::Open { operand, edges });
         }
     }
+    job.check()?;
     let (volume, _) = emit::measure(mesh);
     if volume < 0.0 { Err(Error::InsideOut { operand, volume }) } else { Ok(volume) }
 }
@@ -295,7 +297,7 @@ fn attempt(
         let (mut mesh, mut origins) = (PolyMesh::new(), Vec::with_capacity(faces));
         mesh.face_starts.reserve(faces);
         mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
-        a.faces(operation, options.keep_contact, |origin, corners, _| {
+        a.faces(operation, options.keep_contact, job, |origin, corners, _| {
             mesh.push_face(corners);
             origins.push(origin);
         });

@@ -45,12 +45,12 @@ pub fn pairs(
     }
     let grid = Grid::over(both, slack);
     let all = |s: usize| 0..surfaces[s].triangles.len() as u32;
-    let (first, marked) = grid.sift(&surfaces[0], all(0).into_par_iter(), None);
+    let (first, marked) = grid.sift(&surfaces[0], all(0).into_par_iter(), None, job);
     job.check()?;
-    let (second, marked) = grid.sift(&surfaces[1], all(1).into_par_iter(), Some(&marked));
+    let (second, marked) = grid.sift(&surfaces[1], all(1).into_par_iter(), Some(&marked), job);
     job.check()?;
     let (first, _) = if first.len() > FEW {
-        grid.sift(&surfaces[0], first.into_par_iter(), Some(&marked))
+        grid.sift(&surfaces[0], first.into_par_iter(), Some(&marked), job)
     } else {
         (first, Marked::default())
     };
@@ -102,16 +102,21 @@ impl Grid {
         [0, 1, 2].map(|k| (cell(s.lo[k], k), cell(s.hi[k], k)))
     }
 
-    /// The triangles of the list that reach the box and, where cells are given, a marked cell; and the cells they are in.
+    /// The triangles of the list that reach the box and, where cells are given, a marked cell; and the cells they are in. A
+    /// cancelled job leaves some out.
     fn sift(
         &self,
         surface: &Surface<'_>,
         list: impl IndexedParallelIterator<Item = u32>,
         by: Option<&Marked>,
+        job: &Job,
     ) -> (Vec<u32>, Marked) {
         // Few and large parts: each has marks of its own.
         let least = (list.len() / (2 * rayon::current_num_threads())).max(1 << 13);
         let part = |mut to: (Vec<u32>, Marked), t: u32| {
+            if t % 4096 == 0 && job.cancelled() {
+                return to;
+            }
             let s = surface.span(t).grown(self.slack);
             if !s.meets(&self.both) {
                 return to;
