@@ -35,6 +35,7 @@ pub struct Facts {
 pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Cancelled> {
     let closed = match fans::degrees(mesh, at.len(), job)? {
         Some(degrees) => {
+            job.check()?;
             compact(mesh, at, &degrees);
             true
         }
@@ -43,7 +44,13 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Can
     job.check()?;
     let count = || {
         let mut shells = Sets::new(mesh.positions.len());
-        mesh.faces().for_each(|f| f.windows(2).for_each(|w| shells.join(w[0], w[1])));
+        for (i, f) in mesh.faces().enumerate() {
+            // What a cancelled job counts is thrown away.
+            if i % 65_536 == 0 && job.cancelled() {
+                return 0;
+            }
+            f.windows(2).for_each(|w| shells.join(w[0], w[1]));
+        }
         (0..mesh.positions.len() as u32).filter(|&v| shells.root(v) == v).count()
     };
     let (components, (volume, area)) = rayon::join(count, || measure(mesh));
