@@ -71,7 +71,9 @@ fn asked_watched_and_ended_over_the_socket() {
             call(&socket, "boolean", &json!({ "operation": "union", "path": large, "at": [0.3, 0.2, 0.1] }))
         })
     };
-    let running = (0..20_000).find_map(|_| {
+    let never = crossbeam_channel::never::<()>();
+    let running = (0..4_000).find_map(|_| {
+        let _ = never.recv_timeout(Duration::from_millis(5));
         let now = call(&socket, "progress", &json!({}))["result"].clone();
         (now["running"] == json!(true)).then_some(now)
     });
