@@ -92,7 +92,7 @@ impl Mesh {
             top,
             history: History::new(count),
             // A page of a strange mesh may be huge: then pooled pages grow on use instead.
-            pool: Pool::new(rows.min(2048), leaves.min(512), (count / 64).clamp(8, 256)),
+            pool: Pool::new(rows.min(2048), leaves.min(512), (count / 16).clamp(8, 512)),
             bench: Bench::new(count, rows.min(2048)),
             order: Vec::with_capacity(256),
             stale: Stale::new(count),
