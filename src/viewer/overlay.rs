@@ -11,7 +11,7 @@ use crate::stroke::Camera;
 const RING: [u8; 4] = [255, 236, 190, 255];
 const CARVING: [u8; 4] = [150, 190, 255, 255];
 const MIRRORED: [u8; 4] = [150, 205, 255, 190];
-const THING: [u8; 4] = [255, 214, 140, 200];
+const THING: [u8; 4] = [255, 214, 140, 110];
 const BONE: [u8; 4] = [190, 225, 255, 200];
 /// Corners of a ring: smooth to the eye at any size.
 const CORNERS: usize = 72;

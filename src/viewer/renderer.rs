@@ -89,6 +89,8 @@ pub struct Renderer {
     previewed: Option<Arc<Preview>>,
     preview: Loose,
     ghosts: Loose,
+    /// Whether the depth can be read here.
+    shades: bool,
     /// Made when it is first asked for.
     shade: Option<Shade>,
     /// Bytes of pages sent with the last frame, and pages that still wait.
@@ -207,6 +209,8 @@ impl Renderer {
             previewed: None,
             preview: Loose::default(),
             ghosts: Loose::default(),
+            // OpenGL draws nothing at all with a depth of several samples that is to be read.
+            shades: samples == 1 || gpu.adapter.get_info().backend != wgpu::Backend::Gl,
             shade: None,
             uploaded: 0,
             waiting: 0,
@@ -243,7 +247,8 @@ impl Renderer {
             });
             texture.create_view(&Default::default())
         };
-        let (none, read) = (wgpu::TextureUsages::empty(), wgpu::TextureUsages::TEXTURE_BINDING);
+        let none = wgpu::TextureUsages::empty();
+        let read = if self.shades { wgpu::TextureUsages::TEXTURE_BINDING } else { none };
         if let Some(shade) = &mut self.shade {
             shade.forget();
         }
@@ -316,7 +321,7 @@ impl Renderer {
         let resolve = smooth.as_ref().map(|_| target);
         // Over a map a little: its colours are to be read beside its scale.
         let shade = scene.look.shade.clamp(0.0, 2.0) * if kind > 0.0 { 0.5 } else { 1.0 };
-        let shaded = shade > 0.0 && lo.cmple(hi).all();
+        let shaded = self.shades && shade > 0.0 && lo.cmple(hi).all();
         {
             // What is shaded is not finished yet: lines and the mean of its samples come after.
             let resolve = if shaded { None } else { resolve };

@@ -90,7 +90,7 @@ fn gather(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
         let f = max(square - vv, 0.0) / square;
         sum += f * f * max(vn / (vv + square * 0.001), 0.0) * reach;
     }
-    let seen = max(1.0 - sum * shade.reach.z * 1.45 / f32(SAMPLES), 0.0);
+    let seen = max(1.0 - sum * shade.reach.z * 2.3 / f32(SAMPLES), 0.0);
     return vec4<f32>(seen);
 }
 

@@ -82,7 +82,10 @@ impl Open {
         if self.rested.0 != revision {
             self.rested = (revision, now);
         }
-        self.before.get_or_insert_with(|| state.mesh.clone());
+        // Visitors of an installation compare nothing: old works are not kept.
+        if wiring.kiosk.is_none() {
+            self.before.get_or_insert_with(|| state.mesh.clone());
+        }
         self.wish_preview(state, now);
         if self.desk.look.map == Map::Distance {
             let to = match (&state.thing, self.desk.sizes.against, &self.before) {

@@ -1,6 +1,7 @@
 //! The window without a window: the renderer on whatever adapter there is, the panels through AccessKit, and the law
 //! that a viewer that stalls costs the sculpture nothing.
 
+mod beside;
 mod kiosk;
 mod layout;
 mod panels;

@@ -13,7 +13,7 @@ use sculptd::viewer::renderer::Scene;
 use crate::clay::sphere;
 
 /// An adapter, or a plain word that there is none.
-fn painter() -> Option<Painter> {
+pub(super) fn painter() -> Option<Painter> {
     match Painter::new() {
         Ok(painter) => Some(painter),
         Err(e) => {
@@ -25,14 +25,14 @@ fn painter() -> Option<Painter> {
     }
 }
 
-fn framed(mesh: &Mesh, aspect: f32) -> Camera {
+pub(super) fn framed(mesh: &Mesh, aspect: f32) -> Camera {
     let (lo, hi) = mesh.bounds();
     let mut camera = Camera { aspect, ..Camera::default() };
     camera.frame(lo, hi);
     camera
 }
 
-fn dab(mesh: &mut Mesh, radius: f32) -> usize {
+pub(super) fn dab(mesh: &mut Mesh, radius: f32) -> usize {
     let from = Vec3::new(0.3, 0.5, 0.8).normalize();
     let hit = mesh.pick(Ray { origin: from * 5.0, dir: -from }).expect("the ball is there");
     let reach = Reach::Sphere { centre: hit.position, radius };
