@@ -45,7 +45,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             continue;
         };
         let reach = (side - at).length().max((above - at).length());
-        if !free.contains(at) {
+        // A ball beside the view has its word at the side where it is.
+        if !free.y_range().contains(at.y) {
             continue;
         }
         let word = pos2(at.x, at.y + reach + 10.0);
@@ -69,7 +70,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             painter.rect_filled(rect.expand2(vec2(6.0, 2.0)), 6.0, ground);
             let label = egui::RichText::new(ball.choice.label()).font(font).color(text);
             ui.put(rect, egui::Label::new(label).selectable(false).extend());
-            if let Some(ring) = ball.ring {
+            if let Some(ring) = ball.ring.filter(|_| free.contains(at)) {
                 let corner = |k: usize| {
                     let turn = k as f32 / 48.0 * std::f32::consts::TAU;
                     at + vec2(turn.sin(), -turn.cos()) * (reach + 4.0)

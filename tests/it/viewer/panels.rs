@@ -402,10 +402,10 @@ fn the_hands_menu_has_its_words_at_its_balls() {
     let s = h.state_mut();
     s.published.hands = Some(sculptd::devices::Hands::default());
     s.published.menu = Some((1, 0.4));
-    // Seen from the front, with the work's volume wholly in view.
-    s.published.camera.distance = 9.0;
+    // Seen from the front, from where all of them are in view.
+    s.published.camera.distance = 20.0;
     (s.published.camera.yaw, s.published.camera.pitch) = (0.0, 0.0);
-    h.run_steps(2);
+    h.run_steps(4);
     for choice in Choice::EMPTY {
         assert!(h.query_by_label(choice.label()).is_some(), "{}", choice.label());
     }
