@@ -304,23 +304,24 @@ fn what_would_come_is_seen_before_it_is_made() {
     s.ask("take-up", &json!({ "path": tool }));
     s.seen("a2-thing");
     let (triangles, hash) = (s.figure("triangles"), s.ask("hash", &Value::Null)["hash"].clone());
-    act(&s, "try to cut");
+    // It stands beside the work: the preview shows it as clay.
+    act(&s, "try to add");
     s.seen("a3-preview");
     assert_eq!(s.ask("hash", &Value::Null)["hash"], hash, "a preview is of the window alone");
-    act(&s, "try to cut");
+    act(&s, "try to add");
     s.seen("a4-dismissed");
-    s.ask("join", &json!({ "operation": "carve" }));
-    s.until("it is cut", |s| s.figure("triangles") != triangles);
-    s.seen("a5-cut");
-    // Distances are to the work as it was opened: where it was cut it lies within.
+    s.ask("join", &json!({ "operation": "add" }));
+    s.until("it is added", |s| s.figure("triangles") != triangles);
+    s.seen("a5-added");
+    // Distances are to the work as it was opened: what was added lies outside.
     s.drive(&["key", "shift+d"]);
     s.seen("a6-distance");
     s.drive(&["key", "shift+d"]);
     s.seen("a7-clay");
-    let cut = s.figure("triangles");
+    let added = s.figure("triangles");
     act(&s, "trim by a box");
     s.drag((-150, 60), (150, 250));
-    s.until("it is trimmed", |s| s.figure("triangles") != cut);
+    s.until("it is trimmed", |s| s.figure("triangles") != added);
     s.seen("a8-trimmed");
     let trimmed = s.figure("triangles");
     act(&s, "finer");
