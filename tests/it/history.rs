@@ -275,6 +275,33 @@ fn cut_triangles_and_other_works_come_back_from_the_file() {
 }
 
 #[test]
+fn pages_that_a_step_added_go_and_come_back_with_it() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut s = Studio::begin(dir.path(), 3000, 1 << 28);
+    let mut brush = *s.world.brush();
+    brush.topology.by = Measure::Brush;
+    brush.topology.edge = 0.03;
+    s.tick(&[], &[Command::Brush(brush)]);
+    let (first, pages) = (s.world.hash(), s.world.mesh().page_count());
+    let second = s.stroke(Vec2::ZERO);
+    assert!(s.world.mesh().page_count() > pages, "no page was added");
+    for hash in [first, second, first] {
+        let back = hash == first;
+        s.tick(&[], &[if back { Command::Undo } else { Command::Redo }]);
+        assert_eq!(s.world.hash(), hash);
+        s.settle();
+        assert_eq!(s.history.tree().len(), 2, "going to and fro makes no place");
+    }
+    let path = s.end();
+    assert_eq!(both_ways(&path), (first, first));
+    let mut s = Studio::reopened(&path);
+    s.tick(&[], &[Command::Redo]);
+    s.becomes(second);
+    let path = s.end();
+    assert_eq!(both_ways(&path), (second, second));
+}
+
+#[test]
 fn a_session_cut_off_anywhere_opens_as_its_replay() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut s = Studio::begin(dir.path(), 1500, 1 << 20);

@@ -315,8 +315,8 @@ impl Keeping {
                 Ok(Some(jump(pages, None, Fetched::Pages(got))))
             }
             Way::Other => {
-                let (rest, names) = describe(&self.ledger.tree, node);
                 let base = base(&self.path)?;
+                let (rest, names) = describe(&self.ledger.tree, node, base.page_count());
                 let mesh = assemble(&self.ledger.store, &base, &rest, &names, node.levels)?;
                 let other = OtherWork { rest, middle: node.middle, extent: node.extent, levels: node.levels };
                 Ok(Some(jump(names, Some(other), Fetched::Work(Box::new(mesh)))))
@@ -326,13 +326,12 @@ impl Keeping {
 }
 
 /// A work's pages by name, and what it is besides: revisions go on above all that its lineage ever had.
-fn describe(tree: &Tree, node: &Node) -> (Rest, Vec<(u32, u64)>) {
+fn describe(tree: &Tree, node: &Node, first: usize) -> (Rest, Vec<(u32, u64)>) {
     let of_work = || tree.nodes().filter(|n| n.lineage == node.lineage);
     let revision = of_work().flat_map(|n| &n.changes).map(|c| c.2).max().unwrap_or(0) + 1;
     let next = of_work().fold(node.next, |a, n| [a[0].max(n.next[0]), a[1].max(n.next[1])]);
     let rest = Rest { pages: node.pages, revision, lineage: node.lineage, next, empty: Vec::new() };
-    let versions = tree.versions(node.id);
-    let names = (0..node.pages).map(|i| (i, versions.get(&i).copied().unwrap_or(0))).collect();
+    let names = tree.names(node, node.pages, first);
     (rest, names)
 }
 

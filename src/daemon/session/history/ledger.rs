@@ -31,6 +31,11 @@ pub struct Ledger {
     pub closed: bool,
 }
 
+/// What a page's version is called.
+fn version(page: &Page) -> u64 {
+    if page.own() == 0 && page.revision() == 0 { NOTHING } else { page.revision() }
+}
+
 fn same(a: &Side, b: &Side) -> bool {
     match (a, b) {
         (Side::Thing(a), Side::Thing(b)) => Arc::ptr_eq(a, b),
@@ -102,7 +107,10 @@ impl Ledger {
         let other = lineage != work.lineage();
         let changed: Vec<(u32, u64)> = (0..work.page_count() as u32)
             .map(|i| (i, if other { NOTHING } else { known.get(&i).copied().unwrap_or(0) }))
-            .filter(|(i, before)| work.page(*i).revision() != *before)
+            .filter(|(i, before)| {
+                let now = version(work.page(*i));
+                now != *before && (now != NOTHING || other)
+            })
             .collect();
         self.topology = if other {
             BTreeMap::new()
@@ -120,6 +128,10 @@ impl Ledger {
         let mut changes: Vec<Change> = Vec::with_capacity(changed.len());
         for (i, before) in changed {
             let page = work.page(i);
+            if version(page) == NOTHING {
+                changes.push((i, before, NOTHING));
+                continue;
+            }
             // What it is made of is not known to be stored: so it is stored.
             self.topology.insert(i, page.revision());
             self.keep_topology((work.lineage(), i, page.revision()), page)?;
@@ -177,9 +189,10 @@ impl Ledger {
         let mut changes = Vec::new();
         work.each_changed(&self.now, |i, page| {
             let old = (i as usize) < self.now.page_count();
-            let before = if old { self.now.page(i).revision() } else { NOTHING };
-            if before != page.revision() {
-                changes.push((i, before, page.revision()));
+            let before = if old { version(self.now.page(i)) } else { NOTHING };
+            let after = version(page);
+            if before != after {
+                changes.push((i, before, after));
             }
         });
         Some(changes)
@@ -255,6 +268,9 @@ impl Ledger {
             }
             self.keep_page((lineage, i, before), had, &old)?;
         }
+        if after == NOTHING {
+            return Ok(());
+        }
         if topology == after {
             self.keep_topology((lineage, i, after), &page)?;
         }
@@ -267,7 +283,10 @@ impl Ledger {
         (0..work.page_count() as u32)
             .map(|i| {
                 let page = work.page(i).clone();
-                let revision = page.revision();
+                let revision = version(&page);
+                if revision == NOTHING {
+                    return Ok((i, NOTHING, NOTHING));
+                }
                 // Where the work comes back by undo, it is stored already.
                 if !self.names.contains_key(&(lineage, i, revision)) {
                     self.keep_topology((lineage, i, revision), &page)?;

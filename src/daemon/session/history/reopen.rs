@@ -43,9 +43,7 @@ pub fn reopen(
         let made = || -> Result<Option<Reopened>, StoreError> {
             let c = store.checkpoint(id)?;
             let Some(node) = tree.node(c.node) else { return Ok(None) };
-            let versions = tree.versions(node.id);
-            let names: Vec<(u32, u64)> =
-                (0..c.rest.pages).map(|i| (i, versions.get(&i).copied().unwrap_or(0))).collect();
+            let names = tree.names(node, c.rest.pages, base.page_count());
             let (checkpoint, at) = (c.tick, c.node);
             let empty = c.rest.empty.clone();
             let mut mesh = assemble(&store, &base, &c.rest, &names, None)?;

@@ -1,6 +1,7 @@
 //! Which node follows which, and what lies between two of them.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -35,7 +36,8 @@ pub struct Node {
 /// All nodes, and where the work is.
 #[derive(Debug, Clone, Default)]
 pub struct Tree {
-    nodes: BTreeMap<u64, Node>,
+    /// Shared with those whom the tree was shown to.
+    nodes: BTreeMap<u64, Arc<Node>>,
     children: BTreeMap<u64, Vec<u64>>,
     /// The child of each node that was left last: where redo leads.
     latest: BTreeMap<u64, u64>,
@@ -60,20 +62,20 @@ impl Tree {
             }
             self.latest.insert(parent, node.id);
         }
-        self.nodes.insert(node.id, node);
+        self.nodes.insert(node.id, Arc::new(node));
     }
 
     pub fn node(&self, id: u64) -> Option<&Node> {
-        self.nodes.get(&id)
+        self.nodes.get(&id).map(Arc::as_ref)
     }
 
     pub fn here(&self) -> Option<&Node> {
-        self.nodes.get(&self.cursor)
+        self.node(self.cursor)
     }
 
     /// In the order in which they were made.
     pub fn nodes(&self) -> impl Iterator<Item = &Node> {
-        self.nodes.values()
+        self.nodes.values().map(Arc::as_ref)
     }
 
     pub fn is_empty(&self) -> bool {
@@ -114,12 +116,12 @@ impl Tree {
 
     /// The nodes from this one up to its root.
     pub fn line(&self, id: u64) -> impl Iterator<Item = &Node> {
-        std::iter::successors(self.nodes.get(&id), |n| n.parent.and_then(|p| self.nodes.get(&p)))
+        std::iter::successors(self.node(id), |n| n.parent.and_then(|p| self.node(p)))
     }
 
     /// From the cursor to a node; `None` where there is no way, for they do not hang together.
     pub fn way(&self, to: u64) -> Option<Way> {
-        let target = self.nodes.get(&to)?;
+        let target = self.node(to)?;
         let up: Vec<&Node> = self.line(self.cursor).collect();
         let mut down: Vec<&Node> = Vec::new();
         let mut meet = None;
@@ -143,6 +145,14 @@ impl Tree {
             pages.extend(node.changes.iter().map(|c| (c.0, c.2)));
         }
         Some(Way::Pages(pages.into_iter().collect()))
+    }
+
+    /// The version of every page of the work at a node. `first`: pages of the work that the session began with.
+    pub fn names(&self, node: &Node, pages: u32, first: usize) -> Vec<(u32, u64)> {
+        let versions = self.versions(node.id);
+        // A page that no step speaks of is as it was in the beginning, or was not there.
+        let unspoken = |i: u32| if node.lineage == 0 && (i as usize) < first { 0 } else { NOTHING };
+        (0..pages).map(|i| (i, versions.get(&i).copied().unwrap_or_else(|| unspoken(i)))).collect()
     }
 
     /// The revision of every page that any step changed since the work was put in place; the others are as they were then.
