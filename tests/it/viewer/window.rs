@@ -111,14 +111,15 @@ impl Stage {
                 return None;
             }
             if stage
-                .tool("xdotool", &["search", "--name", "^sculptd$"])
+                .tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"])
                 .is_some_and(|id| !id.trim().is_empty())
             {
                 break;
             }
             pause(50);
         }
-        let id = stage.tool("xdotool", &["search", "--name", "^sculptd$"]).unwrap_or_default();
+        let id =
+            stage.tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"]).unwrap_or_default();
         let id = id.lines().next().expect("a window").to_owned();
         stage.drive(&["windowfocus", &id]);
         Some(stage)
