@@ -153,7 +153,8 @@ impl Camera {
     /// The least and the largest depth before the eye that [`Camera::view_projection`] keeps.
     pub fn depth_range(&self, radius: f32) -> (f32, f32) {
         let far = (self.distance + radius * 2.0).max(1e-3);
-        let near = (self.distance - radius * 2.0).max(far * 1e-4);
+        // As far away as the work allows: what depth tells apart at the work goes with it.
+        let near = (self.distance - radius * 2.0).max((far * 5e-3).min(self.distance * 0.1)).max(far * 1e-5);
         if self.orthographic { (-far, far) } else { (near, far) }
     }
 

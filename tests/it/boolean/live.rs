@@ -124,8 +124,8 @@ fn what_is_protected_stays_so_the_long_way_too() {
     let (at, masks) = (now.to_tri().positions, now.masks().expect("some"));
     let (mut own, mut tools) = (0, 0);
     for (p, mask) in at.iter().zip(masks) {
-        // Inside the ball are only corners that came with the tool.
-        if p.length() > 0.998 {
+        // On the unit ball are corners of the clay; well inside it are only corners that came with the tool.
+        if (p.length() - 1.0).abs() < 1e-6 {
             assert!((mask - 1.0).abs() < 1e-6, "{p}: {mask}");
             own += 1;
         } else if p.length() < 0.98 {

@@ -289,6 +289,7 @@ fn act(s: &Stage, name: &str) {
     s.drive(&["type", "--delay", "40", name]);
     pause(300);
     s.drive(&["key", "Return"]);
+    pause(500);
 }
 
 #[test]
@@ -321,7 +322,9 @@ fn what_would_come_is_seen_before_it_is_made() {
     s.seen("a7-clay");
     let added = s.figure("triangles");
     act(&s, "trim by a box");
+    s.look("a8-asked");
     s.drag((-150, 60), (150, 250));
+    s.look("a8-dragged");
     s.until("it is trimmed", |s| s.figure("triangles") != added);
     s.seen("a8-trimmed");
     let trimmed = s.figure("triangles");
