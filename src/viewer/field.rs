@@ -62,10 +62,7 @@ pub struct Field {
 impl Field {
     /// Brings the map up to what is wanted, a batch at a time; `false` when nobody listens any more.
     pub fn follow(&mut self, wanted: Wanted, job: &Job, say: &cc::Sender<Done>) -> bool {
-        match self.bring(wanted, job, say) {
-            Ok(listened) => listened,
-            Err(Cancelled) => true,
-        }
+        self.bring(wanted, job, say).unwrap_or(true)
     }
 
     fn bring(&mut self, wanted: Wanted, job: &Job, say: &cc::Sender<Done>) -> Result<bool, Cancelled> {

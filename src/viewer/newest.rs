@@ -7,16 +7,19 @@ use crossbeam_channel as cc;
 
 use crate::analysis::cancel::Job;
 
+/// A wish, and how its work is told to stop.
+type Wish<W> = (W, Arc<Job>);
+
 #[derive(Debug)]
 pub struct Newest<W> {
-    slot: (cc::Sender<(W, Arc<Job>)>, cc::Receiver<(W, Arc<Job>)>),
+    slot: (cc::Sender<Wish<W>>, cc::Receiver<Wish<W>>),
     under_way: Arc<Job>,
 }
 
 impl<W: Send + 'static> Newest<W> {
     /// `each` is called with one wish after another, and ends when it says `false` or nobody can wish any more.
     pub fn start(name: &str, mut each: impl FnMut(W, &Job) -> bool + Send + 'static) -> Newest<W> {
-        let slot = cc::bounded::<(W, Arc<Job>)>(1);
+        let slot = cc::bounded::<Wish<W>>(1);
         let receiver = slot.1.clone();
         let _ = std::thread::Builder::new().name(name.into()).spawn(move || {
             while let Ok((wish, job)) = receiver.recv() {

@@ -156,10 +156,10 @@ impl Work {
         let say = self.say.clone();
         thread(name, move || {
             let (text, wrong) = match of() {
-                Ok((all, text)) => match all.into_iter().try_for_each(|c| commands.send(c)) {
-                    Ok(()) => (text, false),
-                    Err(_) => (JoinError::Ended.to_string(), true),
-                },
+                Ok((all, text)) => {
+                    let sent = all.into_iter().all(|c| commands.send(c).is_ok());
+                    (if sent { text } else { JoinError::Ended.to_string() }, !sent)
+                }
                 Err(e) => (e.to_string(), true),
             };
             let _ = say.send(Done::Said(text, wrong));
