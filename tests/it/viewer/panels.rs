@@ -352,7 +352,7 @@ fn sizes_are_told_with_their_units_and_the_outline_is_written() {
         volume: 4.18879,
         area: 12.56637,
         dimensions: [2.0, 3.0, 4.0],
-        projected: [3.14, 3.15, 3.16],
+        projected: [3.24, 3.25, 3.26],
         direction: DVec3::NEG_Z,
         shadow: 3.0,
         outline: vec![Polygon { outer: ring, holes: vec![] }],
