@@ -105,11 +105,12 @@ impl CameraConfig {
 #[serde(default, deny_unknown_fields)]
 pub struct UndoConfig {
     pub bytes: u64,
+    pub history_bytes: u64,
 }
 
 impl Default for UndoConfig {
     fn default() -> Self {
-        UndoConfig { bytes: 1 << 30 }
+        UndoConfig { bytes: 1 << 30, history_bytes: 4 << 30 }
     }
 }
 
@@ -323,6 +324,7 @@ impl Config {
         within("hand.dead_zone_mm", h.dead_zone_mm, 0.0, 50.0)?;
         within("hand.dwell_zone_mm", h.dwell_zone_mm, 0.0, 50.0)?;
         within("undo.bytes", self.undo.bytes, 1 << 20, 1 << 40)?;
+        within("undo.history_bytes", self.undo.history_bytes, 1 << 20, 1 << 50)?;
         Ok(())
     }
 }

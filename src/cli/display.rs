@@ -43,6 +43,8 @@ pub struct Wired<'a> {
     pub stop: &'a Arc<AtomicBool>,
     pub adaptors: Arc<Adaptors>,
     pub session: Option<String>,
+    /// The session's history, and the ticks a second.
+    pub history: Option<(crate::daemon::session::history::Handle, u32)>,
     /// On the clock; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
@@ -63,6 +65,7 @@ pub fn show(wired: &Wired<'_>) -> Result<(), String> {
         stop: wired.stop.clone(),
         devices: Box::new(move || adaptors.describe()),
         session: wired.session.clone(),
+        history: wired.history.clone(),
         ghosts_until_us: wired.ghosts_until_us,
         full_screen: wired.full_screen,
         kiosk: wired.kiosk.clone(),

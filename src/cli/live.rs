@@ -71,7 +71,7 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
         history.connect(live.commands.clone());
     }
     let stop = stop_signal();
-    let _control = control(&live, health.clone(), history, &stop)?;
+    let _control = control(&live, health.clone(), history.clone(), &stop)?;
     #[cfg(unix)]
     let _service = service(&run, &live, health, config)?;
     let ghosts = match run.ghosts {
@@ -99,6 +99,7 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
             stop: &stop,
             adaptors: adaptors.clone(),
             session: run.session.as_ref().map(|p| p.display().to_string()),
+            history: history.map(|h| (h, config.r#loop.rate_hz)),
             ghosts_until_us: ghosts.as_ref().map_or(0, |g| g.ends_us),
             full_screen: run.full_screen,
             kiosk: keeper,

@@ -1,4 +1,4 @@
-//! `sculptd replay`: a session's input once more, from its start; prints the clay's hash.
+//! `sculptd replay`: a session's input once more, from its start or from a checkpoint; prints the clay's hash.
 
 use std::path::PathBuf;
 
@@ -9,6 +9,7 @@ use super::{Fail, Outcome, answer};
 use crate::analysis::cancel::Job;
 use crate::config::LoopConfig;
 use crate::daemon::session::film::Film;
+use crate::daemon::session::history::reopen;
 use crate::daemon::session::replay::{Replayed, replay_seen};
 use crate::daemon::session::{self, OpenError, Opened};
 use crate::mesh::{BuildError, Workers};
@@ -24,6 +25,10 @@ pub struct ReplayArgs {
     /// Stop after this tick.
     #[arg(long, value_name = "TICK")]
     pub until: Option<u64>,
+    /// Begin at the nearest checkpoint before that, as opening the session does: the same clay, sooner. From the start where none
+    /// serves.
+    #[arg(long, conflicts_with = "frames")]
+    pub from_checkpoint: bool,
     /// Write the mesh as it then is.
     #[arg(long, value_name = "FILE")]
     pub export: Option<PathBuf>,
@@ -44,6 +49,10 @@ struct Answer {
     hash: String,
     vertices: u64,
     export: Option<String>,
+    /// The tick of the checkpoint that it began at; absent: the start.
+    checkpoint: Option<u64>,
+    /// Jumps within the history that could not be made again: what they name is no longer in the file.
+    jumps_missed: u64,
     /// Pictures written.
     frames: u32,
     /// What of the file could not be read, if anything.
@@ -120,15 +129,36 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         eprintln!("sculptd: warning: {}: {loss}", args.session.display());
     }
     let workers = Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
-    let (replayed, frames) = replay(args, &opened, workers)?;
+    let near = args.from_checkpoint.then(|| {
+        let count = workers.count();
+        reopen(&args.session, &opened, args.until, count, &Job::default())
+    });
+    let (replayed, frames, checkpoint) = match near.flatten() {
+        Some(r) => (r.replayed, 0, Some(r.checkpoint)),
+        None => {
+            let (replayed, frames) = replay(args, &opened, workers)?;
+            (replayed, frames, None)
+        }
+    };
+    if replayed.jumps_missed > 0 {
+        let n = replayed.jumps_missed;
+        eprintln!(
+            "sculptd: warning: {n} jumps within the history could not be made again, the clay may be another; --from-checkpoint begins later"
+        );
+    }
     let answer_ = Answer {
         ticks: replayed.ticks,
         hash: format!("{:016x}", replayed.world.hash()),
         vertices: replayed.world.mesh().vertex_count() as u64,
         export: export(args.export.as_deref(), &replayed.world)?,
+        checkpoint,
+        jumps_missed: replayed.jumps_missed,
         frames,
         loss: opened.loss.map(|l| l.to_string()),
     };
-    answer(json, &answer_, |out| writeln!(out, "ticks  {}\nhash   {}", answer_.ticks, answer_.hash));
+    answer(json, &answer_, |out| {
+        writeln!(out, "ticks  {}\nhash   {}", answer_.ticks, answer_.hash)?;
+        answer_.checkpoint.map_or(Ok(()), |tick| writeln!(out, "from   {tick}   a checkpoint"))
+    });
     Ok(())
 }

@@ -7,6 +7,7 @@ use serde_json::json;
 use super::{Fail, Outcome, answer};
 use crate::config::state_dir;
 
+use crate::daemon::session::history::bound::Freed;
 use crate::daemon::session::history::{Store, StoreError, listing};
 use crate::daemon::session::salvage::{SalvageError, salvage};
 use crate::daemon::session::shelf::{self, Entry};
@@ -28,12 +29,15 @@ pub enum SessionCommand {
         #[arg(long, value_name = "FOLDER")]
         pictures: Option<PathBuf>,
     },
-    /// Remove the oldest sessions; says which, and removes them only with --yes.
+    /// Remove the oldest sessions, or shorten the histories of those that stay; says which, and does it only with --yes.
     Prune {
         folder: Option<PathBuf>,
         /// How many of the newest stay.
         #[arg(long, value_name = "N", default_value_t = 20)]
         keep: usize,
+        /// Let the oldest places of each session that stays go, until its history takes so many MiB.
+        #[arg(long, value_name = "MIB")]
+        history: Option<u64>,
         #[arg(long)]
         yes: bool,
     },
@@ -90,6 +94,66 @@ fn history(session: &Path, pictures: Option<&Path>, json: bool) -> Outcome {
     Ok(())
 }
 
+/// A session whose history is shortened.
+#[derive(Debug, serde::Serialize)]
+struct Shorter {
+    path: PathBuf,
+    /// Bytes of its history before.
+    bytes: u64,
+    /// What went; none where nothing was done yet.
+    freed: Option<Freed>,
+}
+
+fn prune(folder: &Path, keep: usize, history_mib: Option<u64>, yes: bool, json: bool) -> Outcome {
+    let all = if folder.exists() { list(folder)? } else { vec![] };
+    let spare = shelf::spare(all.clone(), keep);
+    let mut shorter = Vec::new();
+    if let Some(mib) = history_mib {
+        let most = mib.saturating_mul(1 << 20);
+        for e in all.iter().filter(|e| e.damage.is_none() && !spare.iter().any(|s| s.path == e.path)) {
+            let bytes = e.history.as_ref().map_or(0, |h| h.total_bytes);
+            if bytes <= most || shelf::in_use(&e.path) {
+                continue;
+            }
+            let fail = |why: StoreError| Fail::Input(format!("{}: {why}", e.path.display()));
+            let freed = if yes { shelf::shorten(&e.path, most).map_err(fail)? } else { None };
+            shorter.push(Shorter { path: e.path.clone(), bytes, freed });
+        }
+    }
+    let freed: u64 = spare.iter().map(|e| e.bytes).sum();
+    if yes {
+        for e in &spare {
+            shelf::remove(&e.path).map_err(|why| Fail::io(&e.path, &why))?;
+        }
+    }
+    let paths: Vec<&PathBuf> = spare.iter().map(|e| &e.path).collect();
+    let value = json!({ "removed": yes, "bytes": freed, "sessions": paths, "shortened": shorter });
+    answer(json, &value, |out| {
+        spare.iter().try_for_each(|e| line(out, e))?;
+        let word = if yes { "removed" } else { "would go (add --yes)" };
+        writeln!(out, "{} {word}, {} KiB", spare.len(), freed.div_ceil(1024))?;
+        for s in &shorter {
+            match s.freed {
+                Some(f) => writeln!(
+                    out,
+                    "{}: {} oldest places went, {} KiB",
+                    s.path.display(),
+                    f.places,
+                    f.bytes / 1024
+                )?,
+                None => writeln!(
+                    out,
+                    "{}: {} KiB of history would be shortened (add --yes)",
+                    s.path.display(),
+                    s.bytes / 1024
+                )?,
+            }
+        }
+        Ok(())
+    });
+    Ok(())
+}
+
 pub fn run(command: &SessionCommand, json: bool) -> Outcome {
     match command {
         SessionCommand::List { folder } => {
@@ -115,10 +179,15 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 writeln!(out, "history         {:>12} places, {} on branches", h.places, h.branches)?;
                 writeln!(
                     out,
-                    "                {:>12} checkpoints, {} KiB of pages",
+                    "                {:>12} checkpoints, {} KiB, of which {} KiB of pages",
                     h.checkpoints,
+                    h.total_bytes / 1024,
                     h.bytes / 1024
-                )
+                )?;
+                match h.dropped {
+                    0 => Ok(()),
+                    n => writeln!(out, "                {n:>12} older places let go (undo.history_bytes)"),
+                }
             });
             match entry {
                 Entry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
@@ -130,21 +199,8 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
             }
         }
         SessionCommand::History { session, pictures } => history(session, pictures.as_deref(), json)?,
-        SessionCommand::Prune { folder, keep, yes } => {
-            let folder = folder.clone().unwrap_or_else(state_dir);
-            let spare = if folder.exists() { shelf::spare(list(&folder)?, *keep) } else { vec![] };
-            let freed: u64 = spare.iter().map(|e| e.bytes).sum();
-            if *yes {
-                for e in &spare {
-                    shelf::remove(&e.path).map_err(|why| Fail::io(&e.path, &why))?;
-                }
-            }
-            let paths: Vec<&PathBuf> = spare.iter().map(|e| &e.path).collect();
-            answer(json, &json!({ "removed": yes, "bytes": freed, "sessions": paths }), |out| {
-                spare.iter().try_for_each(|e| line(out, e))?;
-                let word = if *yes { "removed" } else { "would go (add --yes)" };
-                writeln!(out, "{} {word}, {} KiB", spare.len(), freed.div_ceil(1024))
-            });
+        SessionCommand::Prune { folder, keep, history, yes } => {
+            prune(folder.clone().unwrap_or_else(state_dir).as_path(), *keep, *history, *yes, json)?;
         }
         SessionCommand::Save { session } => {
             let saved = salvage(session).map_err(|e| match e {

@@ -85,7 +85,7 @@ pub fn all(config: &Config, places: &Places) -> Vec<Check> {
     checks.push(socket(&places.socket));
     checks.push(folder(&places.state));
     #[cfg(unix)]
-    checks.push(room(&places.state));
+    checks.push(room(&places.state, config.undo.history_bytes));
     checks.push(scheduling());
     checks.push(rate(&config.r#loop));
     checks
@@ -249,18 +249,27 @@ fn folder(state: &Path) -> Check {
 }
 
 #[cfg(unix)]
-fn room(state: &Path) -> Check {
+fn room(state: &Path, history: u64) -> Check {
     const NAME: &str = "free space";
     let at = standing(state);
     let free = match rustix::fs::statvfs(at) {
         Ok(v) => v.f_bavail.saturating_mul(v.f_frsize),
         Err(e) => return Check::skip(NAME, format!("{}: {e}", at.display())),
     };
-    let cause = format!("{} MiB free for {}", free >> 20, state.display());
+    let most = history >> 20;
+    let cause = format!(
+        "{} MiB free for {}; a session's history takes {most} MiB at most (undo.history_bytes)",
+        free >> 20,
+        state.display()
+    );
     let repair = format!("sculptd session prune '{}'   # shows what would go; add --yes", state.display());
     match free {
         f if f < ROOM_LEAST => Check::fail(NAME, cause, repair),
         f if f < ROOM => Check::warn(NAME, cause, repair),
+        f if f < history => {
+            let repair = format!("set undo.history_bytes = {}, or make room: {repair}", (f / 2).max(1 << 20));
+            Check::warn(NAME, cause, repair)
+        }
         _ => Check::pass(NAME, cause),
     }
 }

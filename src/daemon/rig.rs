@@ -136,7 +136,7 @@ pub fn begin(
         // What was open ends as a lifted pen; what can be taken back is in the file from here on.
         let (tick, reopened) = (replayed.ticks + 1, [Command::Reopened]);
         world.step(tick, &[], &reopened);
-        let keeper = Keeper::start(&path, world, purge, node);
+        let keeper = Keeper::start(&path, world, purge, node, config.undo.history_bytes);
         keep(keeper, &mut writer, &mut thread, &mut warnings);
         writer.tick(tick, &[], &reopened, world);
         return Ok(Begun { world: replayed.world, journal: Some((writer, thread)), warnings });
@@ -156,7 +156,7 @@ pub fn begin(
                 hands: config.hand,
             };
             let (mut writer, mut thread) = session::create(path, &loaded.plain, &settings)?;
-            let keeper = Keeper::start(path, &mut world, 0, None);
+            let keeper = Keeper::start(path, &mut world, 0, None, config.undo.history_bytes);
             keep(keeper, &mut writer, &mut thread, &mut warnings);
             Some((writer, thread))
         }

@@ -3,7 +3,7 @@
 use egui::{Sense, Stroke, vec2};
 
 use super::action::Action;
-use super::{Ask, Desk, View, theme};
+use super::{Ask, Desk, View, places, theme};
 use crate::command::Command;
 
 /// Steps sent at once: the loop's inbox holds a thousand commands.
@@ -28,20 +28,33 @@ impl std::fmt::Debug for Thumb {
     }
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &Desk, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+    // Beyond what memory holds, a session's file does.
+    let (first, last) = desk.places.ends();
     let (back, ahead) = (view.state.undo_steps, view.state.redo_steps);
     ui.strong("History");
     ui.horizontal(|ui| {
-        let undo = ui.add_enabled(back > 0, egui::Button::new("Undo")).on_hover_text(Action::Undo.tip());
-        let redo = ui.add_enabled(ahead > 0, egui::Button::new("Redo")).on_hover_text(Action::Redo.tip());
+        let undo =
+            ui.add_enabled(back > 0 || first, egui::Button::new("Undo")).on_hover_text(Action::Undo.tip());
+        let redo =
+            ui.add_enabled(ahead > 0 || last, egui::Button::new("Redo")).on_hover_text(Action::Redo.tip());
         if undo.clicked() {
             out.push(Ask::World(Command::Undo));
         }
         if redo.clicked() {
             out.push(Ask::World(Command::Redo));
         }
-        ui.colored_label(theme::quiet(ui), format!("{back} of {}", back + ahead));
+        let text = match desk.places.rows.len() {
+            0 => format!("{back} of {}", back + ahead),
+            1 => "1 place".to_owned(),
+            n => format!("{n} places"),
+        };
+        ui.colored_label(theme::quiet(ui), text);
     });
+    if !desk.places.rows.is_empty() {
+        places::ui(ui, &mut desk.places, out);
+        return;
+    }
     if back + ahead == 0 {
         return;
     }

@@ -17,6 +17,7 @@ pub mod masks;
 pub mod measure;
 pub mod messages;
 pub mod modal;
+pub mod places;
 pub mod preferences;
 pub mod radial;
 pub mod scene;
@@ -61,6 +62,8 @@ pub struct View<'a> {
 #[derive(Debug, Clone)]
 pub enum Ask {
     World(Command),
+    /// To a place of the session's history.
+    Jump(u64),
     Camera(Camera),
     /// The camera comes to look at this place.
     FlyTo(Vec3),
@@ -126,6 +129,8 @@ pub struct Desk {
     pub sizes: measure::Sizes,
     /// Pictures of steps, by step.
     pub history: Vec<history::Thumb>,
+    /// Every place that the session keeps; empty without a session.
+    pub places: places::Places,
     /// The screen of an installation.
     pub pad: kiosk::Pad,
     /// A theme and scale that are in force, so that they are set once.

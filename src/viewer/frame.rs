@@ -12,6 +12,7 @@ use super::window::{Open, Wiring};
 use super::work::{Done, Purpose};
 use crate::command::Command;
 use crate::daemon::Published;
+use crate::daemon::session::history::Want;
 use crate::panels::action::Action;
 use crate::panels::{self, Ask, View};
 use crate::stroke::Camera;
@@ -100,6 +101,9 @@ impl Open {
             (self.devices, self.asked_us) = ((wiring.devices)(), now);
             self.remembered.keep(&self.desk);
         }
+        if let Some((history, rate_hz)) = wiring.history.as_ref().filter(|_| wiring.kiosk.is_none()) {
+            self.places(history, *rate_hz);
+        }
         let samples = self.gpu.samples(self.desk.prefs.smooth_edges);
         if samples != self.samples {
             self.renderer = Renderer::new(&self.gpu, self.config.format, samples);
@@ -129,7 +133,8 @@ impl Open {
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
         self.measure(&state, own_ms, wiring);
-        if wiring.kiosk.is_none() {
+        // With a session the history has pictures of its own.
+        if wiring.kiosk.is_none() && wiring.history.is_none() {
             self.thumb(&state, now);
         }
         for ask in asks {
@@ -213,6 +218,12 @@ impl Open {
             Ask::World(command) => {
                 self.desk.prefs.done.undone |= matches!(command, Command::Undo);
                 let _ = wiring.commands.try_send(command);
+            }
+            Ask::Jump(node) => {
+                self.desk.prefs.done.undone = true;
+                if let Some((history, _)) = &wiring.history {
+                    history.want(Want::Node(node));
+                }
             }
             Ask::Camera(camera) => {
                 self.flight = None;

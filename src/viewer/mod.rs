@@ -12,6 +12,7 @@ mod newest;
 pub mod overlay;
 pub mod pages;
 pub mod picture;
+mod places;
 mod pointer;
 pub mod preview;
 mod remember;

@@ -46,6 +46,8 @@ pub struct Wiring {
     /// One line a device, asked for now and then.
     pub devices: Box<dyn Fn() -> Vec<String>>,
     pub session: Option<String>,
+    /// The session's history, and the ticks a second that its places are told in.
+    pub history: Option<(crate::daemon::session::history::Handle, u32)>,
     /// On the clock, when the ghosts have ended; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
@@ -128,6 +130,7 @@ pub(super) struct Open {
     pub(super) opened: Option<u64>,
     pub(super) distances: Option<MapValues>,
     pub(super) thumbs: super::thumbs::Thumbs,
+    pub(super) places: super::places::Places,
     pub(super) ghosts: Triangles,
     pub(super) ghost_key: GhostKey,
     /// A turntable under way.
@@ -315,6 +318,7 @@ impl Open {
             opened: None,
             distances: None,
             thumbs: Default::default(),
+            places: Default::default(),
             ghosts: Triangles::default(),
             ghost_key: Default::default(),
             turning: None,

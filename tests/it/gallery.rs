@@ -71,6 +71,31 @@ fn a_dead_network_loses_nothing_and_the_order_is_kept() {
 }
 
 #[test]
+fn a_work_whose_mark_a_kill_prevented_is_sent_and_no_number_is_given_twice() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (here, there) = (dir.path().join("works"), dir.path().join("store"));
+    let place = there.display().to_string();
+    let work = |n: u32| gallery::keep(&here, &shapes::uv_sphere(1.0, 4 + n, 8)).expect("kept");
+    // Kept, and killed before it was offered.
+    work(1);
+    work(2);
+    assert!(spool::waiting(&here).is_empty());
+    let first = Spool::start(&here, &place).expect("a place");
+    until("both are sent", || first.stand.sent.load(Relaxed) == 2 && spool::waiting(&here).is_empty());
+    drop(first);
+    assert_eq!(spool::sent(&here), 2);
+    // What was sent is not sent again; what staff took out of the folder does not give its number back.
+    std::fs::remove_file(here.join("work-000001.glb")).expect("removed");
+    std::fs::remove_file(here.join("work-000002.glb")).expect("removed");
+    assert!(work(3).ends_with("work-000003.glb"));
+    let second = Spool::start(&here, &place).expect("a place");
+    until("the third is sent", || spool::sent(&here) == 3);
+    assert_eq!(second.stand.sent.load(Relaxed), 1);
+    drop(second);
+    assert_eq!(gallery::works(&there).expect("listed").len(), 3);
+}
+
+#[test]
 fn a_place_that_is_none_is_said_before_visitors_come() {
     let dir = tempfile::tempdir().expect("a folder");
     let said = |place: &str| Spool::start(dir.path(), place).expect_err("refused");

@@ -1,6 +1,8 @@
 //! The history in the session file: undo beyond memory and beyond a restart, branches, jumps, checkpoints that follow what
 //! moved. Every world here is compared, to the bit, with the one that a replay from the start gives.
 
+mod bound;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,7 +19,7 @@ use sculptd::daemon::session::format::Settings;
 use sculptd::daemon::session::history::{Handle, Keeper, Want, listing, reopen};
 use sculptd::daemon::session::writer::WriterThread;
 use sculptd::daemon::session::{self, SessionWriter, replay};
-use sculptd::devices::{Body, DeviceId, Pen, Sample};
+use sculptd::devices::{Body, Clock, DeviceId, Pen, Sample};
 use sculptd::mesh::{Mesh, Workers, shapes};
 use sculptd::world::{World, WorldOptions};
 
@@ -47,10 +49,18 @@ struct Studio {
     thread: Option<WriterThread>,
     history: Handle,
     jumps: cc::Receiver<Command>,
+    /// How long the tick thread took to hand over each tick, ns.
+    handed: Vec<u64>,
+    clock: Clock,
 }
 
 impl Studio {
     fn begin(dir: &Path, vertices: usize, undo_bytes: u64) -> Studio {
+        Studio::bounded(dir, vertices, undo_bytes, 1 << 40)
+    }
+
+    /// `most`: bytes of the history in the file.
+    fn bounded(dir: &Path, vertices: usize, undo_bytes: u64, most: u64) -> Studio {
         let c = Config::default();
         let settings = Settings {
             rate_hz: 120,
@@ -66,7 +76,7 @@ impl Studio {
         let mesh = Mesh::build(&start, &Job::default()).expect("a ball");
         let options = WorldOptions { dab_budget: settings.dab_budget, undo_bytes, hands: settings.hands };
         let mut world = World::new(mesh, settings.camera, settings.brush, Workers::new(1), options);
-        let keeper = Keeper::start(&path, &mut world, 0, None).expect("a history");
+        let keeper = Keeper::start(&path, &mut world, 0, None, most).expect("a history");
         writer.keep(keeper.handle.clone());
         thread.history = Some(keeper);
         Studio::of(path, Begun { world, journal: Some((writer, thread)), warnings: vec![] })
@@ -77,7 +87,9 @@ impl Studio {
         let history = thread.history.as_ref().expect("a history").handle.clone();
         let (commands, jumps) = cc::bounded(64);
         history.connect(commands);
-        Studio { path, world: begun.world, writer: Some(writer), thread: Some(thread), history, jumps }
+        let (world, writer, clock) = (begun.world, Some(writer), Clock::monotonic());
+        let thread = Some(thread);
+        Studio { path, world, writer, thread, history, jumps, handed: Vec::new(), clock }
     }
 
     /// What a restart does.
@@ -94,7 +106,9 @@ impl Studio {
         self.world.step(tick, samples, &all);
         self.world.verify_invariants().expect("sound");
         if let Some(writer) = &mut self.writer {
+            let before = self.clock.now_ns();
             writer.tick(tick, samples, &all, &self.world);
+            self.handed.push(self.clock.now_ns() - before);
         }
     }
 
@@ -362,6 +376,13 @@ fn a_checkpoint_costs_what_moved() {
             s.stroke(Vec2::new(-0.04 + 0.01 * k as f32, 0.0));
         }
         s.settle();
+        s.handed.sort_unstable();
+        let (half, most) = (s.handed[s.handed.len() / 2], *s.handed.last().expect("ticks"));
+        println!(
+            "handing a tick over takes {:.1} us, {:.1} us at most",
+            half as f64 / 1e3,
+            most as f64 / 1e3
+        );
         let pages = s.world.mesh().page_count();
         let whole = s.world.mesh().memory().pages;
         let path = s.end();

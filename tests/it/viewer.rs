@@ -6,6 +6,7 @@ mod kiosk;
 mod layout;
 mod panels;
 mod pictures;
+mod places;
 mod stall;
 #[cfg(unix)]
 mod window;

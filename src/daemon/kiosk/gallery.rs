@@ -17,7 +17,7 @@ pub fn works(folder: &Path) -> std::io::Result<Vec<String>> {
 }
 
 /// `work-000123.glb` is number 123.
-fn number(name: &str) -> Option<u64> {
+pub(super) fn number(name: &str) -> Option<u64> {
     let digits = name.strip_prefix("work-")?.strip_suffix(".glb")?;
     (digits.len() >= 6 && digits.bytes().all(|b| b.is_ascii_digit())).then(|| digits.parse().ok())?
 }
@@ -26,7 +26,9 @@ fn number(name: &str) -> Option<u64> {
 /// the two is mended by the next.
 pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     std::fs::create_dir_all(folder)?;
-    let next = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0) + 1;
+    // A number is never given twice, even where staff has emptied the folder: a work that was sent would be written over.
+    let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
+    let next = last.max(super::spool::sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
     write_mesh(&path, mesh).map_err(std::io::Error::other)?;
     page(folder)?;

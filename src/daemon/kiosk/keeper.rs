@@ -181,6 +181,8 @@ impl Keeping {
             }
             if cycle.view().stage == Stage::Attract {
                 self.attract();
+                #[cfg(unix)]
+                self.drop_expired();
             }
             if let Ok(mut view) = self.desk.view.lock() {
                 *view = Some(cycle.view());
@@ -247,6 +249,16 @@ impl Keeping {
     fn show_link(&self, link: Option<share::Link>) {
         if let Ok(mut shown) = self.desk.link.lock() {
             *shown = link;
+        }
+    }
+
+    /// A code that leads nowhere any more is not shown.
+    #[cfg(unix)]
+    fn drop_expired(&self) {
+        if let Ok(mut link) = self.desk.link.lock()
+            && link.as_ref().is_some_and(|l| l.until_us <= self.clock.now_us())
+        {
+            *link = None;
         }
     }
 

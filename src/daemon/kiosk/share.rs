@@ -41,6 +41,8 @@ impl Code {
 pub struct Link {
     pub url: String,
     pub code: Code,
+    /// On the clock, when it expires.
+    pub until_us: u64,
 }
 
 #[derive(Debug, Clone)]
@@ -110,6 +112,7 @@ impl Share {
         let url = format!("http://{host}:{}/{token}", self.at.port());
         let code = Code::of(&url).ok_or_else(|| std::io::Error::other("the link is too long for a code"))?;
         let now = self.clock.now_us();
+        let until_us = now + self.lasts.as_micros() as u64;
         if let Ok(mut links) = self.links.lock() {
             links.retain(|_, l| l.until_us > now);
             while links.len() >= LINKS {
@@ -118,10 +121,9 @@ impl Share {
                 };
                 links.remove(&oldest);
             }
-            let until_us = now + self.lasts.as_micros() as u64;
             links.insert(token, Good { file: file.to_path_buf(), until_us });
         }
-        Ok(Link { url, code })
+        Ok(Link { url, code, until_us })
     }
 }
 

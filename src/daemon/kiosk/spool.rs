@@ -3,7 +3,8 @@
 //! Laws kept here:
 //! * A work is in the local folder before it is offered, and what is offered is a name in `outgoing/`: nothing is lost by a dead
 //!   network, nor by a restart.
-//! * Works arrive in the order in which they were made: the oldest that waits is tried until it is there.
+//! * Works arrive in the order in which they were made: the oldest that waits is tried until it is there. So one number says
+//!   which were sent; a work above it without a mark (the program was killed between the two) gets its mark at the start.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,6 +18,8 @@ use crate::mesh::io::write_beside;
 
 /// The folder of names that wait, within the gallery.
 pub const OUTGOING: &str = "outgoing";
+/// The file in it that holds the number of the newest work that was sent.
+const SENT: &str = "sent";
 /// The first wait after a refusal, and the longest.
 const WAIT: Duration = Duration::from_millis(500);
 const LONGEST: Duration = Duration::from_secs(60);
@@ -50,6 +53,23 @@ pub fn waiting(folder: &Path) -> Vec<String> {
     super::gallery::works(&folder.join(OUTGOING)).unwrap_or_default()
 }
 
+/// The number of the newest work that was ever sent from `folder`; 0: none.
+pub fn sent(folder: &Path) -> u64 {
+    let text = std::fs::read_to_string(folder.join(OUTGOING).join(SENT)).unwrap_or_default();
+    text.trim().parse().unwrap_or(0)
+}
+
+/// Marks the works that have none and were never sent: a kill came between a work and its mark, or nothing was sent so far.
+fn catch_up(folder: &Path) -> std::io::Result<()> {
+    let (sent, marked) = (sent(folder), waiting(folder));
+    for name in super::gallery::works(folder).unwrap_or_default() {
+        if super::gallery::number(&name).is_some_and(|n| n > sent) && !marked.contains(&name) {
+            offer(folder, &name)?;
+        }
+    }
+    Ok(())
+}
+
 /// Where works go to.
 #[derive(Debug)]
 enum Place {
@@ -72,14 +92,16 @@ impl Place {
     }
 
     /// Puts one file, whole or not at all.
-    fn put(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
+    fn put(&self, name: &str, bytes: &[u8], stop: &AtomicBool) -> Result<(), String> {
+        #[cfg(not(feature = "s3"))]
+        let _ = stop; // A folder answers at once.
         match self {
             Place::Folder(folder) => {
                 // A share that is not mounted is an empty folder above it: it is not made up here.
                 write_beside(&folder.join(name), |out| out.write_all(bytes)).map_err(|e| e.to_string())
             }
             #[cfg(feature = "s3")]
-            Place::Bucket(bucket) => bucket.put(name, bytes),
+            Place::Bucket(bucket) => bucket.put(name, bytes, stop),
         }
     }
 }
@@ -91,6 +113,7 @@ impl Spool {
     /// In words, where `place` is nothing that can be sent to.
     pub fn start(folder: &Path, place: &str) -> Result<Spool, String> {
         let to = Place::open(place)?;
+        catch_up(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let (wake, calls) = cc::bounded::<()>(1);
         let stand = Arc::new(Stand::default());
         let (shown, from) = (stand.clone(), folder.to_path_buf());
@@ -100,7 +123,7 @@ impl Spool {
             .spawn(move || {
                 let mut wait = WAIT;
                 while !shown.stop.load(Relaxed) {
-                    match send_next(&to, &from) {
+                    match send_next(&to, &from, &shown.stop) {
                         Ok(true) => {
                             shown.sent.fetch_add(1, Relaxed);
                             wait = WAIT;
@@ -148,7 +171,7 @@ impl Drop for Spool {
 }
 
 /// Sends the oldest work that waits, and the page after it. False: none waits.
-fn send_next(to: &Place, folder: &Path) -> Result<bool, String> {
+fn send_next(to: &Place, folder: &Path, stop: &AtomicBool) -> Result<bool, String> {
     let all = waiting(folder);
     let Some(name) = all.first() else { return Ok(false) };
     let mark = folder.join(OUTGOING).join(name);
@@ -161,10 +184,13 @@ fn send_next(to: &Place, folder: &Path) -> Result<bool, String> {
         }
         Err(e) => return Err(e.to_string()),
     };
-    to.put(name, &bytes)?;
+    to.put(name, &bytes, stop)?;
     if let Ok(page) = std::fs::read(folder.join("index.html")) {
-        to.put("index.html", &page)?;
+        to.put("index.html", &page, stop)?;
     }
+    let number = super::gallery::number(name).unwrap_or(0).max(sent(folder));
+    let noted = write_beside(&folder.join(OUTGOING).join(SENT), |out| writeln!(out, "{number}"));
+    noted.map_err(|e| e.to_string())?;
     std::fs::remove_file(&mark).map_err(|e| e.to_string())?;
     Ok(true)
 }

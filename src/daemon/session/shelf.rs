@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::history::listing;
+use super::history::bound::{Freed, bound};
+use super::history::{Store, StoreError, listing};
 use super::reader::open;
 
 /// The ending of a session file's name.
@@ -33,6 +34,10 @@ pub struct Kept {
     pub branches: usize,
     pub checkpoints: u64,
     pub bytes: u64,
+    /// With pictures, checkpoints and the rest: what `undo.history_bytes` bounds.
+    pub total_bytes: u64,
+    /// Places that were let go.
+    pub dropped: u64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -83,6 +88,8 @@ pub fn look(path: &Path) -> std::io::Result<Entry> {
             branches: h.places.iter().filter(|p| p.branch).count(),
             checkpoints: h.checkpoints,
             bytes: h.bytes,
+            total_bytes: h.total_bytes,
+            dropped: h.dropped,
         }),
     })
 }
@@ -112,6 +119,35 @@ pub fn spare(mut all: Vec<Entry>, keep: usize) -> Vec<Entry> {
 pub fn in_use(path: &Path) -> bool {
     std::fs::File::open(path)
         .is_ok_and(|f| matches!(f.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))
+}
+
+/// Lets a session's oldest places go until its history takes `most` bytes, and gives the file's room back. What opening needs
+/// stays. `None`: a daemon writes it, or it is within the bound already.
+///
+/// # Errors
+/// Where the file cannot be read or written.
+pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
+    let damaged = |e: std::io::Error| StoreError::Damaged(e.to_string());
+    // Held until all is done: no daemon opens it meanwhile.
+    let lock = std::fs::File::open(path).map_err(damaged)?;
+    if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock)) || !Store::read(path)?.has_tables() {
+        return Ok(None);
+    }
+    let store = Store::write(path)?;
+    let had = store.total()?;
+    if had <= most {
+        return Ok(None);
+    }
+    let mut tree = store.tree()?;
+    if let Some(newest) = store.checkpoints(u64::MAX)?.first() {
+        tree.cursor = store.checkpoint(*newest)?.node;
+    }
+    let (mut names, mut topologies) = (store.names()?, store.topologies()?);
+    let (freed, _) = bound(&store, &mut tree, &mut names, &mut topologies, had, most)?;
+    store.compact()?;
+    drop(store);
+    drop(lock);
+    Ok(Some(freed))
 }
 
 /// Removes a session with what belongs to it.

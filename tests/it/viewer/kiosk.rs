@@ -110,7 +110,7 @@ fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
     let screen = screen();
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");
-    *screen.desk.link.lock().expect("a desk") = Some(Link { url: url.clone(), code });
+    *screen.desk.link.lock().expect("a desk") = Some(Link { url: url.clone(), code, until_us: u64::MAX });
     for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
         at(&screen, Stage::Attract, 0);
         let mut h = harness(&screen, size);

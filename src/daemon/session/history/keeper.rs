@@ -107,6 +107,11 @@ impl Handle {
         self.tree.lock().map(|t| t.clone()).unwrap_or_default()
     }
 
+    /// Where the work is, the last place's number and how many there are: another tree has another.
+    pub fn shape(&self) -> (u64, u64, usize) {
+        self.tree.lock().map(|t| (t.cursor, t.next_id(), t.len())).unwrap_or_default()
+    }
+
     /// The picture of a node, PNG.
     pub fn sight(&self, node: u64) -> Option<Vec<u8>> {
         Store::read(&self.path).ok()?.sight(node).ok()?
@@ -132,14 +137,21 @@ pub struct Keeper {
 
 impl Keeper {
     /// Begins or goes on with the history of a session that the world was made of. `purge`: nodes after this tick are no part
-    /// of what was recovered. `at`: the node that the world was at, before what was replayed.
+    /// of what was recovered. `at`: the node that the world was at, before what was replayed. `most`: bytes in the file, beyond
+    /// which the oldest places go.
     ///
     /// # Errors
     /// Where the file cannot be written.
-    pub fn start(path: &Path, world: &mut World, purge: u64, at: Option<u64>) -> Result<Keeper, StoreError> {
+    pub fn start(
+        path: &Path,
+        world: &mut World,
+        purge: u64,
+        at: Option<u64>,
+        most: u64,
+    ) -> Result<Keeper, StoreError> {
         world.keep_moments();
         let first = world.moment(Deed::Step);
-        let mut ledger = Ledger::open(Store::write(path)?, purge, first.work.clone())?;
+        let mut ledger = Ledger::open(Store::write(path)?, purge, first.work.clone(), most)?;
         ledger.begin(world.tick(), &first, at)?;
         let keeping = Keeping {
             shown: Arc::new(Mutex::new(ledger.tree.clone())),
@@ -147,6 +159,7 @@ impl Keeper {
             path: path.to_path_buf(),
             wants: VecDeque::new(),
             sent: None,
+            full: false,
             clock: Clock::monotonic(),
         };
         let (outbox, inbox) = cc::unbounded();
@@ -184,6 +197,8 @@ struct Keeping {
     wants: VecDeque<Want>,
     /// When a jump was sent that did not come back yet.
     sent: Option<u64>,
+    /// What is left is more than the bound, and that was said.
+    full: bool,
     clock: Clock,
 }
 
@@ -209,6 +224,10 @@ impl Keeping {
             match &message {
                 Message::End => break,
                 Message::Want(want) => {
+                    // Wherever one wanted to go before: this is where one ends.
+                    if matches!(want, Want::Node(_)) {
+                        self.wants.clear();
+                    }
                     if self.wants.len() < WANTS {
                         self.wants.push_back(*want);
                     }
@@ -231,6 +250,7 @@ impl Keeping {
                     if let Ok(mut f) = fault.lock() {
                         *f = None;
                     }
+                    self.keep_within();
                 }
             }
             self.serve(commands);
@@ -245,11 +265,33 @@ impl Keeping {
             Message::Moment { tick, moment } => {
                 self.ledger.moment(*tick, moment)?;
                 self.sent = None;
+                if matches!(moment.deed, Deed::Jump(_)) {
+                    self.ledger.store.settle_pins(*tick)?;
+                }
                 self.show();
                 Ok(())
             }
             Message::State(saved) => self.ledger.state(saved),
             _ => Ok(()),
+        }
+    }
+
+    /// The bound on the file. Where it cannot be kept, the history goes on growing, and that is said once.
+    fn keep_within(&mut self) {
+        match self.ledger.keep_within() {
+            Ok(None) => self.full = false,
+            Ok(Some(freed)) => {
+                let left = self.ledger.bytes;
+                tracing::info!("history: {} oldest places went, {} KiB are left", freed.places, left >> 10);
+                if left > self.ledger.most && !std::mem::replace(&mut self.full, true) {
+                    tracing::warn!("history: what must stay takes {} KiB, more than it may", left >> 10);
+                }
+                self.show();
+            }
+            Err(e) => {
+                tracing::warn!("history: the oldest places cannot be let go: {e}");
+                self.ledger.recover();
+            }
         }
     }
 
@@ -290,7 +332,7 @@ impl Keeping {
         }
     }
 
-    fn fetch(&self, to: u64) -> Result<Option<Jump>, StoreError> {
+    fn fetch(&mut self, to: u64) -> Result<Option<Jump>, StoreError> {
         let (Some(way), Some(node)) = (self.ledger.tree.way(to), self.ledger.tree.node(to)) else {
             return Ok(None);
         };
@@ -312,27 +354,29 @@ impl Keeping {
                         ((i as usize) < self.ledger.now.page_count()).then(|| (self.ledger.now.page(i), t));
                     got.push((i, self.ledger.store.page((node.lineage, i, revision), near)?.0));
                 }
-                Ok(Some(jump(pages, None, Fetched::Pages(got))))
+                let jump = jump(pages, None, Fetched::Pages(got));
+                self.ledger.pin(to, &jump.pages, None)?;
+                Ok(Some(jump))
             }
             Way::Other => {
                 let base = base(&self.path)?;
-                let (rest, names) = describe(&self.ledger.tree, node, base.page_count());
+                let (rest, names) = describe(&self.ledger, node, base.page_count())?;
                 let mesh = assemble(&self.ledger.store, &base, &rest, &names, node.levels)?;
                 let other = OtherWork { rest, middle: node.middle, extent: node.extent, levels: node.levels };
-                Ok(Some(jump(names, Some(other), Fetched::Work(Box::new(mesh)))))
+                let (levels, jump) = (node.levels, jump(names, Some(other), Fetched::Work(Box::new(mesh))));
+                self.ledger.pin(to, &jump.pages, levels)?;
+                Ok(Some(jump))
             }
         }
     }
 }
 
 /// A work's pages by name, and what it is besides: revisions go on above all that its lineage ever had.
-fn describe(tree: &Tree, node: &Node, first: usize) -> (Rest, Vec<(u32, u64)>) {
-    let of_work = || tree.nodes().filter(|n| n.lineage == node.lineage);
-    let revision = of_work().flat_map(|n| &n.changes).map(|c| c.2).max().unwrap_or(0) + 1;
-    let next = of_work().fold(node.next, |a, n| [a[0].max(n.next[0]), a[1].max(n.next[1])]);
+fn describe(ledger: &Ledger, node: &Node, first: usize) -> Result<(Rest, Vec<(u32, u64)>), StoreError> {
+    let high = ledger.high(node.lineage)?.over(node);
+    let (revision, next) = (high.revision + 1, high.next);
     let rest = Rest { pages: node.pages, revision, lineage: node.lineage, next, empty: Vec::new() };
-    let names = tree.names(node, node.pages, first);
-    (rest, names)
+    Ok((rest, ledger.tree.names(node, node.pages, first)))
 }
 
 /// The work that the session began with.

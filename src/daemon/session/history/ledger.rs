@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::bound::{Freed, High, Pin, bound};
 use super::sight;
 use super::store::{Checkpoint, Name, Store, StoreError};
 use super::tree::{Change, NOTHING, Node, Tree};
@@ -27,6 +28,9 @@ pub struct Ledger {
     next_side: u64,
     /// Bytes in the open transaction.
     open: usize,
+    /// Bytes that the history takes in the file, and may take.
+    pub bytes: u64,
+    pub most: u64,
     /// Another person's work began: no history is kept from there on.
     pub closed: bool,
 }
@@ -47,7 +51,7 @@ fn same(a: &Side, b: &Side) -> bool {
 
 impl Ledger {
     /// What the file holds, without the nodes after `purge` and without pages that belong to no node.
-    pub fn open(store: Store, purge: u64, now: Snapshot) -> Result<Ledger, StoreError> {
+    pub fn open(store: Store, purge: u64, now: Snapshot, most: u64) -> Result<Ledger, StoreError> {
         let mut tree = Tree::default();
         store.db.execute_batch("BEGIN IMMEDIATE")?;
         for node in store.tree()?.nodes() {
@@ -63,6 +67,11 @@ impl Ledger {
         let mut used: BTreeSet<Name> = BTreeSet::new();
         for n in tree.nodes() {
             used.extend(n.changes.iter().flat_map(|c| [(n.lineage, c.0, c.1), (n.lineage, c.0, c.2)]));
+        }
+        // What the log's jumps name stays, whatever became of the places.
+        store.settle_pins(purge)?;
+        for (_, _, pin) in store.pins()? {
+            used.extend(pin.pages.iter().map(|&(i, revision)| (pin.lineage, i, revision)));
         }
         let mut names = store.names()?;
         for name in names.keys().filter(|n| !used.contains(*n)) {
@@ -84,6 +93,7 @@ impl Ledger {
         topologies.retain(|n| n.2 == 0 || kept.contains(n));
         store.db.execute_batch("COMMIT")?;
         let next_side = store.next_side()?;
+        let bytes = store.total()?;
         Ok(Ledger {
             store,
             tree,
@@ -94,6 +104,8 @@ impl Ledger {
             sides: Vec::new(),
             next_side,
             open: 0,
+            bytes,
+            most,
             closed: false,
         })
     }
@@ -147,6 +159,9 @@ impl Ledger {
         if let (Ok(names), Ok(topologies)) = (self.store.names(), self.store.topologies()) {
             (self.names, self.topologies) = (names, topologies);
         }
+        if let Ok(bytes) = self.store.total() {
+            self.bytes = bytes;
+        }
         self.sides.clear();
     }
 
@@ -173,7 +188,7 @@ impl Ledger {
             return Ok(*id);
         }
         let id = self.next_side;
-        self.store.put_side(id, &side)?;
+        self.bytes += self.store.put_side(id, &side)? as u64;
         self.next_side += 1;
         // One of each kind is remembered: the next one of it is seldom an older one.
         self.sides.retain(|(known, _)| std::mem::discriminant(known) != std::mem::discriminant(&side));
@@ -301,21 +316,23 @@ impl Ledger {
         if self.names.contains_key(&name) {
             return Ok(());
         }
-        self.open += self.store.put_page(name, topology, page)?;
+        let bytes = self.store.put_page(name, topology, page)?;
         self.names.insert(name, topology);
-        self.chunk()
+        self.chunk(bytes)
     }
 
     fn keep_topology(&mut self, name: Name, page: &Page) -> Result<(), StoreError> {
         if self.topologies.contains(&name) {
             return Ok(());
         }
-        self.open += self.store.put_topology(name, page.topology())?;
+        let bytes = self.store.put_topology(name, page.topology())?;
         self.topologies.insert(name);
-        self.chunk()
+        self.chunk(bytes)
     }
 
-    fn chunk(&mut self) -> Result<(), StoreError> {
+    fn chunk(&mut self, bytes: usize) -> Result<(), StoreError> {
+        self.open += bytes;
+        self.bytes += bytes as u64;
         if self.open > CHUNK {
             self.open = 0;
             self.store.db.execute_batch("COMMIT; BEGIN IMMEDIATE")?;
@@ -324,9 +341,9 @@ impl Ledger {
     }
 
     fn finish_node(&mut self, node: Node, work: &Snapshot) -> Result<(), StoreError> {
-        self.store.put_node(&node)?;
+        self.bytes += self.store.put_node(&node)? as u64;
         if let Some(png) = sight::png(work) {
-            self.store.put_sight(node.id, &png)?;
+            self.bytes += self.store.put_sight(node.id, &png)? as u64;
         }
         self.store.db.execute_batch("COMMIT")?;
         let id = node.id;
@@ -372,7 +389,7 @@ impl Ledger {
         for (id, side) in ids.iter_mut().zip(sides) {
             *id = side.map(|s| self.side(s)).transpose()?;
         }
-        self.store.put_checkpoint(&Checkpoint {
+        let bytes = self.store.put_checkpoint(&Checkpoint {
             tick: saved.tick,
             node: self.tree.cursor,
             rest: saved.rest.clone(),
@@ -381,6 +398,34 @@ impl Ledger {
             steps: saved.steps,
         })?;
         self.store.db.execute_batch("COMMIT")?;
+        self.bytes += bytes as u64;
         Ok(())
+    }
+
+    /// Lets the oldest places go where the history takes more than it may, so many at once that it is seldom done.
+    pub fn keep_within(&mut self) -> Result<Option<Freed>, StoreError> {
+        if self.bytes <= self.most {
+            return Ok(None);
+        }
+        let most = self.most - self.most / 8;
+        let (tree, names, topologies) = (&mut self.tree, &mut self.names, &mut self.topologies);
+        let (freed, left) = bound(&self.store, tree, names, topologies, self.bytes, most)?;
+        self.bytes = left;
+        // Things that were let go are written anew when they come again.
+        self.sides.clear();
+        Ok(Some(freed))
+    }
+
+    /// A jump to a node will stand in the log: what it names stays as long as it can.
+    pub fn pin(&mut self, node: u64, pages: &[(u32, u64)], levels: Option<u64>) -> Result<(), StoreError> {
+        let Some(lineage) = self.tree.node(node).map(|n| n.lineage) else { return Ok(()) };
+        self.store.put_pin(&Pin { lineage, pages: pages.to_vec(), levels })?;
+        Ok(())
+    }
+
+    /// The highest numbers that a lineage ever had.
+    pub fn high(&self, lineage: u32) -> Result<High, StoreError> {
+        let first = self.store.high(lineage)?;
+        Ok(self.tree.nodes().filter(|n| n.lineage == lineage).fold(first, High::over))
     }
 }

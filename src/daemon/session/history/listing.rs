@@ -31,6 +31,10 @@ pub struct History {
     pub places: Vec<Place>,
     /// Bytes of the stored pages.
     pub bytes: u64,
+    /// Bytes of all of the history: what `undo.history_bytes` bounds.
+    pub total_bytes: u64,
+    /// Places that were let go, to keep within the bound or with what a crash cost.
+    pub dropped: u64,
     pub checkpoints: u64,
 }
 
@@ -57,7 +61,7 @@ pub fn places(tree: &Tree) -> Vec<Place> {
 pub fn read(path: &Path) -> Result<History, StoreError> {
     let store = Store::read(path)?;
     if !store.has_tables() {
-        return Ok(History { places: Vec::new(), bytes: 0, checkpoints: 0 });
+        return Ok(History { places: Vec::new(), bytes: 0, total_bytes: 0, dropped: 0, checkpoints: 0 });
     }
     let mut tree = store.tree()?;
     let all = store.checkpoints(u64::MAX)?;
@@ -65,5 +69,12 @@ pub fn read(path: &Path) -> Result<History, StoreError> {
     if let Some(newest) = all.first().and_then(|id| store.checkpoint(*id).ok()) {
         tree.cursor = newest.node;
     }
-    Ok(History { places: places(&tree), bytes: store.bytes()?, checkpoints: all.len() as u64 })
+    Ok(History {
+        places: places(&tree),
+        bytes: store.bytes()?,
+        total_bytes: store.total()?,
+        // Places are numbered in the order in which they are made.
+        dropped: tree.next_id() - tree.len() as u64,
+        checkpoints: all.len() as u64,
+    })
 }

@@ -42,6 +42,13 @@ pub const TABLES: &str = "
         data BLOB NOT NULL
     );
     CREATE TABLE IF NOT EXISTS sight (node INTEGER PRIMARY KEY, png BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS pin (id INTEGER PRIMARY KEY, tick INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS high (
+        lineage INTEGER PRIMARY KEY,
+        revision INTEGER NOT NULL,
+        vertex INTEGER NOT NULL,
+        triangle INTEGER NOT NULL
+    );
 ";
 
 #[derive(Debug, thiserror::Error)]
@@ -73,7 +80,7 @@ pub struct Store {
     pub(super) db: Connection,
 }
 
-fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, StoreError> {
+pub(super) fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, StoreError> {
     bytes.map_err(|e| StoreError::Sql(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
 }
 
@@ -93,6 +100,13 @@ impl Store {
         db.pragma_update(None, "synchronous", "off")?;
         db.execute_batch(TABLES)?;
         Ok(Store { db })
+    }
+
+    /// Gives the room of what went back to the disk. Takes as long as the file is large.
+    pub fn compact(&self) -> Result<(), StoreError> {
+        self.db.pragma_update(None, "synchronous", "full")?;
+        self.db.execute_batch("VACUUM; PRAGMA wal_checkpoint(TRUNCATE)")?;
+        Ok(())
     }
 
     /// Whether there is any history.
@@ -172,15 +186,15 @@ impl Store {
         self.checked("a thing beside the work", row)
     }
 
-    pub fn put_side(&self, id: u64, side: &Side) -> Result<(), StoreError> {
+    pub fn put_side(&self, id: u64, side: &Side) -> Result<usize, StoreError> {
         let data = plain(match side {
             Side::Thing(t) => postcard::to_stdvec(t.as_ref()),
             Side::Picture(p) => postcard::to_stdvec(p.as_ref()),
             Side::Levels(l) => postcard::to_stdvec(l.as_ref()),
         })?;
-        let row = (id as i64, crc32fast::hash(&data), data);
+        let row = (id as i64, crc32fast::hash(&data), &data);
         self.db.execute("INSERT OR REPLACE INTO side (id, crc, data) VALUES (?1, ?2, ?3)", row)?;
-        Ok(())
+        Ok(data.len())
     }
 
     pub fn next_side(&self) -> Result<u64, StoreError> {
@@ -188,16 +202,16 @@ impl Store {
         Ok(last.map_or(0, |l| l as u64 + 1))
     }
 
-    pub fn put_node(&self, node: &Node) -> Result<(), StoreError> {
+    pub fn put_node(&self, node: &Node) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(node))?;
-        let row = (node.id as i64, crc32fast::hash(&data), data);
+        let row = (node.id as i64, crc32fast::hash(&data), &data);
         self.db.execute("INSERT OR REPLACE INTO node (id, crc, data) VALUES (?1, ?2, ?3)", row)?;
-        Ok(())
+        Ok(data.len())
     }
 
-    pub fn put_sight(&self, node: u64, png: &[u8]) -> Result<(), StoreError> {
+    pub fn put_sight(&self, node: u64, png: &[u8]) -> Result<usize, StoreError> {
         self.db.execute("INSERT OR REPLACE INTO sight (node, png) VALUES (?1, ?2)", (node as i64, png))?;
-        Ok(())
+        Ok(png.len())
     }
 
     /// The small picture of a node, PNG.
@@ -209,11 +223,11 @@ impl Store {
         Ok(found?)
     }
 
-    pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<(), StoreError> {
+    pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(c))?;
-        let row = (c.tick as i64, crc32fast::hash(&data), data);
+        let row = (c.tick as i64, crc32fast::hash(&data), &data);
         self.db.execute("INSERT INTO checkpoint (tick, crc, data) VALUES (?1, ?2, ?3)", row)?;
-        Ok(())
+        Ok(data.len())
     }
 
     /// The versions of pages that are stored, with the revision of the topology of each.
@@ -301,6 +315,29 @@ impl Store {
             [],
             |r| r.get(0),
         )?;
+        Ok(sum as u64)
+    }
+
+    /// Bytes of all that is kept for the history: pages, topologies, pictures, checkpoints, nodes and what they name. A session
+    /// from before there was a table has nothing in it.
+    pub fn total(&self) -> Result<u64, StoreError> {
+        let columns = [
+            ("page", "data"),
+            ("topology", "data"),
+            ("sight", "png"),
+            ("side", "data"),
+            ("checkpoint", "data"),
+            ("node", "data"),
+            ("pin", "data"),
+        ];
+        let mut sum = 0;
+        for (table, column) in columns {
+            let known = "SELECT count(*) FROM sqlite_schema WHERE name = ?1";
+            if self.db.query_row(known, [table], |r| r.get::<_, i64>(0))? > 0 {
+                let sql = format!("SELECT coalesce(sum(length({column})), 0) FROM {table}");
+                sum += self.db.query_row(&sql, [], |r| r.get::<_, i64>(0))?;
+            }
+        }
         Ok(sum as u64)
     }
 }

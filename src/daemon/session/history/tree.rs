@@ -104,6 +104,11 @@ impl Tree {
         self.latest.get(&self.cursor).copied()
     }
 
+    /// The child of a node that was left last.
+    pub fn latest(&self, id: u64) -> Option<u64> {
+        self.latest.get(&id).copied()
+    }
+
     /// The work is at this node now; redo leads back to where it came from along the way.
     pub fn go(&mut self, id: u64) {
         let mut at = id;
@@ -112,6 +117,37 @@ impl Tree {
             at = parent;
         }
         self.cursor = id;
+    }
+
+    /// Takes out a node that nothing follows.
+    pub fn prune(&mut self, id: u64) -> Option<Node> {
+        if !self.children(id).is_empty() {
+            return None;
+        }
+        let node = self.nodes.remove(&id)?;
+        self.children.remove(&id);
+        if let Some(parent) = node.parent {
+            let beside = self.children.entry(parent).or_default();
+            beside.retain(|c| *c != id);
+            if self.latest.get(&parent) == Some(&id) {
+                match beside.last() {
+                    Some(other) => self.latest.insert(parent, *other),
+                    None => self.latest.remove(&parent),
+                };
+            }
+        }
+        Some(Arc::unwrap_or_clone(node))
+    }
+
+    /// Takes out a root; `first`, the only one that follows it, is the root from now on.
+    pub fn behead(&mut self, root: u64, first: Node) -> Option<Node> {
+        if self.children(root) != [first.id] {
+            return None;
+        }
+        self.children.remove(&root);
+        self.latest.remove(&root);
+        self.nodes.insert(first.id, Arc::new(first));
+        self.nodes.remove(&root).map(Arc::unwrap_or_clone)
     }
 
     /// The nodes from this one up to its root.
