@@ -25,6 +25,24 @@ fn load(file: Option<&PathBuf>) -> Result<Resolved, Fail> {
     Resolved::load(file.map(|f| f.as_path())).map_err(|e: ConfigError| Fail::Config(e.to_string()))
 }
 
+/// Numbers as a person would write them: a setting of 0.3 is kept in 32 bits, and is no 0.30000001192092896 to anybody.
+pub fn plain_numbers(value: &mut Value) {
+    match value {
+        Value::Number(n) => {
+            let Some(wide) = n.as_f64().filter(|_| n.is_f64()) else { return };
+            let narrow = wide as f32;
+            if f64::from(narrow) == wide
+                && let Some(short) = narrow.to_string().parse().ok().and_then(serde_json::Number::from_f64)
+            {
+                *n = short;
+            }
+        }
+        Value::Array(all) => all.iter_mut().for_each(plain_numbers),
+        Value::Object(all) => all.values_mut().for_each(plain_numbers),
+        _ => {}
+    }
+}
+
 pub fn run(command: &ConfigCommand, as_json: bool) -> Outcome {
     match command {
         ConfigCommand::Check { file } => {
@@ -38,7 +56,8 @@ pub fn run(command: &ConfigCommand, as_json: bool) -> Outcome {
         }
         ConfigCommand::Show { config } => {
             let resolved = load(config.as_ref())?;
-            let all = serde_json::to_value(&resolved.config).map_err(|e| Fail::Config(e.to_string()))?;
+            let mut all = serde_json::to_value(&resolved.config).map_err(|e| Fail::Config(e.to_string()))?;
+            plain_numbers(&mut all);
             let mut rows = Vec::new();
             if let Value::Object(sections) = &all {
                 for (section, keys) in sections {

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+use super::config::plain_numbers;
 use super::{Fail, Outcome, answer};
 use crate::daemon::control::client::{ClientError, call};
 use crate::daemon::control::default_path;
@@ -35,7 +36,9 @@ pub fn run(args: &CtlArgs, json: bool) -> Outcome {
         ClientError::Refused(_) => Fail::Check(e.to_string()),
         e => Fail::Input(e.to_string()),
     })?;
-    answer(json, &value, |out| match &value {
+    let mut shown = value.clone();
+    plain_numbers(&mut shown);
+    answer(json, &value, |out| match &shown {
         Value::Object(fields) => {
             for (key, value) in fields {
                 let shown = value.as_str().map_or_else(|| value.to_string(), str::to_owned);

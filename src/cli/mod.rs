@@ -23,6 +23,7 @@ pub mod hollow;
 pub mod info;
 pub mod live;
 pub mod logs;
+mod man;
 pub mod measure;
 mod memory;
 pub mod offset;
@@ -112,8 +113,12 @@ pub enum Command {
     Hollow(hollow::HollowArgs),
     /// Print completions for a shell.
     Completions { shell: clap_complete::Shell },
-    /// Print the manual page.
-    Man,
+    /// Print the manual page, or write those of all subcommands.
+    Man {
+        /// Write sculptd.1, sculptd-run.1 and all the others into this folder, e.g. ~/.local/share/man/man1.
+        #[arg(long, value_name = "FOLDER")]
+        all: Option<std::path::PathBuf>,
+    },
 }
 
 /// Why a command ended badly. The variant is the exit code; the text says what was expected and where.
@@ -216,9 +221,7 @@ pub fn run() -> u8 {
         Some(Command::Remesh(args)) => remesh::run(&args, cli.json),
         Some(Command::Offset(args)) => offset::run(&args, cli.json),
         Some(Command::Hollow(args)) => hollow::run(&args, cli.json),
-        Some(Command::Man) => clap_mangen::Man::new(Cli::command())
-            .render(&mut std::io::stdout())
-            .map_err(|e| Fail::Input(e.to_string())),
+        Some(Command::Man { all }) => man::run(all.as_deref(), Cli::command()),
     };
     match outcome {
         Ok(()) => 0,

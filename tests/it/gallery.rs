@@ -89,8 +89,8 @@ fn a_work_whose_mark_a_kill_prevented_is_sent_and_no_number_is_given_twice() {
     std::fs::remove_file(here.join("work-000002.glb")).expect("removed");
     assert!(work(3).ends_with("work-000003.glb"));
     let second = Spool::start(&here, &place).expect("a place");
-    until("the third is sent", || spool::sent(&here) == 3);
-    assert_eq!(second.stand.sent.load(Relaxed), 1);
+    until("the third is sent", || second.stand.sent.load(Relaxed) == 1 && spool::sent(&here) == 3);
+    assert!(spool::waiting(&here).is_empty());
     drop(second);
     assert_eq!(gallery::works(&there).expect("listed").len(), 3);
 }

@@ -119,6 +119,9 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
         gallery: dir.path().join("works"),
         audit: dir.path().join("audit.jsonl"),
         staff_pin: "4711".into(),
+        share: "127.0.0.1:0".into(),
+        // Two seconds.
+        share_minutes: 2.0 / 60.0,
         ..KioskConfig::default()
     };
     let stop = Arc::new(AtomicBool::new(false));
@@ -160,6 +163,14 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let audit = std::fs::read_to_string(dir.path().join("audit.jsonl")).expect("a line");
     assert!(audit.contains("\"visit\":1") && audit.contains("\"kept\":true"), "{audit}");
     until("the film plays again", || stage() == Some(Stage::Attract));
+    #[cfg(unix)]
+    {
+        let link = || keeper.desk.link.lock().expect("a desk").clone();
+        let shown = link().expect("the code is on the screen");
+        assert!(shown.url.starts_with("http://127.0.0.1:") && shown.until_us > clock.now_us());
+        until("a code that leads nowhere any more is gone", || link().is_none());
+        assert!(clock.now_us() >= shown.until_us);
+    }
     *keeper.desk.typed.lock().expect("a desk") = Some("4711".into());
     until("staff is let out", || stop.load(Relaxed));
     keeper.thread.join().expect("the keeper ends");

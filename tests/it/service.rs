@@ -213,3 +213,28 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
     assert!(Command::new("kill").args(["-TERM", &pid]).status().is_ok_and(|s| s.success()));
     hear("STOPPING=1");
 }
+
+#[test]
+fn every_subcommand_has_its_manual_page_and_numbers_read_as_they_were_written() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let out = sculptd().args(["man", "--all"]).arg(dir.path()).output().expect("runs");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    // What the first page refers to is there.
+    let first = std::fs::read_to_string(dir.path().join("sculptd.1")).expect("the first page");
+    let named: Vec<String> = first
+        .split(|c: char| c.is_whitespace())
+        .filter_map(|w| w.strip_suffix("(1)"))
+        .map(|w| w.replace('\\', ""))
+        .filter(|w| w.starts_with("sculptd-"))
+        .collect();
+    assert!(named.len() > 15, "{named:?}");
+    for name in named.iter().chain([&"sculptd-session-prune".to_owned()]) {
+        let page = std::fs::read_to_string(dir.path().join(format!("{name}.1")));
+        assert!(page.is_ok_and(|p| p.contains(".SH NAME")), "{name}");
+    }
+    let config = file(dir.path(), "c.toml", "[brush]\nradius = 0.3\n");
+    let out = sculptd().args(["config", "show", "--json", "--config"]).arg(&config).output().expect("runs");
+    let shown: Value = serde_json::from_slice(&out.stdout).expect("one JSON object");
+    assert_eq!(shown["brush.radius"]["value"].to_string(), "0.3");
+    assert_eq!(shown["undo.history_bytes"]["value"], 4u64 << 30);
+}

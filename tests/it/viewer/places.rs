@@ -105,7 +105,7 @@ fn a_long_history_shows_where_the_work_is_and_costs_what_is_seen() {
     h.run_steps(10);
     let visible = h.state().desk.places.visible.clone();
     assert!(visible.contains(&3990) && visible.len() < 12, "{visible:?}");
-    h.get_by_label("Place 3990, at 33:15");
+    h.get_by_label("Place 3990, at 66:30");
     assert!(h.query_by_label("Place 0, at 0:00").is_none());
     // Elsewhere: the list follows.
     let mut t = tree(4000, &[(100, 50), (2000, 1500)], 3990);
@@ -116,9 +116,61 @@ fn a_long_history_shows_where_the_work_is_and_costs_what_is_seen() {
     let before = h.state().desk.places.rows.len();
     assert_eq!(before, 4000);
     // Of the line that is left, the slider knows the places only: by keys, one at a time.
-    h.get_by_label("Place").focus();
+    h.get_by_role_and_label(egui::Role::Slider, "Place").focus();
     h.run_steps(2);
     h.key_press(egui::Key::ArrowRight);
     h.run_steps(3);
     assert_eq!(jumps(&h).len(), 1);
+}
+
+/// A session in the real window: three strokes, two taken back, one more; then every place by a click on its row.
+#[cfg(unix)]
+#[test]
+fn the_places_of_a_session_in_a_real_window() {
+    use serde_json::{Value, json};
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("s.sculpt");
+    let args = ["--session", path.to_str().expect("UTF-8")];
+    let Some(mut s) = super::window::Stage::open(&args) else { return };
+    type Stage = super::window::Stage;
+    let history = |s: &Stage| s.ask("history", &json!({}));
+    let count = |s: &Stage| history(s)["places"].as_array().map_or(0, Vec::len);
+    let hash = |s: &Stage| s.ask("hash", &Value::Null)["hash"].clone();
+    let mut hashes = vec![hash(&s)];
+    let mut stroke = |s: &mut Stage, from: (i32, i32), to: (i32, i32), places: usize| {
+        s.drag(from, to);
+        s.until("the stroke is kept", |s| count(s) == places);
+        hashes.push(hash(s));
+    };
+    for k in 0..3 {
+        stroke(&mut s, (-100, -70 + 50 * k), (100, -70 + 50 * k), 2 + k as usize);
+    }
+    for left in [2, 1] {
+        s.ask("undo", &Value::Null);
+        s.until("it is taken back", |s| history(s)["here"] == left);
+    }
+    stroke(&mut s, (0, -120), (0, 120), 5);
+    s.seen("places-1-branch");
+    // The rows lie in the left panel, the oldest first; the line's are brighter. From the lowest up: each that is hit once.
+    let mut met = vec![4u64];
+    for y in (560..720).rev().step_by(10) {
+        s.drive(&["mousemove", "120", &y.to_string()]);
+        s.drive(&["click", "1"]);
+        s.drive(&["mousemove", "640", "650"]);
+        let before = *met.last().expect("one");
+        for _ in 0..10 {
+            let here = history(&s)["here"].as_u64().expect("a place");
+            if here != before {
+                met.push(here);
+                break;
+            }
+            s.drive(&["mousemove", "640", "651"]);
+        }
+        let here = *met.last().expect("one") as usize;
+        s.until("the work is that of the place", |s| hash(s) == hashes[here]);
+    }
+    println!("went to {met:?}");
+    s.look("places-2-gone");
+    assert!(met.len() >= 4 && met.contains(&3), "{met:?}: the branch too");
+    assert!(met.windows(2).all(|w| w[0] != w[1]));
 }

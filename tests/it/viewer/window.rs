@@ -34,7 +34,7 @@ impl Drop for Ended {
     }
 }
 
-struct Stage {
+pub(super) struct Stage {
     dir: tempfile::TempDir,
     display: String,
     // In this order: the daemon goes before its screen.
@@ -54,7 +54,7 @@ fn pause(ms: u64) {
 
 impl Stage {
     /// A screen and the daemon's window on it; `None`, and why, where one of the tools is missing.
-    fn open(args: &[&str]) -> Option<Stage> {
+    pub(super) fn open(args: &[&str]) -> Option<Stage> {
         for tool in ["Xvfb", "xdotool", "import"] {
             if !present(tool) {
                 println!("skipped: {tool} is not installed");
@@ -130,7 +130,7 @@ impl Stage {
         out.status.success().then(|| String::from_utf8_lossy(&out.stdout).into_owned())
     }
 
-    fn drive(&self, args: &[&str]) {
+    pub(super) fn drive(&self, args: &[&str]) {
         let _ = self.tool("xdotool", args);
         pause(60);
     }
@@ -139,16 +139,16 @@ impl Stage {
         call(&self.dir.path().join("sculptd.sock"), method, params, PATIENCE).ok()
     }
 
-    fn ask(&self, method: &str, params: &Value) -> Value {
+    pub(super) fn ask(&self, method: &str, params: &Value) -> Value {
         call(&self.dir.path().join("sculptd.sock"), method, params, PATIENCE)
             .unwrap_or_else(|e| panic!("{method}: {e:?}"))
     }
 
-    fn figure(&self, name: &str) -> u64 {
+    pub(super) fn figure(&self, name: &str) -> u64 {
         self.ask("status", &Value::Null)[name].as_u64().unwrap_or(0)
     }
 
-    fn until(&mut self, what: &str, mut so: impl FnMut(&mut Stage) -> bool) {
+    pub(super) fn until(&mut self, what: &str, mut so: impl FnMut(&mut Stage) -> bool) {
         for _ in 0..600 {
             if so(self) {
                 return;
@@ -159,7 +159,7 @@ impl Stage {
     }
 
     /// A drag over the clay, in pixels from its middle.
-    fn drag(&self, from: (i32, i32), to: (i32, i32)) {
+    pub(super) fn drag(&self, from: (i32, i32), to: (i32, i32)) {
         let at = |p: (i32, i32)| [(MIDDLE.0 + p.0).to_string(), (MIDDLE.1 + p.1).to_string()];
         let go = |p: (i32, i32)| {
             let [x, y] = at(p);
@@ -174,7 +174,7 @@ impl Stage {
     }
 
     /// The screen as it is, kept where asked for.
-    fn look(&self, name: &str) -> RgbaImage {
+    pub(super) fn look(&self, name: &str) -> RgbaImage {
         let path = self.dir.path().join(format!("{name}.png"));
         let text = path.display().to_string();
         self.tool("import", &["-window", "root", &text]).expect("a picture");
@@ -185,7 +185,7 @@ impl Stage {
     }
 
     /// The next picture, once it is another than the last one: what was asked for is on the screen, and stands still.
-    fn seen(&mut self, name: &str) -> RgbaImage {
+    pub(super) fn seen(&mut self, name: &str) -> RgbaImage {
         for _ in 0..100 {
             let now = self.look(name);
             // Nothing is drawn yet while all is black.

@@ -242,7 +242,9 @@ impl<'a> Cut<'a> {
         let Some(at) = self.pins.iter().position(|p| p.1 <= self.safe) else { return Ok(false) };
         let (id, _, pin) = self.pins.remove(at);
         self.begin()?;
-        self.store.db.execute("DELETE FROM pin WHERE id = ?1", [id])?;
+        let sql = "DELETE FROM pin WHERE id = ?1 RETURNING length(data)";
+        let bytes: i64 = self.store.db.query_row(sql, [id], |r| r.get(0))?;
+        self.free(bytes as u64)?;
         self.forget(pin.pages.iter().map(|&(i, rev)| (pin.lineage, i, rev)).collect(), names)?;
         Ok(true)
     }
@@ -300,10 +302,10 @@ impl<'a> Cut<'a> {
 /// The tables of the bound.
 impl Store {
     /// A jump is sent that names these.
-    pub fn put_pin(&self, pin: &Pin) -> Result<i64, StoreError> {
+    pub fn put_pin(&self, pin: &Pin) -> Result<usize, StoreError> {
         let data = super::store::plain(postcard::to_stdvec(pin))?;
-        self.db.execute("INSERT INTO pin (tick, data) VALUES (?1, ?2)", (UNDER_WAY, data))?;
-        Ok(self.db.last_insert_rowid())
+        self.db.execute("INSERT INTO pin (tick, data) VALUES (?1, ?2)", (UNDER_WAY, &data))?;
+        Ok(data.len())
     }
 
     /// Every jump that was under way was made, or never will be, by this tick.

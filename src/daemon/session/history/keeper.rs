@@ -374,7 +374,7 @@ impl Keeping {
 /// A work's pages by name, and what it is besides: revisions go on above all that its lineage ever had.
 fn describe(ledger: &Ledger, node: &Node, first: usize) -> Result<(Rest, Vec<(u32, u64)>), StoreError> {
     let high = ledger.high(node.lineage)?.over(node);
-    let (revision, next) = (high.revision + 1, high.next);
+    let (revision, next) = (high.revision.saturating_add(1), high.next);
     let rest = Rest { pages: node.pages, revision, lineage: node.lineage, next, empty: Vec::new() };
     Ok((rest, ledger.tree.names(node, node.pages, first)))
 }

@@ -419,7 +419,7 @@ impl Ledger {
     /// A jump to a node will stand in the log: what it names stays as long as it can.
     pub fn pin(&mut self, node: u64, pages: &[(u32, u64)], levels: Option<u64>) -> Result<(), StoreError> {
         let Some(lineage) = self.tree.node(node).map(|n| n.lineage) else { return Ok(()) };
-        self.store.put_pin(&Pin { lineage, pages: pages.to_vec(), levels })?;
+        self.bytes += self.store.put_pin(&Pin { lineage, pages: pages.to_vec(), levels })? as u64;
         Ok(())
     }
 

@@ -74,7 +74,7 @@ pub fn read(path: &Path) -> Result<History, StoreError> {
         bytes: store.bytes()?,
         total_bytes: store.total()?,
         // Places are numbered in the order in which they are made.
-        dropped: tree.next_id() - tree.len() as u64,
+        dropped: tree.next_id().saturating_sub(tree.len() as u64),
         checkpoints: all.len() as u64,
     })
 }

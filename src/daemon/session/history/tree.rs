@@ -87,7 +87,7 @@ impl Tree {
     }
 
     pub fn next_id(&self) -> u64 {
-        self.nodes.last_key_value().map_or(0, |(id, _)| id + 1)
+        self.nodes.last_key_value().map_or(0, |(id, _)| id.saturating_add(1))
     }
 
     pub fn children(&self, id: u64) -> &[u64] {
