@@ -189,7 +189,8 @@ fn door(
 ) {
     place(ctx, "door", free, Align2::RIGHT_TOP, |ui| {
         let Some(typed) = &mut pad.typed else {
-            if ui.add(large(&words.staff, 16.0, 90.0)).clicked() {
+            // In a row, for in a column its word stands at the left.
+            if ui.horizontal(|ui| ui.add(large(&words.staff, 16.0, 90.0))).inner.clicked() {
                 pad.typed = Some(String::new());
             }
             return;

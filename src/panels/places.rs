@@ -222,7 +222,7 @@ fn row(ui: &mut egui::Ui, places: &Places, i: usize, rect: Rect, dot: Pos2) -> e
     if r.here {
         ui.painter().rect_stroke(picture, 2.0, Stroke::new(2.0, accent), egui::StrokeKind::Inside);
     }
-    let font = egui::TextStyle::Small.resolve(ui.style());
+    let font = egui::TextStyle::Body.resolve(ui.style());
     let text = pos2(picture.right() + 8.0, rect.center().y);
     let shown = if r.replaced { format!("{time}  new work") } else { time };
     let ink = if r.here { ui.visuals().strong_text_color() } else { theme::quiet(ui) };
