@@ -16,7 +16,7 @@ use crate::analysis::boolean::{self, Operation, Options};
 use crate::analysis::cancel::Job;
 use crate::command::{Carving, Command, NewClay};
 use crate::hand::Choice;
-use crate::mesh::{Grafted, LevelError, Levels, Mesh, PAGE_VERTICES, PolyMesh, Snapshot, TriMesh};
+use crate::mesh::{Grafted, Level, LevelError, Levels, Mesh, PAGE_VERTICES, PolyMesh, Snapshot, TriMesh};
 
 /// Tries before a work that never rests is told so.
 const TRIES: usize = 3;
@@ -95,19 +95,24 @@ pub fn join(
 /// The work one level finer or coarser: the command that puts it in place, and which level of how many it is.
 pub fn level(shown: &ArcSwap<Published>, finer: bool) -> Result<(Command, (usize, usize)), JoinError> {
     settled(shown, |now| {
-        let (work, job) = (now.mesh.to_tri(), Job::default());
+        let (work, job) = (Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() }, Job::default());
         let levels = now.mesh.levels().map(|l| &**l);
-        let (plain, levels) = match (finer, levels) {
+        let (level, levels) = match (finer, levels) {
             // Where triangles were cut the levels end: what is there now is the lowest of new ones.
-            (true, levels) => Levels::up(levels.filter(|l| l.fits(&work)), &work, &job)?,
+            (true, levels) => Levels::up(levels.filter(|l| l.fits(&work.mesh)), &work, &job)?,
             (false, Some(levels)) => levels.down(&work, &job)?,
             (false, None) => return Err(LevelError::Lowest.into()),
         };
-        let built = Mesh::build(&plain, &job).map_err(|e| JoinError::Build(e.to_string()))?;
+        let built = Mesh::build_masked(&level.mesh, level.masks.as_deref().unwrap_or(&[]), &job);
+        let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
         let at = levels.at();
-        let mut clay = NewClay::new(Arc::new(plain), built, true);
+        let mut clay = NewClay::new(Arc::new(level.mesh), built, true);
         clay.levels = Some(Arc::new(levels));
-        Ok((Command::Replace(clay), at))
+        let command = match level.masks {
+            Some(masks) => Command::Remake(clay, Arc::new(masks)),
+            None => Command::Replace(clay),
+        };
+        Ok((command, at))
     })
 }
 

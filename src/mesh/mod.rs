@@ -44,7 +44,7 @@ pub use clay::{Memory, Mesh};
 pub use dab::{DabReport, PhaseTimes};
 pub use flat::{PolyMesh, TriMesh};
 pub use kernel::{Kernel, PageIn, PageOut};
-pub use levels::{LevelError, Levels};
+pub use levels::{Level, LevelError, Levels};
 pub use page::{Page, Points};
 pub use ray::{Hit, Ray};
 pub use reach::Reach;

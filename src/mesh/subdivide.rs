@@ -71,15 +71,136 @@ impl Around {
         a
     }
 
+    fn rule(&self, v: usize) -> Rule {
+        match self.border[v].0 {
+            _ if self.fixed[v] || self.ring[v].0 == 0 => Rule::Stays,
+            0 if self.ring[v].0 == self.faces[v] => Rule::Inside,
+            2 if self.ring[v].0 == self.faces[v] + 1 => Rule::Border,
+            _ => Rule::Stays,
+        }
+    }
+
     /// The new place of a vertex on a border, or of one that stays; `None` for one inside.
     fn special(&self, mesh: &PolyMesh, v: usize) -> Option<DVec3> {
         let p = mesh.positions[v];
-        match self.border[v] {
-            _ if self.fixed[v] || self.ring[v].0 == 0 => Some(p),
-            (0, _) if self.ring[v].0 == self.faces[v] => None,
-            (2, sum) if self.ring[v].0 == self.faces[v] + 1 => Some(p * 0.75 + sum * 0.125),
-            _ => Some(p),
+        match self.rule(v) {
+            Rule::Inside => None,
+            Rule::Border => Some(p * 0.75 + self.border[v].1 * 0.125),
+            Rule::Stays => Some(p),
         }
+    }
+}
+
+/// What decides where a vertex goes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rule {
+    Inside,
+    Border,
+    Stays,
+}
+
+/// Loop's weight of each of `k` neighbours.
+fn beta(k: f64) -> f64 {
+    let c = 0.375 + (std::f64::consts::TAU / k).cos() / 4.0;
+    (0.625 - c * c) / k
+}
+
+/// One level of Loop's scheme as what it is, a linear map: which old vertices each new one is made of, and how much of each.
+/// The rows sum to 1; the old vertices come first, then one for each edge, as in what [`loop_`] makes of a triangle mesh.
+#[derive(Debug, Clone)]
+pub(super) struct Stencils {
+    old: usize,
+    starts: Vec<u32>,
+    from: Vec<u32>,
+    weight: Vec<f64>,
+    /// The two ends of each edge, in the order of their new vertices.
+    pub(super) ends: Vec<(u32, u32)>,
+}
+
+impl Stencils {
+    /// Of a mesh of triangles.
+    pub(super) fn of(mesh: &PolyMesh) -> Stencils {
+        let around = Around::of(mesh);
+        let n = mesh.positions.len();
+        let mut rows: Vec<(u32, u32, f64)> = Vec::with_capacity(n * 7 + around.ends.len() * 4);
+        for v in 0..n {
+            let own = match around.rule(v) {
+                Rule::Stays => 1.0,
+                Rule::Border => 0.75,
+                Rule::Inside => {
+                    let k = f64::from(around.ring[v].0);
+                    1.0 - k * beta(k)
+                }
+            };
+            rows.push((v as u32, v as u32, own));
+        }
+        for (e, &(u, v)) in around.ends.iter().enumerate() {
+            for (to, from) in [(u, v), (v, u)] {
+                match around.rule(to as usize) {
+                    Rule::Stays => {}
+                    Rule::Border if around.uses[e] != 1 => {}
+                    Rule::Border => rows.push((to, from, 0.125)),
+                    Rule::Inside => rows.push((to, from, beta(f64::from(around.ring[to as usize].0)))),
+                }
+            }
+            let own = if around.uses[e] == 2 { 0.375 } else { 0.5 };
+            rows.extend([(n as u32 + e as u32, u, own), (n as u32 + e as u32, v, own)]);
+        }
+        for c in 0..mesh.corners.len() {
+            let e = around.edge_of[c];
+            if e != u32::MAX && around.uses[e as usize] == 2 {
+                rows.push((n as u32 + e, mesh.corners[c - c % 3 + (c + 2) % 3], 0.125));
+            }
+        }
+        // By row, and in it as they were found: the sort is stable.
+        rows.sort_by_key(|r| r.0);
+        let mut starts = Vec::with_capacity(n + around.ends.len() + 1);
+        for (i, r) in rows.iter().enumerate() {
+            while starts.len() <= r.0 as usize {
+                starts.push(i as u32);
+            }
+        }
+        starts.push(rows.len() as u32);
+        Stencils {
+            old: n,
+            starts,
+            from: rows.iter().map(|r| r.1).collect(),
+            weight: rows.iter().map(|r| r.2).collect(),
+            ends: around.ends,
+        }
+    }
+
+    fn row(&self, f: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.starts[f] as usize..self.starts[f + 1] as usize;
+        self.from[range.clone()].iter().map(|&v| v as usize).zip(self.weight[range].iter().copied())
+    }
+
+    /// How to move the old vertices so that the new ones come to move as near to `wanted` as least squares bring them, after
+    /// `rounds` of simultaneous iteration (each correction is shared out by the weights: Gilbert 1972). An old vertex that no
+    /// new one which is wanted to move is made of stays.
+    pub(super) fn fit(&self, wanted: &[DVec3], rounds: usize, job: &Job) -> Result<Vec<DVec3>, Cancelled> {
+        let (mut shares, mut free) = (vec![0.0; self.old], vec![false; self.old]);
+        for (f, goal) in wanted.iter().enumerate() {
+            self.row(f).for_each(|(v, w)| shares[v] += w);
+            if *goal != DVec3::ZERO {
+                self.row(f).for_each(|(v, _)| free[v] = true);
+            }
+        }
+        let mut by = vec![DVec3::ZERO; self.old];
+        for _ in 0..rounds {
+            job.check()?;
+            let mut sums = vec![DVec3::ZERO; self.old];
+            for (f, goal) in wanted.iter().enumerate() {
+                let short = self.row(f).fold(*goal, |d, (v, w)| d - by[v] * w);
+                if short != DVec3::ZERO {
+                    self.row(f).for_each(|(v, w)| sums[v] += short * w);
+                }
+            }
+            for v in (0..self.old).filter(|v| free[*v]) {
+                by[v] += sums[v] / shares[v];
+            }
+        }
+        Ok(by)
     }
 }
 
@@ -120,8 +241,7 @@ fn loop_once(mesh: &PolyMesh) -> PolyMesh {
         let p = around.special(mesh, v).unwrap_or_else(|| {
             let (k, sum) = around.ring[v];
             let k = k as f64;
-            let c = 0.375 + (std::f64::consts::TAU / k).cos() / 4.0;
-            let beta = (0.625 - c * c) / k;
+            let beta = beta(k);
             mesh.positions[v] * (1.0 - k * beta) + sum * beta
         });
         out.positions.push(p);
@@ -254,6 +374,33 @@ mod tests {
         let smooth = report(&loop_(&torus(3., 1., 12, 8), 3, &job).unwrap(), false, &job).unwrap();
         assert!(smooth.closed && smooth.manifold && smooth.genus == Some(1));
         assert!(smooth.faces == 12 * 8 * 2 * 64 && smooth.volume.unwrap() > 0.0);
+    }
+
+    #[test]
+    fn the_linear_map_is_the_scheme_and_the_fit_is_its_inverse() {
+        let job = Job::default();
+        for mesh in [torus(3.0, 1.0, 12, 8), grid(2.0, 2.0, 5, 4)] {
+            let mesh = mesh.triangulate().0.to_poly();
+            let fine = loop_(&mesh, 1, &job).unwrap();
+            let map = Stencils::of(&mesh);
+            for (f, p) in fine.positions.iter().enumerate() {
+                let q = map.row(f).fold(DVec3::ZERO, |q, (v, w)| q + mesh.positions[v] * w);
+                assert!(
+                    (q - *p).length() < 1e-14 && (map.row(f).map(|r| r.1).sum::<f64>() - 1.0).abs() < 1e-14
+                );
+            }
+            // What coarse vertices can bring about is found again.
+            let by = |v: usize| DVec3::new((v as f64).sin(), 0.3, (v as f64 * 0.7).cos());
+            let wanted: Vec<_> = (0..fine.positions.len())
+                .map(|f| map.row(f).fold(DVec3::ZERO, |q, (v, w)| q + by(v) * w))
+                .collect();
+            let found = map.fit(&wanted, 300, &job).unwrap();
+            let worst = (0..map.old).map(|v| (found[v] - by(v)).length()).fold(0.0, f64::max);
+            assert!(worst < 1e-4, "{worst}");
+            assert!(
+                map.fit(&vec![DVec3::ZERO; wanted.len()], 3, &job).unwrap().iter().all(|b| *b == DVec3::ZERO)
+            );
+        }
     }
 
     #[test]

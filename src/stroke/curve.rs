@@ -5,7 +5,7 @@
 use glam::{DVec2, Vec2};
 use serde::{Deserialize, Serialize};
 
-use super::spacer::PenPoint;
+use super::surface::PenPoint;
 
 /// Points of a path that are kept; beyond them every second one is let go.
 const MOST: usize = 256;

@@ -4,9 +4,11 @@ pub mod camera;
 pub mod curve;
 pub mod spacer;
 pub mod steady;
+pub mod surface;
 pub mod track;
 
 pub use camera::Camera;
-pub use spacer::{Flow, PenPoint, Spacer, Surface, Way};
+pub use spacer::Spacer;
 pub use steady::Steady;
+pub use surface::{Flow, Laid, PenPoint, Surface, Way};
 pub use track::{PenEvent, PenTrack};

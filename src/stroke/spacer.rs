@@ -6,158 +6,203 @@
 //! picked again after it was applied), found by a guarded bisection, so that perspective, foreshortening and the relief just
 //! raised are all accounted for.
 //!
-//! Laws: dabs of one unbroken run over the surface are never further apart than the spacing (plus the tolerance); where the
-//! surface jumps (a silhouette, a hole) the run ends and a new one begins at the first point beyond.
+//! The law: **within a run, a dab is never further than the spacing from the one before it.** A run goes on
+//! * where the surface is seen without a break along the path: the next dab lies 0.94 to 1 of the spacing on;
+//! * where it leaps, and what is hidden by a crest is at most [`BRIDGED`] spacings wide, brink to far side: one more dab is laid
+//!   on the brink, and if the far side is still too far, others on the hidden clay between, found straight below the line of
+//!   sight over it, until it is not.
+//!
+//! It ends, and the first dab beyond begins another (it says so: [`Laid::first`]), only where the path leaves the surface,
+//! where the leap is wider (another limb, what stands behind), or where no surface without a break leads across (the brink
+//! hangs over). A dab on a brink has a share of the strength for the way that led to it, so that what a stroke lays down
+//! depends on its way and not on how often the surface leapt, nor on how the path was cut into frames.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::mesh::Hit;
-
-/// A pen at an instant, mapped to the view.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct PenPoint {
-    /// View coordinates, (0, 0) top left to (1, 1) bottom right.
-    pub view: Vec2,
-    /// 0 to 1.
-    pub pressure: f32,
-    /// Radians, as in [`crate::devices::Pen`].
-    pub tilt: Option<Vec2>,
-    /// The other end of the pen: what the brush does, the other way round.
-    pub inverted: bool,
-}
-
-impl PenPoint {
-    pub fn lerp(&self, to: &PenPoint, t: f32) -> PenPoint {
-        PenPoint {
-            view: self.view.lerp(to.view, t),
-            pressure: self.pressure + (to.pressure - self.pressure) * t,
-            tilt: match (self.tilt, to.tilt) {
-                (Some(a), Some(b)) => Some(a.lerp(b, t)),
-                (a, b) => b.or(a),
-            },
-            inverted: to.inverted,
-        }
-    }
-}
-
-/// Whether the budget of this tick allows another dab.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Flow {
-    Go,
-    /// Stop here; the rest of the path is walked in the next tick.
-    Pause,
-}
-
-/// How a pen's path becomes dabs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
-    /// One a spacing.
-    Spaced,
-    /// One a report.
-    Each,
-    /// The brush is told where the pen is, and does the rest.
-    Held,
-    /// A straight line, once the pen lifts.
-    Line,
-    /// A fair curve through what was drawn, once the pen lifts.
-    Curve,
-}
-
-/// What a stroke is drawn on.
-pub trait Surface {
-    fn pick(&mut self, view: Vec2) -> Option<Hit>;
-    /// The wanted distance between dabs here, mesh units, > 0.
-    fn spacing(&self, at: &PenPoint) -> f32;
-    /// World length of a step of one view height at the hit's depth.
-    fn world_per_view(&self, hit: &Hit) -> f32;
-    /// How the pen's path becomes dabs.
-    fn way(&self) -> Way {
-        Way::Spaced
-    }
-    /// A held brush: the pen came down here, or is here now.
-    fn hold(&mut self, _at: &PenPoint, _began: bool) -> Flow {
-        Flow::Go
-    }
-    /// Applies a dab; `along` is the direction of the stroke on the surface where it has one.
-    fn dab(&mut self, at: &PenPoint, hit: &Hit, along: Option<Vec3>) -> Flow;
-}
+use super::surface::{Flow, Laid, PenPoint, Surface};
+use crate::mesh::{Hit, Ray};
 
 /// A dab is accepted between these shares of the spacing: never above one, so that the law holds with room for rounding.
 const ACCEPT: std::ops::RangeInclusive<f32> = 0.94..=1.0;
-/// Bisection steps for one dab: 2^-12 of the segment is far below a pixel.
-const MAX_BISECTIONS: u32 = 12;
-/// Steps over a stretch with no surface are this share of the view: a tenth of a percent finds any visible wall.
+/// Hidden clay up to so many spacings from brink to far side is crossed within a run.
+pub const BRIDGED: f32 = 2.0;
+/// No dab on a brink that is nearer to the last one than this share of the spacing.
+const ON_BRINK: f32 = 0.1;
+/// Dabs on hidden clay at a leap: a slope of five times its width is the steepest that is gone down.
+const MOST_HIDDEN: usize = 10;
+/// Beyond so many spacings the surface at a dab's own view point is another one than that which the dab was laid on.
+const JUMPED: f32 = 4.0;
+/// Bisection steps for one dab: 2^-20 of a spacing as it is seen, or what single precision can tell apart.
+const MAX_BISECTIONS: u32 = 20;
+/// Steps over a stretch with no surface, in heights of the view.
 const BLIND_STEP: f32 = 0.004;
 
 /// Where a stroke stands between two pen points.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Spacer {
-    /// The last dab: its view point and where the surface stood after it.
-    last: Option<(Vec2, Vec3)>,
+    /// Where the surface of the last dab stood after it.
+    last: Option<Vec3>,
+    /// The last dab made its surface leap away from under the pen: the next run begins a step further.
+    leapt: bool,
     /// Height and width of the view in the same unit: x is multiplied by this before lengths are taken.
     aspect: f32,
 }
 
-impl Spacer {
-    pub fn new(aspect: f32) -> Self {
-        Spacer { last: None, aspect }
+/// From one report of the pen to the next.
+#[derive(Clone, Copy)]
+struct Segment<'a> {
+    from: &'a PenPoint,
+    to: &'a PenPoint,
+    /// In heights of the view, above 0.
+    length: f32,
+}
+
+impl Segment<'_> {
+    fn at(&self, t: f32) -> PenPoint {
+        self.from.lerp(self.to, t)
     }
 
-    fn view_length(&self, d: Vec2) -> f32 {
-        Vec2::new(d.x * self.aspect, d.y).length()
+    /// The share of the segment that a spacing takes up where it is seen face on.
+    fn step(&self, at: &PenPoint, hit: Option<&Hit>, on: &dyn Surface) -> f32 {
+        match hit.map(|h| on.world_per_view(h)) {
+            Some(scale) => on.spacing(at) / (scale * self.length).max(1e-20),
+            None => BLIND_STEP / self.length,
+        }
+    }
+}
+
+/// What a path meets at a share of its length, and how far from the last dab that is, in spacings.
+#[derive(Clone, Copy)]
+struct Sight {
+    at: f32,
+    hit: Hit,
+    off: f32,
+}
+
+/// How a path goes on.
+enum Step {
+    Dab(Sight),
+    /// The surface leaps from the first, less than a spacing away, to the second, which is further.
+    Leap(Sight, Sight),
+    Lost(f32),
+    End,
+}
+
+/// The next point a spacing away along a path from `start`, by advancing `step` and bisecting. `seek` says what is met.
+fn advance(
+    start: f32,
+    mut step: f32,
+    here: Option<Sight>,
+    seek: &mut dyn FnMut(f32) -> Option<Sight>,
+) -> Step {
+    let off = |s: &Option<Sight>| s.map_or(f32::INFINITY, |s| s.off);
+    let (mut low, mut low_at) = (here, start);
+    match here {
+        Some(here) if ACCEPT.contains(&here.off) => return Step::Dab(here),
+        // The surface moved under the pen since.
+        Some(here) if here.off > 1.0 => return Step::Leap(Sight { off: 0.0, ..here }, here),
+        _ => {}
+    }
+    loop {
+        let mut high_at = (low_at + step.max(1e-5)).min(1.0);
+        let mut high = seek(high_at);
+        if off(&high) < *ACCEPT.start() {
+            if high_at >= 1.0 {
+                return Step::End;
+            }
+            // Onward by what is missing, at least a tenth of a step, so that the walk always ends.
+            step *= (1.0 - off(&high)).clamp(0.1, 1.0);
+            (low, low_at) = (high, high_at);
+            continue;
+        }
+        for _ in 0..MAX_BISECTIONS {
+            let mid_at = 0.5 * (low_at + high_at);
+            if ACCEPT.contains(&off(&high)) || mid_at <= low_at || mid_at >= high_at {
+                break;
+            }
+            let mid = seek(mid_at);
+            if off(&mid) < *ACCEPT.start() {
+                (low, low_at) = (mid, mid_at);
+            } else {
+                (high, high_at) = (mid, mid_at);
+            }
+        }
+        return match (low, high) {
+            (_, Some(high)) if high.off <= *ACCEPT.end() => Step::Dab(high),
+            (Some(low), Some(high)) => Step::Leap(low, high),
+            _ => Step::Lost(high_at),
+        };
+    }
+}
+
+impl Spacer {
+    pub fn new(aspect: f32) -> Self {
+        Spacer { last: None, leapt: false, aspect }
     }
 
     /// The pen touches: a dab at once.
     pub fn begin(&mut self, at: &PenPoint, on: &mut dyn Surface) -> Flow {
-        self.last = None;
+        (self.last, self.leapt) = (None, false);
+        self.rest(at, on)
+    }
+
+    /// A dab more where the pen rests: the run goes on from it.
+    pub fn rest(&mut self, at: &PenPoint, on: &mut dyn Surface) -> Flow {
         match on.pick(at.view) {
-            Some(hit) => self.place(at, &hit, on),
+            Some(hit) => self.place(at, &hit, 1.0, &mut |on| on.pick(at.view), on),
             None => Flow::Go,
         }
     }
 
-    fn place(&mut self, at: &PenPoint, hit: &Hit, on: &mut dyn Surface) -> Flow {
-        let along = self.last.and_then(|(_, p)| (hit.position - p).try_normalize());
-        let flow = on.dab(at, hit, along);
-        // Where the dab's own point stands now; if the dab folded it out of sight, where it stood.
-        let now = on.pick(at.view).map_or(hit.position, |h| {
-            let jumped = (h.position - hit.position).length() > 4.0 * on.spacing(at) + 1e-30;
-            if jumped { hit.position } else { h.position }
-        });
-        self.last = Some((at.view, now));
+    /// Lays a dab. `again` finds its place once more, on what the dab made of the surface.
+    fn place(
+        &mut self,
+        at: &PenPoint,
+        hit: &Hit,
+        share: f32,
+        again: &mut dyn FnMut(&mut dyn Surface) -> Option<Hit>,
+        on: &mut dyn Surface,
+    ) -> Flow {
+        let along = self.last.and_then(|p| (hit.position - p).try_normalize());
+        let flow = on.dab(at, hit, Laid { first: self.last.is_none(), along, share });
+        let now = again(on).map_or(hit.position, |h| h.position);
+        // The dab may have folded its own place out of sight.
+        self.leapt = (now - hit.position).length() > JUMPED * on.spacing(at) + 1e-30;
+        self.last = (!self.leapt).then_some(now);
         flow
     }
 
     /// Walks the segment from `from` to `to`, starting at the share `start` of it. Returns 1 when the whole segment was
     /// walked, else the share at which the budget ended.
     pub fn walk(&mut self, from: &PenPoint, to: &PenPoint, start: f32, on: &mut dyn Surface) -> f32 {
-        let length = self.view_length(to.view - from.view);
+        let d = to.view - from.view;
+        let length = (d.x * self.aspect).hypot(d.y);
         let mut t = start;
         if length <= 0.0 || !length.is_finite() {
             return 1.0;
         }
+        let way = Segment { from, to, length };
+        let mut bridged = -1.0;
         while t < 1.0 {
-            let flow = match self.last {
-                Some((_, last)) => match self.next_on_surface(from, to, t, length, last, on) {
-                    Step::Dab(at, hit) => {
-                        t = at;
-                        self.place(&from.lerp(to, at), &hit, on)
-                    }
-                    Step::Lost(at) => {
-                        t = at;
-                        self.last = None;
-                        Flow::Go
-                    }
-                    Step::End => return 1.0,
-                },
-                None => match self.next_after_gap(from, to, t, length, on) {
-                    Some((at, hit)) => {
-                        t = at;
-                        self.place(&from.lerp(to, at), &hit, on)
-                    }
-                    None => return 1.0,
-                },
+            let flow = match self.next(&way, t, on) {
+                Step::Dab(sight) => self.lay(&way, &mut t, &sight, 1.0, on),
+                Step::Leap(brink, _) if brink.off > ON_BRINK => self.lay(&way, &mut t, &brink, brink.off, on),
+                Step::Leap(_, beyond) if beyond.at <= bridged => {
+                    // What was laid to get there tore it away.
+                    (self.last, self.leapt) = (None, true);
+                    Flow::Go
+                }
+                Step::Leap(_, beyond) => {
+                    (t, bridged) = (beyond.at, beyond.at);
+                    self.bridge(&way.at(t), &beyond, on)
+                }
+                Step::Lost(at) => {
+                    t = at;
+                    self.last = None;
+                    Flow::Go
+                }
+                Step::End => return 1.0,
             };
             if flow == Flow::Pause && t < 1.0 {
                 return t;
@@ -166,103 +211,105 @@ impl Spacer {
         1.0
     }
 
-    /// The next point one spacing from `last`, by advancing and bisecting.
-    fn next_on_surface(
-        &self,
-        from: &PenPoint,
-        to: &PenPoint,
-        start: f32,
-        length: f32,
-        last: Vec3,
+    fn lay(
+        &mut self,
+        way: &Segment<'_>,
+        t: &mut f32,
+        sight: &Sight,
+        share: f32,
         on: &mut dyn Surface,
-    ) -> Step {
-        let mut low = start;
-        let mut step = {
-            let here = from.lerp(to, start);
-            let scale = on.pick(here.view).map(|h| on.world_per_view(&h));
-            match scale {
-                Some(scale) => on.spacing(&here) / (scale * length).max(1e-20),
-                None => BLIND_STEP / length,
-            }
-        };
-        loop {
-            let mut high = (low + step.max(1e-5)).min(1.0);
-            let mut hit = on.pick(from.lerp(to, high).view);
-            let reached = |t: f32, hit: &Option<Hit>, on: &mut dyn Surface| match hit {
-                Some(h) => (h.position - last).length() / on.spacing(&from.lerp(to, t)),
-                None => f32::INFINITY,
-            };
-            let mut ratio = reached(high, &hit, on);
-            if ratio < *ACCEPT.start() {
-                if high >= 1.0 {
-                    return Step::End;
-                }
-                // Onward by what is missing, at least a tenth of a step, so that the walk always ends.
-                step *= (1.0 - ratio).clamp(0.1, 1.0);
-                low = high;
-                continue;
-            }
-            for _ in 0..MAX_BISECTIONS {
-                if ACCEPT.contains(&ratio) {
-                    break;
-                }
-                let mid = 0.5 * (low + high);
-                let mid_hit = on.pick(from.lerp(to, mid).view);
-                let mid_ratio = reached(mid, &mid_hit, on);
-                if mid_ratio < *ACCEPT.start() {
-                    low = mid;
-                } else {
-                    (high, hit, ratio) = (mid, mid_hit, mid_ratio);
-                }
-            }
-            return match hit {
-                Some(hit) if ratio <= *ACCEPT.end() => Step::Dab(high, hit),
-                // The surface jumps here: the run ends at the brink.
-                _ => Step::Lost(high),
-            };
-        }
+    ) -> Flow {
+        *t = sight.at;
+        let at = way.at(*t);
+        self.place(&at, &sight.hit, share, &mut |on| on.pick(at.view), on)
     }
 
-    /// The first point of the surface at or after `start`.
-    fn next_after_gap(
-        &self,
-        from: &PenPoint,
-        to: &PenPoint,
-        start: f32,
-        length: f32,
-        on: &mut dyn Surface,
-    ) -> Option<(f32, Hit)> {
-        let step = (BLIND_STEP / length).max(1e-4);
-        let (mut low, mut high) = (start, start);
-        loop {
-            if let Some(mut hit) = on.pick(from.lerp(to, high).view) {
-                for _ in 0..6 {
-                    let mid = 0.5 * (low + high);
-                    if let Some(nearer) = on.pick(from.lerp(to, mid).view) {
-                        (high, hit) = (mid, nearer);
-                    } else {
-                        low = mid;
-                    }
+    fn next(&mut self, way: &Segment<'_>, mut start: f32, on: &mut dyn Surface) -> Step {
+        let at = way.at(start);
+        let hit = on.pick(at.view);
+        let step = way.step(&at, hit.as_ref(), on);
+        let Some(last) = self.last else {
+            if std::mem::take(&mut self.leapt) {
+                start = (start + step.max(1e-4)).min(1.0);
+            }
+            return first_seen(way, start, on);
+        };
+        let off =
+            |hit: &Hit, at: &PenPoint, on: &dyn Surface| (hit.position - last).length() / on.spacing(at);
+        let here = hit.map(|hit| Sight { at: start, hit, off: off(&hit, &at, on) });
+        advance(start, step, here, &mut |t| {
+            let at = way.at(t);
+            let hit = on.pick(at.view)?;
+            Some(Sight { at: t, hit, off: off(&hit, &at, on) })
+        })
+    }
+
+    /// The last dab lies on a brink: dabs on the hidden clay from there to what is seen `beyond`, where they can lead to it;
+    /// else the run ends.
+    fn bridge(&mut self, at: &PenPoint, beyond: &Sight, on: &mut dyn Surface) -> Flow {
+        let spacing = on.spacing(at);
+        let Some(from) = self.last else { return Flow::Go };
+        let to = beyond.hit.position;
+        let out = beyond.hit.normal;
+        let far = BRIDGED * spacing;
+        let mut flow = Flow::Go;
+        let mut u = 0.0;
+        // Straight below the line from brink to far side, as the far side lies.
+        let below = |u: f32, on: &mut dyn Surface| {
+            let from = from.lerp(to, u) + out * far;
+            on.drop(Ray { origin: from, dir: -out }, 3.0 * far).filter(|h| h.normal.dot(out) > 0.0)
+        };
+        if beyond.off <= BRIDGED {
+            for _ in 0..MOST_HIDDEN {
+                let Some(last) = self.last else { break };
+                if (to - last).length() <= spacing {
+                    return flow;
                 }
-                return Some((high, hit));
+                let mut seek = |u: f32| {
+                    let hit = below(u, on)?;
+                    Some(Sight { at: u, hit, off: (hit.position - last).length() / spacing })
+                };
+                let here = Some(Sight { at: u, hit: beyond.hit, off: 0.0 });
+                let Step::Dab(sight) = advance(u, 1.0 / beyond.off, here, &mut seek) else { break };
+                u = sight.at;
+                if self.place(at, &sight.hit, 1.0, &mut |on| below(u, on), on) == Flow::Pause {
+                    flow = Flow::Pause;
+                }
             }
-            if high >= 1.0 {
-                return None;
-            }
-            low = high;
-            high = (high + step).min(1.0);
         }
+        self.last = None;
+        flow
     }
 }
 
-enum Step {
-    Dab(f32, Hit),
-    Lost(f32),
-    End,
+/// The first point of the surface at or after `start`.
+fn first_seen(way: &Segment<'_>, start: f32, on: &mut dyn Surface) -> Step {
+    let step = (BLIND_STEP / way.length).max(1e-4);
+    let (mut low, mut high) = (start, start);
+    loop {
+        if let Some(mut hit) = on.pick(way.at(high).view) {
+            for _ in 0..6 {
+                let mid = 0.5 * (low + high);
+                if let Some(nearer) = on.pick(way.at(mid).view) {
+                    (high, hit) = (mid, nearer);
+                } else {
+                    low = mid;
+                }
+            }
+            return Step::Dab(Sight { at: high, hit, off: 1.0 });
+        }
+        if high >= 1.0 {
+            return Step::End;
+        }
+        low = high;
+        high = (high + step).min(1.0);
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
 
     /// A height field seen from straight above: view (x, y) is world (x, h(x), y).
@@ -289,7 +336,10 @@ mod tests {
         fn world_per_view(&self, _: &Hit) -> f32 {
             1.0
         }
-        fn dab(&mut self, _: &PenPoint, hit: &Hit, _: Option<Vec3>) -> Flow {
+        fn drop(&mut self, ray: Ray, _: f32) -> Option<Hit> {
+            self.pick(Vec2::new(ray.origin.x, ray.origin.z))
+        }
+        fn dab(&mut self, _: &PenPoint, hit: &Hit, _: Laid) -> Flow {
             self.dabs.push(hit.position);
             self.budget -= 1;
             if self.budget == 0 { Flow::Pause } else { Flow::Go }

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-use super::spacer::PenPoint;
+use super::surface::PenPoint;
 use crate::brush::PathSettings;
 
 /// Pen reports that can be averaged, at most.

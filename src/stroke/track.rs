@@ -6,8 +6,9 @@ use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 use super::curve::{Curve, PIECES};
-use super::spacer::{Flow, PenPoint, Spacer, Surface, Way};
+use super::spacer::Spacer;
 use super::steady::Steady;
+use super::surface::{Flow, PenPoint, Surface, Way};
 use crate::brush::PathSettings;
 use crate::devices::{Pen, Tool};
 
@@ -239,6 +240,6 @@ impl PenTrack {
     /// One more dab where the pen rests. The stroke goes on from it as from any other.
     pub fn rest(&mut self, on: &mut dyn Surface) {
         let at = self.from;
-        self.spacer.begin(&at, on);
+        self.spacer.rest(&at, on);
     }
 }

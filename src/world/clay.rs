@@ -8,7 +8,7 @@ use crate::brush::dab::IMAGES;
 use crate::brush::restore::Restore;
 use crate::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
 use crate::mesh::{DabReport, Detail, Hit, Mesh, Ray, Reach, Workers};
-use crate::stroke::{Camera, Flow, PenPoint, Surface, Way};
+use crate::stroke::{Camera, Flow, Laid, PenPoint, Surface, Way};
 
 /// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this one stopped.
 const MOST_CUTS: usize = 2000;
@@ -162,14 +162,15 @@ impl Clay<'_> {
         (self.camera.backward() + right * lean.x - up * lean.y).normalize()
     }
 
-    /// One dab and its images. `drag`: what a held brush was drawn, now and before.
-    fn one_dab(&mut self, at: &PenPoint, hit: &Hit, radius: f32, drag: Option<(Vec3, Vec3)>) {
+    /// One dab and its images. `share`: of the strength. `drag`: what a held brush was drawn, now and before.
+    fn one_dab(&mut self, at: &PenPoint, hit: &Hit, radius: f32, share: f32, drag: Option<(Vec3, Vec3)>) {
         self.mesh.begin_step();
         let s = self.brush;
         let mut strength = s.strength * s.pressure_strength.factor(at.pressure);
         if s.path.compensate {
             strength = (strength * (s.spacing / 0.2)).min(1.0);
         }
+        strength *= share;
         let normal = match at.tilt {
             Some(tilt) if s.tilt > 0.0 => {
                 hit.normal.lerp(self.pen_direction(tilt), s.tilt).try_normalize().unwrap_or(hit.normal)
@@ -314,7 +315,7 @@ impl Clay<'_> {
                 self.take_back(&mut held);
                 let radius = drag.length().min(self.extent * 2.0);
                 if radius > self.extent * 1e-3 {
-                    self.one_dab(at, &held.hit, radius, Some((drag, held.drag)));
+                    self.one_dab(at, &held.hit, radius, 1.0, Some((drag, held.drag)));
                     held.shown = Some((held.hit.position, radius));
                 }
             }
@@ -322,7 +323,7 @@ impl Clay<'_> {
                 self.take_back(&mut held);
                 if let Some(hit) = self.pick(at.view) {
                     let radius = self.radius(at.pressure);
-                    self.one_dab(at, &hit, radius, Some((drag - held.drag, Vec3::ZERO)));
+                    self.one_dab(at, &hit, radius, 1.0, Some((drag - held.drag, Vec3::ZERO)));
                     held.shown = Some((hit.position, radius));
                 }
             }
@@ -333,14 +334,14 @@ impl Clay<'_> {
                 let steps = (whole.length() / (radius * self.brush.spacing)).ceil().clamp(1.0, 4096.0);
                 let by = whole / steps;
                 for _ in 0..steps as usize {
-                    self.one_dab(at, &held.hit, radius, Some((by, Vec3::ZERO)));
+                    self.one_dab(at, &held.hit, radius, 1.0, Some((by, Vec3::ZERO)));
                     held.hit.position += by;
                 }
             }
             _ => {
                 // What was held at the start is held on: pressure later does not change how much that is.
                 let radius = self.radius(held.from.pressure);
-                self.one_dab(at, &held.hit, radius, Some((drag, held.drag)));
+                self.one_dab(at, &held.hit, radius, 1.0, Some((drag, held.drag)));
             }
         }
         held.drag = drag;
@@ -390,10 +391,18 @@ impl Surface for Clay<'_> {
         if self.left == 0 { Flow::Pause } else { Flow::Go }
     }
 
-    fn dab(&mut self, at: &PenPoint, hit: &Hit, _along: Option<Vec3>) -> Flow {
+    fn drop(&mut self, ray: Ray, far: f32) -> Option<Hit> {
+        self.mesh.pick(ray).filter(|h| h.t <= far)
+    }
+
+    fn dab(&mut self, at: &PenPoint, hit: &Hit, laid: Laid) -> Flow {
         let radius = self.radius(at.pressure);
+        if laid.first && self.way() != Way::Each {
+            // Nothing leads over from the run before.
+            self.stroke.last = None;
+        }
         let hit = self.strewn(hit, radius);
-        self.one_dab(at, &hit, radius, None);
+        self.one_dab(at, &hit, radius, laid.share, None);
         if self.left == 0 { Flow::Pause } else { Flow::Go }
     }
 }

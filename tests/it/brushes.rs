@@ -5,6 +5,7 @@ mod golden;
 mod levels;
 mod properties;
 mod sheet;
+mod spacing;
 mod texture;
 mod topology;
 
