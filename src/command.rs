@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::brush::{BrushSettings, MaskAction, Picture};
 use crate::hand::{ReachBox, Similarity};
 use crate::mesh::{Cut, Grafted, Levels, Mesh, Page, Rest, TriMesh};
-use crate::stroke::Camera;
+use crate::stroke::{Camera, DraftAct};
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Command {
@@ -45,6 +45,8 @@ pub enum Command {
     Reopened,
     /// As [`Command::Replace`], with a mask for each vertex: what made the new work keeps what was protected so.
     Remake(NewClay, Arc<Vec<f32>>),
+    /// To the curve that a pen has laid with the method `curve`: drawn, put away, a handle less.
+    Draft(DraftAct),
 }
 
 /// To another place of the history. What it needs is in the session file, under the names given here, so that a replay finds

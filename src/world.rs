@@ -22,7 +22,7 @@ use crate::command::{Command, NewClay};
 use crate::devices::{Body, DeviceId, Hands, Sample};
 use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
 use crate::mesh::{Kernel, Mesh, PolyMesh, Reach, TriMesh, Workers, shapes};
-use crate::stroke::{Camera, PenPoint, PenTrack};
+use crate::stroke::{Camera, Draft, DraftAct, PenPoint, PenTrack};
 use crate::works::Works;
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
@@ -169,7 +169,24 @@ impl World {
 
     fn obey(&mut self, command: &Command) {
         match command {
-            Command::Brush(brush) => self.brush = brush.clamped(),
+            Command::Brush(brush) => {
+                self.brush = brush.clamped();
+                let lays = self.brush.kind.grip() == Grip::Surface && self.brush.path.method == Method::Curve;
+                if !lays {
+                    self.put_away();
+                }
+            }
+            // What was laid last goes first.
+            Command::Undo if self.put_away() => {}
+            Command::Draft(act) => match act {
+                DraftAct::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
+                DraftAct::Cancel => {
+                    self.put_away();
+                }
+                DraftAct::Delete(handle) => {
+                    let _ = self.pens.iter_mut().any(|s| s.track.delete(*handle));
+                }
+            },
             Command::Camera(camera) => {
                 if camera.is_sane() {
                     self.camera = *camera;
@@ -255,6 +272,11 @@ impl World {
                 self.forget_steps();
             }
         }
+    }
+
+    /// Curves that pens have laid are put away. False: there were none.
+    fn put_away(&mut self) -> bool {
+        self.pens.iter_mut().fold(false, |any, s| s.track.cancel() || any)
     }
 
     fn replace(&mut self, new: &NewClay, masks: &[f32]) {
@@ -535,6 +557,11 @@ impl World {
     /// Where each pen is, over the view, while in range.
     pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
         self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
+    }
+
+    /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
+    pub fn draft(&self) -> Option<&Draft> {
+        self.pens.iter().map(|s| s.track.draft()).find(|d| !d.is_empty())
     }
 
     /// What the hands hold, and where.

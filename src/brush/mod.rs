@@ -108,6 +108,7 @@ brushes! {
     "thumb" Thumb thumb,
     "nudge" Nudge nudge,
     "relax" Relax relax,
+    "slide-relax" SlideRelax slide_relax,
     "mask" Mask mask,
     "mask-blur" MaskBlur mask_blur,
     "paint" Paint paint,

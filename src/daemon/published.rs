@@ -14,7 +14,7 @@ use crate::devices::sample::MAX_HANDS;
 use crate::devices::{DeviceId, Hands};
 use crate::hand::{Pose, Thing, Volume};
 use crate::mesh::Snapshot;
-use crate::stroke::{Camera, PenPoint};
+use crate::stroke::{Camera, Draft, PenPoint};
 use crate::world::World;
 
 /// Pens shown to a viewer.
@@ -36,6 +36,8 @@ pub struct Published {
     /// The tracked volume over the work.
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
+    /// The curve that a pen has laid; empty: none.
+    pub draft: Draft,
     pub hands: Option<Hands>,
     /// What each hand that is followed is doing.
     pub poses: [Option<Pose>; MAX_HANDS],
@@ -96,6 +98,7 @@ impl Published {
             middle: world.middle(),
             volume: *world.volume(),
             pens,
+            draft: world.draft().cloned().unwrap_or_default(),
             hands: world.hands().copied(),
             poses,
             hand_devices,

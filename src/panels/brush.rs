@@ -30,7 +30,7 @@ const METHODS: [(Method, &str); 7] = [
     (Method::Anchored, "Anchored"),
     (Method::DragDot, "Dragged dot"),
     (Method::Line, "Line"),
-    (Method::Curve, "Fair curve"),
+    (Method::Curve, "Curve by points"),
 ];
 
 const STAMPS: [(StampBy, &str); 4] = [
@@ -129,7 +129,7 @@ fn profile(name: &str, d: f32) -> f32 {
     let bell = (-d * d * 9.0).exp();
     let step = |edge: f32| 1.0 / (1.0 + ((d.abs() - edge) * 24.0).exp());
     match name {
-        "smooth" | "relax" => 0.25 * (-d * d * 3.0).exp() + 0.08 * (d * 22.0).sin() * d * d,
+        "smooth" | "relax" | "slide-relax" => 0.25 * (-d * d * 3.0).exp() + 0.08 * (d * 22.0).sin() * d * d,
         "clay" | "layer" => 0.6 * step(0.55),
         "clay-strips" | "trim" => 0.7 * step(0.42),
         "crease" => 0.35 * bell - 0.9 * (-d * d * 120.0).exp() + 0.3,

@@ -7,6 +7,7 @@ pub mod brush;
 pub mod cube;
 pub mod curve;
 pub mod devices;
+pub mod draft;
 pub mod files;
 pub mod hints;
 pub mod history;
@@ -126,6 +127,8 @@ pub struct Desk {
     pub joining: bool,
     pub trial: scene::Trial,
     pub trim: Option<trim::Trim>,
+    /// The handle of a curve that was held last.
+    pub handle: Option<usize>,
     pub sizes: measure::Sizes,
     /// Pictures of steps, by step.
     pub history: Vec<history::Thumb>,
@@ -176,6 +179,7 @@ pub fn all(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<As
     }
     let free = ui.available_rect_before_wrap();
     trim::ui(&ctx, desk, free, out);
+    draft::ui(&ctx, view, desk, free, out);
     balls::ui(&ctx, view, free);
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, desk, free);

@@ -11,9 +11,6 @@ use super::surface::PenPoint;
 const MOST: usize = 256;
 /// Rounds of fitting and of mending parameters.
 const ROUNDS: usize = 6;
-/// Straight pieces that a curve is walked in.
-pub const PIECES: usize = 64;
-
 /// A path while it is drawn, and the curve afterwards.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Curve {
@@ -172,8 +169,8 @@ mod tests {
         curve.end(1.6);
         assert!((curve.point(0.0).view - arc(0)).length() < 1e-6);
         assert!((curve.point(1.0).view - arc(999)).length() < 1e-6);
-        for k in 0..=PIECES {
-            let p = curve.point(k as f32 / PIECES as f32);
+        for k in 0..=64 {
+            let p = curve.point(k as f32 / 64.0);
             let off = ((p.view - Vec2::new(0.2, 0.7)).length() - 0.5).abs();
             assert!(off < 0.004, "{off} off the arc at {k}");
             assert!((p.pressure - p.view.x).abs() < 0.05, "pressure goes along");

@@ -2,12 +2,14 @@
 
 pub mod camera;
 pub mod curve;
+pub mod draft;
 pub mod spacer;
 pub mod steady;
 pub mod surface;
 pub mod track;
 
 pub use camera::Camera;
+pub use draft::{Draft, DraftAct};
 pub use spacer::Spacer;
 pub use steady::Steady;
 pub use surface::{Flow, Laid, PenPoint, Surface, Way};

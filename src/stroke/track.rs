@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-use super::curve::{Curve, PIECES};
+use super::curve::Curve;
+use super::draft::Draft;
 use super::spacer::Spacer;
 use super::steady::Steady;
 use super::surface::{Flow, PenPoint, Surface, Way};
@@ -22,6 +23,8 @@ pub enum PenEvent {
     Down(PenPoint),
     Move(PenPoint),
     Up,
+    /// The curve that is being laid is drawn.
+    Draw,
 }
 
 /// A pen's stroke between its samples and its dabs.
@@ -31,11 +34,13 @@ pub struct PenTrack {
     steady: Steady,
     /// Where the pen came down: a straight line begins there.
     start: PenPoint,
-    /// The line or curve from there is being drawn; so many pieces of it are done.
+    /// The line from there, or the curve, is being drawn; so many pieces of it are done.
     drawing: bool,
     pieces: usize,
-    curved: bool,
+    /// What the pen draws freely, to be made a curve of, and the curve.
     curve: Curve,
+    draft: Draft,
+    laying: Laying,
     spacer: Spacer,
     /// Where the walk stands: the point reached, and the share of the segment to the first waiting point.
     from: PenPoint,
@@ -58,8 +63,9 @@ impl Default for PenTrack {
             start: PenPoint::default(),
             drawing: false,
             pieces: 0,
-            curved: false,
             curve: Curve::default(),
+            draft: Draft::default(),
+            laying: Laying::No,
             spacer: Spacer::default(),
             from: PenPoint::default(),
             share: 0.0,
@@ -69,6 +75,16 @@ impl Default for PenTrack {
             merged: 0,
         }
     }
+}
+
+/// What a pen that is down does to a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Laying {
+    No,
+    /// It draws freely, and handles are put on that.
+    Free,
+    /// It holds a handle.
+    Handle,
 }
 
 /// What walking changed about the stroke itself.
@@ -143,9 +159,48 @@ impl PenTrack {
         self.open
     }
 
-    /// Whether the next thing to happen is that the pen comes down.
+    /// Whether the next thing to happen is that a stroke begins.
     pub fn begins(&self) -> bool {
-        matches!(self.waiting.front(), Some(PenEvent::Down(_)))
+        match self.waiting.front() {
+            Some(PenEvent::Down(_)) => true,
+            Some(PenEvent::Draw) => !self.drawing,
+            _ => false,
+        }
+    }
+
+    /// The curve that is being laid; empty: none is.
+    pub fn draft(&self) -> &Draft {
+        &self.draft
+    }
+
+    /// The curve is drawn, once all that waits is done.
+    pub fn apply(&mut self) {
+        if !self.draft.is_empty() && self.waiting.back() != Some(&PenEvent::Draw) {
+            self.push(PenEvent::Draw);
+        }
+    }
+
+    /// The curve is put away, if it is not being drawn already. False: there is none.
+    pub fn cancel(&mut self) -> bool {
+        let there = !self.draft.is_empty() && !self.is_drawn();
+        if there {
+            self.draft.clear();
+        }
+        self.laying = Laying::No;
+        there
+    }
+
+    /// A handle of the curve is taken away. False: there is none.
+    pub fn delete(&mut self, handle: usize) -> bool {
+        let there = handle < self.draft.points().len() && !self.is_drawn();
+        if there {
+            self.draft.delete(handle);
+        }
+        there
+    }
+
+    fn is_drawn(&self) -> bool {
+        self.waiting.contains(&PenEvent::Draw)
     }
 
     pub fn is_idle(&self) -> bool {
@@ -157,17 +212,60 @@ impl PenTrack {
         let event = *self.waiting.front()?;
         let mut walked = Walked::default();
         let flow = match event {
+            PenEvent::Down(at) if on.way() == Way::Curve => {
+                self.from = at;
+                if self.draft.is_empty() {
+                    self.curve.begin(&at);
+                    self.laying = Laying::Free;
+                } else {
+                    self.draft.grab(&at, aspect);
+                    self.laying = Laying::Handle;
+                }
+                Flow::Go
+            }
+            PenEvent::Move(to) if self.laying != Laying::No => {
+                match self.laying {
+                    Laying::Free => self.curve.take(&to),
+                    _ => self.draft.drag(&to),
+                }
+                self.from = to;
+                Flow::Go
+            }
+            PenEvent::Up if self.laying != Laying::No => {
+                if self.laying == Laying::Free {
+                    self.curve.end(aspect);
+                    self.draft.lay(&self.curve, aspect);
+                }
+                self.draft.release();
+                self.laying = Laying::No;
+                Flow::Go
+            }
+            PenEvent::Draw => {
+                walked.began = !self.open;
+                self.open = true;
+                if !self.draw_curve(aspect, on) {
+                    walked.paused = true;
+                    return Some(walked);
+                }
+                self.draft.clear();
+                (walked.ended, self.open, self.drawing) = (true, false, false);
+                Flow::Go
+            }
             PenEvent::Down(at) => {
                 walked.began = !self.open;
                 self.open = true;
                 self.spacer = Spacer::new(aspect);
                 (self.from, self.start, self.drawing) = (at, at, false);
-                self.curve.begin(&at);
                 match on.way() {
                     Way::Spaced | Way::Each => self.spacer.begin(&at, on),
                     Way::Held => on.hold(&at, true),
                     Way::Line | Way::Curve => Flow::Go,
                 }
+            }
+            // Its curve was put away while it was down.
+            PenEvent::Move(to) if !self.open => {
+                self.from = to;
+                Flow::Go
             }
             PenEvent::Move(to) => {
                 let flow = match on.way() {
@@ -183,22 +281,18 @@ impl PenTrack {
                     // Only where it is now matters: what came between is passed over.
                     Way::Held if matches!(self.waiting.get(1), Some(PenEvent::Move(_))) => Flow::Go,
                     Way::Held => on.hold(&to, false),
-                    Way::Line => Flow::Go,
-                    Way::Curve => {
-                        self.curve.take(&to);
-                        Flow::Go
-                    }
+                    Way::Line | Way::Curve => Flow::Go,
                 };
                 self.from = to;
                 flow
             }
             PenEvent::Up => {
-                if matches!(on.way(), Way::Line | Way::Curve) && self.open && !self.draw(aspect, on) {
+                if on.way() == Way::Line && self.open && !self.draw_line(on) {
                     walked.paused = true;
                     return Some(walked);
                 }
                 walked.ended = self.open;
-                self.open = false;
+                (self.open, self.drawing) = (false, false);
                 Flow::Go
             }
         };
@@ -208,30 +302,31 @@ impl PenTrack {
         Some(walked)
     }
 
-    /// Draws the line or the curve that waited for the pen to lift. False: there is more of it, for the next tick.
-    fn draw(&mut self, aspect: f32, on: &mut dyn Surface) -> bool {
+    /// Draws the line that waited for the pen to lift. False: there is more of it, for the next tick.
+    fn draw_line(&mut self, on: &mut dyn Surface) -> bool {
         if !self.drawing {
-            // Another setting meanwhile does not change what is being drawn.
-            (self.drawing, self.pieces, self.curved) = (true, 0, on.way() == Way::Curve);
-            if self.curved {
-                self.curve.end(aspect);
-            }
+            (self.drawing, self.share) = (true, 0.0);
             self.spacer.begin(&self.start, on);
         }
-        let curved = self.curved;
-        let all = if curved { PIECES } else { 1 };
-        while self.pieces < all {
-            let point = |k: usize| match (k, curved) {
-                (k, true) => self.curve.point(k as f32 / PIECES as f32),
-                (0, false) => self.start,
-                (_, false) => self.from,
-            };
-            let (from, to) = (point(self.pieces), point(self.pieces + 1));
+        self.share = self.spacer.walk(&self.start, &self.from, self.share, on);
+        self.share >= 1.0
+    }
+
+    /// Draws the curve that was laid. False: there is more of it, for the next tick.
+    fn draw_curve(&mut self, aspect: f32, on: &mut dyn Surface) -> bool {
+        if !self.drawing {
+            (self.drawing, self.pieces, self.share) = (true, 0, 0.0);
+            self.spacer = Spacer::new(aspect);
+            self.from = self.draft.at(0, aspect);
+            self.spacer.begin(&self.from, on);
+        }
+        while self.pieces < self.draft.pieces() {
+            let (from, to) = (self.draft.at(self.pieces, aspect), self.draft.at(self.pieces + 1, aspect));
             self.share = self.spacer.walk(&from, &to, self.share, on);
             if self.share < 1.0 {
                 return false;
             }
-            self.share = 0.0;
+            (self.share, self.from) = (0.0, to);
             self.pieces += 1;
         }
         true

@@ -2,12 +2,14 @@
 
 use glam::Vec2;
 use winit::event::MouseButton;
+use winit::keyboard::ModifiersState;
 
 use super::overlay;
 use super::window::{Open, Wiring};
 use crate::brush::{BrushKind, BrushSettings};
 use crate::command::Command;
 use crate::devices::{Body, Pen, Sample, Tool};
+use crate::stroke::DraftAct;
 
 /// What a pressed button drags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -138,7 +140,14 @@ impl Open {
         self.pointer.inside = true;
         let state = wiring.published.load();
         let ray = self.camera.ray(overlay::view_point(self.pointer.at, self.size()));
-        let on_clay = || state.mesh.pick(ray).is_some();
+        // The handle of a curve may lie beside the clay.
+        let (draft, view) = (&state.draft, overlay::view_point(self.pointer.at, self.size()));
+        let handle = draft.handle_at(view, self.camera.aspect);
+        let on_clay = || handle.is_some() || state.mesh.pick(ray).is_some();
+        if let (MouseButton::Right, Some(handle)) = (button, handle) {
+            let _ = wiring.commands.try_send(Command::Draft(DraftAct::Delete(handle)));
+            return;
+        }
         self.pointer.drag = match button {
             MouseButton::Left if on_clay() => Drag::Sculpt,
             MouseButton::Left => Drag::Orbit,
@@ -152,10 +161,9 @@ impl Open {
             self.desk.prefs.done.touched = true;
             let brush = state.brush;
             let mut now = brush;
-            if self.mods.shift_key() {
-                now = brush.switched(BrushKind::Smooth);
+            if draft.is_empty() {
+                now = lent(brush, self.mods);
             }
-            now.negative ^= self.mods.control_key() || self.mods.alt_key();
             if now != brush {
                 self.pointer.lent = Some(brush);
                 let _ = wiring.commands.try_send(Command::Brush(now));
@@ -165,9 +173,30 @@ impl Open {
     }
 }
 
+/// The brush for one stroke with these keys down: Shift evens, Ctrl and Alt turn it round. Slide-relax evens by itself.
+fn lent(brush: BrushSettings, mods: ModifiersState) -> BrushSettings {
+    let mut now = match (mods.shift_key(), brush.kind) {
+        (true, BrushKind::SlideRelax) => BrushSettings { negative: !brush.negative, ..brush },
+        (true, _) => brush.switched(BrushKind::Smooth),
+        (false, _) => brush,
+    };
+    now.negative ^= mods.control_key() || mods.alt_key();
+    now
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shift_evens_and_slide_relax_relaxes() {
+        let of = BrushSettings::of;
+        assert_eq!(lent(of(BrushKind::Draw), ModifiersState::SHIFT).kind, BrushKind::Smooth);
+        let relaxing = lent(of(BrushKind::SlideRelax), ModifiersState::SHIFT);
+        assert!(relaxing.kind == BrushKind::SlideRelax && relaxing.negative);
+        assert!(lent(of(BrushKind::Draw), ModifiersState::CONTROL).negative);
+        assert_eq!(lent(of(BrushKind::Draw), ModifiersState::empty()), of(BrushKind::Draw));
+    }
 
     #[test]
     fn a_slow_pointer_presses_harder_than_a_quick_one() {

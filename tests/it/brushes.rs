@@ -1,10 +1,12 @@
 //! Brushes: golden strokes, formulas, properties.
 
+mod curve;
 mod formulas;
 mod golden;
 mod levels;
 mod properties;
 mod sheet;
+mod slide;
 mod spacing;
 mod texture;
 mod topology;
@@ -16,7 +18,7 @@ use sculptd::command::Command;
 use sculptd::devices::{Body, DeviceId, Pen, Sample};
 use sculptd::hand::HandSettings;
 use sculptd::mesh::{Mesh, TriMesh, Workers, shapes};
-use sculptd::stroke::Camera;
+use sculptd::stroke::{Camera, DraftAct};
 use sculptd::world::{World, WorldOptions};
 
 /// A work, a pen, and a hand that guides it.
@@ -101,6 +103,13 @@ impl Studio {
                 break;
             }
             dabs += self.rest(1);
+        }
+        if self.world.draft().is_some() {
+            // A curve that was laid is drawn at once.
+            dabs += self.step(&[], &[Command::Draft(DraftAct::Apply)]);
+            while self.paused {
+                dabs += self.rest(1);
+            }
         }
         dabs
     }

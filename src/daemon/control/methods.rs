@@ -21,6 +21,7 @@ use crate::devices::Clock;
 use crate::hand::{Choice, ReachBox};
 use crate::mesh::io::{read_mesh, write_mesh};
 use crate::mesh::{Snapshot, mend};
+use crate::stroke::DraftAct;
 
 /// Every method with its parameters, for `methods` and for the schema test.
 pub const METHODS: &[(&str, &str)] = &[
@@ -33,6 +34,10 @@ pub const METHODS: &[(&str, &str)] = &[
     ("brushes", "{}: every brush, what it does, its own numbers"),
     ("picture", "{path}: loads a picture of heights (PNG, TIFF, EXR) for brushes with the alpha picture"),
     ("mask", "{action: clear|fill|invert|blur|sharpen|grow|shrink|{cavity: 0..1}}: the whole work's mask"),
+    (
+        "curve",
+        "{act: apply|cancel|{delete: n}}: the curve that a pen has laid is drawn, put away, or loses its handle n, from 0",
+    ),
     ("camera", "{target?, yaw?, pitch?, distance?, fov_y?, aspect?, orthographic?}: likewise"),
     ("undo", "{}: takes back one step"),
     ("redo", "{}: does it again"),
@@ -185,6 +190,12 @@ fn watched(
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct CurveParam {
+    act: DraftAct,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct MaskParam {
     action: MaskAction,
 }
@@ -267,6 +278,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
                 "losses": f.losses, "tick_ms": f.tick_ms,
                 "vertices": state.mesh.vertex_count(), "triangles": state.mesh.triangle_count(),
                 "undo_steps": state.undo_steps, "redo_steps": state.redo_steps, "brush": state.brush,
+                "curve_points": state.draft.points().len(),
                 "journal": journal,
             }))
         }
@@ -301,6 +313,11 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "mask" => {
             send(Command::Mask(read::<MaskParam>(params)?.action))?;
             Ok(json!({ "sent": true }))
+        }
+        "curve" => {
+            let act = read::<CurveParam>(params)?.act;
+            send(Command::Draft(act))?;
+            Ok(json!({ "sent": true, "points": state.draft.points().len() }))
         }
         "brushes" => {
             read::<Nothing>(params)?;

@@ -34,7 +34,7 @@ fn cell(kind: BrushKind) -> Picture {
     }
     // What evens takes more than one stroke to be seen; what only moves or cuts triangles is seen by their size.
     let cuts = matches!(kind, BrushKind::Density | BrushKind::Simplify);
-    let sizes = cuts || kind == BrushKind::Relax;
+    let sizes = cuts || matches!(kind, BrushKind::Relax | BrushKind::SlideRelax);
     let evens = matches!(
         kind,
         BrushKind::Smooth | BrushKind::Flatten | BrushKind::Fill | BrushKind::Scrape | BrushKind::Relax
@@ -42,7 +42,8 @@ fn cell(kind: BrushKind) -> Picture {
     if evens {
         (brush.radius, brush.strength) = (0.2, 1.0);
     }
-    let coarse = matches!(kind, BrushKind::Smooth | BrushKind::Relax | BrushKind::Density);
+    let coarse =
+        matches!(kind, BrushKind::Smooth | BrushKind::Relax | BrushKind::SlideRelax | BrushKind::Density);
     let mut start = form(if coarse { 8_000 } else { 60_000 });
     if kind == BrushKind::Simplify {
         brush.topology.edge = 0.4;

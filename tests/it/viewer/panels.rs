@@ -5,10 +5,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
 use sculptd::analysis::projection::Polygon;
-use sculptd::brush::BrushKind;
+use sculptd::brush::{BrushKind, Method};
 use sculptd::command::Command;
 use sculptd::daemon::Published;
 use sculptd::daemon::trim::Part;
+use sculptd::devices::{Body, DeviceId, Pen, Sample};
 use sculptd::hand::Choice;
 use sculptd::panels::action::Action;
 use sculptd::panels::history::Thumb;
@@ -16,6 +17,7 @@ use sculptd::panels::measure::{Distances, Measured};
 use sculptd::panels::scene::Said;
 use sculptd::panels::trim::{Shape, Trim};
 use sculptd::panels::{Ask, Desk, Tab, View, all, timing::FrameFigures};
+use sculptd::stroke::DraftAct;
 use sculptd::viewer::look::Map;
 
 pub(super) struct State {
@@ -75,6 +77,66 @@ fn a_brush_is_chosen_by_its_name_and_a_mirror_by_its_axis() {
     h.get_by_label("y").click();
     h.run_steps(2);
     assert_eq!(brushes(&h).last().map(|b| b.symmetry), Some([false, true, false]));
+}
+
+#[test]
+fn a_curve_that_is_laid_has_buttons_and_keys() {
+    let mut world = super::world(2_000);
+    let mut brush = *world.brush();
+    brush.path.method = Method::Curve;
+    let pen = |x: f32, tip: bool, tick: u64| {
+        let area_mm = glam::Vec2::new(1600.0, 1000.0);
+        let pos_mm = area_mm * glam::Vec2::new(x, 0.5);
+        let pen = Pen { in_range: true, tip, pos_mm, area_mm, pressure: Some(0.7), ..Pen::default() };
+        Sample { device: DeviceId(1), t_us: tick * 8000, device_t_us: None, body: Body::Pen(pen) }
+    };
+    world.step(1, &[], &[Command::Brush(brush)]);
+    for (i, x) in [0.4, 0.5, 0.6].into_iter().enumerate() {
+        let tick = 2 + 2 * i as u64;
+        world.step(tick, &[pen(x, true, tick)], &[]);
+        world.step(tick + 1, &[pen(x, false, tick + 1)], &[]);
+    }
+    let mut h = harness(Tab::Look);
+    h.state_mut().published = super::published(&mut world);
+    h.run_steps(2);
+    assert_eq!(h.state().published.draft.points().len(), 3);
+    let acts = |h: &mut Harness<'_, State>| -> Vec<DraftAct> {
+        let of = |a: &Ask| match a {
+            Ask::World(Command::Draft(act)) => Some(*act),
+            _ => None,
+        };
+        h.state_mut().asked.drain(..).filter_map(|a| of(&a)).collect()
+    };
+    h.get_by_label("3 points");
+    h.key_press(Key::Enter);
+    h.run_steps(2);
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    // Which one is not known before one was held.
+    h.key_press(Key::Delete);
+    h.run_steps(2);
+    assert_eq!(acts(&mut h), [DraftAct::Apply, DraftAct::Cancel]);
+    // The pen holds the middle one.
+    world.step(20, &[pen(0.5, true, 20)], &[]);
+    h.state_mut().published = super::published(&mut world);
+    h.run_steps(2);
+    world.step(21, &[pen(0.5, false, 21)], &[]);
+    h.state_mut().published = super::published(&mut world);
+    h.run_steps(2);
+    h.get_by_label("Remove the point").click();
+    h.run_steps(2);
+    h.get_by_label("Draw the curve").click();
+    h.run_steps(2);
+    let asked = acts(&mut h);
+    assert_eq!(asked, [DraftAct::Delete(1), DraftAct::Apply]);
+    // What was asked for is what the world does.
+    for (i, act) in asked.into_iter().enumerate() {
+        world.step(30 + i as u64, &[], &[Command::Draft(act)]);
+    }
+    assert!(world.draft().is_none() && world.undo_steps() == 1);
+    h.state_mut().published = super::published(&mut world);
+    h.run_steps(2);
+    assert!(h.query_by_label("Draw the curve").is_none());
 }
 
 #[test]

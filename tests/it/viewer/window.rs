@@ -282,6 +282,50 @@ fn the_first_minutes_in_a_real_window() {
     assert_eq!(read.mesh.triangulate().0.triangles.len() as u64, s.figure("triangles"));
 }
 
+#[test]
+fn a_curve_is_laid_changed_and_drawn_with_the_pointer() {
+    let Some(mut s) = Stage::open(&[]) else { return };
+    let ball = s.dir.path().join("ball.obj");
+    write_mesh(&ball, &shapes::sphere_of_about(20_000).to_poly()).expect("written");
+    let begun = s.figure("vertices");
+    s.seen("c1-start");
+    s.ask("load", &json!({ "path": ball }));
+    s.until("the ball is there", |s| s.figure("vertices") != begun);
+    s.drive(&["key", "Home"]);
+    s.ask("brush", &json!({ "radius": 0.1, "path": { "method": "curve" } }));
+    let smooth = s.ask("hash", &Value::Null)["hash"].clone();
+    s.seen("c2-loaded");
+    let points = |n: u64| move |s: &mut Stage| s.figure("curve_points") == n;
+    // Drawn freely: five handles.
+    s.drag((-120, 0), (120, 20));
+    s.until("it is laid", points(5));
+    s.seen("c3-laid");
+    // The middle one dragged up, one more beside the end, the first taken away by the right button.
+    s.drag((0, 10), (0, -80));
+    s.seen("c4-dragged");
+    s.drag((140, 60), (140, 80));
+    s.until("there is one more", points(6));
+    let [x, y] = [(MIDDLE.0 - 120).to_string(), MIDDLE.1.to_string()];
+    s.drive(&["mousemove", &x, &y, "click", "3"]);
+    s.until("there is one less", points(5));
+    s.seen("c5-changed");
+    assert_eq!((s.figure("undo_steps"), s.ask("hash", &Value::Null)["hash"].clone()), (0, smooth.clone()));
+    s.drive(&["key", "Return"]);
+    s.until("it is drawn", |s| s.figure("undo_steps") == 1);
+    s.until("nothing is laid", points(0));
+    s.seen("c6-drawn");
+    assert_ne!(s.ask("hash", &Value::Null)["hash"], smooth);
+    s.drive(&["key", "ctrl+z"]);
+    s.until("it is one step", |s| s.figure("undo_steps") == 0);
+    assert_eq!(s.ask("hash", &Value::Null)["hash"], smooth);
+    // Another, and put away.
+    s.drag((-100, -50), (100, -60));
+    s.until("it is laid", points(5));
+    s.drive(&["key", "Escape"]);
+    s.until("it is put away", points(0));
+    assert_eq!(s.figure("undo_steps"), 0);
+}
+
 /// Types an action's name into the search and takes the first that is found.
 fn act(s: &Stage, name: &str) {
     s.drive(&["key", "ctrl+k"]);
