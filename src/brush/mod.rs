@@ -85,6 +85,7 @@ macro_rules! brushes {
     };
 }
 
+// Sessions know brushes by their place here: new ones come last.
 brushes! {
     "gaussian" Gaussian gaussian,
     "smooth" Smooth smooth,
@@ -108,13 +109,13 @@ brushes! {
     "thumb" Thumb thumb,
     "nudge" Nudge nudge,
     "relax" Relax relax,
-    "slide-relax" SlideRelax slide_relax,
     "mask" Mask mask,
     "mask-blur" MaskBlur mask_blur,
     "paint" Paint paint,
     "texture" Texture texture,
     "density" Density density,
     "simplify" Simplify simplify,
+    "slide-relax" SlideRelax slide_relax,
 }
 
 // The variants come from a macro, which marks no default.
