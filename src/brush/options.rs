@@ -97,7 +97,7 @@ pub enum Method {
     DragDot,
     /// A straight line from where the pen came down to where it lifts.
     Line,
-    /// A fair curve, near all that was drawn, once the pen lifts.
+    /// A curve laid by its points, or near all that was drawn: it may be changed before the brush is drawn along it.
     Curve,
 }
 

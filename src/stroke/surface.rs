@@ -51,7 +51,7 @@ pub enum Way {
     Held,
     /// A straight line, once the pen lifts.
     Line,
-    /// A fair curve through what was drawn, once the pen lifts.
+    /// A curve that is laid by handles first; see [`super::draft`].
     Curve,
 }
 
