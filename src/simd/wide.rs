@@ -43,6 +43,8 @@ pub const LEAF: u32 = 1 << 31;
 pub struct Prepared {
     origin: [f32; 3],
     inverse: [f32; 3],
+    /// The same for the far sides, so much larger that rounding never loses a box.
+    wider: [f32; 3],
     /// Index into [`Node::planes`], below 6, of the side that the ray meets first, and last, per axis.
     near: [usize; 3],
     far: [usize; 3],
@@ -76,31 +78,28 @@ impl Prepared {
     #[inline(always)]
     pub fn new(origin: [f32; 3], dir: [f32; 3], t_min: f32) -> Self {
         let a = dir.map(f32::abs);
-        let kz = if a[0] >= a[1] && a[0] >= a[2] {
-            0
-        } else if a[1] >= a[2] {
-            1
-        } else {
-            2
-        };
-        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+        // The longest axis, the first of equals. Without branches: which it is cannot be guessed.
+        let not_x = (a[1].max(a[2]) > a[0]) as usize;
+        let kz = not_x + (not_x & (a[2] > a[1]) as usize);
+        let (kx, ky) = ([1, 2, 0][kz], [2, 0, 1][kz]);
         // A zero component would make 0 * inf = NaN on a slab's own plane; 1e36 cannot, and no t is so large.
         let inverse = dir.map(|d| if d.abs() < 1e-36 { 1e36f32.copysign(d) } else { 1.0 / d });
         let s = dir.map(|d| d.is_sign_negative() as usize * 3);
         Prepared {
             origin,
             inverse,
+            wider: inverse.map(|x| x * WIDEN),
             near: [s[0], 1 + s[1], 2 + s[2]],
             far: [3 - s[0], 4 - s[1], 5 - s[2]],
             k: [kx, ky, kz],
             turned: [origin[kx], origin[ky], origin[kz]],
-            shear: [dir[kx] / dir[kz], dir[ky] / dir[kz], 1.0 / dir[kz]],
+            shear: [dir[kx] * inverse[kz], dir[ky] * inverse[kz], inverse[kz]],
             t_min,
         }
     }
 }
 
-/// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3).
+/// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3), and one rounding more of its own product.
 const WIDEN: f32 = 1.000_000_5;
 
 /// Squared sine of the angle from which on a triangle's plane is sure to a few roundings: below it the plane bounds the
@@ -130,6 +129,8 @@ pub trait Wide: Copy {
     /// near as `high`. `slack` is the rounding's share of the largest distance of a corner. A sliver of which single
     /// precision cannot tell gets 0 and infinity, and so does an empty lane.
     fn near_triangles(self, p: [f32; 3], pack: &Pack, slack: f32, low: &mut [f32; 4], high: &mut [f32; 4]);
+    /// Asks the memory for `of[at]`; nothing where there is no such place.
+    fn fetch<T>(self, of: &[T], at: usize);
     /// Writes the normals of as many vertices of `to`, from the first on, as go fast, and says how many.
     fn ring_normals(self, hexes: &Hexes, points: &[Vec4], to: &mut Rows<'_>) -> usize;
 }
@@ -153,9 +154,13 @@ impl Wide for Scalar {
     fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
         let mut mask = 0;
         for i in 0..8 {
-            let at = |plane: usize, axis: usize| (node.planes[plane][i] - r.origin[axis]) * r.inverse[axis];
-            let n = max(max(at(r.near[0], 0), at(r.near[1], 1)), max(at(r.near[2], 2), r.t_min));
-            let f = min(min(at(r.far[0], 0), at(r.far[1], 1)) * WIDEN, min(at(r.far[2], 2) * WIDEN, t_max));
+            let at = |plane: usize, axis: usize, inverse: [f32; 3]| {
+                (node.planes[plane][i] - r.origin[axis]) * inverse[axis]
+            };
+            let n = |axis: usize| at(r.near[axis], axis, r.inverse);
+            let f = |axis: usize| at(r.far[axis], axis, r.wider);
+            let n = max(max(n(0), n(1)), max(n(2), r.t_min));
+            let f = min(min(f(0), f(1)), min(f(2), t_max));
             near[i] = n;
             mask |= ((n <= f) as u32) << i;
         }
@@ -232,6 +237,9 @@ impl Wide for Scalar {
     }
 
     #[inline(always)]
+    fn fetch<T>(self, _: &[T], _: usize) {}
+
+    #[inline(always)]
     fn ring_normals(self, _: &Hexes, _: &[Vec4], _: &mut Rows<'_>) -> usize {
         0
     }
@@ -243,7 +251,7 @@ pub(super) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
     use super::super::rings::{self, Hexes, Rows};
-    use super::{Node, Pack, PackHits, Prepared, WIDE, WIDEN, Wide};
+    use super::{Node, Pack, PackHits, Prepared, WIDE, Wide};
     use glam::Vec4;
     use std::arch::x86_64::*;
 
@@ -257,21 +265,20 @@ mod avx2 {
             // SAFETY: the token proves AVX2; `near` and `far` are below 6, as only `Prepared::new` makes them; all loads and
             // stores are within the arrays they take their address from.
             unsafe {
-                let at = |plane: usize, axis: usize| {
+                let at = |plane: usize, axis: usize, inverse: [f32; 3]| {
                     let p = _mm256_load_ps(node.planes.get_unchecked(plane).as_ptr());
-                    _mm256_mul_ps(
-                        _mm256_sub_ps(p, _mm256_set1_ps(r.origin[axis])),
-                        _mm256_set1_ps(r.inverse[axis]),
-                    )
+                    let from = _mm256_sub_ps(p, _mm256_set1_ps(r.origin[axis]));
+                    _mm256_mul_ps(from, _mm256_set1_ps(inverse[axis]))
                 };
-                let widen = _mm256_set1_ps(WIDEN);
+                let near_side = |axis: usize| at(r.near[axis], axis, r.inverse);
+                let far_side = |axis: usize| at(r.far[axis], axis, r.wider);
                 let n = _mm256_max_ps(
-                    _mm256_max_ps(at(r.near[0], 0), at(r.near[1], 1)),
-                    _mm256_max_ps(at(r.near[2], 2), _mm256_set1_ps(r.t_min)),
+                    _mm256_max_ps(near_side(0), near_side(1)),
+                    _mm256_max_ps(near_side(2), _mm256_set1_ps(r.t_min)),
                 );
                 let f = _mm256_min_ps(
-                    _mm256_mul_ps(_mm256_min_ps(at(r.far[0], 0), at(r.far[1], 1)), widen),
-                    _mm256_min_ps(_mm256_mul_ps(at(r.far[2], 2), widen), _mm256_set1_ps(t_max)),
+                    _mm256_min_ps(far_side(0), far_side(1)),
+                    _mm256_min_ps(far_side(2), _mm256_set1_ps(t_max)),
                 );
                 _mm256_storeu_ps(near.as_mut_ptr(), n);
                 _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(n, f)) as u32
@@ -400,6 +407,16 @@ mod avx2 {
                 // Both give their second argument where the first is not a number.
                 _mm_storeu_ps(low.as_mut_ptr(), _mm_max_ps(below, zero));
                 _mm_storeu_ps(high.as_mut_ptr(), _mm_min_ps(above, inf));
+            }
+        }
+
+        #[inline(always)]
+        fn fetch<T>(self, of: &[T], at: usize) {
+            let Some(one) = of.get(at) else { return };
+            let start = std::ptr::from_ref(one).cast::<i8>();
+            for line in 0..size_of::<T>().div_ceil(64) {
+                // SAFETY: a hint reads nothing; the token proves the processor has it.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(line * 64)) };
             }
         }
 

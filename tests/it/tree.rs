@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use sculptd::analysis::cancel::{Cancelled, Job};
-use sculptd::analysis::tree::{Ray, TreeHit, WideTree};
+use sculptd::analysis::tree::{Ray, Stack, TreeHit, WideTree};
 use sculptd::mesh::TriMesh;
 
 use crate::thickness_shapes::{Random, sphere};
@@ -43,6 +43,28 @@ fn equals_brute_force_and_its_own_scalar_twin_bit_for_bit() {
         found += hit.is_some() as usize;
     }
     assert!((100..400).contains(&found), "{found} of 400");
+}
+
+/// A tree that the caches hold casts rays one by one, a larger one lets them take turns: the answers are the same.
+#[test]
+fn many_rays_at_once_meet_what_each_meets_alone() {
+    let mut random = Random(5);
+    for (across, along) in [(40, 60), (600, 360)] {
+        let tree = WideTree::build(&sphere(1.0, across, along), &Job::default()).unwrap();
+        let mut stack = Stack::new();
+        let mut many = Vec::new();
+        for n in [0, 1, 3, 4, 5, 500, 0, 7] {
+            let rays = rays(&mut random, n);
+            let accept = |ray: usize, t: u32| !(t as usize + ray).is_multiple_of(5);
+            tree.closest_hits(&mut stack, &rays, accept, &mut many);
+            let alone: Vec<_> =
+                rays.iter().enumerate().map(|(i, &r)| tree.closest_hit(r, |t| accept(i, t))).collect();
+            assert_eq!(many, alone);
+            assert!(n < 500 || many.iter().flatten().count() > 100);
+            tree.clone().without_simd().closest_hits(&mut stack, &rays, accept, &mut many);
+            assert_eq!(many, alone);
+        }
+    }
 }
 
 #[test]

@@ -61,6 +61,8 @@ const SAME_WALL: f32 = 0.5;
 #[derive(Debug, Default)]
 pub struct Scratch {
     values: Vec<(f32, f32)>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<TreeHit>>,
     stack: Stack,
 }
 
@@ -70,28 +72,26 @@ const TURNED: f32 = 0.766;
 impl Caster<'_> {
     /// The nearest wall ahead that faces the site: not its own triangles, none whose normal points the site's way.
     pub fn hit(&self, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
-        self.hit_with(&mut Stack::new(), site, dir)
+        self.tree.closest_hit(Ray::new(site.point, dir), |t| self.faces(site, t))
     }
 
-    fn hit_with(&self, stack: &mut Stack, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
-        let ray = Ray::new(site.point, dir);
-        self.tree.closest_hit_with(stack, ray, |t| {
-            self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.own.contains(&t)
-        })
+    fn faces(&self, site: &Site<'_>, t: u32) -> bool {
+        self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.own.contains(&t)
     }
 
     /// The cone's value, and whether the wall that the axis ray meets is turned by more than [`TURNED`] from the site's;
     /// `scratch` is reused between calls.
     pub fn measure(&self, site: &Site<'_>, scratch: &mut Scratch) -> Option<(Folded, bool)> {
-        let Scratch { values: scratch, stack } = scratch;
+        let Scratch { values: scratch, rays, hits, stack } = scratch;
         scratch.clear();
         let mut turned = false;
         let (x, y) = frame(site.away);
         let mut first = None::<Vec3>;
-        for (i, d) in self.cone.dirs.iter().enumerate() {
-            // Turned about the axis so that +z of the cone runs into the wall.
-            let dir = x * d.x + y * d.y - site.away * d.z;
-            let hit = self.hit_with(stack, site, dir);
+        // Turned about the axis so that +z of the cone runs into the wall.
+        rays.clear();
+        rays.extend(self.cone.dirs.iter().map(|d| Ray::new(site.point, x * d.x + y * d.y - site.away * d.z)));
+        self.tree.closest_hits(stack, rays, |_, t| self.faces(site, t), hits);
+        for (i, (&Ray { dir, .. }, &hit)) in rays.iter().zip(&*hits).enumerate() {
             if i == 0 {
                 if self.correction == Correction::Chord {
                     first = hit.map(|h| self.wall(&h));
@@ -129,10 +129,9 @@ impl Caster<'_> {
         }
         // Where nothing met the rule of the same wall, the plain lengths still tell more than nothing.
         if scratch.is_empty() && self.correction == Correction::Chord {
-            for (d, &weight) in self.cone.dirs.iter().zip(&self.cone.weights) {
-                let dir = x * d.x + y * d.y - site.away * d.z;
-                if let Some(hit) = self.hit_with(stack, site, dir) {
-                    let cos = self.face_normals[hit.triangle as usize].dot(dir).abs();
+            for ((ray, hit), &weight) in rays.iter().zip(&*hits).zip(&self.cone.weights) {
+                if let Some(hit) = hit {
+                    let cos = self.face_normals[hit.triangle as usize].dot(ray.dir).abs();
                     scratch.push((hit.t * cos, weight));
                 }
             }

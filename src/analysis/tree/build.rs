@@ -3,19 +3,16 @@
 use glam::Vec3;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
+use super::collapse::Plan;
 use super::{LEAF, NO_TRIANGLE, Node, Pack, WideTree};
 use crate::analysis::cancel::{Cancelled, Job};
 use crate::mesh::TriMesh;
 
 /// Share of the nodes that each reinsertion pass looks at.
 const REINSERTION: f32 = 0.02;
-/// Cost of a node in triangles. A pack of four costs as much as one triangle and as one node of eight, so leaves are merged
-/// until they are full: a quarter faster than with a cost of 1, which leaves them half empty.
-const TRAVERSAL_COST: f32 = 8.0;
 /// Boxes grow by this share of the largest coordinate: the triangle test's shear rounds a corner by less.
 pub(super) const PAD: f32 = 1e-6;
 
@@ -52,12 +49,13 @@ pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
     job.check()?;
     ReinsertionOptimizer::default().run(&mut binary, REINSERTION, Some(vec![1.0, 0.5, 0.25]));
     job.check()?;
-    collapse(&mut binary, 4, TRAVERSAL_COST);
+    let plan = Plan::new(&binary);
     job.check()?;
 
     let (lo, hi) = bounds;
     let pad = Vec3::splat(lo.abs().max(hi.abs()).max_element() * PAD);
-    let mut maker = Maker { binary: &binary, used: &used, pad, corners, tree: &mut tree, depth: 0 };
+    let mut maker =
+        Maker { binary: &binary, plan: &plan, used: &used, pad, corners, tree: &mut tree, depth: 0 };
     maker.tree.nodes.reserve(count / 6);
     maker.tree.packs.reserve(count / 2);
     maker.root();
@@ -72,6 +70,7 @@ fn maker_stack(depth: usize) -> usize {
 
 struct Maker<'a, C> {
     binary: &'a Bvh2,
+    plan: &'a Plan<'a>,
     used: &'a [u32],
     pad: Vec3,
     corners: C,
@@ -86,11 +85,11 @@ impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
         self.tree.nodes.push(empty());
         while let Some((from, to, depth)) = todo.pop() {
             self.depth = self.depth.max(depth);
-            let (children, n) = self.open(from);
+            let (children, n) = self.plan.children(from);
             for (lane, &c) in children[..n].iter().enumerate() {
                 let b = self.binary.nodes[c];
-                let child = if b.is_leaf() {
-                    self.leaf(b.first_index as usize, b.prim_count as usize)
+                let child = if self.plan.is_leaf(c) {
+                    self.leaf(c)
                 } else {
                     let index = self.tree.nodes.len();
                     self.tree.nodes.push(empty());
@@ -108,33 +107,10 @@ impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
         }
     }
 
-    /// The up to eight binary nodes that become one wide node's children: the largest inner one is opened while there is room.
-    fn open(&self, from: usize) -> ([usize; 8], usize) {
-        let nodes = &self.binary.nodes;
-        let mut out = [0usize; 8];
-        out[0] = from;
-        let mut n = 1;
-        while n < 8 {
-            let mut largest = None::<(usize, f32)>;
-            for (lane, &c) in out[..n].iter().enumerate() {
-                let area = nodes[c].aabb().half_area();
-                if !nodes[c].is_leaf() && largest.is_none_or(|(_, a)| area > a) {
-                    largest = Some((lane, area));
-                }
-            }
-            let Some((lane, _)) = largest else { break };
-            let first = nodes[out[lane]].first_index as usize;
-            out[lane] = first;
-            out[n] = first + 1;
-            n += 1;
-        }
-        (out, n)
-    }
-
-    fn leaf(&mut self, first: usize, count: usize) -> u32 {
+    fn leaf(&mut self, from: usize) -> u32 {
         let mut pack = Pack { v: [[[f32::NAN; 4]; 3]; 3], id: [NO_TRIANGLE; 4] };
-        let ids = &self.binary.primitive_indices[first..first + count.min(4)];
-        for (lane, &i) in ids.iter().enumerate() {
+        let (ids, count) = self.plan.triangles(from);
+        for (lane, &i) in ids[..count].iter().enumerate() {
             let t = self.used[i as usize];
             let Some(corners) = (self.corners)(t) else { continue };
             pack.id[lane] = t;

@@ -10,7 +10,9 @@
 
 mod build;
 mod closest;
+mod collapse;
 mod refit;
+mod several;
 mod traverse;
 
 use glam::Vec3;
@@ -60,6 +62,9 @@ pub struct WideTree {
     stack: usize,
     scalar: bool,
 }
+
+/// Bytes of leaves from which on a tree is read from memory rather than from the processor's caches.
+const CACHED: usize = 16 << 20;
 
 impl WideTree {
     /// Builds the tree in about 0.35 us a triangle on one core. Triangles with a coordinate that is not finite or is beyond [`REACH`], or with a
@@ -120,6 +125,27 @@ impl WideTree {
     ) -> Option<TreeHit> {
         let stack = stack.slots(self);
         wide::dispatch(self.scalar, traverse::Closest { tree: self, ray: &ray, accept, stack })
+    }
+
+    /// The nearest hit of each ray on a triangle that `accept` takes (it is told the ray's index); `hits` becomes as long
+    /// as `rays`. The same answers as [`Self::closest_hit`]; in a tree too large for the caches a fifth faster, for there
+    /// rays take turns.
+    #[inline]
+    pub fn closest_hits(
+        &self,
+        stack: &mut Stack,
+        rays: &[Ray],
+        accept: impl Fn(usize, u32) -> bool,
+        hits: &mut Vec<Option<TreeHit>>,
+    ) {
+        hits.clear();
+        hits.resize(rays.len(), None);
+        let (tree, stack) = (self, stack.slots(self));
+        if self.packs.len() * size_of::<Pack>() < CACHED {
+            wide::dispatch(self.scalar, traverse::OneByOne { tree, rays, accept, stack, hits });
+        } else {
+            wide::dispatch(self.scalar, several::Several { tree, rays, accept, stack, hits });
+        }
     }
 
     /// Any hit on a triangle that `accept` takes: is the way between `t_min` and `t_max` blocked?
