@@ -276,7 +276,7 @@ impl World {
 
     /// Curves that pens have laid are put away. False: there were none.
     fn put_away(&mut self) -> bool {
-        self.pens.iter_mut().fold(false, |any, s| s.track.cancel() || any)
+        self.pens.iter_mut().fold(false, |any, s| s.track.cancel() | any)
     }
 
     fn replace(&mut self, new: &NewClay, masks: &[f32]) {

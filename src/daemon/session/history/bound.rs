@@ -169,7 +169,7 @@ impl<'a> Cut<'a> {
             return Ok(());
         };
         let changes = tree.versions(next.id).into_iter().map(|(page, v)| (page, v, v)).collect();
-        let first = Node { parent: None, changes, ..next.clone() };
+        let first = Node { parent: None, changes, ..next };
         for name in named(&first) {
             *self.uses.entry(name).or_default() += 1;
         }
