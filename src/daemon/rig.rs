@@ -101,7 +101,7 @@ pub fn begin(
         let mut opened = session::open(&path);
         if !matches!(
             &opened,
-            Ok(Opened { loss: None, .. }) | Err(OpenError::TooNew { .. } | OpenError::Io { .. })
+            Ok(Opened { loss: None, .. }) | Err(OpenError::OtherLayout { .. } | OpenError::Io { .. })
         ) {
             // A damaged file is kept as it is; the work goes on in another, beside it.
             match session::salvage(&path) {

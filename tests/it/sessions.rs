@@ -244,6 +244,31 @@ fn the_session_tools_tell_and_mend() {
     assert!(Path::new(&bad).exists() && !Path::new(&good).exists());
 }
 
+/// Strokes fall elsewhere in another version: its session is neither read nor "saved", which would be another work.
+#[test]
+fn a_session_of_another_layout_is_refused_and_left_alone() {
+    let dir = tempfile::tempdir().expect("a folder");
+    whole(dir.path(), 3);
+    let path = dir.path().join("s.sculpt");
+    for (layout, who) in [(session::VERSION - 1, "an older"), (session::VERSION + 1, "a newer")] {
+        let db = rusqlite::Connection::open(&path).expect("opens");
+        db.pragma_update(None, "user_version", layout).expect("written");
+        drop(db);
+        let before = std::fs::read(&path).expect("read");
+        for args in [&["replay"][..], &["run", "--headless", "--session"]] {
+            let out =
+                Command::new(env!("CARGO_BIN_EXE_sculptd")).args(args).arg(&path).output().expect("runs");
+            let said = String::from_utf8_lossy(&out.stderr);
+            assert!(!out.status.success(), "{args:?}: {said}");
+            assert!(said.contains(who) && said.contains(&format!("layout {layout}")), "{args:?}: {said}");
+        }
+        assert!(std::fs::read(&path).expect("read") == before, "the file was changed");
+        let files = std::fs::read_dir(dir.path()).expect("a folder").flatten();
+        let saved = files.filter(|f| f.file_name().to_string_lossy().ends_with(".sculpt")).count();
+        assert_eq!(saved, 1, "nothing is saved beside it");
+    }
+}
+
 #[test]
 fn a_disk_that_keeps_everybody_waiting_costs_a_kill_nothing() {
     let dir = tempfile::tempdir().expect("a folder");

@@ -25,8 +25,9 @@ pub use writer::{Fault, Health, SessionWriter, create, resume};
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms that a crash may cost.
 pub const GROUP_MS: u64 = 50;
 
-/// The version of the file's layout. A newer file is refused by name, an older one is read.
-pub const VERSION: u32 = 2;
+/// The version of the file's layout, and of what the clay does with the input in it: where strokes fall, what brushes
+/// and levels do. A session is its input, so a file of another version is refused by name and left as it is.
+pub const VERSION: u32 = 3;
 
 /// "SCLP": tells a session from any other SQLite file (`PRAGMA application_id`).
 pub const APPLICATION_ID: i32 = 0x53_43_4c_50;

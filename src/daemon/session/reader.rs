@@ -17,8 +17,12 @@ pub enum OpenError {
         "{path}: not a session file (expected an SQLite database with application id {APPLICATION_ID:#x})"
     )]
     NotASession { path: String },
-    #[error("{path}: written by a newer sculptd (layout {found}, this one reads up to {VERSION})")]
-    TooNew { path: String, found: u32 },
+    #[error(
+        "{path}: written by {} sculptd (layout {found}, this one reads {VERSION}): the same input makes other clay in \
+         each; nothing was changed, open it with that one and export the work",
+        if *.found > VERSION { "a newer" } else { "an older" }
+    )]
+    OtherLayout { path: String, found: u32 },
     #[error("{path}: {what} cannot be read: {source}")]
     Damaged { path: String, what: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("{path}: {source}")]
@@ -85,8 +89,9 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
         return Err(OpenError::NotASession { path: name });
     }
     let found: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0)).map_err(not)?;
-    if found > VERSION {
-        return Err(OpenError::TooNew { path: name, found });
+    // 0: its header never reached the disk, and what follows says what is missing.
+    if found != VERSION && found != 0 {
+        return Err(OpenError::OtherLayout { path: name, found });
     }
     let damaged = |what: &'static str, source: Box<dyn std::error::Error + Send + Sync>| OpenError::Damaged {
         path: name.clone(),
