@@ -6,7 +6,7 @@
 //! mesh's extent and the ray's distance from it.
 //!
 //! Built as a binary tree by locally ordered clustering (Meister and Bittner 2018, crate `obvhs`), improved by a short
-//! reinsertion (Meister and Bittner 2017), then collapsed: each wide node opens its largest child until it holds eight.
+//! reinsertion (Meister and Bittner 2017), then collapsed into wide nodes at the least expected cost.
 
 mod build;
 mod closest;
