@@ -320,7 +320,7 @@ mod tests {
         let (back, lower) = down(&higher, &two);
         assert!(back == one && down(&lower, &back).0 == base);
         let mask = one.masks.expect("it came along");
-        assert!(mask.iter().all(|m| (0.0..=1.0).contains(m)) && mask.iter().any(|m| *m == 0.125));
+        assert!(mask.iter().all(|m| (0.0..=1.0).contains(m)) && mask.contains(&0.125));
     }
 
     #[test]
@@ -347,7 +347,7 @@ mod tests {
         let (all, left) = (widest(&swollen.mesh, &two.mesh), widest(&bare.mesh, &swollen.mesh));
         assert!(left < 0.03 * all, "{left} of {all} is left as detail");
         // A coarse vertex has no say over what is far from it, to the bit.
-        let (mut edited, v) = (coarsest.clone(), 0);
+        let (mut edited, v) = (coarsest, 0);
         edited.mesh.positions[v] *= 1.1;
         let at = edited.mesh.positions[v];
         let (again, levels) = up(Some(&lowest), &edited);

@@ -41,12 +41,6 @@ fn pen(tick: u64, at: Vec2, tip: bool) -> Sample {
     Sample { device: DeviceId(1), t_us: tick * 8333, device_t_us: None, body: Body::Pen(pen) }
 }
 
-/// Processor time of this thread, ns; where the system does not say, the clock's.
-fn spent_ns(clock: &Clock) -> u64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    text.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or_else(|| clock.now_ns())
-}
-
 /// A session under way, with its history.
 struct Studio {
     path: PathBuf,
@@ -55,7 +49,7 @@ struct Studio {
     thread: Option<WriterThread>,
     history: Handle,
     jumps: cc::Receiver<Command>,
-    /// What it cost the tick thread to hand over each tick, ns of the processor; others may take the processor meanwhile.
+    /// What it cost the tick thread to hand over each tick, ns; the most may be another's time on the processor.
     handed: Vec<u64>,
     clock: Clock,
 }
@@ -112,9 +106,9 @@ impl Studio {
         self.world.step(tick, samples, &all);
         self.world.verify_invariants().expect("sound");
         if let Some(writer) = &mut self.writer {
-            let before = spent_ns(&self.clock);
+            let before = self.clock.now_ns();
             writer.tick(tick, samples, &all, &self.world);
-            self.handed.push(spent_ns(&self.clock) - before);
+            self.handed.push(self.clock.now_ns() - before);
         }
     }
 

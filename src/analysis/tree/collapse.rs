@@ -56,7 +56,7 @@ impl<'a> Plan<'a> {
         // A leaf costs what a node costs; with half or three times as much the trees are as fast.
         let as_leaf = area;
         if node.is_leaf() {
-            return Choice { cost: [as_leaf; 7], left: [0; 7], count: node.prim_count as u32, leaf: true };
+            return Choice { cost: [as_leaf; 7], left: [0; 7], count: node.prim_count, leaf: true };
         }
         let (l, r) = (&self.choices[node.first_index as usize], &self.choices[node.first_index as usize + 1]);
         let mut out = Choice { count: l.count + r.count, ..Choice::default() };
