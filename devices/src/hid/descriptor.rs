@@ -213,10 +213,13 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
         match tag {
             0x18 => low = value,
             0x28 => high = value,
-            0x80 | 0x90 | 0xb0 => {
+            0x80 | 0x90 | 0xa0 | 0xb0 => {
                 let (size, count) = (globals.of(0x74), globals.of(0x94));
-                total = total.saturating_add(size.saturating_mul(count));
-                let wide = size > 4096 * 8 || count > MAX_REPORT_BITS || total > 8 * MAX_REPORT_BITS;
+                // A collection has usages, and no bits.
+                let field = tag != 0xa0;
+                total = total.saturating_add(if field { size.saturating_mul(count) } else { 0 });
+                let wide =
+                    field && (size > 4096 * 8 || count > MAX_REPORT_BITS) || total > 8 * MAX_REPORT_BITS;
                 // A range of usages is listed one by one.
                 listed += high.saturating_sub(low);
                 if wide || listed > MAX_USAGES {
@@ -224,6 +227,7 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
                 }
                 (low, high) = (0, 0);
             }
+            0xc0 => (low, high) = (0, 0),
             _ => {}
         }
     }
@@ -419,5 +423,27 @@ impl Placed {
 
     fn is_pen(&self) -> bool {
         self.0.x.is_some() && (self.0.pressure.is_some() || self.0.in_range.is_some())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nine bytes that name three thousand million usages: a reader that lists them needs gigabytes.
+    #[test]
+    fn a_range_of_usages_without_end_is_refused_wherever_it_is_used() {
+        for main in [0xa0u8, 0x80, 0x90, 0xb0] {
+            let bytes = [0x1a, 0x20, 0xab, 0x2b, 0xab, 0xab, 0xab, 0xab, main];
+            assert_eq!(Descriptor::parse(&bytes).err(), Some(DescriptorError::Absurd(8)), "{main:#x}");
+        }
+        // What a collection or its end has used up counts no more.
+        let whole = [0x05, 0x0d, 0x1a, 0, 0, 0x2a, 0xff, 0xff];
+        let kept = [&whole[..], &[0xa1, 0x01, 0xc0]].concat().repeat(3);
+        assert!(Descriptor::parse(&kept).is_ok());
+        assert_eq!(
+            Descriptor::parse(&kept.repeat(2)).err().map(|e| matches!(e, DescriptorError::Absurd(_))),
+            Some(true)
+        );
     }
 }

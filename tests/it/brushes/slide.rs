@@ -69,8 +69,7 @@ fn triangles_slide_with_the_stroke_and_the_form_stays() {
 #[test]
 fn turned_round_it_relaxes_and_the_form_stays() {
     // A ball whose vertices were strewn about on it.
-    let ball = shapes::sphere_of_about(10_000);
-    let (mut start, mut dice) = (ball.clone(), Dice(9));
+    let (mut start, mut dice) = (shapes::sphere_of_about(10_000), Dice(9));
     start.positions.iter_mut().for_each(|p| *p = (*p + dice.unit().cross(*p) * 0.01).normalize());
     let end = drawn(&start, true, 4);
     let spread = |m: &TriMesh| {
