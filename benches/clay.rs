@@ -2,9 +2,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{Gaussian, Smooth};
-use sculptd::mesh::{Mesh, Ray, Reach, Workers, shapes};
+use sculptd_clay::brush::{Gaussian, Smooth};
+use sculptd_clay::{Mesh, Ray, Reach, Workers};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 const VERTICES: usize = 1_000_000;
 

@@ -3,13 +3,13 @@
 
 use std::path::Path;
 
-use crate::analysis::cancel::Job;
-use crate::mesh::Mesh;
+use sculptd_clay::Mesh;
+use sculptd_geometry::job::Job;
 
 /// A mesh file of the kind that its name's ending (`obj`, `stl`, `ply`, `glb`, `3mf`) says: read, made into triangles, built.
 pub fn mesh_bytes(kind: &str, data: &[u8]) {
     let name = format!("input.{kind}");
-    if let Ok(loaded) = crate::mesh::io::parse(data, Path::new(&name), &Job::default()) {
+    if let Ok(loaded) = sculptd_geometry::io::parse(data, Path::new(&name), &Job::default()) {
         let (plain, _) = loaded.mesh.triangulate();
         let _ = Mesh::build(&plain, &Job::default());
     }
@@ -20,36 +20,37 @@ pub fn mesh_bytes(kind: &str, data: &[u8]) {
 pub fn page_bytes(data: &[u8]) {
     let Some((length, rest)) = data.split_first_chunk::<4>() else { return };
     let (shape, points) = rest.split_at(u32::from_le_bytes(*length) as usize % (rest.len() + 1));
-    if let Ok(topology) = crate::mesh::page::Topology::from_bytes(shape) {
-        let _ = crate::mesh::Page::from_bytes(points, std::sync::Arc::new(topology), 1);
+    if let Ok(topology) = sculptd_clay::page::Topology::from_bytes(shape) {
+        let _ = sculptd_clay::Page::from_bytes(points, std::sync::Arc::new(topology), 1);
     }
 }
 
 /// One line for the control socket.
 #[cfg(unix)]
 pub fn rpc_bytes(data: &[u8]) {
-    if let Ok(request) = crate::daemon::control::protocol::parse(data) {
+    if let Ok(request) = sculptd_daemon::control::protocol::parse(data) {
         // What a method makes of its parameters: the settings that most of them are.
-        let _ = serde_json::from_value::<crate::brush::BrushSettings>(request.params.clone())
+        let _ = serde_json::from_value::<sculptd_clay::brush::BrushSettings>(request.params.clone())
             .map(|b| b.clamped());
-        let _ = serde_json::from_value::<crate::stroke::Camera>(request.params.clone()).map(|c| c.is_sane());
-        let _ = serde_json::from_value::<crate::hand::ReachBox>(request.params).map(|r| r.is_sane());
+        let _ = serde_json::from_value::<sculptd_engine::camera::Camera>(request.params.clone())
+            .map(|c| c.is_sane());
+        let _ = serde_json::from_value::<sculptd_engine::hand::ReachBox>(request.params).map(|r| r.is_sane());
     }
 }
 
 /// A settings file.
 pub fn config_bytes(data: &[u8]) {
     if let Ok(text) = std::str::from_utf8(data) {
-        let _ = crate::config::Resolved::of_text(text, "input");
+        let _ = sculptd_daemon::config::Resolved::of_text(text, "input");
     }
 }
 
 /// A session file, put into `folder` (which must be empty): its history listed; opened, or else salvaged; replayed; opened at
 /// its newest checkpoint.
 pub fn session_bytes(folder: &Path, data: &[u8]) {
-    use crate::daemon::session;
+    use sculptd_daemon::session;
     let path = folder.join("input.sculpt");
-    let written = crate::mesh::io::write_beside(&path, |out| out.write_all(data));
+    let written = sculptd_geometry::io::write_beside(&path, |out| out.write_all(data));
     if written.is_err() {
         return;
     }
@@ -57,7 +58,7 @@ pub fn session_bytes(folder: &Path, data: &[u8]) {
     let opened = session::open(&path)
         .or_else(|e| session::salvage(&path).map_err(|_| e).and_then(|saved| session::open(&saved.path)));
     if let Ok(opened) = opened {
-        let workers = crate::mesh::Workers::new(1);
+        let workers = sculptd_clay::Workers::new(1);
         let _ = session::replay::replay(&opened, Some(400), workers, &Job::default());
         let _ = session::history::reopen(&opened.path, &opened, Some(400), 1, &Job::default());
     }

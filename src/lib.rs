@@ -7,8 +7,8 @@
 //!
 //! ## Three laws
 //! 1. **Two things change the world: a `Sample` (what a device said) and a `Command` (what was asked).** A panel's click, a
-//!    control-socket call, a finished Boolean, an undo: each is a [`command::Command`]. Both are plain data and serialise.
-//!    [`world::World::step`] is the only writer. It has no clock, no IO, no threads of its own making, and never fails. So
+//!    control-socket call, a finished Boolean, an undo: each is a [`sculptd_engine::command::Command`]. Both are plain data and serialise.
+//!    [`sculptd_engine::world::World::step`] is the only writer. It has no clock, no IO, no threads of its own making, and never fails. So
 //!    live running, replay, recovery, golden tests, fuzzing and bug reports are one mechanism.
 //! 2. **Cost follows what moved, never what exists.** A dab costs what its vertices cost, on a mesh of a thousand vertices or
 //!    of ten million. No tick touches the whole mesh: not for normals, not for the trees, not to publish, not for undo.
@@ -17,8 +17,8 @@
 //!    and every loss is counted and shown.
 //!
 //! ## The path of one pen sample: four rooms, two doors
-//! `devices` (read, stamp, parse, pen state: a [`devices::Sample`], complete state in mm, 0..1 and radians) -> **door 1**, the
-//! channel [`devices::queue`] -> [`daemon`]'s tick loop (drain at most N, order by time) -> [`world`] ([`stroke`]: view ray,
+//! `devices` (read, stamp, parse, pen state: a [`sculptd_devices::Sample`], complete state in mm, 0..1 and radians) -> **door 1**, the
+//! channel [`sculptd_devices::queue`] -> [`daemon`]'s tick loop (drain at most N, order by time) -> [`world`] ([`stroke`]: view ray,
 //! resampling -> [`brush`]: dabs -> [`mesh`]: pages) -> **door 2**, the [`mesh::Snapshot`] in [`daemon::Published`] -> the viewer
 //! (upload dirty pages, draw).
 //!
@@ -49,23 +49,6 @@
 //! Across machines compare facts (volume, bounds, counts) within a tolerance: `sin` and `powf` come from the platform.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
-pub mod analysis;
-pub mod brush;
 pub mod cli;
-pub mod command;
-pub mod config;
-pub mod daemon;
 #[doc(hidden)]
 pub mod fuzzing;
-pub mod hand;
-pub mod mesh;
-#[cfg(feature = "viewer")]
-pub mod panels;
-pub mod simd;
-pub mod stroke;
-#[cfg(feature = "viewer")]
-pub mod viewer;
-mod works;
-pub mod world;
-
-pub use sculptd_devices as devices;

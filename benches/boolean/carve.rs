@@ -8,10 +8,12 @@
 #![allow(clippy::print_stdout)] // Its table.
 
 use glam::{DMat3, DVec3};
-use sculptd::analysis::boolean::{Operation, Options, local};
-use sculptd::analysis::cancel::Job;
-use sculptd::devices::Clock;
-use sculptd::mesh::{Mesh, PolyMesh, shapes};
+use sculptd_clay::Mesh;
+use sculptd_clay::local_boolean::local;
+use sculptd_devices::Clock;
+use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, shapes};
 
 fn placed(tool: &PolyMesh, n: u32, radius: f64) -> PolyMesh {
     let turn = DMat3::from_rotation_z(0.3 + 0.61 * f64::from(n)) * DMat3::from_rotation_x(0.2 * f64::from(n));

@@ -9,15 +9,15 @@ use glam::DVec3;
 use parry3d::math::Vector;
 use parry3d::query::PointQuery;
 use parry3d::shape::{TriMesh as Peer, TriMeshFlags};
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::distance::{Sign, Solid};
-use sculptd::analysis::grid::Grid;
-use sculptd::analysis::march::default_epsilon;
-use sculptd::analysis::projection::{By, Plane, outline, sample};
-use sculptd::analysis::remesh::{Settings, remesh};
-use sculptd::mesh::TriMesh;
-use sculptd::mesh::io::read_mesh;
-use sculptd::mesh::shapes::icosphere;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::distance::{Sign, Solid};
+use sculptd_geometry::grid::Grid;
+use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::march::default_epsilon;
+use sculptd_geometry::projection::{By, Plane, outline, sample};
+use sculptd_geometry::remesh::{Settings, remesh};
+use sculptd_geometry::shapes::icosphere;
 
 /// Median of five, seconds.
 #[allow(clippy::disallowed_methods)]

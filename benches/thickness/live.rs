@@ -12,12 +12,13 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 use glam::Vec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::thickness::live::LiveMap;
-use sculptd::brush::Gaussian;
-use sculptd::daemon::pacer::Pacer;
-use sculptd::mesh::{Mesh, Reach, Snapshot, TriMesh, Workers, shapes};
+use sculptd_clay::brush::Gaussian;
+use sculptd_clay::live_thickness::LiveMap;
+use sculptd_clay::{Mesh, Reach, Snapshot, Workers};
+use sculptd_daemon::pacer::Pacer;
 use sculptd_devices::Clock;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 const HZ: u32 = 120;
 

@@ -9,13 +9,13 @@ use std::io::Write;
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::thickness::cone::frame;
-use sculptd::analysis::thickness::{Cone, Method, Settings, Surface, Weights, measure};
-use sculptd::analysis::tree::{Ray, Stack, WideTree};
-use sculptd::mesh::TriMesh;
-use sculptd::mesh::io::{read_mesh, write_beside};
 use sculptd_devices::Clock;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::bvh::{Ray, Stack, WideTree};
+use sculptd_geometry::io::{read_mesh, write_beside};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::cone::frame;
+use sculptd_geometry::thickness::{Cone, Method, Settings, Surface, Weights, measure};
 
 /// `around` by `along` vertices on a closed ring of quadrilaterals.
 fn ring(around: u32, along: u32, at: impl Fn(f64, f64) -> DVec3) -> TriMesh {

@@ -10,17 +10,18 @@ use glam::{Vec2, Vec3};
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::brush::{BrushKind, BrushSettings, Gaussian, PressureCurve, Smooth};
-use crate::command::Command;
-use crate::config::LoopConfig;
-use crate::daemon::figures::{Figures, Percentiles};
-use crate::daemon::pacer::Pacer;
-use crate::devices::{Body, Clock, DeviceId, Pen, Sample};
-use crate::hand::HandSettings;
-use crate::mesh::{Mesh, PhaseTimes, Ray, Reach, TriMesh, Workers, bytes_to_build, shapes};
-use crate::stroke::Camera;
-use crate::world::{World, WorldOptions};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian, PressureCurve, Smooth};
+use sculptd_clay::{Mesh, PhaseTimes, Ray, Reach, Workers, bytes_to_build};
+use sculptd_daemon::config::LoopConfig;
+use sculptd_daemon::pacer::Pacer;
+use sculptd_daemon::tick_statistics::{Figures, Percentiles};
+use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::HandSettings;
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 #[derive(Debug, clap::Args)]
 pub struct BenchArgs {
@@ -210,7 +211,7 @@ fn input(args: &BenchArgs) -> Result<TriMesh, Fail> {
         super::memory::room_for(bytes_to_build(v, t), &format!("a ball of {v} vertices"))?;
         return Ok(shapes::sphere_of_about(args.vertices as usize));
     };
-    let loaded = crate::mesh::io::read_mesh(path, &Job::default())?;
+    let loaded = sculptd_geometry::io::read_mesh(path, &Job::default())?;
     let (plain, _) = loaded.mesh.triangulate();
     let need = bytes_to_build(plain.positions.len() as u64, plain.triangles.len() as u64);
     super::memory::room_for(need, &path.display().to_string())?;

@@ -9,10 +9,11 @@ use serde::Serialize;
 
 use super::distance::warn;
 use super::{Fail, Outcome, answer};
-use crate::analysis::boolean::{self, Operation, Options, Report, Solid};
-use crate::analysis::cancel::Job;
-use crate::mesh::io::{read_mesh, writable_format, write_mesh};
-use crate::mesh::{PolyMesh, check, mend};
+use sculptd_geometry::boolean;
+use sculptd_geometry::boolean::{Operation, Options, Report, Solid};
+use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, check, repair as mend};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum What {
@@ -308,7 +309,7 @@ fn operand(
     let mut mesh = loaded.mesh;
     out.warnings.extend(loaded.warnings.iter().map(|w| format!("{}: {w}", path.display())));
     phase(out, "read");
-    let stop = |e: crate::analysis::cancel::Cancelled| Fail::Input(e.to_string());
+    let stop = |e: sculptd_geometry::job::Cancelled| Fail::Input(e.to_string());
     let mut facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
     if !facts.closed {
         // Triangle soups (STL) say their corners anew for each triangle.

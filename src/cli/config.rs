@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::{Fail, Outcome, answer};
-use crate::config::{ConfigError, DEFAULTS, Resolved, usual_files};
+use sculptd_daemon::config::{ConfigError, DEFAULTS, Resolved, usual_files};
 
 #[derive(Debug, clap::Subcommand)]
 pub enum ConfigCommand {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::mesh::PolyMesh;
-use crate::mesh::io::{read_mesh, writable_format, write_mesh};
-use crate::mesh::mend;
+use sculptd_geometry::PolyMesh;
+use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::repair as mend;
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct ConvertArgs {

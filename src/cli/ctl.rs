@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::config::plain_numbers;
 use super::{Fail, Outcome, answer};
-use crate::daemon::control::client::{ClientError, call};
-use crate::daemon::control::default_path;
+use sculptd_daemon::control::client::{ClientError, call};
+use sculptd_daemon::control::default_path;
 
 #[derive(Debug, clap::Args)]
 pub struct CtlArgs {

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use super::convert::deliver;
 use super::info::interrupted;
 use super::{Fail, Outcome};
-use crate::analysis::cancel::Job;
-use crate::mesh::decimate::{Target, quadric};
-use crate::mesh::io::{read_mesh, writable_format};
+use sculptd_geometry::decimate::{Target, quadric};
+use sculptd_geometry::io::{read_mesh, writable_format};
+use sculptd_geometry::job::Job;
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct DecimateArgs {

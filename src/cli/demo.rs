@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use super::live::{self, LiveRun};
 use super::run::{self, seconds};
 use super::{Fail, Outcome, display};
-use crate::config::Config;
-use crate::daemon::ghost;
-use crate::daemon::live::Journal;
-use crate::daemon::rig::Begun;
-use crate::daemon::stepped::{Pace, Stepped, SteppedOptions, summary};
-use crate::devices::catalogue::Catalogue;
-use crate::devices::{Clock, queue};
-use crate::world::World;
+use sculptd_daemon::config::Config;
+use sculptd_daemon::demo_devices as ghost;
+use sculptd_daemon::live::Journal;
+use sculptd_daemon::simulated_loop::{Pace, Stepped, SteppedOptions, summary};
+use sculptd_daemon::startup::Begun;
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::{Clock, queue};
+use sculptd_engine::world::World;
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct DemoArgs {
@@ -38,7 +38,7 @@ pub struct DemoArgs {
 }
 
 pub fn run(args: &DemoArgs, json: bool) -> Outcome {
-    crate::mesh::io::writable_format(&args.export).map_err(|e| Fail::Usage(e.to_string()))?;
+    sculptd_geometry::io::writable_format(&args.export).map_err(|e| Fail::Usage(e.to_string()))?;
     if let Some(path) = args.session.as_ref().filter(|p| p.exists()) {
         let text = format!("{}: expected the name of a new session: the demo begins anew", path.display());
         return Err(Fail::Usage(text));

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::daemon::adaptors::Adaptors;
-use crate::daemon::live::Live;
-use crate::devices::Clock;
-use crate::devices::queue::SenderFactory;
+use sculptd_daemon::adaptors::Adaptors;
+use sculptd_daemon::live::Live;
+use sculptd_devices::Clock;
+use sculptd_devices::queue::SenderFactory;
 
 /// `Err` holds the reason, in words for a person.
 pub fn available() -> Result<(), String> {
@@ -44,23 +44,23 @@ pub struct Wired<'a> {
     pub adaptors: Arc<Adaptors>,
     pub session: Option<String>,
     /// The session's history, and the ticks a second.
-    pub history: Option<(crate::daemon::session::history::Handle, u32)>,
+    pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,
     /// On the clock; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
     /// The screen of an installation, in the place of the panels.
-    pub kiosk: Option<crate::daemon::kiosk::keeper::Screen>,
+    pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
 }
 
 /// Shows the window until it is closed or the run ends; `Err` says why there is none.
 #[cfg(feature = "viewer")]
 pub fn show(wired: &Wired<'_>) -> Result<(), String> {
     let adaptors = wired.adaptors.clone();
-    let wiring = crate::viewer::Wiring {
+    let wiring = sculptd_window::viewer::Wiring {
         commands: wired.live.commands.clone(),
         published: wired.live.published.clone(),
         pointer: wired.factory.sender(),
-        pointer_id: crate::daemon::adaptors::POINTER_ID,
+        pointer_id: sculptd_daemon::adaptors::POINTER_ID,
         clock: wired.clock.clone(),
         stop: wired.stop.clone(),
         devices: Box::new(move || adaptors.describe()),
@@ -70,7 +70,7 @@ pub fn show(wired: &Wired<'_>) -> Result<(), String> {
         full_screen: wired.full_screen,
         kiosk: wired.kiosk.clone(),
     };
-    crate::viewer::run(wiring).map_err(|e| e.to_string())
+    sculptd_window::viewer::run(wiring).map_err(|e| e.to_string())
 }
 
 #[cfg(not(feature = "viewer"))]

@@ -7,12 +7,12 @@ use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::analysis::distance::{Sign, Solid};
-use crate::analysis::grid::Grid;
-use crate::analysis::tree::REACH;
-use crate::mesh::TriMesh;
-use crate::mesh::io::{read_mesh, write_beside};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::bvh::REACH;
+use sculptd_geometry::distance::{Sign, Solid};
+use sculptd_geometry::grid::Grid;
+use sculptd_geometry::io::{read_mesh, write_beside};
+use sculptd_geometry::job::Job;
 
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["points", "grid"])))]
@@ -140,7 +140,7 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
         SignArg::Winding => Sign::Winding,
         SignArg::Pseudonormal => Sign::Pseudonormal,
     });
-    let cancelled = |e: crate::analysis::cancel::Cancelled| Fail::Input(e.to_string());
+    let cancelled = |e: sculptd_geometry::job::Cancelled| Fail::Input(e.to_string());
     let closed = solid.topology.closed;
     let mut out = Answer {
         count: 0,

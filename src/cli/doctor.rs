@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer, display};
-use crate::config::{self, Config, Resolved};
-use crate::daemon::doctor::{self, Check, Places, Verdict};
+use sculptd_daemon::config;
+use sculptd_daemon::config::{Config, Resolved};
+use sculptd_daemon::doctor;
+use sculptd_daemon::doctor::{Check, Places, Verdict};
 
 #[derive(Debug, clap::Args)]
 pub struct DoctorArgs {
@@ -33,7 +35,7 @@ pub fn run(args: &DoctorArgs, json: bool) -> Outcome {
         dev: "/dev".into(),
         state: config::state_dir(),
         #[cfg(unix)]
-        socket: crate::daemon::control::default_path(),
+        socket: sculptd_daemon::control::default_path(),
         #[cfg(not(unix))]
         socket: PathBuf::new(),
     };

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use super::distance::{solid, timed, warn};
 use super::remesh::{How, finish};
 use super::{Fail, Outcome};
-use crate::analysis::cancel::Job;
-use crate::analysis::offset::hollow;
-use crate::mesh::io::writable_format;
+use sculptd_geometry::io::writable_format;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::offset::hollow;
 
 #[derive(Debug, clap::Args)]
 pub struct HollowArgs {

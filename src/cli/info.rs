@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::{Cancelled, Job};
-use crate::mesh::check::{Report, report};
-use crate::mesh::io::read_mesh;
+use sculptd_geometry::check::{Report, report};
+use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::job::{Cancelled, Job};
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct InfoArgs {

@@ -7,19 +7,20 @@ use std::time::Duration;
 
 use super::run::{export, stop_signal};
 use super::{Fail, display};
-use crate::config::Config;
-use crate::daemon::kiosk::{KioskConfig, keeper};
-use crate::daemon::live::{Journal, Live};
-use crate::daemon::rig::{Area, Begun, RecordingFeed};
-use crate::daemon::session::Health;
-use crate::daemon::session::history::Handle;
-use crate::daemon::session::writer::WriterThread;
-use crate::daemon::stepped::{Feed, summary};
-use crate::daemon::{Summary, adaptors, ghost};
-use crate::devices::Clock;
-use crate::devices::catalogue::Catalogue;
-use crate::devices::queue::{self, SenderFactory};
-use crate::devices::recording::Player;
+use sculptd_daemon::config::Config;
+use sculptd_daemon::kiosk::{KioskConfig, keeper};
+use sculptd_daemon::live::{Journal, Live};
+use sculptd_daemon::session::Health;
+use sculptd_daemon::session::history::Handle;
+use sculptd_daemon::session::writer::WriterThread;
+use sculptd_daemon::simulated_loop::{Feed, summary};
+use sculptd_daemon::startup::{Area, Begun, RecordingFeed};
+use sculptd_daemon::{Summary, adaptors, demo_devices as ghost};
+use sculptd_devices::Clock;
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::queue;
+use sculptd_devices::queue::SenderFactory;
+use sculptd_devices::recording::Player;
 
 /// What makes one live run different from another.
 #[derive(Debug, Default)]
@@ -51,7 +52,7 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
     let (factory, receiver) = queue::channel(config.channel.capacity);
     let mut settings = config.devices.clone();
     if !run.devices {
-        settings = crate::config::DevicesConfig { hid: false, ..Default::default() };
+        settings = sculptd_daemon::config::DevicesConfig { hid: false, ..Default::default() };
     }
     let adaptors = Arc::new(adaptors::start(&settings, catalogue, &clock, &factory));
     // As the world is now, so every visitor finds it.
@@ -140,8 +141,10 @@ fn service(
     live: &Live,
     journal: Option<Health>,
     config: &Config,
-) -> Result<(crate::daemon::service::Service, Option<crate::daemon::metrics::Metrics>), Fail> {
-    use crate::daemon::{metrics::Metrics, notify::Watched, service};
+) -> Result<(sculptd_daemon::service::Service, Option<sculptd_daemon::metrics::Metrics>), Fail> {
+    use sculptd_daemon::metrics::Metrics;
+    use sculptd_daemon::service;
+    use sculptd_daemon::systemd::Watched;
     let watched = Watched { published: live.published.clone(), journal };
     let metrics = match run.metrics {
         None => None,
@@ -165,8 +168,9 @@ fn control(
     journal: Option<Health>,
     history: Option<Handle>,
     stop: &Arc<AtomicBool>,
-) -> Result<Option<crate::daemon::control::Server>, Fail> {
-    use crate::daemon::control::{Host, Server, default_path, server::ServeError};
+) -> Result<Option<sculptd_daemon::control::Server>, Fail> {
+    use sculptd_daemon::control::server::ServeError;
+    use sculptd_daemon::control::{Host, Server, default_path};
     let host = Host {
         commands: live.commands.clone(),
         published: live.published.clone(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Fail, Outcome};
-use crate::mesh::io::write_beside;
+use sculptd_geometry::io::write_beside;
 
 /// One page on standard output; with a folder, every page into it.
 pub fn run(folder: Option<&Path>, mut command: clap::Command) -> Outcome {

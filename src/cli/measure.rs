@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::thickness::{How, load};
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::analysis::measure::{measures, projected_area};
-use crate::analysis::thickness::check::{Limits, check};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::measure::{measures, projected_area};
+use sculptd_geometry::thickness::check::{Limits, check};
 
 #[derive(Debug, clap::Args)]
 pub struct MeasureArgs {

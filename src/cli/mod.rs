@@ -4,8 +4,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::mesh::io::{ReadError, WriteError};
 use clap::{CommandFactory, Parser, Subcommand};
+use sculptd_geometry::io::{ReadError, WriteError};
 
 pub mod bench;
 pub mod boolean;

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use super::distance::{solid, timed, warn};
 use super::remesh::{How, finish};
 use super::{Fail, Outcome};
-use crate::analysis::cancel::Job;
-use crate::analysis::offset::{offset, smooth_union};
-use crate::mesh::io::writable_format;
+use sculptd_geometry::io::writable_format;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::offset::{offset, smooth_union};
 
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["distance", "unite"])))]

@@ -8,13 +8,13 @@ use serde::Serialize;
 use super::distance::{solid, timed, warn};
 use super::measure::direction;
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::{Cancelled, Job};
-use crate::analysis::grid::Grid;
-use crate::analysis::march::default_epsilon;
-use crate::analysis::projection::{
+use sculptd_geometry::grid::Grid;
+use sculptd_geometry::io::write_beside;
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::march::default_epsilon;
+use sculptd_geometry::projection::{
     By, Plane, Polygon, area, outline, png, sample, shadow_areas, spread_directions, svg,
 };
-use crate::mesh::io::write_beside;
 
 #[derive(Debug, clap::Args)]
 pub struct ProjectArgs {

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::distance::{solid, timed, warn};
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::analysis::remesh::{RemeshError, Settings, remesh};
-use crate::mesh::TriMesh;
-use crate::mesh::io::{writable_format, write_mesh};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::io::{writable_format, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::remesh::{RemeshError, Settings, remesh};
 
 #[derive(Debug, clap::Args)]
 pub struct RemeshArgs {
@@ -57,7 +57,7 @@ impl From<RemeshError> for Fail {
 /// Writes the mesh and prints what it is.
 pub fn finish(out: &Path, mesh: &TriMesh, seconds: f64, warnings: Vec<String>, json: bool) -> Outcome {
     write_mesh(out, &mesh.to_poly())?;
-    let m = crate::analysis::measure::measures(mesh);
+    let m = sculptd_geometry::measure::measures(mesh);
     let made = Made {
         file: out.into(),
         vertices: mesh.positions.len(),

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::config::CameraConfig;
-use crate::daemon::rig;
-use crate::stroke::Camera;
-use crate::viewer::look::{Look, MATERIALS};
-use crate::viewer::picture::{Painter, write_png};
-use crate::viewer::renderer::Scene;
+use sculptd_daemon::config::CameraConfig;
+use sculptd_daemon::startup as rig;
+use sculptd_engine::camera::Camera;
+use sculptd_geometry::job::Job;
+use sculptd_window::viewer::look::{Look, MATERIALS};
+use sculptd_window::viewer::picture::{Painter, write_png};
+use sculptd_window::viewer::renderer::Scene;
 
 #[derive(Debug, clap::Args)]
 pub struct RenderArgs {
@@ -109,7 +109,7 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
     let snapshot = loaded.mesh.snapshot();
     let (lo, hi) = snapshot.bounds();
     camera.frame(lo, hi);
-    let no_adapter = |e: crate::viewer::NoViewer| Fail::Device(e.to_string());
+    let no_adapter = |e: sculptd_window::viewer::NoViewer| Fail::Device(e.to_string());
     let mut painter = Painter::new().map_err(no_adapter)?;
     let look = Look {
         material: MATERIALS.iter().position(|m| m.name == args.matcap).unwrap_or(0),

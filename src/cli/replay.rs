@@ -6,14 +6,15 @@ use serde::Serialize;
 
 use super::run::export;
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::config::LoopConfig;
-use crate::daemon::session::film::Film;
-use crate::daemon::session::history::reopen;
-use crate::daemon::session::replay::{Replayed, replay_seen};
-use crate::daemon::session::{self, OpenError, Opened};
-use crate::mesh::{BuildError, Workers};
-use crate::world::World;
+use sculptd_clay::{BuildError, Workers};
+use sculptd_daemon::config::LoopConfig;
+use sculptd_daemon::session;
+use sculptd_daemon::session::film::Film;
+use sculptd_daemon::session::history::reopen;
+use sculptd_daemon::session::replay::{Replayed, replay_seen};
+use sculptd_daemon::session::{OpenError, Opened};
+use sculptd_engine::world::World;
+use sculptd_geometry::job::Job;
 
 /// Pixels of a picture.
 const PICTURE: (u32, u32) = (1280, 720);
@@ -66,7 +67,7 @@ enum Camera {
     None,
     Plain(Film),
     #[cfg(feature = "viewer")]
-    Gpu(Box<crate::viewer::lapse::Lapse>),
+    Gpu(Box<sculptd_window::viewer::timelapse::Lapse>),
 }
 
 impl Camera {
@@ -74,7 +75,7 @@ impl Camera {
         let Some(folder) = &args.frames else { return Ok(Camera::None) };
         let every = (args.every * f64::from(rate_hz)).round() as u64;
         #[cfg(feature = "viewer")]
-        match crate::viewer::lapse::Lapse::new(folder, every, PICTURE) {
+        match sculptd_window::viewer::timelapse::Lapse::new(folder, every, PICTURE) {
             Ok(lapse) => return Ok(Camera::Gpu(Box::new(lapse))),
             Err(e) => eprintln!("sculptd: warning: pictures are drawn on the CPU: {e}"),
         }

@@ -7,19 +7,20 @@ use std::sync::atomic::AtomicBool;
 
 use super::live::{self, LiveRun, close_journal};
 use super::{Fail, Outcome, answer, display};
-use crate::analysis::cancel::Job;
-use crate::brush::BrushKind;
-use crate::config::{Config, ConfigError, Resolved};
-use crate::daemon::Summary;
-use crate::daemon::kiosk::KioskConfig;
-use crate::daemon::live::Journal;
-use crate::daemon::rig::{self, Area, BeginError, Begun, RecordingFeed, RigError};
-use crate::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions, summary};
-use crate::devices::catalogue::Catalogue;
-use crate::devices::recording::{Player, RecordingError};
-use crate::devices::{Clock, DeviceId, queue};
-use crate::mesh::io::{write_beside, write_mesh};
-use crate::world::World;
+use sculptd_clay::brush::BrushKind;
+use sculptd_daemon::Summary;
+use sculptd_daemon::config::{Config, ConfigError, Resolved};
+use sculptd_daemon::kiosk::KioskConfig;
+use sculptd_daemon::live::Journal;
+use sculptd_daemon::simulated_loop::{Feed, Pace, Stepped, SteppedOptions, summary};
+use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, RigError};
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::recording::{Player, RecordingError};
+use sculptd_devices::{Clock, DeviceId, queue};
+use sculptd_engine::world::World;
+use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::job::Job;
 
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunArgs {
@@ -64,7 +65,7 @@ pub struct RunArgs {
     pub pace: Option<Pace>,
     /// Serve figures for Prometheus here, at /metrics; a port alone is on the loopback. No page does without.
     #[cfg(unix)]
-    #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = crate::daemon::metrics::address)]
+    #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = sculptd_daemon::metrics::address)]
     pub metrics: Option<std::net::SocketAddr>,
 }
 
@@ -91,7 +92,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         config.brush = config.brush.switched(kind);
     }
     if let Some(path) = &args.export {
-        crate::mesh::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
+        sculptd_geometry::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }
     if args.mesh.is_some() && args.session.as_ref().is_some_and(|s| s.exists()) {
         let text = "a session that exists brings its own mesh: leave out --mesh, or name another session";

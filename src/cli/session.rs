@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::{Fail, Outcome, answer};
-use crate::config::state_dir;
+use sculptd_daemon::config::state_dir;
 
-use crate::daemon::session::history::bound::Freed;
-use crate::daemon::session::history::{Store, StoreError, listing};
-use crate::daemon::session::salvage::{SalvageError, salvage};
-use crate::daemon::session::shelf::{self, Entry};
-use crate::mesh::io::write_beside;
+use sculptd_daemon::session::catalog as shelf;
+use sculptd_daemon::session::catalog::Entry;
+use sculptd_daemon::session::history::retention::Freed;
+use sculptd_daemon::session::history::{Store, StoreError, listing};
+use sculptd_daemon::session::salvage::{SalvageError, salvage};
+use sculptd_geometry::io::write_beside;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum SessionCommand {

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use super::convert::deliver;
 use super::info::interrupted;
 use super::{Fail, Outcome};
-use crate::analysis::cancel::Job;
-use crate::mesh::io::{read_mesh, writable_format};
-use crate::mesh::subdivide::{MAX_CORNERS, catmull_clark, corners_after, loop_};
+use sculptd_geometry::io::{read_mesh, writable_format};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::subdivide::{MAX_CORNERS, catmull_clark, corners_after, loop_};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Scheme {

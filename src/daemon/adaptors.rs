@@ -1,11 +1,12 @@
 //! Starting what the configuration asks for: one thread a device, each with its own sender.
 
 use crate::config::DevicesConfig;
-use crate::devices::catalogue::Catalogue;
-use crate::devices::hid::{self, HidConfig, HidHandle};
-use crate::devices::queue::SenderFactory;
-use crate::devices::tablet::TabletError;
-use crate::devices::{Clock, DeviceId, leap, serial};
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::hid;
+use sculptd_devices::hid::{HidConfig, HidHandle};
+use sculptd_devices::queue::SenderFactory;
+use sculptd_devices::tablet::TabletError;
+use sculptd_devices::{Clock, DeviceId, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial ports from 100, the
 /// tracker 200, recordings from 300, the window's own pointer 400.

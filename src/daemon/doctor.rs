@@ -11,11 +11,12 @@ use glam::Vec2;
 use serde::Serialize;
 
 use super::live::raise_priority;
-use crate::analysis::cancel::Job;
 use crate::config::{Config, LoopConfig};
-use crate::devices::{Body, Clock, DeviceId, Pen, Sample};
-use crate::mesh::{Mesh, Workers, shapes};
-use crate::world::{World, WorldOptions};
+use sculptd_clay::{Mesh, Workers};
+use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 /// Free space that an evening's session needs, bytes: a pen at 250 Hz writes 55 MB an hour, a start mesh 100 MB at most.
 pub const ROOM: u64 = 1 << 30;

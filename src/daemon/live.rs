@@ -9,17 +9,17 @@ use std::thread::JoinHandle;
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
-use super::figures::Figures;
-use super::joiner::Joiner;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
-use super::stepped::{in_order_of_time, published_figures};
-use crate::command::Command;
+use crate::boolean_jobs::Joiner;
 use crate::config::LoopConfig;
-use crate::devices::queue::Receiver;
-use crate::devices::{Clock, Sample};
-use crate::mesh::Mesh;
-use crate::world::World;
+use crate::simulated_loop::{in_order_of_time, published_figures};
+use crate::tick_statistics::Figures;
+use sculptd_clay::Mesh;
+use sculptd_devices::queue::Receiver;
+use sculptd_devices::{Clock, Sample};
+use sculptd_engine::command::Command;
+use sculptd_engine::world::World;
 
 /// Commands waiting for the loop; a sender beyond it is told so and tries again.
 pub const COMMANDS: usize = 1024;

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::Published;
-use super::notify::Watched;
-use crate::devices::Clock;
+use crate::systemd::Watched;
+use sculptd_devices::Clock;
 
 /// Longest request head, bytes.
 const MAX_HEAD: usize = 4096;

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use crate::devices::Clock;
+use sculptd_devices::Clock;
 
 /// Ticks at a fixed rate on a clock of microseconds.
 #[derive(Debug, Clone)]

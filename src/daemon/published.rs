@@ -8,14 +8,15 @@ use std::sync::Arc;
 use arc_swap::ArcSwap;
 use glam::Vec3;
 
-use super::figures::{Losses, Percentiles};
-use crate::brush::BrushSettings;
-use crate::devices::sample::MAX_HANDS;
-use crate::devices::{DeviceId, Hands};
-use crate::hand::{Pose, Thing, Volume};
-use crate::mesh::Snapshot;
-use crate::stroke::{Camera, Draft, PenPoint};
-use crate::world::World;
+use crate::tick_statistics::{Losses, Percentiles};
+use sculptd_clay::Snapshot;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_devices::sample::MAX_HANDS;
+use sculptd_devices::{DeviceId, Hands};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::hand::{Pose, Thing, Volume};
+use sculptd_engine::stroke::{Draft, PenPoint};
+use sculptd_engine::world::World;
 
 /// Pens shown to a viewer.
 pub const SHOWN_PENS: usize = 4;

@@ -8,10 +8,10 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use super::notify::{Notifier, Watchdog, Watched, watchdog_us};
-use crate::command::Command;
 use crate::config::{Config, Resolved};
-use crate::devices::Clock;
+use crate::systemd::{Notifier, Watchdog, Watched, watchdog_us};
+use sculptd_devices::Clock;
+use sculptd_engine::command::Command;
 
 /// How often it looks.
 const LOOK: Duration = Duration::from_millis(50);

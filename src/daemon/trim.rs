@@ -5,13 +5,14 @@ use crossbeam_channel as cc;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
-use super::joiner::{self, JoinError, Joined};
 use super::published::Published;
-use crate::analysis::boolean::Operation;
-use crate::analysis::cancel::Job;
-use crate::command::Command;
-use crate::mesh::{PolyMesh, TriMesh};
-use crate::stroke::Camera;
+use crate::boolean_jobs as joiner;
+use crate::boolean_jobs::{JoinError, Joined};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// A part of the view, (0, 0) top left to (1, 1) bottom right.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]

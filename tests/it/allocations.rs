@@ -8,9 +8,10 @@ use std::process::Command;
 use std::sync::atomic::{AtomicI64, Ordering::Relaxed};
 
 use glam::Vec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{Gaussian, Smooth};
-use sculptd::mesh::{Mesh, Reach, Workers, shapes};
+use sculptd_clay::brush::{Gaussian, Smooth};
+use sculptd_clay::{Mesh, Reach, Workers};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 struct Counting;
 

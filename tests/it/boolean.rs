@@ -9,9 +9,9 @@ mod socket;
 mod solids;
 
 use glam::{DMat3, DVec3};
-use sculptd::analysis::boolean::{Operation, Options, Report, Solid as Made, compute};
-use sculptd::analysis::cancel::Job;
-use sculptd::mesh::check;
+use sculptd_geometry::boolean::{Operation, Options, Report, Solid as Made, compute};
+use sculptd_geometry::check;
+use sculptd_geometry::job::Job;
 use solids::{Solid, cuboid, expected, hollow, prism, regular, revolved};
 
 struct Scene {

@@ -12,14 +12,16 @@ mod texture;
 mod topology;
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::BrushSettings;
-use sculptd::command::Command;
-use sculptd::devices::{Body, DeviceId, Pen, Sample};
-use sculptd::hand::HandSettings;
-use sculptd::mesh::{Mesh, TriMesh, Workers, shapes};
-use sculptd::stroke::{Camera, DraftAct};
-use sculptd::world::{World, WorldOptions};
+use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{Mesh, Workers};
+use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::HandSettings;
+use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 /// A work, a pen, and a hand that guides it.
 pub struct Studio {

@@ -1,9 +1,10 @@
 //! The clay: what a dab leaves behind must be what a mesh built from scratch would say.
 
 use glam::Vec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{Gaussian, Smooth};
-use sculptd::mesh::{Mesh, Ray, Reach, TriMesh, Workers, shapes};
+use sculptd_clay::brush::{Gaussian, Smooth};
+use sculptd_clay::{Mesh, Ray, Reach, Workers};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 /// Numbers that are the same on every run.
 pub(crate) struct Dice(pub u64);

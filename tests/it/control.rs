@@ -7,15 +7,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
-use sculptd::analysis::cancel::Job;
-use sculptd::command::Command;
-use sculptd::config::Config;
-use sculptd::daemon::control::methods::{METHODS, call as answer};
-use sculptd::daemon::control::server::{Host, Server, permitted};
-use sculptd::daemon::control::{MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
-use sculptd::daemon::published::{Published, PublishedFigures};
-use sculptd::daemon::rig;
-use sculptd::mesh::{Mesh, shapes};
+use sculptd_clay::Mesh;
+use sculptd_daemon::config::Config;
+use sculptd_daemon::control::methods::{METHODS, call as answer};
+use sculptd_daemon::control::server::{Host, Server, permitted};
+use sculptd_daemon::control::{MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
+use sculptd_daemon::published::{Published, PublishedFigures};
+use sculptd_daemon::startup as rig;
+use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 use serde_json::{Value, json};
 
 struct Rig {
@@ -27,7 +28,7 @@ struct Rig {
 impl Rig {
     fn new() -> Self {
         let config = Config {
-            r#loop: sculptd::config::LoopConfig { workers: 1, ..Default::default() },
+            r#loop: sculptd_daemon::config::LoopConfig { workers: 1, ..Default::default() },
             ..Default::default()
         };
         let mesh = Mesh::build(&shapes::sphere_of_about(300), &Job::default()).expect("a ball");

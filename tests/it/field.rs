@@ -7,9 +7,9 @@ mod remesh;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::mesh::TriMesh;
-use sculptd::mesh::io::read_mesh;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::job::Job;
 
 /// A small generator: splitmix64.
 pub struct Random(pub u64);

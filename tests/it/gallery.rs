@@ -6,10 +6,11 @@ use std::path::Path;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, SystemTime};
 
-use sculptd::daemon::kiosk::share::{Code, Share};
-use sculptd::daemon::kiosk::{gallery, spool, spool::Spool};
-use sculptd::devices::Clock;
-use sculptd::mesh::shapes;
+use sculptd_daemon::kiosk::share::{Code, Share};
+use sculptd_daemon::kiosk::spool::Spool;
+use sculptd_daemon::kiosk::{gallery, spool};
+use sculptd_devices::Clock;
+use sculptd_geometry::shapes;
 
 fn until(what: &str, mut so: impl FnMut() -> bool) {
     let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);

@@ -5,15 +5,16 @@
 
 use std::path::{Path, PathBuf};
 
-use sculptd::analysis::cancel::Job;
-use sculptd::config::Config;
-use sculptd::daemon::rig::{self, RecordingFeed};
-use sculptd::daemon::stepped::{Feed, Pace, Stepped, SteppedOptions};
-use sculptd::devices::catalogue::Catalogue;
-use sculptd::devices::recording::Player;
-use sculptd::devices::{Clock, DeviceId, queue};
-use sculptd::mesh::TriMesh;
-use sculptd::world::World;
+use sculptd_daemon::config::Config;
+use sculptd_daemon::simulated_loop::{Feed, Pace, Stepped, SteppedOptions};
+use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup::RecordingFeed;
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::recording::Player;
+use sculptd_devices::{Clock, DeviceId, queue};
+use sculptd_engine::world::World;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::job::Job;
 use serde::{Deserialize, Serialize};
 
 use crate::corpus;

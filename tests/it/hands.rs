@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use sculptd::devices::catalogue::Catalogue;
-use sculptd::devices::recording::Player;
-use sculptd::devices::{Body, DeviceId};
-use sculptd::hand::{HandSettings, HandTools, Pose};
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::recording::Player;
+use sculptd_devices::{Body, DeviceId};
+use sculptd_engine::hand::{HandSettings, HandTools, Pose};
 
 use crate::corpus;
 

@@ -9,19 +9,22 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 use glam::Vec2;
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::Measure;
-use sculptd::command::{Command, NewClay};
-use sculptd::config::Config;
-use sculptd::daemon::live::Journal;
-use sculptd::daemon::rig::{self, Begun};
-use sculptd::daemon::session::format::Settings;
-use sculptd::daemon::session::history::{Handle, Keeper, Want, listing, reopen};
-use sculptd::daemon::session::writer::WriterThread;
-use sculptd::daemon::session::{self, SessionWriter, replay};
-use sculptd::devices::{Body, Clock, DeviceId, Pen, Sample};
-use sculptd::mesh::{Mesh, Workers, shapes};
-use sculptd::world::{World, WorldOptions};
+use sculptd_clay::brush::Measure;
+use sculptd_clay::{Mesh, Workers};
+use sculptd_daemon::config::Config;
+use sculptd_daemon::live::Journal;
+use sculptd_daemon::session;
+use sculptd_daemon::session::format::Settings;
+use sculptd_daemon::session::history::{Handle, Keeper, Want, listing, reopen};
+use sculptd_daemon::session::writer::WriterThread;
+use sculptd_daemon::session::{SessionWriter, replay};
+use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup::Begun;
+use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 #[allow(clippy::disallowed_methods)] // A test waits for another thread.
 fn pause(ms: u64) {

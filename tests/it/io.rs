@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use sculptd::analysis::cancel::Job;
-use sculptd::mesh::check::report;
-use sculptd::mesh::io::read_mesh;
+use sculptd_geometry::check::report;
+use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::job::Job;
 
 use crate::corpus;
 

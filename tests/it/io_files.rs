@@ -4,11 +4,12 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use glam::DVec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::mesh::PolyMesh;
-use sculptd::mesh::check::{Report, report};
-use sculptd::mesh::io::{self, Format, Stop, encode, read_mesh, write_mesh};
-use sculptd::mesh::shapes;
+use sculptd_geometry::PolyMesh;
+use sculptd_geometry::check::{Report, report};
+use sculptd_geometry::io;
+use sculptd_geometry::io::{Format, Stop, encode, read_mesh, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 fn model(name: &str) -> io::Loaded {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);

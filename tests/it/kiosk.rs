@@ -1,14 +1,15 @@
 //! Thirty visitors in a row: each finds what the first found.
 
 use glam::Vec2;
-use sculptd::command::{Beginning, Command, NewClay};
-use sculptd::config::{LoopConfig, Resolved};
-use sculptd::daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
-use sculptd::daemon::live::Live;
-use sculptd::daemon::rig;
-use sculptd::devices::{Body, Clock, DeviceId, Pen, Sample, queue};
-use sculptd::mesh::{Mesh, shapes};
-use sculptd::stroke::Camera;
+use sculptd_clay::Mesh;
+use sculptd_daemon::config::{LoopConfig, Resolved};
+use sculptd_daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
+use sculptd_daemon::live::Live;
+use sculptd_daemon::startup as rig;
+use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample, queue};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::{Beginning, Command, NewClay};
+use sculptd_geometry::shapes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
@@ -16,7 +17,7 @@ use std::time::Duration;
 use crate::allocations::{live_bytes, passed_alone};
 
 /// One visit of strokes, brushes, views, undo and a thing in the hands, different for each visitor.
-fn visit(world: &mut sculptd::world::World, visitor: u64, tick: &mut u64) {
+fn visit(world: &mut sculptd_engine::world::World, visitor: u64, tick: &mut u64) {
     let mut brush = *world.brush();
     brush.radius = 0.1 + visitor as f32 * 0.005;
     let thing = Arc::new(shapes::sphere_of_about(500));

@@ -4,19 +4,20 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3, vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::command::Command;
-use sculptd::config::Config;
-use sculptd::daemon::stepped::{Pace, Stepped, SteppedOptions};
-use sculptd::daemon::{ghost, rig};
-use sculptd::devices::sim::hand::skeleton;
-use sculptd::devices::sim::{HandKey, HandScript, Performer, TrackerConfig};
-use sculptd::devices::{Clock, queue};
-use sculptd::hand::menu::ball_mm;
-use sculptd::hand::{Choice, Menu};
-use sculptd::mesh::io::{read_mesh, write_mesh};
-use sculptd::mesh::{Mesh, PolyMesh, TriMesh, check, shapes};
-use sculptd::world::World;
+use sculptd_clay::Mesh;
+use sculptd_daemon::config::Config;
+use sculptd_daemon::simulated_loop::{Pace, Stepped, SteppedOptions};
+use sculptd_daemon::{demo_devices as ghost, startup as rig};
+use sculptd_devices::sim::hand::skeleton;
+use sculptd_devices::sim::{HandKey, HandScript, Performer, TrackerConfig};
+use sculptd_devices::{Clock, queue};
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::menu::ball_mm;
+use sculptd_engine::hand::{Choice, Menu};
+use sculptd_engine::world::World;
+use sculptd_geometry::io::{read_mesh, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, TriMesh, check, shapes};
 
 const RATE: u32 = 120;
 

@@ -6,13 +6,13 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use sculptd::daemon::live::Journal;
-use sculptd::daemon::session;
-use sculptd::devices::Clock;
-use sculptd::devices::sim::faults::Rng;
 use sculptd::fuzzing;
-use sculptd::mesh::io::encode;
-use sculptd::mesh::shapes;
+use sculptd_daemon::live::Journal;
+use sculptd_daemon::session;
+use sculptd_devices::Clock;
+use sculptd_devices::sim::faults::Rng;
+use sculptd_geometry::io::encode;
+use sculptd_geometry::shapes;
 
 /// Numbers that parsers trip over.
 const WORDS: &[&[u8]] = &[
@@ -145,7 +145,7 @@ fn json_rpc() {
 
 #[test]
 fn config() {
-    let mut seeds = vec![sculptd::config::DEFAULTS.as_bytes().to_vec()];
+    let mut seeds = vec![sculptd_daemon::config::DEFAULTS.as_bytes().to_vec()];
     seeds.extend(
         [
             "[loop]\nrate_hz = 60\n",
@@ -159,7 +159,7 @@ fn config() {
 #[test]
 fn stored_pages() {
     let mesh =
-        sculptd::mesh::Mesh::build(&shapes::sphere_of_about(1200), &Default::default()).expect("a ball");
+        sculptd_clay::Mesh::build(&shapes::sphere_of_about(1200), &Default::default()).expect("a ball");
     let seeds: Vec<Vec<u8>> = (0..mesh.page_count() as u32)
         .map(|i| {
             let (shape, points) = (mesh.page(i).topology().to_bytes(), mesh.page(i).to_bytes());
@@ -171,10 +171,10 @@ fn stored_pages() {
 
 #[test]
 fn session_file() {
-    use sculptd::command::Command;
+    use sculptd_engine::command::Command;
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("seed.sculpt");
-    let config = sculptd::config::Config::default();
+    let config = sculptd_daemon::config::Config::default();
     let settings = session::format::Settings {
         rate_hz: 120,
         dab_budget: 400_000,
@@ -185,8 +185,8 @@ fn session_file() {
     };
     let start = shapes::sphere_of_about(60);
     let (mut writer, thread) = session::create(&path, &start, &settings).expect("created");
-    let mesh = sculptd::mesh::Mesh::build(&start, &Default::default()).expect("a ball");
-    let mut world = sculptd::daemon::rig::world(mesh, &config);
+    let mesh = sculptd_clay::Mesh::build(&start, &Default::default()).expect("a ball");
+    let mut world = sculptd_daemon::startup::world(mesh, &config);
     let mut thread = thread;
     let keeper = session::history::Keeper::start(&path, &mut world, 0, None, 1 << 40).expect("a history");
     writer.keep(keeper.handle.clone());
@@ -194,8 +194,8 @@ fn session_file() {
     for tick in 1..200 {
         let mut commands = vec![Command::Brush(config.brush), Command::Undo];
         if tick % 50 == 0 {
-            commands.push(Command::Mask(sculptd::brush::MaskAction::Fill));
-            commands.push(Command::Mask(sculptd::brush::MaskAction::Invert));
+            commands.push(Command::Mask(sculptd_clay::brush::MaskAction::Fill));
+            commands.push(Command::Mask(sculptd_clay::brush::MaskAction::Invert));
         }
         world.step(tick, &[], &commands);
         writer.tick(tick, &[], &commands, &world);

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use sculptd::daemon::control::client::call;
-use sculptd::devices::{Clock, serial, sim};
+use sculptd_daemon::control::client::call;
+use sculptd_devices::{Clock, serial, sim};
 use serde_json::Value;
 
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -95,7 +95,9 @@ fn one_kill(ms: u64) -> u64 {
     assert!(recovered + 30 >= last, "recovered up to tick {recovered}, acknowledged {last}");
     assert_eq!(replay(&session, Some(tick))["hash"], known["hash"], "at tick {tick}");
     // Nobody goes on with this session.
-    sculptd::daemon::session::tail::of(&session).into_iter().for_each(sculptd::daemon::session::tail::remove);
+    sculptd_daemon::session::shared_memory_log::of(&session)
+        .into_iter()
+        .for_each(sculptd_daemon::session::shared_memory_log::remove);
     last.saturating_sub(recovered)
 }
 

@@ -179,7 +179,7 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
     // New settings: a bad file changes nothing, a good one changes the brush.
     let socket = dir.path().join("sculptd.sock");
     let strength = || {
-        let v = sculptd::daemon::control::client::call(
+        let v = sculptd_daemon::control::client::call(
             &socket,
             "status",
             &Value::Null,

@@ -6,16 +6,18 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
 use glam::Vec2;
-use sculptd::analysis::cancel::Job;
-use sculptd::config::Config;
-use sculptd::daemon::live::Journal;
-use sculptd::daemon::session::format::Settings;
-use sculptd::daemon::session::writer::WriterThread;
-use sculptd::daemon::session::{self, SessionWriter, replay, salvage};
-use sculptd::devices::sim::faults::Rng;
-use sculptd::devices::{Body, DeviceId, Pen, Sample};
-use sculptd::mesh::{Mesh, TriMesh, Workers, shapes};
-use sculptd::world::{World, WorldOptions};
+use sculptd_clay::{Mesh, Workers};
+use sculptd_daemon::config::Config;
+use sculptd_daemon::live::Journal;
+use sculptd_daemon::session;
+use sculptd_daemon::session::format::Settings;
+use sculptd_daemon::session::writer::WriterThread;
+use sculptd_daemon::session::{SessionWriter, replay, salvage};
+use sculptd_devices::sim::faults::Rng;
+use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 use serde_json::Value;
 
 #[allow(clippy::disallowed_methods)] // A test waits for another thread.
@@ -302,7 +304,11 @@ fn a_disk_that_keeps_everybody_waiting_costs_a_kill_nothing() {
     let (writer, thread) = session::resume(&copy).expect("goes on");
     drop(writer);
     assert_eq!(thread.finish(), None);
-    assert_eq!(session::tail::of(&copy).map(session::tail::read).map_or(0, |t| t.len()), 0, "let go");
+    assert_eq!(
+        session::shared_memory_log::of(&copy).map(session::shared_memory_log::read).map_or(0, |t| t.len()),
+        0,
+        "let go"
+    );
     assert_eq!(hash_of(&session::open(&copy).expect("opens")), script.hashes[last as usize]);
     drop(other);
     script.end();
@@ -392,7 +398,7 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
     let mut rng = Rng::new(seed);
     let mut script = Script::begin(dir.path());
     // Memory is gone with the power.
-    session::tail::of(&script.path).into_iter().for_each(session::tail::remove);
+    session::shared_memory_log::of(&script.path).into_iter().for_each(session::shared_memory_log::remove);
     script.group(5);
     let (mut lost, mut checkpoints) = (0, 0);
     for n in 0..cuts {

@@ -5,24 +5,25 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sculptd::analysis::cancel::Job;
-use sculptd::command::Command;
-use sculptd::config::Resolved;
-use sculptd::daemon::live::Journal;
-use sculptd::daemon::published::{Published, PublishedFigures, Publisher};
-use sculptd::daemon::session::format::Settings;
-use sculptd::daemon::{rig, session};
-use sculptd::devices::serial::{Decoder, Protocol};
-use sculptd::devices::sim::faults::Rng;
-use sculptd::devices::{DeviceId, queue, sim};
-use sculptd::mesh::{Mesh, Workers, shapes};
+use sculptd_clay::{Mesh, Workers};
+use sculptd_daemon::config::Resolved;
+use sculptd_daemon::live::Journal;
+use sculptd_daemon::published::{Published, PublishedFigures, Publisher};
+use sculptd_daemon::session::format::Settings;
+use sculptd_daemon::{session, startup as rig};
+use sculptd_devices::serial::{Decoder, Protocol};
+use sculptd_devices::sim::faults::Rng;
+use sculptd_devices::{DeviceId, queue, sim};
+use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 use crate::allocations::{live_bytes, passed_alone};
 
 /// A pen on a wire that is not a good one.
 struct Wire {
     packets: Vec<Vec<u8>>,
-    facts: sculptd::devices::serial::Facts,
+    facts: sculptd_devices::serial::Facts,
     decoder: Option<Decoder>,
     next: usize,
     skew_us: u64,
@@ -184,7 +185,7 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
         tick += 1;
         samples.clear();
         receiver.drain(4096, &mut samples);
-        sculptd::daemon::stepped::in_order_of_time(&mut samples);
+        sculptd_daemon::simulated_loop::in_order_of_time(&mut samples);
         let commands = match rng.below(400) {
             0 => vec![Command::Undo],
             1 => vec![Command::Redo],

@@ -2,12 +2,12 @@
 //! every gesture at every frame rate, through the wire's text and the real parser.
 
 use glam::{Vec3, vec3};
-use sculptd::devices::leap::parse_frame;
-use sculptd::devices::sim::hand::skeleton;
-use sculptd::devices::sim::tracker::frame_json;
-use sculptd::devices::sim::{HandKey, HandScript, Performer, Tremble, Trembling};
-use sculptd::devices::{Body, DeviceId, Hands, Sample};
-use sculptd::hand::{Act, HandSettings, HandTools, Pose};
+use sculptd_devices::leap::parse_frame;
+use sculptd_devices::sim::hand::skeleton;
+use sculptd_devices::sim::tracker::frame_json;
+use sculptd_devices::sim::{HandKey, HandScript, Performer, Tremble, Trembling};
+use sculptd_devices::{Body, DeviceId, Hands, Sample};
+use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose};
 
 const RATES: [f32; 4] = [30.0, 60.0, 90.0, 120.0];
 
@@ -200,11 +200,11 @@ fn a_moving_fingertip_lags_less_than_thirty_milliseconds() {
 
 #[test]
 fn a_fingertip_at_three_metres_a_second_does_not_tunnel_through_a_thin_wall() {
-    use sculptd::analysis::cancel::Job;
-    use sculptd::brush::BrushSettings;
-    use sculptd::mesh::{Mesh, Workers};
-    use sculptd::stroke::Camera;
-    use sculptd::world::{World, WorldOptions};
+    use sculptd_clay::brush::BrushSettings;
+    use sculptd_clay::{Mesh, Workers};
+    use sculptd_engine::camera::Camera;
+    use sculptd_engine::world::{World, WorldOptions};
+    use sculptd_geometry::job::Job;
 
     let wall = wall(2.0);
     let mesh = Mesh::build(&wall, &Job::default()).expect("a wall");
@@ -235,9 +235,9 @@ fn a_fingertip_at_three_metres_a_second_does_not_tunnel_through_a_thin_wall() {
 }
 
 /// A closed slab of 100 x 100 units about the origin, this thick, its grid a unit wide.
-fn wall(thick: f32) -> sculptd::mesh::TriMesh {
+fn wall(thick: f32) -> sculptd_geometry::TriMesh {
     let n = 100usize;
-    let mut t = sculptd::mesh::TriMesh::default();
+    let mut t = sculptd_geometry::TriMesh::default();
     let id = |side: usize, x: usize, y: usize| (side * (n + 1) * (n + 1) + y * (n + 1) + x) as u32;
     for side in 0..2 {
         for y in 0..=n {

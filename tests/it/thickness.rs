@@ -1,9 +1,9 @@
 //! Thickness against shapes of which it is known.
 
 use glam::{Quat, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::thickness::{Correction, Method, Outliers, Reason, Settings, measure};
-use sculptd::mesh::TriMesh;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::{Correction, Method, Outliers, Reason, Settings, measure};
 
 use crate::thickness_shapes::{ribbed, shell, slab, tube, wedge};
 

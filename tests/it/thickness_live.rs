@@ -1,11 +1,11 @@
 //! The live map: after a stroke the same as a map made anew, at a cost of what changed.
 
 use glam::Vec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::thickness::live::{LiveMap, Rebuild};
-use sculptd::brush::Gaussian;
-use sculptd::mesh::{Mesh, Reach, Workers};
+use sculptd_clay::brush::Gaussian;
+use sculptd_clay::live_thickness::{LiveMap, Rebuild};
+use sculptd_clay::{Mesh, Reach, Workers};
 use sculptd_devices::Clock;
+use sculptd_geometry::job::Job;
 
 use crate::thickness_shapes::shell;
 

@@ -1,7 +1,7 @@
 //! Shapes of which the thickness is known, and seeded randomness.
 
 use glam::Vec3;
-use sculptd::mesh::TriMesh;
+use sculptd_geometry::TriMesh;
 
 /// SplitMix64.
 pub(crate) struct Random(pub(crate) u64);

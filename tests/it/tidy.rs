@@ -38,53 +38,6 @@ fn no_file_is_longer_than_600_lines() {
     assert!(long.is_empty(), "two ideas in one room? {long:#?}");
 }
 
-/// Who may name whom inside the library. `devices` is a crate of its own: the compiler holds that wall.
-#[test]
-fn dependencies_point_one_way() {
-    let forbidden = [
-        (
-            "src/mesh",
-            &[
-                "brush",
-                "stroke",
-                "hand",
-                "analysis::boolean",
-                "world",
-                "daemon",
-                "panels",
-                "viewer",
-                "cli",
-                "command",
-                "devices",
-            ][..],
-        ),
-        ("src/stroke", &["world", "daemon", "panels", "viewer", "cli", "analysis"]),
-        ("src/brush", &["stroke", "world", "daemon", "panels", "viewer", "cli", "analysis", "devices"]),
-        ("src/hand", &["world", "daemon", "panels", "viewer", "cli", "analysis"]),
-        ("src/analysis", &["stroke", "hand", "world", "daemon", "panels", "viewer", "cli", "devices"]),
-        ("src/panels", &["viewer::gpu", "cli"]),
-        ("src/daemon", &["panels", "cli"]),
-    ];
-    let mut broken = Vec::new();
-    for (room, names) in forbidden {
-        if !root().join(room).is_dir() {
-            continue;
-        }
-        for (path, text) in sources(room) {
-            for (n, line) in text.lines().enumerate() {
-                let code = line.split("//").next().unwrap_or("");
-                for name in names {
-                    if code.contains(&format!("crate::{name}::")) || code.contains(&format!("crate::{name};"))
-                    {
-                        broken.push(format!("{}:{}: {room} must not know {name}", path.display(), n + 1));
-                    }
-                }
-            }
-        }
-    }
-    assert!(broken.is_empty(), "{broken:#?}");
-}
-
 #[test]
 fn egui_stays_in_panels_and_viewer_and_wgpu_in_viewer() {
     for (path, text) in sources("src") {
@@ -104,7 +57,7 @@ fn egui_stays_in_panels_and_viewer_and_wgpu_in_viewer() {
 fn unsafe_lives_in_one_module() {
     for dir in ["src", "devices/src"] {
         for (path, text) in sources(dir) {
-            let allowed = path.starts_with(root().join("src/simd")) || path == root().join("src/simd.rs");
+            let allowed = path.starts_with(root().join("src/geometry/simd"));
             assert!(allowed || !text.contains("allow(unsafe_code)"), "{} allows unsafe", path.display());
         }
     }

@@ -1,9 +1,9 @@
 //! The eight-wide tree against brute force, against itself without AVX2, and against the light that must not leak.
 
 use glam::Vec3;
-use sculptd::analysis::cancel::{Cancelled, Job};
-use sculptd::analysis::tree::{Ray, Stack, TreeHit, WideTree};
-use sculptd::mesh::TriMesh;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::bvh::{Ray, Stack, TreeHit, WideTree};
+use sculptd_geometry::job::{Cancelled, Job};
 
 use crate::thickness_shapes::{Random, sphere};
 

@@ -11,14 +11,15 @@ mod stall;
 #[cfg(unix)]
 mod window;
 
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::BrushSettings;
-use sculptd::daemon::Published;
-use sculptd::daemon::published::PublishedFigures;
-use sculptd::hand::HandSettings;
-use sculptd::mesh::{Mesh, Workers, shapes};
-use sculptd::stroke::Camera;
-use sculptd::world::{World, WorldOptions};
+use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{Mesh, Workers};
+use sculptd_daemon::Published;
+use sculptd_daemon::published::PublishedFigures;
+use sculptd_engine::camera::Camera;
+use sculptd_engine::hand::HandSettings;
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
 
 pub(crate) fn world(vertices: usize) -> World {
     let mesh = Mesh::build(&shapes::sphere_of_about(vertices), &Job::default()).expect("a ball builds");

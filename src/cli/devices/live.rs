@@ -19,8 +19,8 @@ use super::super::run::stop_signal;
 use super::super::{Fail, Outcome, answer};
 use super::table::Table;
 use super::{catalogue, hid_config, recording_fail};
-use crate::config::DevicesConfig;
-use crate::daemon::adaptors;
+use sculptd_daemon::adaptors;
+use sculptd_daemon::config::DevicesConfig;
 
 /// Samples between the adaptors and the table.
 const CHANNEL: usize = 4096;

@@ -12,8 +12,8 @@ use sculptd_devices::hid::HidConfig;
 use sculptd_devices::recording::RecordingError;
 
 use super::{Fail, Outcome};
-use crate::config::DevicesConfig;
-use crate::daemon::adaptors;
+use sculptd_daemon::adaptors;
+use sculptd_daemon::config::DevicesConfig;
 
 #[derive(Debug, Subcommand)]
 pub enum DevicesCommand {
@@ -117,6 +117,6 @@ pub(crate) fn recording_fail(e: RecordingError) -> Fail {
 
 /// Whole or not at all: written beside, then renamed.
 fn write_text(path: &Path, text: &str) -> Outcome {
-    crate::mesh::io::write_beside(path, |out| std::io::Write::write_all(out, text.as_bytes()))
+    sculptd_geometry::io::write_beside(path, |out| std::io::Write::write_all(out, text.as_bytes()))
         .map_err(|e| Fail::io(path, &e))
 }

@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{ThicknessArgs, judge, one, write_report};
-use crate::analysis::cancel::Job;
-use crate::analysis::thickness::check::{Limits, Verdict};
-use crate::analysis::thickness::report::{escape, fnv, head};
 use crate::cli::{Fail, Outcome, answer};
-use crate::mesh::io::write_beside;
+use sculptd_geometry::io::write_beside;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::check::{Limits, Verdict};
+use sculptd_geometry::thickness::report::{escape, fnv, head};
 
 /// One file's outcome, kept as `NAME.json` in the folder.
 #[derive(Debug, Clone, Serialize, Deserialize)]

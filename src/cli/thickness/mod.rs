@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use sculptd_devices::Clock;
 
 use super::{Fail, Outcome, answer};
-use crate::analysis::cancel::Job;
-use crate::analysis::picture::{Camera, draw};
-use crate::analysis::thickness::check::{Answer, Checked, Limits, Part, Verdict, check};
-use crate::analysis::thickness::preset::Preset;
-use crate::analysis::thickness::report;
-use crate::analysis::thickness::{
+use sculptd_geometry::io::{read_mesh, write_beside};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::picture::{Camera, draw};
+use sculptd_geometry::thickness::check::{Answer, Checked, Limits, Part, Verdict, check};
+use sculptd_geometry::thickness::preset::Preset;
+use sculptd_geometry::thickness::report;
+use sculptd_geometry::thickness::{
     At, Correction, EdgePolicy, Method, Outliers, Settings, Side, Thickness, Weights,
 };
-use crate::mesh::io::{read_mesh, write_beside};
 
 #[derive(Debug, clap::Args)]
 pub struct ThicknessArgs {

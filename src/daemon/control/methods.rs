@@ -10,18 +10,19 @@ use serde_json::{Value, json};
 use super::PROTOCOL;
 use super::protocol::{Code, RpcError};
 use super::server::Host;
-use crate::analysis::boolean::Operation;
-use crate::analysis::cancel::Job;
-use crate::analysis::thickness::live::LiveMap;
-use crate::brush::{BrushKind, MaskAction, Picture};
-use crate::command::{Command, NewClay};
-use crate::daemon::session::history::{Handle, Want, listing};
-use crate::daemon::{Published, joiner, rig, trim};
-use crate::devices::Clock;
-use crate::hand::{Choice, ReachBox};
-use crate::mesh::io::{read_mesh, write_mesh};
-use crate::mesh::{Snapshot, mend};
-use crate::stroke::DraftAct;
+use crate::session::history::{Handle, Want, listing};
+use crate::{Published, boolean_jobs as joiner, startup as rig, trim};
+use sculptd_clay::Snapshot;
+use sculptd_clay::brush::{BrushKind, MaskAction, Picture};
+use sculptd_clay::live_thickness::LiveMap;
+use sculptd_devices::Clock;
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::hand::{Choice, ReachBox};
+use sculptd_engine::stroke::DraftAct;
+use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::io::{read_mesh, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::repair as mend;
 
 /// Every method with its parameters, for `methods` and for the schema test.
 pub const METHODS: &[(&str, &str)] = &[

@@ -14,9 +14,9 @@ use serde_json::Value;
 
 use super::protocol::{Code, Response, RpcError, parse};
 use super::{MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, methods, user_id};
-use crate::command::Command;
-use crate::daemon::Published;
-use crate::devices::Clock;
+use crate::Published;
+use sculptd_devices::Clock;
+use sculptd_engine::command::Command;
 
 /// What a request may touch.
 #[derive(Debug, Clone)]
@@ -24,13 +24,13 @@ pub struct Host {
     pub commands: cc::Sender<Command>,
     pub published: Arc<ArcSwap<Published>>,
     /// The wall thickness of the work, as last asked for.
-    pub thickness: Arc<Mutex<Option<crate::analysis::thickness::live::LiveMap>>>,
+    pub thickness: Arc<Mutex<Option<sculptd_clay::live_thickness::LiveMap>>>,
     /// The Boolean under way.
-    pub joining: Arc<Mutex<Option<Arc<crate::analysis::cancel::Job>>>>,
+    pub joining: Arc<Mutex<Option<Arc<sculptd_geometry::job::Job>>>>,
     /// How the session file stands; `None`: the run is not recorded.
-    pub journal: Option<crate::daemon::session::Health>,
+    pub journal: Option<crate::session::Health>,
     /// The history of the session, if one is kept.
-    pub history: Option<crate::daemon::session::history::Handle>,
+    pub history: Option<crate::session::history::Handle>,
     /// Raised by `shutdown`.
     pub stop: Arc<AtomicBool>,
 }

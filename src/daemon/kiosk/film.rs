@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::daemon::rig::{Area, used_area};
-use crate::devices::catalogue::Catalogue;
-use crate::devices::queue::Sender;
-use crate::devices::recording::{Player, RecordingError};
-use crate::devices::{Body, DeviceId, Pen, Sample, Tool, sim};
+use crate::startup::{Area, used_area};
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::queue::Sender;
+use sculptd_devices::recording::{Player, RecordingError};
+use sculptd_devices::{Body, DeviceId, Pen, Sample, Tool, sim};
 
 /// Longest time without a touch that is shown, microseconds: nobody watches a still screen.
 const PAUSE_US: u64 = 1_000_000;

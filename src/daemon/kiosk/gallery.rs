@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::mesh::PolyMesh;
-use crate::mesh::io::{write_beside, write_mesh};
+use sculptd_geometry::PolyMesh;
+use sculptd_geometry::io::{write_beside, write_mesh};
 
 /// Names of whole works in `folder`, in order. What a power cut left half-written has another name and is not among them.
 pub fn works(folder: &Path) -> std::io::Result<Vec<String>> {
@@ -64,7 +64,7 @@ pub fn audit(file: &Path, visit: u64, seconds: u64, dabs: u64, kept: bool) -> st
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::shapes;
+    use sculptd_geometry::shapes;
 
     #[test]
     fn half_a_work_is_not_in_the_gallery_and_the_next_work_mends_the_page() {

@@ -13,16 +13,17 @@ use super::film::Film;
 use super::share;
 use super::spool::Spool;
 use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
-use crate::analysis::cancel::Job;
-use crate::brush::BrushSettings;
-use crate::command::{Beginning, Command, NewClay};
-use crate::daemon::Published;
-use crate::daemon::adaptors::RECORDING_IDS;
-use crate::devices::catalogue::Catalogue;
-use crate::devices::queue::{Sender, SenderFactory};
-use crate::devices::{Clock, DeviceId};
-use crate::mesh::{Mesh, TriMesh};
-use crate::stroke::Camera;
+use crate::Published;
+use crate::adaptors::RECORDING_IDS;
+use sculptd_clay::Mesh;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::queue::{Sender, SenderFactory};
+use sculptd_devices::{Clock, DeviceId};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::{Beginning, Command, NewClay};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::job::Job;
 
 /// Looks a second.
 const RATE_HZ: f64 = 50.0;
@@ -130,7 +131,7 @@ pub fn start(
         "" => None,
         at => {
             let lasts = Duration::from_secs_f64(config.share_minutes * 60.0);
-            let at = crate::daemon::metrics::address(at).map_err(|e| format!("share: {e}"))?;
+            let at = crate::metrics::address(at).map_err(|e| format!("share: {e}"))?;
             let share = share::Share::start(at, &config.share_name, lasts, clock.clone());
             Some(share.map_err(|e| format!("share {at}: {e}"))?)
         }

@@ -2,7 +2,7 @@
 //!
 //! Laws kept here:
 //! * The cycle is a state machine driven by ticks ([`cycle`]): no clock, no IO.
-//! * A reset leaves nothing of the visitor before: the world is begun anew by [`crate::command::Command::Begin`].
+//! * A reset leaves nothing of the visitor before: the world is begun anew by [`sculptd_engine::command::Command::Begin`].
 //! * What is written (gallery, audit) appears whole or not at all, and says nothing of who was here.
 
 #[cfg(feature = "s3")]

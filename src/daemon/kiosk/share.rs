@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::daemon::metrics::{PATIENCE, read_head, request};
-use crate::devices::Clock;
+use crate::metrics::{PATIENCE, read_head, request};
+use sculptd_devices::Clock;
 
 /// Links that are good at a time; the oldest goes first.
 const LINKS: usize = 1024;

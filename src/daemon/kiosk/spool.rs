@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use crate::mesh::io::write_beside;
+use sculptd_geometry::io::write_beside;
 
 /// The folder of names that wait, within the gallery.
 pub const OUTGOING: &str = "outgoing";

@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::analysis::picture::{Camera, draw};
-use crate::mesh::io::write_beside;
-use crate::world::World;
+use sculptd_engine::world::World;
+use sculptd_geometry::io::write_beside;
+use sculptd_geometry::picture::{Camera, draw};
 
 /// Pictures of one replay. The same session gives the same bytes on every machine of one kind.
 #[derive(Debug)]

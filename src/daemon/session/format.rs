@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::brush::BrushSettings;
-use crate::command::Command;
-use crate::devices::Sample;
-use crate::hand::HandSettings;
-use crate::stroke::Camera;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_devices::Sample;
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::HandSettings;
 
 /// The tables. `log` holds groups of ticks in order; `crc` is the CRC-32 of `data`.
 pub const TABLES: &str = "
@@ -23,7 +23,7 @@ pub const TABLES: &str = "
 /// Keys of `meta`.
 pub const META_START: &str = "start_mesh";
 pub const META_SETTINGS: &str = "settings";
-/// Names what lies in memory beside the file, see [`super::tail`]; eight bytes.
+/// Names what lies in memory beside the file, see [`crate::session::shared_memory_log`]; eight bytes.
 pub const META_TAIL: &str = "tail";
 /// The CRC-32 of both, in that order. Files from before it was written go unchecked.
 pub const META_SUMS: &str = "sums";
@@ -89,7 +89,7 @@ pub fn ticks(mut data: &[u8]) -> impl Iterator<Item = Result<TickInput, postcard
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::{Body, DeviceId, Hands, Pen};
+    use sculptd_devices::{Body, DeviceId, Hands, Pen};
 
     #[test]
     fn ticks_come_back_as_they_went_in_and_a_torn_tail_is_an_error_not_a_panic() {

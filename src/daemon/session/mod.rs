@@ -3,19 +3,19 @@
 //!
 //! Laws kept here:
 //! * The tick thread only hands over data and never waits ([`writer`]).
-//! * Input is safe from a kill as soon as the journal has it ([`tail`]), is committed at most [`GROUP_MS`] after its tick, and
+//! * Input is safe from a kill as soon as the journal has it ([`shared_memory_log`]), is committed at most [`GROUP_MS`] after its tick, and
 //!   then synced, safe from a power cut.
 //! * What was written is never rewritten: a group is a row, a row carries its checksum, a torn tail is dropped and said.
 
+pub mod catalog;
 pub mod film;
 pub mod format;
 pub mod history;
 pub mod reader;
 pub mod replay;
 pub mod salvage;
-pub mod shelf;
+pub mod shared_memory_log;
 mod syncer;
-pub mod tail;
 pub mod writer;
 
 pub use reader::{Loss, OpenError, Opened, open};

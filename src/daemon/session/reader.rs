@@ -5,8 +5,9 @@ use std::path::Path;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
 use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TickInput, ticks};
-use super::{APPLICATION_ID, VERSION, tail};
-use crate::mesh::TriMesh;
+use super::{APPLICATION_ID, VERSION};
+use crate::session::shared_memory_log as tail;
+use sculptd_geometry::TriMesh;
 
 /// Largest start mesh that is read back, bytes; more than the 24 GiB machine's working set makes no session.
 const MAX_START_BYTES: i64 = 8 << 30;

@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex};
 use super::history::Store;
 use super::history::keeper::assemble;
 use super::reader::Opened;
-use crate::analysis::cancel::Job;
-use crate::command::{Command, Fetched, Jump};
-use crate::mesh::{BuildError, Mesh, Snapshot, Workers};
-use crate::world::{World, WorldOptions};
+use sculptd_clay::{BuildError, Mesh, Snapshot, Workers};
+use sculptd_engine::command::{Command, Fetched, Jump};
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
 
 /// A session that was replayed to its end, or to the tick asked for.
 #[derive(Debug)]

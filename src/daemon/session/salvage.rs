@@ -63,7 +63,7 @@ pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
         Err(e) => return Err(e.into()),
     };
     // A start that cannot be built is no start.
-    if let Err(e) = crate::mesh::Mesh::build(&opened.start, &crate::analysis::cancel::Job::default()) {
+    if let Err(e) = sculptd_clay::Mesh::build(&opened.start, &sculptd_geometry::job::Job::default()) {
         return Err(OpenError::Damaged {
             path: path.display().to_string(),
             what: "start_mesh",

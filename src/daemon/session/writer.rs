@@ -16,13 +16,14 @@ use rusqlite::{Connection, OptionalExtension};
 use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TABLES, TickInput, append};
 use super::history::{Handle, keeper::Keeper};
 use super::syncer::Syncer;
-use super::tail::{self, Tail};
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
-use crate::command::Command;
-use crate::daemon::live::{Journal, raise_priority_below};
-use crate::devices::{Clock, Sample};
-use crate::mesh::TriMesh;
-use crate::world::World;
+use crate::live::{Journal, raise_priority_below};
+use crate::session::shared_memory_log as tail;
+use crate::session::shared_memory_log::Tail;
+use sculptd_devices::{Clock, Sample};
+use sculptd_engine::command::Command;
+use sculptd_engine::world::World;
+use sculptd_geometry::TriMesh;
 
 /// Buffers between the tick thread and the writer: at 1,000 ticks a second a quarter of a second of arrears.
 const BUFFERS: usize = 256;

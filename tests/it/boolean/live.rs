@@ -5,17 +5,18 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3};
-use sculptd::analysis::boolean::Operation;
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{Gaussian, MaskAction};
-use sculptd::command::{Carving, Command};
-use sculptd::config::{Config, LoopConfig};
-use sculptd::daemon::joiner::{JoinError, carry_out, join};
-use sculptd::daemon::live::Live;
-use sculptd::daemon::{Published, rig};
-use sculptd::devices::{Clock, queue};
-use sculptd::mesh::{Cut, Grafted, Mesh, PolyMesh, Reach, Workers, check, shapes};
-use sculptd::world::World;
+use sculptd_clay::brush::{Gaussian, MaskAction};
+use sculptd_clay::{Cut, Grafted, Mesh, Reach, Workers};
+use sculptd_daemon::boolean_jobs::{JoinError, carry_out, join};
+use sculptd_daemon::config::{Config, LoopConfig};
+use sculptd_daemon::live::Live;
+use sculptd_daemon::{Published, startup as rig};
+use sculptd_devices::{Clock, queue};
+use sculptd_engine::command::{Carving, Command};
+use sculptd_engine::world::World;
+use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, check, shapes};
 
 fn world(frequency: u32) -> World {
     let config = Config { r#loop: LoopConfig { workers: 1, ..Default::default() }, ..Default::default() };

@@ -1,10 +1,12 @@
 //! A tool out of paged clay: as right as the long way, and only the pages around it are written.
 
 use glam::{DMat3, DVec3};
-use sculptd::analysis::boolean::{Operation, Options, compute, local};
-use sculptd::analysis::cancel::Job;
-use sculptd::devices::Clock;
-use sculptd::mesh::{Mesh, PolyMesh, check, shapes};
+use sculptd_clay::Mesh;
+use sculptd_clay::local_boolean::local;
+use sculptd_devices::Clock;
+use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, check, shapes};
 
 use super::random::Dice;
 

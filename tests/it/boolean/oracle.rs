@@ -1,7 +1,7 @@
 //! Convex polyhedra with small integer corners, and what a Boolean of two must give, in rational numbers of 128 bits.
 
 use glam::DVec3;
-use sculptd::mesh::PolyMesh;
+use sculptd_geometry::PolyMesh;
 
 use super::random::Dice;
 
@@ -109,7 +109,7 @@ impl Polyhedron {
         let mut m = PolyMesh::new();
         m.positions = self.corners.iter().map(|c| DVec3::from(c.map(|x| x as f64))).collect();
         self.faces.iter().for_each(|f| m.push_face(f));
-        sculptd::mesh::mend::drop_unused(&mut m);
+        sculptd_geometry::repair::drop_unused(&mut m);
         m
     }
 

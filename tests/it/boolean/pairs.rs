@@ -3,10 +3,10 @@
 use std::process::{Command, Output};
 
 use glam::{DMat3, DVec3};
-use sculptd::analysis::boolean::{Operation, Options, compute};
-use sculptd::analysis::cancel::Job;
-use sculptd::mesh::io::{read_mesh, write_mesh};
-use sculptd::mesh::{PolyMesh, check, mend, shapes};
+use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::io::{read_mesh, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, check, repair as mend, shapes};
 use serde_json::Value;
 
 use super::solids::{cuboid, hollow, prism};
@@ -90,7 +90,7 @@ fn real(file: &str) -> Option<PolyMesh> {
     let facts = check::report(&mesh, true, &job).expect("not cancelled");
     if !(facts.closed && facts.manifold && facts.self_intersections == Some(0) && facts.volume > Some(0.0)) {
         println!("{file}: {:?} crossings, closed {}", facts.self_intersections, facts.closed);
-        mesh = sculptd::analysis::boolean::solve(&mesh, &job).unwrap_or_else(|e| panic!("{file}: {e}"));
+        mesh = sculptd_geometry::boolean::solve(&mesh, &job).unwrap_or_else(|e| panic!("{file}: {e}"));
     }
     Some(mesh)
 }
@@ -101,7 +101,7 @@ fn a_pig_and_a_box_the_teapot_and_a_ball_armadillo_and_bunny() {
     let cube = shapes::cuboid(DVec3::splat(-0.2), DVec3::splat(0.2));
     sound("pig and box", &pig, &placed(&cube, 1.0, turn(), DVec3::new(0.1, 0.05, 0.0)));
     let ball = shapes::icosphere(0.25, 5).to_poly();
-    let body = sculptd::analysis::boolean::shells(&pot);
+    let body = sculptd_geometry::boolean::shells(&pot);
     let body = body.iter().max_by(|a, b| a.face_count().cmp(&b.face_count())).expect("a shell");
     sound("teapot and ball", body, &placed(&ball, 1.0, turn(), DVec3::new(0.2, 0.1, 0.15)));
     let (Some(armadillo), Some(bunny)) = (real("igl_armadillo.obj"), real("irmb_bunny100k.obj")) else {

@@ -2,9 +2,10 @@
 //! long sequences on one mesh.
 
 use glam::{DMat3, DQuat, DVec3};
-use sculptd::analysis::boolean::{Operation, Options, compute};
-use sculptd::analysis::cancel::Job;
-use sculptd::mesh::{PolyMesh, check, io::read_mesh, shapes};
+use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, check, shapes};
 
 use super::oracle;
 
@@ -46,7 +47,7 @@ fn solids(most: usize) -> Vec<(String, PolyMesh)> {
         .iter()
         .filter_map(|f| {
             let mut mesh = read_mesh(f, &job).ok()?.mesh;
-            sculptd::mesh::mend::weld(&mut mesh, 0.0);
+            sculptd_geometry::repair::weld(&mut mesh, 0.0);
             if mesh.face_count() > most {
                 return None;
             }

@@ -7,14 +7,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::DVec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::config::{Config, LoopConfig};
-use sculptd::daemon::control::server::{Host, Server};
-use sculptd::daemon::live::Live;
-use sculptd::daemon::rig;
-use sculptd::devices::{Clock, queue};
-use sculptd::mesh::io::write_mesh;
-use sculptd::mesh::{Mesh, check, shapes};
+use sculptd_clay::Mesh;
+use sculptd_daemon::config::{Config, LoopConfig};
+use sculptd_daemon::control::server::{Host, Server};
+use sculptd_daemon::live::Live;
+use sculptd_daemon::startup as rig;
+use sculptd_devices::{Clock, queue};
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{check, shapes};
 use serde_json::{Value, json};
 
 /// One call on a connection of its own: what it answers.

@@ -1,7 +1,7 @@
 //! Solids as a mesh and as disjoint convex parts, so that volumes and areas of all four results are known without a Boolean.
 
 use glam::{DMat3, DVec3};
-use sculptd::mesh::PolyMesh;
+use sculptd_geometry::PolyMesh;
 
 /// A convex solid as half-spaces: points x with n.x <= d, n of unit length.
 pub type Convex = Vec<(DVec3, f64)>;
@@ -88,7 +88,7 @@ pub fn hollow(lo: [f64; 3], hi: [f64; 3], wall: f64) -> Solid {
     let (il, ih) = (lo.map(|x| x + wall), hi.map(|x| x - wall));
     let mut inner = cuboid(il, ih);
     inner.parts.clear();
-    sculptd::mesh::mend::flip(&mut inner.mesh);
+    sculptd_geometry::repair::flip(&mut inner.mesh);
     s = s.and(inner);
     s.parts.clear();
     let (mut l, mut h) = (lo, hi);

@@ -1,9 +1,9 @@
 //! Curves laid by their points, with a pen, before the brush follows them.
 
 use glam::Vec2;
-use sculptd::brush::{BrushKind, BrushSettings, Method};
-use sculptd::command::Command;
-use sculptd::stroke::DraftAct;
+use sculptd_clay::brush::{BrushKind, BrushSettings, Method};
+use sculptd_engine::command::Command;
+use sculptd_engine::stroke::DraftAct;
 
 use super::{Studio, form};
 
@@ -63,11 +63,11 @@ fn points_stay_to_be_changed_and_the_curve_is_one_step() {
     assert_ne!(drawn, start);
     // The clay rose along the curve and nowhere else.
     let (before, aspect) = (form(20_000), s.world.camera().aspect);
-    let mut curve = sculptd::stroke::Draft::default();
+    let mut curve = sculptd_engine::stroke::Draft::default();
     for view in &laid {
         // At the end each time: off the curve so far.
         curve.grab(
-            &sculptd::stroke::PenPoint { view: *view, pressure: 0.8, tilt: None, inverted: false },
+            &sculptd_engine::stroke::PenPoint { view: *view, pressure: 0.8, tilt: None, inverted: false },
             aspect,
         );
         curve.release();

@@ -1,10 +1,11 @@
 //! Brushes against their formulas.
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::elastic::Elastic;
-use sculptd::brush::{BrushKind, BrushSettings, Gaussian, PressureCurve, Smooth, Topology};
-use sculptd::mesh::{Mesh, Reach, TriMesh, Workers, shapes};
+use sculptd_clay::brush::elastic::Elastic;
+use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian, PressureCurve, Smooth, Topology};
+use sculptd_clay::{Mesh, Reach, Workers};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 use super::super::clay::Dice;
 use super::Studio;

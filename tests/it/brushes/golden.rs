@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use sculptd::brush::{
+use sculptd_clay::brush::{
     Alpha, BrushKind, BrushSettings, Falloff, MaskAction, Measure, Method, Picture, PressureCurve, StampBy,
 };
-use sculptd::command::Command;
-use sculptd::mesh::{TriMesh, shapes};
+use sculptd_engine::command::Command;
+use sculptd_geometry::{TriMesh, shapes};
 use serde::{Deserialize, Serialize};
 
 use super::{Studio, form, s_curve};

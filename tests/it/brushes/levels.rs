@@ -2,12 +2,12 @@
 
 use arc_swap::ArcSwap;
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{BrushKind, BrushSettings, MaskAction, Measure};
-use sculptd::command::Command;
-use sculptd::daemon::published::{Published, PublishedFigures};
-use sculptd::daemon::{joiner, trim};
-use sculptd::mesh::{TriMesh, check, shapes};
+use sculptd_clay::brush::{BrushKind, BrushSettings, MaskAction, Measure};
+use sculptd_daemon::published::{Published, PublishedFigures};
+use sculptd_daemon::{boolean_jobs as joiner, trim};
+use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, check, shapes};
 
 use super::{Studio, s_curve};
 

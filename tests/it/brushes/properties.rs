@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{
+use sculptd_clay::Mesh;
+use sculptd_clay::brush::{
     BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, StampBy, Topology,
 };
-use sculptd::command::{Command, NewClay};
-use sculptd::mesh::{Mesh, TriMesh, shapes};
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 use super::super::clay::Dice;
 use super::{Studio, form};

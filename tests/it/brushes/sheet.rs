@@ -4,10 +4,10 @@
 use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::picture::{Camera, Picture, draw};
-use sculptd::brush::{Alpha, BrushKind, BrushSettings, Falloff, Grip};
-use sculptd::command::Command;
-use sculptd::mesh::TriMesh;
+use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, Falloff, Grip};
+use sculptd_engine::command::Command;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::picture::{Camera, Picture, draw};
 
 use super::super::clay::Dice;
 use super::{Studio, form};

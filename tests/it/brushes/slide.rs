@@ -1,9 +1,10 @@
 //! Slide-relax: the triangles move along the surface, the form stays.
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{BrushKind, BrushSettings};
-use sculptd::mesh::{Mesh, Ray, TriMesh, shapes};
+use sculptd_clay::brush::{BrushKind, BrushSettings};
+use sculptd_clay::{Mesh, Ray};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 use super::super::clay::Dice;
 use super::{Studio, form};

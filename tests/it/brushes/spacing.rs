@@ -2,11 +2,13 @@
 //! on clay that the stroke itself raises.
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{BrushKind, BrushSettings, Gaussian};
-use sculptd::mesh::{Hit, Mesh, Ray, Reach, TriMesh, Workers, shapes};
-use sculptd::stroke::spacer::BRIDGED;
-use sculptd::stroke::{Camera, Flow, Laid, PenPoint, Spacer, Surface};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian};
+use sculptd_clay::{Hit, Mesh, Ray, Reach, Workers};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::stroke::spacer::BRIDGED;
+use sculptd_engine::stroke::{Flow, Laid, PenPoint, Spacer, Surface};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 use super::super::clay::Dice;
 use super::{Studio, form};

@@ -1,10 +1,11 @@
 //! The coordinates of a stroke against the exact ones, and the relief that they carry.
 
 use glam::{Vec2, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::unroll::{Sample, Unroll};
-use sculptd::brush::{Alpha, BrushKind, BrushSettings, PressureCurve};
-use sculptd::mesh::{Mesh, TriMesh};
+use sculptd_clay::Mesh;
+use sculptd_clay::brush::stroke_param::{Sample, Unroll};
+use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, PressureCurve};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::job::Job;
 
 use super::super::clay::Dice;
 use super::Studio;
@@ -111,7 +112,7 @@ fn a_cone_unrolls_to_its_development() {
 
 #[test]
 fn a_sphere_gets_its_exponential_map() {
-    let mesh = sculptd::mesh::shapes::icosphere(1.0, 90);
+    let mesh = sculptd_geometry::shapes::icosphere(1.0, 90);
     let normal = Vec3::new(0.36, 0.48, 0.8);
     let along = normal.any_orthonormal_vector();
     let across = normal.cross(along);

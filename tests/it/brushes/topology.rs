@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use sculptd::analysis::cancel::Job;
-use sculptd::brush::{BrushKind, BrushSettings, Gaussian, Measure, Smooth};
-use sculptd::command::Command;
-use sculptd::mesh::{Detail, Mesh, Ray, Reach, TriMesh, Workers, shapes};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian, Measure, Smooth};
+use sculptd_clay::{Detail, Mesh, Ray, Reach, Workers};
+use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
 
 use super::super::clay::Dice;
 use super::{Studio, s_curve};

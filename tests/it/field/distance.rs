@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::distance::{Sign, Solid};
-use sculptd::analysis::grid::Grid;
-use sculptd::analysis::tree::nearest_on_triangle;
-use sculptd::analysis::winding::solid_angle;
-use sculptd::mesh::TriMesh;
-use sculptd::mesh::shapes::{cuboid, icosphere, torus};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::bvh::nearest_on_triangle;
+use sculptd_geometry::distance::{Sign, Solid};
+use sculptd_geometry::grid::Grid;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes::{cuboid, icosphere, torus};
+use sculptd_geometry::winding::solid_angle;
 
 use super::{Random, bounds, long, meshes};
 
@@ -151,7 +151,7 @@ fn grids_hold_the_same_distances_and_survive_the_file() {
     assert!((grid.gradient(p).x - slope).abs() < 1e-3);
     let file = tempfile::tempdir().unwrap().path().join("grid.npy");
     std::fs::create_dir_all(file.parent().unwrap()).unwrap();
-    sculptd::mesh::io::write_beside(&file, |w| grid.write_npy(w)).unwrap();
+    sculptd_geometry::io::write_beside(&file, |w| grid.write_npy(w)).unwrap();
     assert_eq!(Grid::read_npy(&file).unwrap(), grid);
     job.cancel();
     assert!(Grid::sample(&solid, Grid::layout(bounds(&mesh), 30, 2), &job).is_err());

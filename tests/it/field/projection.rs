@@ -3,16 +3,16 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::distance::Solid;
-use sculptd::analysis::grid::Grid;
-use sculptd::analysis::march::default_epsilon;
-use sculptd::analysis::measure::projected_area;
-use sculptd::analysis::projection::{
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::distance::Solid;
+use sculptd_geometry::grid::Grid;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::march::default_epsilon;
+use sculptd_geometry::measure::projected_area;
+use sculptd_geometry::projection::{
     By, Plane, area, classify, outline, png, rectangle, sample, shadow_areas, spread_directions, svg,
 };
-use sculptd::mesh::TriMesh;
-use sculptd::mesh::shapes::{cuboid, cylinder, icosphere, torus};
+use sculptd_geometry::shapes::{cuboid, cylinder, icosphere, torus};
 
 use super::{Random, bounds, long, meshes};
 

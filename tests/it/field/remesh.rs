@@ -3,15 +3,16 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::distance::Solid;
-use sculptd::analysis::grid::Grid;
-use sculptd::analysis::measure::measures;
-use sculptd::analysis::offset::{hollow, offset, smooth_union};
-use sculptd::analysis::remesh::{RemeshError, Settings, dual::extract, remesh};
-use sculptd::mesh::TriMesh;
-use sculptd::mesh::crossing::pairs;
-use sculptd::mesh::shapes::{cuboid, icosphere, torus};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::distance::Solid;
+use sculptd_geometry::grid::Grid;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::measure::measures;
+use sculptd_geometry::offset::{hollow, offset, smooth_union};
+use sculptd_geometry::remesh::dual::extract;
+use sculptd_geometry::remesh::{RemeshError, Settings, remesh};
+use sculptd_geometry::self_intersection::pairs;
+use sculptd_geometry::shapes::{cuboid, icosphere, torus};
 
 use super::{Random, bounds, long, manifold, meshes};
 

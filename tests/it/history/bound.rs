@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glam::Vec2;
-use sculptd::analysis::cancel::Job;
-use sculptd::command::Command;
-use sculptd::daemon::session;
-use sculptd::daemon::session::history::{Want, listing, reopen};
+use sculptd_daemon::session;
+use sculptd_daemon::session::history::{Want, listing, reopen};
+use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
 
 use super::{Studio, both_ways, pause};
 

@@ -5,18 +5,21 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
-use sculptd::analysis::cancel::Job;
-use sculptd::analysis::projection::svg;
-use sculptd::hand::{Choice, Similarity, Thing};
-use sculptd::mesh::{Mesh, Snapshot, TriMesh, shapes};
-use sculptd::stroke::Camera;
-use sculptd::viewer::field::{self, Field, Reference, measure};
-use sculptd::viewer::look::Look;
-use sculptd::viewer::loose::Triangles;
-use sculptd::viewer::picture::Painter;
-use sculptd::viewer::preview::{self, Preview, Wanted};
-use sculptd::viewer::renderer::{Beside, Scene};
-use sculptd::viewer::work::Done;
+use sculptd_clay::{Mesh, Snapshot};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::hand::{Choice, Similarity, Thing};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::projection::svg;
+use sculptd_geometry::{TriMesh, shapes};
+use sculptd_window::viewer::field;
+use sculptd_window::viewer::field::{Field, Reference, measure};
+use sculptd_window::viewer::look::Look;
+use sculptd_window::viewer::overlay_mesh::Triangles;
+use sculptd_window::viewer::picture::Painter;
+use sculptd_window::viewer::preview;
+use sculptd_window::viewer::preview::{Preview, Wanted};
+use sculptd_window::viewer::renderer::{Beside, Scene};
+use sculptd_window::viewer::work::Done;
 
 use super::pictures::{dab, framed, painter};
 use crate::clay::sphere;
@@ -117,7 +120,7 @@ fn a_preview_that_is_no_longer_wanted_ends() {
     job.cancel();
     let wanted = Wanted { mesh: mesh.snapshot(), thing: thing(Vec3::Z), choice: Choice::Keep };
     let ended = preview::compute(&wanted, &job);
-    assert!(matches!(ended, Err(sculptd::analysis::boolean::Error::Cancelled(_))), "{ended:?}");
+    assert!(matches!(ended, Err(sculptd_geometry::boolean::Error::Cancelled(_))), "{ended:?}");
 }
 
 #[test]

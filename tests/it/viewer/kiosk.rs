@@ -5,10 +5,11 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use sculptd::command::Command;
-use sculptd::daemon::kiosk::keeper::{Desk, Screen};
-use sculptd::daemon::kiosk::{KioskConfig, Stage, View};
-use sculptd::panels::{Ask, Tab, kiosk, timing::FrameFigures};
+use sculptd_daemon::kiosk::keeper::{Desk, Screen};
+use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
+use sculptd_engine::command::Command;
+use sculptd_window::panels::timing::FrameFigures;
+use sculptd_window::panels::{Ask, Tab, kiosk};
 
 use super::panels::{State, state};
 
@@ -25,7 +26,7 @@ fn at(screen: &Screen, stage: Stage, visits: u64) {
 fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
     let screen = screen.clone();
     let show = move |ui: &mut egui::Ui, s: &mut State| {
-        let view = sculptd::panels::View {
+        let view = sculptd_window::panels::View {
             state: &s.published,
             camera: s.published.camera,
             devices: &s.devices,
@@ -106,7 +107,7 @@ fn staff_types_a_number_that_is_not_shown() {
 #[cfg(unix)]
 #[test]
 fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
-    use sculptd::daemon::kiosk::share::{Code, Link};
+    use sculptd_daemon::kiosk::share::{Code, Link};
     let screen = screen();
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");

@@ -5,12 +5,12 @@
 use egui::epaint::{ClippedShape, Shape};
 use egui::{Color32, Rect};
 use egui_kittest::Harness;
-use sculptd::command::Command;
-use sculptd::hand::Choice;
-use sculptd::panels::Tab;
-use sculptd::panels::measure::Distances;
-use sculptd::panels::scene::Said;
-use sculptd::viewer::look::Map;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::Choice;
+use sculptd_window::panels::Tab;
+use sculptd_window::panels::measure::Distances;
+use sculptd_window::panels::scene::Said;
+use sculptd_window::viewer::look::Map;
 
 use super::panels::{State, show, state};
 
@@ -123,16 +123,19 @@ fn fill(s: &mut State, tab: Tab) {
     let mut world = super::world(2_000);
     match tab {
         Tab::Scene => {
-            let plain = sculptd::mesh::shapes::sphere_of_about(200);
+            let plain = sculptd_geometry::shapes::sphere_of_about(200);
             world.step(1, &[], &[Command::TakeUp(std::sync::Arc::new(plain))]);
             s.published = super::published(&mut world);
             s.desk.trial.choice = Some(Choice::Carve);
             s.desk.trial.said = Said::Wrong("B is open: 1234 edges lack a partner; mend it first".into());
         }
         Tab::Measure => {
-            let found =
-                sculptd::viewer::field::measure(&s.published.mesh, glam::DVec3::NEG_X, &Default::default())
-                    .expect("not cancelled");
+            let found = sculptd_window::viewer::field::measure(
+                &s.published.mesh,
+                glam::DVec3::NEG_X,
+                &Default::default(),
+            )
+            .expect("not cancelled");
             s.desk.sizes.found = Some(Box::new(found));
             s.desk.look.map = Map::Distance;
             s.desk.look.scale = (-123.25, 123.25);

@@ -4,21 +4,22 @@ use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
-use sculptd::analysis::projection::Polygon;
-use sculptd::brush::{BrushKind, Method};
-use sculptd::command::Command;
-use sculptd::daemon::Published;
-use sculptd::daemon::trim::Part;
-use sculptd::devices::{Body, DeviceId, Pen, Sample};
-use sculptd::hand::Choice;
-use sculptd::panels::action::Action;
-use sculptd::panels::history::Thumb;
-use sculptd::panels::measure::{Distances, Measured};
-use sculptd::panels::scene::Said;
-use sculptd::panels::trim::{Shape, Trim};
-use sculptd::panels::{Ask, Desk, Tab, View, all, timing::FrameFigures};
-use sculptd::stroke::DraftAct;
-use sculptd::viewer::look::Map;
+use sculptd_clay::brush::{BrushKind, Method};
+use sculptd_daemon::Published;
+use sculptd_daemon::trim::Part;
+use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::Choice;
+use sculptd_engine::stroke::DraftAct;
+use sculptd_geometry::projection::Polygon;
+use sculptd_window::panels::action::Action;
+use sculptd_window::panels::history::Thumb;
+use sculptd_window::panels::measure::{Distances, Measured};
+use sculptd_window::panels::scene::Said;
+use sculptd_window::panels::timing::FrameFigures;
+use sculptd_window::panels::trim::{Shape, Trim};
+use sculptd_window::panels::{Ask, Desk, Tab, View, all};
+use sculptd_window::viewer::look::Map;
 
 pub(super) struct State {
     pub published: Published,
@@ -60,7 +61,7 @@ fn harness(tab: Tab) -> Harness<'static, State> {
     h
 }
 
-fn brushes(h: &Harness<'_, State>) -> Vec<sculptd::brush::BrushSettings> {
+fn brushes(h: &Harness<'_, State>) -> Vec<sculptd_clay::brush::BrushSettings> {
     let of = |a: &Ask| match a {
         Ask::World(Command::Brush(b)) => Some(*b),
         _ => None,
@@ -258,7 +259,7 @@ fn hints_are_gone_for_good_once_followed() {
     assert!(h.query_by_label_contains("Shift smooths, Ctrl carves").is_none());
     // Kept from day to day.
     let kept = toml::to_string(&h.state().desk.prefs).expect("plain data");
-    assert_eq!(sculptd::panels::preferences::Preferences::parse(&kept).done.hint(), None);
+    assert_eq!(sculptd_window::panels::preferences::Preferences::parse(&kept).done.hint(), None);
 }
 
 #[test]
@@ -311,7 +312,7 @@ fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
     let mut h = harness(Tab::Walls);
     h.state_mut().desk.look.map = Map::Thickness;
     let place = glam::Vec3::new(0.1, 0.9, 0.0);
-    h.state_mut().desk.walls.found = Some(Box::new(sculptd::panels::analysis::Thickness {
+    h.state_mut().desk.walls.found = Some(Box::new(sculptd_window::panels::analysis::Thickness {
         min: 0.4,
         max: 3.0,
         median: 1.5,
@@ -320,7 +321,7 @@ fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
         vertices: 100,
         below: 0.07,
         histogram: vec![3; 48],
-        spots: vec![sculptd::panels::analysis::Spot { place, thickness: 0.4 }],
+        spots: vec![sculptd_window::panels::analysis::Spot { place, thickness: 0.4 }],
     }));
     h.run_steps(2);
     h.get_by_label("1: 0.400 mm").click();
@@ -340,7 +341,7 @@ fn the_cube_looks_along_an_axis() {
 #[test]
 fn a_join_is_tried_then_applied_or_dismissed() {
     let mut world = super::world(2_000);
-    let take = Command::TakeUp(std::sync::Arc::new(sculptd::mesh::shapes::sphere_of_about(200)));
+    let take = Command::TakeUp(std::sync::Arc::new(sculptd_geometry::shapes::sphere_of_about(200)));
     world.step(1, &[], std::slice::from_ref(&take));
     let mut h = harness(Tab::Scene);
     h.state_mut().published = super::published(&mut world);
@@ -462,7 +463,7 @@ fn the_hands_menu_has_its_words_at_its_balls() {
     let mut h = harness(Tab::Look);
     assert!(h.query_by_label("cylinder").is_none(), "no hands, no menu");
     let s = h.state_mut();
-    s.published.hands = Some(sculptd::devices::Hands::default());
+    s.published.hands = Some(sculptd_devices::Hands::default());
     s.published.menu = Some((1, 0.4));
     // Seen from the front, from where all of them are in view.
     s.published.camera.distance = 20.0;
@@ -471,7 +472,7 @@ fn the_hands_menu_has_its_words_at_its_balls() {
     for choice in Choice::EMPTY {
         assert!(h.query_by_label(choice.label()).is_some(), "{}", choice.label());
     }
-    let balls = sculptd::panels::balls::balls(&h.state().published);
+    let balls = sculptd_window::panels::hand_menu::balls(&h.state().published);
     assert_eq!(balls.iter().map(|b| b.ring).collect::<Vec<_>>(), [None, Some(0.4), None, None, None]);
     assert!(balls.windows(2).all(|b| b[1].place.y > b[0].place.y), "one over the other");
 }

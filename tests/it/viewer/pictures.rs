@@ -1,14 +1,14 @@
 //! Pictures by the renderer on whatever adapter there is, and what is sent to it.
 
 use glam::Vec3;
-use sculptd::brush::Gaussian;
-use sculptd::devices::Clock;
-use sculptd::mesh::{Mesh, Ray, Reach, Workers};
-use sculptd::stroke::Camera;
-use sculptd::viewer::look::{Look, MATERIALS, Map};
-use sculptd::viewer::pages::MapValues;
-use sculptd::viewer::picture::Painter;
-use sculptd::viewer::renderer::Scene;
+use sculptd_clay::brush::Gaussian;
+use sculptd_clay::{Mesh, Ray, Reach, Workers};
+use sculptd_devices::Clock;
+use sculptd_engine::camera::Camera;
+use sculptd_window::viewer::look::{Look, MATERIALS, Map};
+use sculptd_window::viewer::pages::MapValues;
+use sculptd_window::viewer::picture::Painter;
+use sculptd_window::viewer::renderer::Scene;
 
 use crate::clay::sphere;
 
@@ -158,7 +158,7 @@ fn an_idle_frame_of_a_million_triangles_costs_little() {
     let camera = framed(&mesh, 16.0 / 9.0);
     let gpu = painter.gpu();
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
-    let mut renderer = sculptd::viewer::renderer::Renderer::new(gpu, format, 1);
+    let mut renderer = sculptd_window::viewer::renderer::Renderer::new(gpu, format, 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: 64, height: 64, depth_or_array_layers: 1 },
@@ -228,7 +228,7 @@ fn large_works_are_drawn_at_interactive_rates() {
         let mut mesh = sphere(vertices);
         let camera = framed(&mesh, 16.0 / 9.0);
         let format = wgpu::TextureFormat::Rgba8UnormSrgb;
-        let mut renderer = sculptd::viewer::renderer::Renderer::new(gpu, format, gpu.samples(false));
+        let mut renderer = sculptd_window::viewer::renderer::Renderer::new(gpu, format, gpu.samples(false));
         let size = wgpu::Extent3d { width: 1920, height: 1080, depth_or_array_layers: 1 };
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,

@@ -3,10 +3,10 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use sculptd::command::Command;
-use sculptd::daemon::session::history::{Node, Tree};
-use sculptd::panels::{Ask, Tab};
-use sculptd::world::Deed;
+use sculptd_daemon::session::history::{Node, Tree};
+use sculptd_engine::command::Command;
+use sculptd_engine::world::Deed;
+use sculptd_window::panels::{Ask, Tab};
 
 use super::panels::{State, show, state};
 

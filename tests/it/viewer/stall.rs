@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use glam::Vec2;
-use sculptd::config::LoopConfig;
-use sculptd::daemon::live::Live;
-use sculptd::devices::{Body, Clock, DeviceId, Pen, Sample, Tool, queue};
+use sculptd_daemon::config::LoopConfig;
+use sculptd_daemon::live::Live;
+use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample, Tool, queue};
 
 /// Resident bytes of this process; 0 where the system does not tell.
 fn resident() -> u64 {

@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use image::RgbaImage;
 use image::imageops::FilterType;
-use sculptd::daemon::control::client::call;
-use sculptd::mesh::io::write_mesh;
-use sculptd::mesh::shapes;
+use sculptd_daemon::control::client::call;
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::shapes;
 use serde_json::{Value, json};
 
 const SIZE: (u32, u32) = (1280, 720);
@@ -278,7 +278,7 @@ fn the_first_minutes_in_a_real_window() {
 
     let out = s.dir.path().join("work.stl");
     s.ask("export", &json!({ "path": out }));
-    let read = sculptd::mesh::io::read_mesh(&out, &Default::default()).expect("the export is read back");
+    let read = sculptd_geometry::io::read_mesh(&out, &Default::default()).expect("the export is read back");
     assert_eq!(read.mesh.triangulate().0.triangles.len() as u64, s.figure("triangles"));
 }
 

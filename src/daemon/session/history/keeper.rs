@@ -12,14 +12,14 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use super::ledger::Ledger;
 use super::store::{Store, StoreError};
 use super::tree::{Node, Tree, Way};
-use crate::analysis::cancel::Job;
-use crate::command::{Command, Fetched, Jump, OtherWork};
-use crate::devices::Clock;
-use crate::mesh::{Levels, Mesh, Rest, Snapshot};
-use crate::world::{Deed, Moment, Saved, World};
+use crate::session::history::history_writer::Ledger;
+use sculptd_clay::{Levels, Mesh, Rest, Snapshot};
+use sculptd_devices::Clock;
+use sculptd_engine::command::{Command, Fetched, Jump, OtherWork};
+use sculptd_engine::world::{Deed, Moment, Saved, World};
+use sculptd_geometry::job::Job;
 
 /// Moments that may wait for the disk, each holding the pages of its time.
 const WAITING: usize = 64;
@@ -211,7 +211,7 @@ impl Keeping {
         ending: &AtomicBool,
         busy: &AtomicUsize,
     ) {
-        crate::daemon::live::raise_priority_below();
+        crate::live::raise_priority_below();
         loop {
             let message = match inbox.recv_timeout(RETRY) {
                 Ok(message) => message,
@@ -382,13 +382,13 @@ fn describe(ledger: &Ledger, node: &Node, first: usize) -> Result<(Rest, Vec<(u3
 /// The work that the session began with.
 fn base(path: &Path) -> Result<Snapshot, StoreError> {
     let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
-    let opened = crate::daemon::session::open(path).map_err(|e| damaged(&e))?;
+    let opened = crate::session::open(path).map_err(|e| damaged(&e))?;
     let mut mesh = Mesh::build(&opened.start, &Job::default()).map_err(|e| damaged(&e))?;
     Ok(mesh.snapshot())
 }
 
 /// A whole work out of the file.
-pub(in crate::daemon::session) fn assemble(
+pub(in crate::session) fn assemble(
     store: &Store,
     base: &Snapshot,
     rest: &Rest,

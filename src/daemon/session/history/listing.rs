@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::store::{Store, StoreError};
 use super::tree::Tree;
-use crate::world::Deed;
+use sculptd_engine::world::Deed;
 
 /// One place of the history.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -6,18 +6,18 @@
 //! * Nodes make a **tree**: a step after an undo begins a branch beside the one that was taken back, which stays.
 //! * A **checkpoint** is a node and the rest of the world's state. Opening a session is the newest checkpoint and the replay of
 //!   what follows it.
-//! * The file is bounded ([`bound`]): beyond so many bytes the oldest places go, never what opening the session needs.
-//! * The world is changed by commands alone: [`keeper`] fetches pages and sends a [`crate::command::Jump`], which names them.
+//! * The file is bounded ([`retention`]): beyond so many bytes the oldest places go, never what opening the session needs.
+//! * The world is changed by commands alone: [`keeper`] fetches pages and sends a [`sculptd_engine::command::Jump`], which names them.
 //!   A replay finds them in the file again. What the keeper has not written yet is in memory still; what it never wrote is
 //!   replayed from the log.
 
-pub mod bound;
+mod history_writer;
 pub mod keeper;
-mod ledger;
 pub mod listing;
 pub mod reopen;
-mod sight;
+pub mod retention;
 pub mod store;
+mod thumbnail;
 pub mod tree;
 
 pub use keeper::{Handle, Keeper, Want};

@@ -10,9 +10,9 @@ use super::super::reader::Opened;
 use super::super::replay::{Replayed, Run};
 use super::keeper::assemble;
 use super::store::{Store, StoreError};
-use crate::analysis::cancel::Job;
-use crate::mesh::{Mesh, Workers};
-use crate::world::{Deed, World, WorldOptions};
+use sculptd_clay::{Mesh, Workers};
+use sculptd_engine::world::{Deed, World, WorldOptions};
+use sculptd_geometry::job::Job;
 
 /// Checkpoints that are tried, from the newest back.
 const TRIED: usize = 4;

@@ -9,10 +9,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::tree::{NOTHING, Node, Tree};
-use crate::brush::Picture;
-use crate::mesh::page::Topology;
-use crate::mesh::{Levels, Page, Rest, TriMesh};
-use crate::world::{Saved, Side};
+use sculptd_clay::brush::Picture;
+use sculptd_clay::page::Topology;
+use sculptd_clay::{Levels, Page, Rest};
+use sculptd_engine::world::{Saved, Side};
+use sculptd_geometry::TriMesh;
 
 /// Added to a session's tables; a session from before them has none and is replayed.
 pub const TABLES: &str = "

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::world::Deed;
+use sculptd_engine::world::Deed;
 
 /// The revision of a page that was not there yet.
 pub const NOTHING: u64 = u64::MAX;

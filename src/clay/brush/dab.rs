@@ -1,0 +1,191 @@
+//! What a brush is: from a dab it makes itself ready, and then says for each vertex what changes.
+//!
+//! A dab may have images (mirrors, turns). Images whose reaches overlap act together: each reads the clay as it was before
+//! any of them, and what they do is added up. So a symmetric stroke on a symmetric form stays symmetric also where it meets
+//! itself on the mirror.
+
+use glam::Vec3;
+
+use super::BrushSettings;
+use super::stamp::Lens;
+use crate::brush::surface_query::{Ground, Scratch};
+use crate::{PageIn, Reach};
+
+/// Images of a dab at most, itself counted.
+pub const IMAGES: usize = 32;
+
+/// How a brush is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grip {
+    /// It lies on the surface: one dab a spacing.
+    Surface,
+    /// It holds what was under it when the pen came down; a dab says how far it was drawn since then.
+    Anchor,
+    /// It takes the clay along, parallel to the view, and goes along itself; a dab says how far it came since the last.
+    Tow,
+}
+
+/// One dab, in mesh units.
+#[derive(Debug, Clone, Copy)]
+pub struct Dab<'a> {
+    pub settings: &'a BrushSettings,
+    pub centre: Vec3,
+    /// Unit length, out of the clay (leaning to the pen where the settings say so).
+    pub normal: Vec3,
+    pub radius: f32,
+    /// 0 to 1, pressure counted in.
+    pub strength: f32,
+    /// 1, or -1 for the other way round.
+    pub sign: f32,
+    /// On the surface: from the last dab's centre, zero for the first. Anchored: from the start. Towed: of this step.
+    pub motion: Vec3,
+    /// Anchored: the motion of the dab before.
+    pub last: Vec3,
+    /// Unit, towards the eye.
+    pub eye: Vec3,
+    /// Unit, to the right of the view.
+    pub right: Vec3,
+    /// How the eye sees the work.
+    pub lens: Lens,
+    /// 1, or -1 in an image that is mirrored.
+    pub hand: f32,
+    /// Which of the images it is; 0 the brush itself.
+    pub image: usize,
+    /// Length of the stroke up to here, and a number that differs from stroke to stroke.
+    pub travelled: f32,
+    pub stroke: u32,
+}
+
+impl Dab<'_> {
+    /// The height of one full dab, negative to carve.
+    pub fn height(&self) -> f32 {
+        self.sign * self.strength * self.radius
+    }
+
+    /// The share of the brush at a squared distance from its middle.
+    #[inline(always)]
+    pub fn fade(&self, d2: f32) -> f32 {
+        let s = self.settings;
+        s.falloff.at(d2.sqrt() / self.radius, &s.curve)
+    }
+
+    /// One of the brush's own numbers.
+    pub fn extra(&self, i: usize) -> f32 {
+        self.settings.extra[i]
+    }
+
+    /// The stroke's direction in the tangent plane, unit length; for a stroke without one, to the right of the view.
+    pub fn along(&self) -> Vec3 {
+        let flat = |d: Vec3| (d - self.normal * d.dot(self.normal)).try_normalize();
+        flat(self.motion).or_else(|| flat(self.right)).unwrap_or_else(|| self.normal.any_orthonormal_vector())
+    }
+
+    /// A ball about the centre.
+    pub fn ball(&self, radii: f32) -> Reach {
+        Reach::Sphere { centre: self.centre, radius: self.radius * radii }
+    }
+}
+
+/// A vertex that a brush looks at.
+#[derive(Debug, Clone, Copy)]
+pub struct Spot<'a> {
+    pub page: &'a PageIn<'a>,
+    /// The page's number, and the vertex in it.
+    pub number: u32,
+    pub v: usize,
+    pub p: Vec3,
+    /// How much the brush does here, 0 to 1: its fade, less what is masked.
+    pub weight: f32,
+    /// What was found out while the brush was made ready.
+    pub scratch: &'a Scratch,
+}
+
+impl Spot<'_> {
+    #[inline]
+    pub fn normal(&self) -> Vec3 {
+        self.page.normals.get(self.v)
+    }
+
+    /// The middle of the neighbours; on a border of the neighbours on the border only, so that it does not shrink. The
+    /// vertex itself where there are none.
+    #[inline]
+    pub fn middle(&self) -> Vec3 {
+        if self.page.is_border(self.v) {
+            return self.border_middle();
+        }
+        let (mut sum, mut n) = (Vec3::ZERO, 0.0f32);
+        for k in self.page.ring(self.v) {
+            sum += self.page.point(k) - self.p;
+            n += 1.0;
+        }
+        if n > 0.0 { self.p + sum / n } else { self.p }
+    }
+
+    /// Between the two neighbours on the border: the ends of an open fan. Elsewhere the vertex itself.
+    fn border_middle(&self) -> Vec3 {
+        let mut ring = self.page.ring(self.v);
+        match (ring.next(), ring.last(), self.page.is_open(self.v)) {
+            (Some(a), Some(b), true) => (self.page.point(a) + self.page.point(b)) * 0.5,
+            _ => self.p,
+        }
+    }
+}
+
+/// What is to change at a vertex. Several images' changes add up.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Change {
+    pub by: Vec3,
+    /// Where it is to be from where the stroke found it, instead of where it is now.
+    pub held: Option<Vec3>,
+    /// Added to the mask.
+    pub mask: f32,
+    /// The share of the brush's colour that is laid on, 0 to 1.
+    pub dye: f32,
+}
+
+impl Change {
+    #[inline(always)]
+    pub fn by(by: Vec3) -> Change {
+        Change { by, ..Change::default() }
+    }
+
+    pub fn held(by: Vec3) -> Change {
+        Change { held: Some(by), ..Change::default() }
+    }
+
+    pub fn mask(mask: f32) -> Change {
+        Change { mask, ..Change::default() }
+    }
+}
+
+/// A brush: one type, one file. A value of it is one dab, made ready.
+pub trait Brush: Copy + Sync {
+    const GRIP: Grip = Grip::Surface;
+    /// Whether the mask protects from it; a brush that paints the mask must not be stopped by it.
+    const MASKED: bool = true;
+    /// Whether triangles may be cut under it: not if it needs to know where vertices were when the stroke began.
+    const CUTS: bool = matches!(Self::GRIP, Grip::Surface | Grip::Tow);
+
+    /// What the dab needs to know, found out before anything moves.
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self;
+
+    /// What part of space it concerns.
+    fn reach(dab: &Dab<'_>) -> Reach {
+        dab.ball(1.0)
+    }
+
+    /// How much it does to a vertex, 0 to 1, mask left out of account; 0 outside. An anchored brush holds what was under it
+    /// at the start of the stroke.
+    #[inline(always)]
+    fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, p: Vec3) -> f32 {
+        let at = if matches!(Self::GRIP, Grip::Anchor) { page.before(v) } else { p };
+        dab.fade((at - dab.centre).length_squared())
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change;
+
+    /// A faster way for a dab without images that overlap and without options; false: there is none.
+    fn alone(_dab: &Dab<'_>, _tool: &mut super::tool::Tool<'_>) -> bool {
+        false
+    }
+}

@@ -1,0 +1,20 @@
+//! Density: brings the triangles to the wanted size and evens them along the surface; the form stays.
+//!
+//! The cutting is that of every brush that cuts ([`super::options::Topology`]); its own file turns it on.
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+use super::relax::Relax;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Density(Relax);
+
+impl Brush for Density {
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+        Density(Relax::ready(dab, on))
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        self.0.change(dab, spot)
+    }
+}

@@ -1,0 +1,21 @@
+//! Draw: raises the surface along its mean normal under the brush, by the falloff.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Draw {
+    offset: Vec3,
+}
+
+impl Brush for Draw {
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+        Draw { offset: on.plane(dab, 0.0).normal * dab.height() }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::by(self.offset * spot.weight)
+    }
+}

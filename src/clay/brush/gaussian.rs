@@ -1,0 +1,69 @@
+//! The Gaussian brush of Cipollini 2020: a bell along the surface normal at the stroke point.
+//!
+//! `height * exp(-x^2 / (2 sigma^2))`, with sigma = 0.7 and `x` the distance to the stroke point scaled so that the radius is
+//! at x = 3.5, the profile's reach (there the bell is 3.7e-6 of its height). Strength changes the height and never the
+//! footprint.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+use super::tool::Tool;
+use super::weights::{Weights, exp};
+use crate::{Kernel, PageIn, PageOut};
+
+pub const SIGMA: f32 = 0.7;
+pub const REACH: f32 = 3.5;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Gaussian {
+    centre: Vec3,
+    offset: Vec3,
+    radius2: f32,
+    /// Multiplies the squared distance in the exponent.
+    fall: f32,
+}
+
+impl Gaussian {
+    /// `normal` of unit length; `height` in mesh units, negative to carve.
+    pub fn new(centre: Vec3, radius: f32, normal: Vec3, height: f32) -> Self {
+        let scale = REACH / radius;
+        Gaussian {
+            centre,
+            offset: normal * height,
+            radius2: radius * radius,
+            fall: -(scale * scale) / (2.0 * SIGMA * SIGMA),
+        }
+    }
+}
+
+impl Kernel for Gaussian {
+    #[inline]
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        Weights::with(|w| {
+            out.visit_many(w.sphere(page, self.centre, self.radius2, |d2| exp(d2 * self.fall)));
+            out.push_all(self.offset, w.of(page));
+        });
+    }
+}
+
+impl Brush for Gaussian {
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Gaussian::new(dab.centre, dab.radius, dab.normal, dab.height())
+    }
+
+    #[inline(always)]
+    fn share(&self, _: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
+        let d2 = (p - self.centre).length_squared();
+        if d2 < self.radius2 { exp(d2 * self.fall) } else { 0.0 }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::by(self.offset * spot.weight)
+    }
+
+    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
+        tool.run(&Self::reach(dab), &Gaussian::new(dab.centre, dab.radius, dab.normal, dab.height()));
+        true
+    }
+}

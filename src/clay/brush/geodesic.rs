@@ -1,0 +1,233 @@
+//! Over the clay from vertex to vertex, across pages, no further than the brush.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::page::BREAK;
+use crate::{Mesh, PAGE_VERTICES, Page, Reach};
+
+/// A vertex by its page and its place in it.
+pub type Key = (u32, u16);
+
+/// Numbers kept for a page that was walked.
+#[derive(Debug, Default)]
+struct Block {
+    page: u32,
+    /// One an own vertex; infinite where nobody came.
+    distance: Vec<f32>,
+    /// Coordinates on a texture, where it has them.
+    place: Vec<[f32; 2]>,
+    /// The surface's own directions carried along: `u` and normal.
+    frame: Vec<[Vec3; 2]>,
+    /// Which source reached it, and which one it took its coordinates from; 0: none.
+    owner: Vec<[u32; 2]>,
+}
+
+/// One walk. Its memory is used again by the next.
+#[derive(Debug, Default)]
+pub struct Walk {
+    /// For each page its block plus one, or 0.
+    block_of: Vec<u32>,
+    blocks: Vec<Block>,
+    used: usize,
+    heap: BinaryHeap<Reverse<(u32, u32, u16)>>,
+}
+
+impl Walk {
+    /// Forgets everything.
+    pub fn begin(&mut self, mesh: &Mesh) {
+        for b in &self.blocks[..self.used] {
+            if let Some(slot) = self.block_of.get_mut(b.page as usize) {
+                *slot = 0;
+            }
+        }
+        self.used = 0;
+        self.block_of.resize(mesh.page_count(), 0);
+        self.heap.clear();
+    }
+
+    fn find(&self, page: u32) -> Option<&Block> {
+        let slot = *self.block_of.get(page as usize)? as usize;
+        self.blocks.get(slot.checked_sub(1)?)
+    }
+
+    fn block(&mut self, mesh: &Mesh, page: u32) -> &mut Block {
+        let slot = self.block_of[page as usize] as usize;
+        if slot > 0 {
+            return &mut self.blocks[slot - 1];
+        }
+        if self.used == self.blocks.len() {
+            // Room for any page at once: which block serves which page changes from walk to walk.
+            self.blocks.push(Block {
+                page: 0,
+                distance: Vec::with_capacity(PAGE_VERTICES),
+                place: Vec::with_capacity(PAGE_VERTICES),
+                frame: Vec::with_capacity(PAGE_VERTICES),
+                owner: Vec::with_capacity(PAGE_VERTICES),
+            });
+        }
+        let own = mesh.page(page).own();
+        let block = &mut self.blocks[self.used];
+        self.used += 1;
+        self.block_of[page as usize] = self.used as u32;
+        block.page = page;
+        block.distance.clear();
+        block.distance.resize(own, f32::INFINITY);
+        block.place.clear();
+        block.place.resize(own, [f32::NAN; 2]);
+        block.frame.clear();
+        block.frame.resize(own, [Vec3::ZERO; 2]);
+        block.owner.clear();
+        block.owner.resize(own, [0; 2]);
+        block
+    }
+
+    /// How far the walk had come at a vertex; `None` where it never was.
+    #[inline]
+    pub fn distance(&self, page: u32, v: usize) -> Option<f32> {
+        self.find(page).and_then(|b| b.distance.get(v).copied()).filter(|d| d.is_finite())
+    }
+
+    /// The texture's coordinates at a vertex.
+    #[inline]
+    pub fn place(&self, page: u32, v: usize) -> Option<[f32; 2]> {
+        self.find(page).and_then(|b| b.place.get(v).copied()).filter(|p| !p[0].is_nan())
+    }
+
+    /// The directions carried to a vertex: along `u`, and the normal.
+    pub fn frame(&self, (page, v): Key) -> Option<[Vec3; 2]> {
+        self.find(page).and_then(|b| b.frame.get(v as usize).copied())
+    }
+
+    /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
+    /// Says whether it was nearer.
+    pub fn offer(&mut self, mesh: &Mesh, key: Key, distance: f32, owner: u32) -> bool {
+        let block = self.block(mesh, key.0);
+        let old = &mut block.distance[key.1 as usize];
+        let nearer = distance < *old;
+        if nearer {
+            *old = distance;
+            block.owner[key.1 as usize][0] = owner;
+            // Distances are not negative: their bits order as they do.
+            self.heap.push(Reverse((distance.to_bits(), key.0, key.1)));
+        }
+        nearer
+    }
+
+    /// Whether the mesh has other pages than when the walk began.
+    pub fn is_stale(&self, mesh: &Mesh) -> bool {
+        self.block_of.len() != mesh.page_count()
+    }
+
+    /// Which source reached a vertex; 0: none.
+    pub fn owner(&self, page: u32, v: usize) -> u32 {
+        self.find(page).and_then(|b| b.owner.get(v)).map_or(0, |o| o[0])
+    }
+
+    /// Whether a vertex has its coordinates from this source.
+    pub fn is_settled(&self, (page, v): Key, owner: u32) -> bool {
+        self.find(page).and_then(|b| b.owner.get(v as usize)).is_some_and(|o| o[1] == owner)
+    }
+
+    pub fn settle(&mut self, mesh: &Mesh, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
+        let block = self.block(mesh, key.0);
+        block.place[key.1 as usize] = place;
+        block.frame[key.1 as usize] = frame;
+        let owner = &mut block.owner[key.1 as usize];
+        owner[1] = owner[0];
+    }
+
+    /// The nearest vertex that was offered and not yet taken.
+    pub fn take(&mut self) -> Option<(Key, f32)> {
+        while let Some(Reverse((bits, page, v))) = self.heap.pop() {
+            let d = f32::from_bits(bits);
+            if self.distance(page, v as usize) == Some(d) {
+                return Some(((page, v), d));
+            }
+        }
+        None
+    }
+
+    /// Distances over the edges from a point on the surface as it was before the stroke, as far as `radius`. The first ring
+    /// about the point is measured straight.
+    pub fn measure(&mut self, mesh: &Mesh, centre: Vec3, normal: Vec3, radius: f32) {
+        self.begin(mesh);
+        let mut seed: Option<(f32, Key)> = None;
+        let mut look = |number: u32, page: &Page| {
+            for v in 0..page.own() {
+                let d2 = (page.point(v) - centre).length_squared();
+                if page.normal(v).dot(normal) > 0.0 && seed.is_none_or(|s| d2 < s.0) {
+                    seed = Some((d2, (number, v as u16)));
+                }
+            }
+        };
+        mesh.each_page_before(&Reach::Sphere { centre, radius }, |number, page| look(number, page));
+        let Some((d2, key)) = seed else { return };
+        self.offer(mesh, key, d2.sqrt(), 1);
+        ring(
+            |i| mesh.before(i),
+            key,
+            |to, p| {
+                self.offer(mesh, to, (p - centre).length(), 1);
+            },
+        );
+        while let Some((key, d)) = self.take() {
+            let from = mesh.before(key.0).point(key.1 as usize);
+            ring(
+                |i| mesh.before(i),
+                key,
+                |to, p| {
+                    let d = d + (p - from).length();
+                    if d < radius {
+                        self.offer(mesh, to, d, 1);
+                    }
+                },
+            );
+        }
+    }
+
+    /// Marks what hangs together, within `radius` of `centre`, with the nearest vertex that faces as `normal` does.
+    pub fn flood(&mut self, mesh: &Mesh, centre: Vec3, normal: Vec3, radius: f32) {
+        self.begin(mesh);
+        let mut seed: Option<(f32, Key)> = None;
+        mesh.each_page(&Reach::Sphere { centre, radius }, |number, page| {
+            for v in 0..page.own() {
+                let d2 = (page.point(v) - centre).length_squared();
+                if page.normal(v).dot(normal) > 0.0 && seed.is_none_or(|s| d2 < s.0) {
+                    seed = Some((d2, (number, v as u16)));
+                }
+            }
+        });
+        let Some((d2, key)) = seed else { return };
+        self.offer(mesh, key, d2.sqrt(), 1);
+        while let Some((key, _)) = self.take() {
+            ring(
+                |i| mesh.page(i),
+                key,
+                |to, p| {
+                    let d = (p - centre).length();
+                    if d <= radius {
+                        self.offer(mesh, to, d, 1);
+                    }
+                },
+            );
+        }
+    }
+}
+
+/// Calls `visit` with each neighbour of a vertex and where it is.
+pub fn ring<'a>(at: impl Fn(u32) -> &'a Arc<Page>, (page, v): Key, mut visit: impl FnMut(Key, Vec3)) {
+    let one = at(page);
+    let t = one.topology();
+    for &k in t.ring(v as usize) {
+        let k = (k & !BREAK) as usize;
+        let home = match k.checked_sub(t.own) {
+            None => (page, k as u16),
+            Some(halo) => t.halo_home(halo),
+        };
+        visit(home, one.point(k));
+    }
+}

@@ -1,0 +1,25 @@
+//! Grab: what was under the brush when the pen came down follows the pen.
+
+use super::dab::{Brush, Change, Dab, Grip, Spot};
+use crate::brush::surface_query::Ground;
+use crate::Reach;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Grab;
+
+impl Brush for Grab {
+    const GRIP: Grip = Grip::Anchor;
+
+    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Grab
+    }
+
+    fn reach(dab: &Dab<'_>) -> Reach {
+        // What is held is now between where it was and where it was drawn last.
+        Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::held(dab.motion * (dab.strength * dab.sign * spot.weight))
+    }
+}

@@ -1,0 +1,23 @@
+//! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all its dabs, not their sum.
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Layer;
+
+impl Brush for Layer {
+    const CUTS: bool = false;
+
+    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Layer
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let normal = spot.page.normal_before(spot.v);
+        // How high the stroke has raised it, in the direction of the brush.
+        let so_far = (spot.p - spot.page.before(spot.v)).dot(normal) * dab.sign;
+        let goal = dab.height().abs() * spot.weight;
+        if goal > so_far { Change::by(normal * ((goal - so_far) * dab.sign)) } else { Change::default() }
+    }
+}

@@ -1,0 +1,19 @@
+//! Mask: protects what it paints from other brushes; the other way round it frees it.
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Mask;
+
+impl Brush for Mask {
+    const MASKED: bool = false;
+
+    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Mask
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::mask(dab.sign * dab.strength * spot.weight)
+    }
+}

@@ -1,0 +1,41 @@
+//! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it sharpens them.
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+use crate::PageIn;
+
+#[derive(Debug, Clone, Copy)]
+pub struct MaskBlur;
+
+/// The mean mask of a vertex's neighbours, less its own; 0 where there are none.
+pub(super) fn slope(page: &PageIn<'_>, v: usize) -> f32 {
+    let ring = page.ring(v);
+    let n = ring.len();
+    let sum: f32 = ring.map(|k| page.mask(k as usize)).sum();
+    if n > 0 { sum / n as f32 - page.mask(v) } else { 0.0 }
+}
+
+/// What sharpens: away from the mean of the neighbours, and from one half.
+pub(super) fn sharper(page: &PageIn<'_>, v: usize) -> f32 {
+    (page.mask(v) - 0.5) * 0.5 - slope(page, v)
+}
+
+impl Brush for MaskBlur {
+    const MASKED: bool = false;
+
+    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        MaskBlur
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let m = spot.page.mask(spot.v);
+        let by = if dab.sign > 0.0 {
+            slope(spot.page, spot.v)
+        } else if m > 0.0 && m < 1.0 {
+            sharper(spot.page, spot.v)
+        } else {
+            0.0
+        };
+        Change::mask(by * dab.strength * spot.weight)
+    }
+}

@@ -1,0 +1,144 @@
+//! Brushes. A brush is one file here (a type that is a [`Brush`]), one file of settings (`config/brushes/NAME.toml`), and one
+//! line in the table below; nothing else knows how many there are.
+//!
+//! * [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]: what a brush may ask first.
+//! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
+//! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
+
+pub mod alpha;
+pub mod automask;
+pub(crate) mod cotangent;
+pub mod dab;
+mod drag;
+pub mod falloff;
+pub mod geodesic;
+pub mod mask_all;
+pub mod options;
+mod palm;
+pub mod preset;
+mod push;
+pub mod restore;
+pub mod settings;
+pub mod stamp;
+pub mod stroke_param;
+pub mod surface_query;
+pub mod tool;
+pub mod weights;
+
+use serde::{Deserialize, Serialize};
+
+pub use alpha::{Alpha, Picture};
+pub use dab::{Brush, Dab, Grip};
+pub use drag::Drag;
+pub use falloff::Falloff;
+pub use gaussian::Gaussian;
+pub use mask_all::MaskAction;
+pub use options::{AutoMask, Measure, Method, Mirror, PathSettings, Topology};
+pub use palm::Palm;
+pub use push::Push;
+pub use settings::{BrushSettings, PressureCurve};
+pub use smooth::Smooth;
+pub use stamp::{Stamp, StampBy};
+pub use surface_query::Scratch;
+pub use tool::Tool;
+
+/// Declares the brushes: name, variant, module.
+macro_rules! brushes {
+    ($($name:literal $variant:ident $module:ident,)*) => {
+        $(pub mod $module;)*
+
+        /// Which brush a dab is of.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum BrushKind {
+            $(#[serde(rename = $name)] $variant,)*
+        }
+
+        impl BrushKind {
+            pub const ALL: &[BrushKind] = &[$(BrushKind::$variant,)*];
+
+            /// As it is written in files and on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $(BrushKind::$variant => $name,)* }
+            }
+
+            /// The text of its settings' file.
+            fn file(self) -> &'static str {
+                match self {
+                    $(BrushKind::$variant => include_str!(concat!("../../../config/brushes/", $name, ".toml")),)*
+                }
+            }
+
+            pub fn grip(self) -> Grip {
+                match self { $(BrushKind::$variant => <$module::$variant as Brush>::GRIP,)* }
+            }
+
+            /// Whether triangles may be cut under it.
+            pub fn cuts(self) -> bool {
+                match self { $(BrushKind::$variant => <$module::$variant as Brush>::CUTS,)* }
+            }
+
+            /// One dab of this brush, and its images.
+            pub fn apply(self, dabs: &[Dab<'_>], tool: &mut Tool<'_>) {
+                match self { $(BrushKind::$variant => tool.apply::<$module::$variant>(dabs),)* }
+            }
+        }
+    };
+}
+
+// Sessions know brushes by their place here: new ones come last.
+brushes! {
+    "gaussian" Gaussian gaussian,
+    "smooth" Smooth smooth,
+    "draw" Draw draw,
+    "clay" Clay clay,
+    "clay-strips" ClayStrips clay_strips,
+    "inflate" Inflate inflate,
+    "layer" Layer layer,
+    "crease" Crease crease,
+    "pinch" Pinch pinch,
+    "blob" Blob blob,
+    "flatten" Flatten flatten,
+    "fill" Fill fill,
+    "scrape" Scrape scrape,
+    "trim" Trim trim,
+    "grab" Grab grab,
+    "elastic" Elastic elastic,
+    "topological" Topological topological,
+    "snake-hook" SnakeHook snake_hook,
+    "twist" Twist twist,
+    "thumb" Thumb thumb,
+    "nudge" Nudge nudge,
+    "relax" Relax relax,
+    "mask" Mask mask,
+    "mask-blur" MaskBlur mask_blur,
+    "paint" Paint paint,
+    "texture" Texture texture,
+    "density" Density density,
+    "simplify" Simplify simplify,
+    "slide-relax" SlideRelax slide_relax,
+}
+
+// The variants come from a macro, which marks no default.
+#[allow(clippy::derivable_impls)]
+impl Default for BrushKind {
+    fn default() -> Self {
+        BrushKind::Gaussian
+    }
+}
+
+impl std::str::FromStr for BrushKind {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        BrushKind::ALL.iter().copied().find(|k| k.name() == text).ok_or_else(|| {
+            let names: Vec<_> = BrushKind::ALL.iter().map(|k| k.name()).collect();
+            format!("no brush '{text}'; there are {}", names.join(", "))
+        })
+    }
+}
+
+impl std::fmt::Display for BrushKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,24 @@
+//! Nudge: pushes the surface along with the stroke, in its tangent plane.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Nudge {
+    by: Vec3,
+}
+
+impl Brush for Nudge {
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+        let n = on.plane(dab, 0.0).normal;
+        let flat = dab.motion - n * dab.motion.dot(n);
+        // A stroke that leapt to another part of the form does not tear it along.
+        Nudge { by: flat.clamp_length_max(dab.radius) * (dab.strength * dab.sign) }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::by(self.by * spot.weight)
+    }
+}

@@ -1,0 +1,23 @@
+//! Pinch: draws the surface together to the middle of the brush along itself; the other way round it spreads it.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Pinch {
+    normal: Vec3,
+}
+
+impl Brush for Pinch {
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+        Pinch { normal: on.plane(dab, 0.0).normal }
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let d = dab.centre - spot.p;
+        let flat = d - self.normal * d.dot(self.normal);
+        Change::by(flat * (dab.sign * dab.strength * spot.weight))
+    }
+}

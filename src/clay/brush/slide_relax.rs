@@ -1,0 +1,73 @@
+//! Slide-relax: slides the triangles along the surface with the stroke and leaves the form; the other way round (Shift, or the
+//! other end of the pen) it relaxes them, each vertex towards the middle of its neighbours.
+//!
+//! A vertex goes in its tangent plane by less than a third of its shortest edge, so that no triangle turns over, and is put back
+//! upon the triangles that it came from: it never leaves the surface as the dab found it. A border stays.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+
+/// Of the shortest edge about a vertex, the furthest that one dab takes it.
+const SAFE: f32 = 0.3;
+
+#[derive(Debug, Clone, Copy)]
+pub struct SlideRelax {
+    /// Where to; none: each to the middle of its neighbours.
+    by: Option<Vec3>,
+}
+
+impl Brush for SlideRelax {
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        SlideRelax { by: (dab.sign > 0.0).then(|| dab.motion.clamp_length_max(dab.radius)) }
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        if !spot.page.is_closed(spot.v) {
+            return Change::default();
+        }
+        let n = spot.normal();
+        let by = self.by.unwrap_or_else(|| spot.middle() - spot.p) * (dab.strength * spot.weight);
+        let mut shortest = f32::INFINITY;
+        for k in spot.page.ring(spot.v) {
+            shortest = shortest.min((spot.page.point(k) - spot.p).length_squared());
+        }
+        let flat = (by - n * by.dot(n)).clamp_length_max(SAFE * shortest.sqrt());
+        Change::by(put_back(spot, flat))
+    }
+}
+
+/// The way to the point of the vertex's own triangles that is nearest to `to` (both from the vertex, and nearer to it than the
+/// far sides of those).
+fn put_back(spot: &Spot<'_>, to: Vec3) -> Vec3 {
+    let ring = spot.page.ring(spot.v);
+    let count = ring.len();
+    let Some(last) = ring.last() else { return Vec3::ZERO };
+    let mut before = spot.page.point(last) - spot.p;
+    let (mut best, mut off) = (Vec3::ZERO, to.length_squared());
+    let mut take = |q: Vec3| {
+        let d = (q - to).length_squared();
+        if d < off {
+            (best, off) = (q, d);
+        }
+    };
+    for k in spot.page.ring(spot.v).take(count) {
+        let (a, b) = (before, spot.page.point(k) - spot.p);
+        before = b;
+        let (aa, ab, bb) = (a.length_squared(), a.dot(b), b.length_squared());
+        let (at, bt) = (a.dot(to), b.dot(to));
+        let det = aa * bb - ab * ab;
+        if det > 1e-8 * aa * bb {
+            let (u, v) = ((at * bb - bt * ab) / det, (bt * aa - at * ab) / det);
+            if u >= 0.0 && v >= 0.0 {
+                take((a * u + b * v) / (u + v).max(1.0));
+                continue;
+            }
+        }
+        if bb > 0.0 {
+            take(b * (bt / bb).clamp(0.0, 1.0));
+        }
+    }
+    best
+}

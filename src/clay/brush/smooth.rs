@@ -1,0 +1,145 @@
+//! The smooth brush: cotangent-weighted Laplacian, weights clamped, boundaries and needles safe.
+//!
+//! Each neighbour `b` of a vertex `p` weighs `cot` of the angles opposite the edge, in the two triangles beside it (Pinkall and
+//! Polthier 1993), each clamped to [`MAX_COT`] either way, their sum to 0 from below: two obtuse
+//! angles would push instead of pull. Over a flat mesh that is Delaunay the sums are what leaves every vertex in its place.
+//! With `b` and `c` relative to `p`, the triangle's doubled area `|b x c|` is under both its cotangents:
+//! at `c` it is `(c.c - b.c) / |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
+
+use glam::{Vec3, Vec4};
+
+use super::cotangent::{LANES, closed};
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+use super::tool::Tool;
+use super::weights::Weights;
+use crate::{Kernel, PageIn, PageOut};
+use sculptd_geometry::simd::cotangents::MAX_COT;
+
+/// Vertices looked at together.
+const BLOCK: usize = 64;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Smooth {
+    centre: Vec3,
+    radius: f32,
+    lambda: f32,
+}
+
+impl Smooth {
+    /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre.
+    pub fn new(centre: Vec3, radius: f32, lambda: f32) -> Self {
+        Smooth { centre, radius, lambda: lambda.clamp(0.0, 1.0) }
+    }
+}
+
+/// The same for any ring. About an open or a tangled one the two cotangents of an edge are met apart, where its triangles
+/// are; each edge's sum is clamped once both are known.
+fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
+    let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+    let mut add = |d: Vec3, w: f32| {
+        let w = w.max(0.0);
+        sum += d * w;
+        weights += w;
+    };
+    // The edge that the last triangle ended at, its weight so far; the one that the first began at.
+    let mut open: Option<(u16, Vec3, f32)> = None;
+    let mut first: Option<(u16, Vec3, f32)> = None;
+    for [kb, kc] in page.wedges(v) {
+        let (b, c) = (page.point(kb) - p, page.point(kc) - p);
+        let area = b.cross(c).length();
+        let inverse = if area > 0.0 { 1.0 / area } else { 0.0 };
+        let bc = b.dot(c);
+        let to_b = ((c.dot(c) - bc) * inverse).clamp(-MAX_COT, MAX_COT);
+        let to_c = ((b.dot(b) - bc) * inverse).clamp(-MAX_COT, MAX_COT);
+        match open.take() {
+            Some((k, d, w)) if k == kb => add(d, w + to_b),
+            before => {
+                if let Some((_, d, w)) = before {
+                    add(d, w);
+                }
+                if first.is_none() {
+                    first = Some((kb, b, to_b));
+                } else {
+                    add(b, to_b);
+                }
+            }
+        }
+        open = Some((kc, c, to_c));
+    }
+    match (open, first) {
+        (Some((k, d, w)), Some((f, _, wf))) if k == f => add(d, w + wf),
+        (end, start) => [end, start].into_iter().flatten().for_each(|(_, d, w)| add(d, w)),
+    }
+    (sum, weights)
+}
+
+#[inline(always)]
+fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
+    if let Some(sum) = page.cotangents(v) {
+        (sum.truncate(), sum.w)
+    } else if page.is_closed(v) && page.ring(v).len() <= LANES {
+        closed(page, v)
+    } else {
+        any(page, v, p)
+    }
+}
+
+impl Kernel for Smooth {
+    #[inline]
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        let radius2 = self.radius * self.radius;
+        let (mut who, mut sums) = ([0u16; BLOCK], [Vec4::ZERO; BLOCK]);
+        Weights::with(|w| {
+            let fade = |d2: f32| {
+                let fade = 1.0 - d2 / radius2;
+                self.lambda * (fade * fade)
+            };
+            out.visit_many(w.sphere(page, self.centre, radius2, fade));
+            let weights = w.of(page);
+            for first in (0..weights.len()).step_by(BLOCK) {
+                let (mut count, mut regular) = (0, 0);
+                for (v, &w) in weights.iter().enumerate().skip(first).take(BLOCK) {
+                    who[count] = v as u16;
+                    count += usize::from(w != 0.0);
+                    regular += usize::from(w != 0.0 && v < page.regular());
+                }
+                page.cotangents_of(&who[..regular], &mut sums[..regular]);
+                for (i, &v) in who[..count].iter().enumerate() {
+                    let (v, p) = (v as usize, page.point(v));
+                    let (sum, all) =
+                        if i < regular { (sums[i].truncate(), sums[i].w) } else { around(page, v, p) };
+                    if all > 0.0 {
+                        out.set(v, p + sum * (weights[v] / all));
+                    }
+                }
+            }
+        });
+    }
+}
+
+impl Brush for Smooth {
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Smooth::new(dab.centre, dab.radius, dab.strength)
+    }
+
+    #[inline(always)]
+    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
+        let fade = 1.0 - (p - self.centre).length_squared() / (dab.radius * dab.radius);
+        if fade > 0.0 { fade * fade } else { 0.0 }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let (sum, weights) = around(spot.page, spot.v, spot.p);
+        if weights > 0.0 {
+            Change::by(sum * (self.lambda * spot.weight / weights))
+        } else {
+            Change::default()
+        }
+    }
+
+    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
+        tool.run(&Self::reach(dab), &Smooth::new(dab.centre, dab.radius, dab.strength));
+        true
+    }
+}

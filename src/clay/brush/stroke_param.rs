@@ -1,0 +1,193 @@
+//! Stroke parameterisation (Schmidt 2013, "Stroke parameterization"; the map about one point: Schmidt, Grimm, Wyvill 2006,
+//! "Interactive decal compositing with discrete exponential maps").
+//!
+//! Each vertex near the stroke gets `(u, v)`: `u` along the stroke by arc length, `v` across it, 0 on the axis. It belongs to
+//! the stroke's sample that is nearest over the edges. From there coordinates are carried outwards in the order of
+//! distance: a vertex takes the mean of what its nearer neighbours say, each weighing 1 / its distance, and each says: my own
+//! place, and from there along the edge, laid into my tangent plane at its full length. The direction of `u` is carried by
+//! the smallest turn that takes one normal to the other.
+//!
+//! All is measured on the surface as it was when the stroke began, so the relief does not bend its own coordinates; a new
+//! sample touches only vertices that are nearer to it than to all before.
+
+use glam::{Quat, Vec3};
+
+use crate::brush::geodesic::{Key, Walk, ring};
+use crate::{Mesh, Page, Reach};
+
+/// A sample of a stroke on the surface as it was.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sample {
+    pub point: Vec3,
+    pub normal: Vec3,
+    /// Unit, in the tangent plane, along the stroke.
+    pub along: Vec3,
+    pub u: f32,
+}
+
+/// A stroke being unrolled.
+#[derive(Debug, Default)]
+pub struct Unroll {
+    pub walk: Walk,
+    /// Which stroke it is.
+    stroke: u32,
+    last: Option<Sample>,
+    /// Samples so far; a vertex remembers which one it belongs to.
+    count: u32,
+}
+
+impl Unroll {
+    /// The sample that a vertex belongs to, counted from 1.
+    pub fn owner(&self, page: u32, v: usize) -> u32 {
+        self.walk.owner(page, v)
+    }
+
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Goes on to a point on the surface as it is now. Returns whether vertices got coordinates: a stroke has no direction
+    /// before its second sample, which then also serves the first. The first of the two is number [`Unroll::count`] - 1.
+    pub fn step(&mut self, mesh: &Mesh, stroke: u32, now: Vec3, normal: Vec3, radius: f32) -> bool {
+        if self.stroke != stroke || self.walk.is_stale(mesh) {
+            self.walk.begin(mesh);
+            (self.stroke, self.last, self.count) = (stroke, None, 0);
+        }
+        let Some((point, normal)) = self.as_it_was(mesh, now, normal, radius) else { return false };
+        let Some(last) = self.last else {
+            self.last = Some(Sample { point, normal, along: Vec3::ZERO, u: 0.0 });
+            return false;
+        };
+        let way = point - last.point;
+        let flat = way - normal * way.dot(normal);
+        let Some(direction) = flat.try_normalize() else { return false };
+        let along = if last.along == Vec3::ZERO {
+            // The first sample takes the direction of the second.
+            let back = turn(normal, last.normal, direction);
+            let first = Sample { along: back, ..last };
+            self.spread(mesh, &first, radius);
+            direction
+        } else {
+            // Between the segment before and this one.
+            let before = turn(last.normal, normal, last.along);
+            (direction + before).try_normalize().unwrap_or(direction)
+        };
+        let sample = Sample { point, normal, along, u: last.u + way.length() };
+        self.spread(mesh, &sample, radius);
+        self.last = Some(sample);
+        true
+    }
+
+    /// The point as it was when the stroke began: moved back as its neighbourhood was moved.
+    fn as_it_was(&self, mesh: &Mesh, now: Vec3, normal: Vec3, radius: f32) -> Option<(Vec3, Vec3)> {
+        let mut nearest: Option<(f32, Key)> = None;
+        mesh.each_page(&Reach::Sphere { centre: now, radius: radius * 0.5 }, |number, page| {
+            for v in 0..page.own() {
+                let d2 = (page.point(v) - now).length_squared();
+                if page.normal(v).dot(normal) > 0.0 && nearest.is_none_or(|n| d2 < n.0) {
+                    nearest = Some((d2, (number, v as u16)));
+                }
+            }
+        });
+        let (_, key) = nearest?;
+        let (mut moved, mut turned, mut sum) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        let mut add = |(page, v): Key| {
+            let (new, old) = (mesh.page(page), mesh.before(page));
+            let (p, q) = (new.point(v as usize), old.point(v as usize));
+            let w = 1.0 / ((p - now).length_squared() + radius * radius * 1e-4);
+            moved += (p - q) * w;
+            turned += old.normal(v as usize) * w;
+            sum += w;
+        };
+        add(key);
+        ring(|i| mesh.page(i), key, |to, _| add(to));
+        Some((now - moved / sum, turned.try_normalize()?))
+    }
+
+    /// Carries coordinates from a sample to every vertex that is nearer to it than to those before.
+    pub fn spread(&mut self, mesh: &Mesh, from: &Sample, radius: f32) {
+        self.count += 1;
+        let owner = self.count;
+        let walk = &mut self.walk;
+        let mut seed: Option<(f32, Key)> = None;
+        let look = |number: u32, page: &Page| {
+            for v in 0..page.own() {
+                let d2 = (page.point(v) - from.point).length_squared();
+                if page.normal(v).dot(from.normal) > 0.0 && seed.is_none_or(|s| d2 < s.0) {
+                    seed = Some((d2, (number, v as u16)));
+                }
+            }
+        };
+        let near = Reach::Sphere { centre: from.point, radius };
+        mesh.each_page_before(&near, look);
+        let Some((_, key)) = seed else { return };
+        // The vertices about the sample are measured from it.
+        let start = |walk: &mut Walk, key: Key| {
+            let page = mesh.before(key.0);
+            let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
+            let d = (p - from.point).length();
+            if walk.offer(mesh, key, d, owner) {
+                let at = laid(from.normal, from.along, p - from.point);
+                let place = [from.u + at[0], at[1]];
+                walk.settle(mesh, key, place, [turn(from.normal, n, from.along), n]);
+            }
+        };
+        start(walk, key);
+        ring(|i| mesh.before(i), key, |to, _| start(walk, to));
+        while let Some((key, d)) = walk.take() {
+            let page = mesh.before(key.0);
+            let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
+            if !walk.is_settled(key, owner) {
+                let (mut place, mut along, mut sum) = ([0.0f32; 2], Vec3::ZERO, 0.0f32);
+                ring(
+                    |i| mesh.before(i),
+                    key,
+                    |other, q| {
+                        let nearer = walk.distance(other.0, other.1 as usize).is_some_and(|e| e < d);
+                        let (Some(at), Some([e, m])) =
+                            (walk.place(other.0, other.1 as usize), walk.frame(other))
+                        else {
+                            return;
+                        };
+                        if !nearer {
+                            return;
+                        }
+                        let w = 1.0 / (p - q).length().max(1e-20);
+                        let step = laid(m, e, p - q);
+                        place[0] += (at[0] + step[0]) * w;
+                        place[1] += (at[1] + step[1]) * w;
+                        along += turn(m, n, e) * w;
+                        sum += w;
+                    },
+                );
+                if !(sum > 0.0) {
+                    continue;
+                }
+                let flat = along - n * along.dot(n);
+                walk.settle(mesh, key, [place[0] / sum, place[1] / sum], [flat.normalize_or(along), n]);
+            }
+            ring(
+                |i| mesh.before(i),
+                key,
+                |to, q| {
+                    let e = d + (q - p).length();
+                    if e < radius {
+                        walk.offer(mesh, to, e, owner);
+                    }
+                },
+            );
+        }
+    }
+}
+
+/// A vector laid into the tangent plane of `normal` at its full length, as (along, across).
+fn laid(normal: Vec3, along: Vec3, d: Vec3) -> [f32; 2] {
+    let flat = d - normal * d.dot(normal);
+    let flat = flat.normalize_or_zero() * d.length();
+    [flat.dot(along), flat.dot(normal.cross(along))]
+}
+
+/// `v`, turned as `from` must be to become `to`.
+fn turn(from: Vec3, to: Vec3, v: Vec3) -> Vec3 {
+    if from == Vec3::ZERO || to == Vec3::ZERO { v } else { Quat::from_rotation_arc(from, to) * v }
+}

@@ -1,0 +1,124 @@
+//! What a brush may ask of the clay before it acts.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use super::alpha::Picture;
+use super::dab::{Dab, IMAGES};
+use crate::brush::geodesic::Walk;
+use crate::brush::stroke_param::Unroll;
+use crate::{Mesh, Reach};
+
+/// Memory kept from dab to dab.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    walks: Vec<Walk>,
+    unrolls: Vec<Unroll>,
+    /// The alpha that was loaded.
+    pub picture: Option<Arc<Picture>>,
+}
+
+impl Scratch {
+    /// Whether the connected part of an image holds the vertex.
+    pub fn is_marked(&self, image: usize, page: u32, v: usize) -> bool {
+        self.walks.get(image).is_some_and(|w| w.distance(page, v).is_some())
+    }
+
+    pub fn picture(&self) -> Option<&Picture> {
+        self.picture.as_deref()
+    }
+
+    pub fn unrolled(&self, image: usize) -> Option<&Unroll> {
+        self.unrolls.get(image)
+    }
+
+    pub fn walk(&self, image: usize) -> Option<&Walk> {
+        self.walks.get(image)
+    }
+
+    /// The walk of an image, to be begun anew.
+    pub fn walk_mut(&mut self, image: usize) -> &mut Walk {
+        let image = image.min(IMAGES - 1);
+        while self.walks.len() <= image {
+            self.walks.push(Walk::default());
+        }
+        &mut self.walks[image]
+    }
+}
+
+/// The clay before a dab.
+#[derive(Debug)]
+pub struct Ground<'a> {
+    pub mesh: &'a Mesh,
+    pub scratch: &'a mut Scratch,
+    /// Which of the images that act together this is.
+    pub image: usize,
+}
+
+/// A plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    pub point: Vec3,
+    /// Unit length.
+    pub normal: Vec3,
+    /// What is further away is none of its concern.
+    pub trim: f32,
+}
+
+impl Plane {
+    /// Above the plane it is positive; 0 also for what is beyond the trim.
+    #[inline(always)]
+    pub fn height(&self, p: Vec3) -> f32 {
+        let h = (p - self.point).dot(self.normal);
+        if h.abs() > self.trim { 0.0 } else { h }
+    }
+}
+
+impl Ground<'_> {
+    /// The plane through the surface under a dab: middle and mean normal of the vertices within `normal_radius`, those near
+    /// the rim counted less, those that face away not at all; moved by `offset` radii along its normal. In double precision,
+    /// so that images of one dab agree to the last bits.
+    pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
+        let radius = dab.radius * dab.settings.normal_radius;
+        let (mut point, mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO, 0.0f64);
+        self.mesh.each_vertex(&Reach::Sphere { centre: dab.centre, radius }, |page, v, d2| {
+            let n = page.normal(v);
+            if n.dot(dab.normal) > 0.0 {
+                let w = f64::from((1.0 - d2 / (radius * radius)).max(0.0));
+                point += (page.point(v) - dab.centre).as_dvec3() * w;
+                normal += n.as_dvec3() * w;
+                sum += w;
+            }
+        });
+        let normal = normal.as_vec3().try_normalize().unwrap_or(dab.normal);
+        let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };
+        let trim = dab.settings.plane_trim;
+        let trim = if trim > 0.0 { trim * dab.radius } else { f32::INFINITY };
+        Plane { point: point + normal * (offset * dab.radius), normal, trim }
+    }
+
+    /// Marks what hangs together with the dab's centre within its radius.
+    pub fn mark_connected(&mut self, dab: &Dab<'_>) {
+        let image = self.image;
+        self.scratch.walk_mut(image).flood(self.mesh, dab.centre, dab.normal, dab.radius);
+    }
+
+    /// Measures along the surface, as it was when the stroke began, how far each vertex is from the dab's centre: by Dijkstra
+    /// over the edges, no further than the radius.
+    pub fn measure_before(&mut self, dab: &Dab<'_>) {
+        let image = self.image;
+        self.scratch.walk_mut(image).measure(self.mesh, dab.centre, dab.normal, dab.radius);
+    }
+
+    /// Carries the stroke's own coordinates on to this dab. Answers which samples are new: the number of the newest, or 0.
+    pub fn unroll(&mut self, dab: &Dab<'_>) -> u32 {
+        let all = &mut self.scratch.unrolls;
+        let image = self.image.min(IMAGES - 1);
+        while all.len() <= image {
+            all.push(Unroll::default());
+        }
+        let one = &mut all[image];
+        if one.step(self.mesh, dab.stroke, dab.centre, dab.normal, dab.radius) { one.count() } else { 0 }
+    }
+}

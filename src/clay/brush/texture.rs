@@ -1,0 +1,49 @@
+//! Texture: an alpha becomes relief along the stroke, bent as the stroke is, repeating along it.
+//!
+//! The relief is laid on the surface as the stroke found it, along that surface's normals: `strength * radius` high where the
+//! alpha is 1. Strokes that cross themselves do not pile up.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Spot};
+use crate::brush::surface_query::Ground;
+use crate::{PageIn, Reach};
+
+#[derive(Debug, Clone, Copy)]
+pub struct Texture {
+    /// The newest samples' numbers; vertices that belong to older ones stay as they are.
+    newest: u32,
+}
+
+impl Brush for Texture {
+    const CUTS: bool = false;
+
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+        Texture { newest: on.unroll(dab) }
+    }
+
+    fn reach(dab: &Dab<'_>) -> Reach {
+        // What a dab reaches along the surface as it was may have been raised since; and the second dab of a stroke
+        // does the first one's work as well.
+        dab.ball(1.5 + dab.strength)
+    }
+
+    fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
+        let far = dab.radius * (1.5 + dab.strength);
+        if self.newest > 0 && (page.before(v) - dab.centre).length_squared() < far * far { 1.0 } else { 0.0 }
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let Some(unroll) = spot.scratch.unrolled(dab.image) else { return Change::default() };
+        if unroll.owner(spot.number, spot.v) + 1 < self.newest {
+            return Change::default();
+        }
+        let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else { return Change::default() };
+        let far = unroll.walk.distance(spot.number, spot.v).unwrap_or(0.0);
+        // A square of the alpha is as wide as the brush, and `scale` times as long.
+        let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / dab.radius);
+        let alpha = dab.settings.alpha.at(s, t, spot.scratch.picture());
+        let h = dab.height() * (alpha - dab.extra(1)) * dab.fade(far * far) * spot.weight;
+        Change::held(spot.page.normal_before(spot.v) * h)
+    }
+}

@@ -1,0 +1,28 @@
+//! Thumb: smears what was under the brush along the surface.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Grip, Spot};
+use crate::brush::surface_query::Ground;
+use crate::Reach;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Thumb {
+    by: Vec3,
+}
+
+impl Brush for Thumb {
+    const GRIP: Grip = Grip::Anchor;
+
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        Thumb { by: (dab.motion - dab.normal * dab.motion.dot(dab.normal)) * (dab.strength * dab.sign) }
+    }
+
+    fn reach(dab: &Dab<'_>) -> Reach {
+        Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius * 1.01 }
+    }
+
+    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        Change::held(self.by * spot.weight)
+    }
+}

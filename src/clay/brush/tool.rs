@@ -1,0 +1,174 @@
+//! Applies a dab and its images to the clay.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Grip, IMAGES, Spot};
+use super::stamp::StampBy;
+use crate::brush::automask::Auto;
+use crate::brush::surface_query::{Ground, Scratch};
+use crate::{DabReport, Kernel, Mesh, PageIn, PageOut, Reach, Workers};
+
+/// The clay in a brush's hand.
+#[derive(Debug)]
+pub struct Tool<'a> {
+    pub mesh: &'a mut Mesh,
+    pub workers: &'a Workers,
+    pub scratch: &'a mut Scratch,
+    /// Summed over all dabs.
+    pub report: DabReport,
+}
+
+impl Tool<'_> {
+    pub fn run<K: Kernel>(&mut self, reach: &Reach, kernel: &K) {
+        let r = self.mesh.dab(reach, kernel, self.workers);
+        self.report.affected += r.affected;
+        self.report.moved += r.moved;
+        self.report.pages += r.pages;
+    }
+
+    /// A dab and its images, [`IMAGES`] at most; what is beyond is left out.
+    pub fn apply<B: Brush>(&mut self, dabs: &[Dab<'_>]) {
+        let dabs = &dabs[..dabs.len().min(IMAGES)];
+        let Some(first) = dabs.first() else { return };
+        let stamped = first.settings.stamp.by != StampBy::Off;
+        let plain = !first.settings.auto.is_on() && !stamped && first.settings.saturation == 0.0;
+        // Which images act together: those whose balls overlap, directly or by others between them.
+        let balls: [(Vec3, f32); IMAGES] =
+            std::array::from_fn(|i| dabs.get(i).map_or((Vec3::ZERO, 0.0), |d| ball(&B::reach(d))));
+        let mut group: [u8; IMAGES] = std::array::from_fn(|i| i as u8);
+        for i in 1..dabs.len() {
+            for j in 0..i {
+                let near = balls[i].1 + balls[j].1;
+                if (balls[i].0 - balls[j].0).length_squared() < near * near {
+                    let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));
+                    group[..dabs.len()].iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                }
+            }
+        }
+        for g in 0..dabs.len() {
+            let of = group[..dabs.len()].iter().filter(|k| **k == g as u8).count();
+            if of == 0 || (of == 1 && plain && B::alone(&dabs[g], self)) {
+                continue;
+            }
+            let mut members: [Option<(Dab<'_>, B, Auto)>; IMAGES] = [const { None }; IMAGES];
+            let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            let mut n = 0;
+            for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
+                let mut on = Ground { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
+                members[n] = Some((dabs[i], B::ready(&dabs[i], &mut on), Auto::ready(&dabs[i], &mut on)));
+                lo = lo.min(balls[i].0 - balls[i].1);
+                hi = hi.max(balls[i].0 + balls[i].1);
+                n += 1;
+            }
+            let reach = if n == 1 {
+                B::reach(&dabs[g])
+            } else {
+                // Wider than need be; what lies outside of every image is left as it is.
+                Reach::Sphere { centre: (lo + hi) * 0.5, radius: (hi - lo).length() * 0.5 }
+            };
+            let limit = first.settings.saturation * first.settings.strength * first.radius;
+            let limit = if first.settings.saturation > 0.0 { limit } else { f32::INFINITY };
+            let scratch = std::mem::take(self.scratch);
+            self.run(&reach, &Each { members: &members[..n], scratch: &scratch, limit });
+            *self.scratch = scratch;
+        }
+    }
+}
+
+/// A ball around a reach.
+fn ball(reach: &Reach) -> (Vec3, f32) {
+    match *reach {
+        Reach::Sphere { centre, radius } => (centre, radius),
+        Reach::Capsule { from, to, radius } => ((from + to) * 0.5, radius + (to - from).length() * 0.5),
+    }
+}
+
+struct Each<'a, B> {
+    members: &'a [Option<(Dab<'a>, B, Auto)>],
+    scratch: &'a Scratch,
+    limit: f32,
+}
+
+impl<B: Brush> Kernel for Each<'_, B> {
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        for v in 0..page.own() {
+            let p = page.positions.get(v);
+            let mut sum = Change::default();
+            let mut within = false;
+            for (dab, brush, auto) in self.members.iter().flatten() {
+                let share = brush.share(dab, page, v, p);
+                if !(share > 0.0) {
+                    continue;
+                }
+                within = true;
+                let at = if matches!(B::GRIP, Grip::Anchor) { page.before(v) } else { p };
+                let free = if B::MASKED { 1.0 - page.mask(v) } else { 1.0 };
+                let weight = share * free * auto.share(page, v, at, self.scratch);
+                if !(weight > 0.0) {
+                    continue;
+                }
+                let spot = Spot { page, number: page.number(), v, p, weight, scratch: self.scratch };
+                let c = brush.change(dab, &spot);
+                sum.by += c.by;
+                if let Some(by) = c.held {
+                    sum.held = Some(sum.held.unwrap_or(Vec3::ZERO) + by);
+                }
+                sum.mask += c.mask;
+                sum.dye += c.dye;
+            }
+            if !within {
+                continue;
+            }
+            out.visit();
+            if let Some(by) = sum.held {
+                sum.by += page.before(v) + by - p;
+            }
+            if sum.by != Vec3::ZERO {
+                out.set(v, held(page.before(v), p, sum.by, self.limit, B::GRIP));
+            }
+            if sum.mask != 0.0 {
+                out.set_mask(v, page.mask(v) + sum.mask);
+            }
+            if sum.dye > 0.0
+                && let Some((dab, ..)) = &self.members[0]
+            {
+                let (old, new) = (page.colour(v), dab.settings.colour);
+                let t = sum.dye.min(1.0);
+                out.set_colour(v, std::array::from_fn(|i| blend(old[i], new[i], t)));
+            }
+        }
+    }
+}
+
+/// One channel, mixed as light is: sRGB is near enough the square root of it. Never stands still short of its goal.
+fn blend(old: u8, new: u8, t: f32) -> u8 {
+    let (a, b) = (f32::from(old), f32::from(new));
+    let mixed = (a * a * (1.0 - t) + b * b * t).sqrt();
+    let rounded = mixed.round() as u8;
+    if rounded == old && new != old && t > 0.02 {
+        return if new > old { old + 1 } else { old - 1 };
+    }
+    rounded
+}
+
+/// Where a vertex comes to rest that may not get further from `before` than `limit`: the step is cut where it leaves the
+/// ball, so the last one ends exactly on it. One that is outside already (its budget is spent) stays, unless it comes nearer.
+#[inline(always)]
+fn held(before: Vec3, p: Vec3, by: Vec3, limit: f32, grip: Grip) -> Vec3 {
+    let goal = p + by;
+    if limit == f32::INFINITY || matches!(grip, Grip::Anchor) {
+        return goal;
+    }
+    let (from, to) = (p - before, goal - before);
+    if to.length_squared() <= limit * limit {
+        return goal;
+    }
+    let (a, b, c) = (by.length_squared(), from.dot(by), from.length_squared() - limit * limit);
+    if c >= 0.0 {
+        return if to.length_squared() < from.length_squared() { goal } else { p };
+    }
+    // |from + s by| = limit: the positive root, written without cancellation.
+    let root = (b * b - a * c).max(0.0).sqrt();
+    let s = if b > 0.0 { -c / (b + root) } else { (root - b) / a };
+    before + (from + by * s.clamp(0.0, 1.0)).clamp_length_max(limit)
+}

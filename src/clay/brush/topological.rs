@@ -1,0 +1,35 @@
+//! Move-topological: as grab, but what is held is what is near along the surface: lips part, fingers stay apart.
+
+use glam::Vec3;
+
+use super::dab::{Brush, Change, Dab, Grip, Spot};
+use crate::brush::surface_query::Ground;
+use crate::{PageIn, Reach};
+
+#[derive(Debug, Clone, Copy)]
+pub struct Topological;
+
+impl Brush for Topological {
+    const GRIP: Grip = Grip::Anchor;
+
+    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+        on.measure_before(dab);
+        Topological
+    }
+
+    fn reach(dab: &Dab<'_>) -> Reach {
+        Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
+    }
+
+    /// The walk says how far it is; see [`Topological::change`].
+    fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
+        if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius { 1.0 } else { 0.0 }
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let walk = spot.scratch.walk(dab.image);
+        let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else { return Change::default() };
+        let w = dab.fade(d * d) * spot.weight;
+        Change::held(dab.motion * (dab.strength * dab.sign * w))
+    }
+}

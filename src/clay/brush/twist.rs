@@ -1,0 +1,32 @@
+//! Twist: turns what was under the brush about the surface normal; to the right a whole radius is one radian.
+
+use glam::Quat;
+
+use super::dab::{Brush, Change, Dab, Grip, Spot};
+use crate::brush::surface_query::Ground;
+use crate::Reach;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Twist {
+    angle: f32,
+}
+
+impl Brush for Twist {
+    const GRIP: Grip = Grip::Anchor;
+
+    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+        let drawn = dab.motion.dot(dab.right) / dab.radius;
+        Twist { angle: drawn * dab.strength * dab.sign * dab.hand }
+    }
+
+    fn reach(dab: &Dab<'_>) -> Reach {
+        // A turn leaves everything as far from the middle as it was.
+        dab.ball(1.01)
+    }
+
+    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+        let arm = spot.page.before(spot.v) - dab.centre;
+        let turned = Quat::from_axis_angle(dab.normal, self.angle * spot.weight) * arm;
+        Change::held(turned - arm)
+    }
+}

@@ -1,0 +1,368 @@
+//! The clay: the one mutable mesh.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::boxtree::BoxTree;
+use super::dab::{Bench, PhaseTimes};
+use super::page::Page;
+use super::pick;
+use super::pool::Pool;
+use super::publish::{Shelf, Stale};
+use super::ray::{Hit, Ray};
+use super::reach::Reach;
+use super::snapshot::{Snapshot, Totals, hash, to_tri};
+use super::undo::History;
+use crate::assembly::{BuildError, Built, build};
+use crate::multires::Levels;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::job::Job;
+
+/// Pages, the tree over them, their history. Changed by one thread; others read [`Snapshot`]s.
+#[derive(Debug)]
+pub struct Mesh {
+    pub(super) pages: Vec<Arc<Page>>,
+    pub(super) top: BoxTree,
+    pub(super) history: History,
+    pub(super) pool: Pool,
+    pub(super) bench: Bench,
+    pub(super) order: Vec<u32>,
+    pub(super) stale: Stale,
+    shelf: Shelf,
+    pub(super) revision: u64,
+    /// Which work this is, where several took each other's place.
+    pub(super) lineage: u32,
+    pub(super) vertices: usize,
+    pub(super) triangles: usize,
+    /// The numbers that the next new vertex and triangle get.
+    pub(super) next_vertex: u32,
+    pub(super) next_triangle: u32,
+    /// Pages that lost all their vertices.
+    pub(super) empty: Vec<u32>,
+    warnings: Vec<String>,
+    pub(super) clock: Option<fn() -> u64>,
+    pub(super) phases: PhaseTimes,
+    built_cost: f32,
+    levels: Option<Arc<Levels>>,
+}
+
+/// Bytes by part.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Positions, mask, normals, colour, halos, trees.
+    pub pages: usize,
+    /// Triangles, rings, ids, halo sources.
+    pub topology: usize,
+    /// The tree over the pages, and tables with an entry a page.
+    pub top: usize,
+    /// Pages ready for reuse.
+    pub pool: usize,
+    /// Steps.
+    pub undo: usize,
+}
+
+impl Memory {
+    /// What the clay takes at rest: all but undo.
+    pub fn at_rest(&self) -> usize {
+        self.pages + self.topology + self.top + self.pool
+    }
+}
+
+impl Mesh {
+    /// Builds clay from any triangle soup: open, non-manifold, with stray vertices. See [`Mesh::warnings`].
+    pub fn build(tri: &TriMesh, job: &Job) -> Result<Mesh, BuildError> {
+        Ok(Mesh::of(build(tri, job)?, 0))
+    }
+
+    pub(super) fn of(built: Built, revision: u64) -> Mesh {
+        let Built { pages, vertices, triangles, warnings, next } = built;
+        let mut top = BoxTree::default();
+        top.reset(pages.len());
+        for (i, page) in pages.iter().enumerate() {
+            top.set_leaf(i, page.lo, page.hi);
+        }
+        top.refit_all();
+        let rows = pages.iter().map(|p| p.points.len()).max().unwrap_or(0);
+        let leaves = pages.iter().map(|p| p.tree.leaves()).max().unwrap_or(0);
+        let count = pages.len();
+        Mesh {
+            built_cost: top.cost(),
+            levels: None,
+            top,
+            history: History::new(count),
+            // A page of a strange mesh may be huge: then pooled pages grow on use instead.
+            pool: Pool::new(rows.min(2048), leaves.min(512), (count / 16).clamp(8, 512)),
+            bench: Bench::new(count, rows.min(2048)),
+            order: Vec::with_capacity(256),
+            stale: Stale::new(count),
+            shelf: Shelf::new(&pages),
+            pages,
+            revision,
+            lineage: 0,
+            vertices,
+            triangles,
+            next_vertex: next[0],
+            next_triangle: next[1],
+            empty: Vec::new(),
+            warnings,
+            clock: None,
+            phases: PhaseTimes::default(),
+        }
+    }
+
+    /// The coarser and finer levels that were made of this work, or of what it was cut from.
+    pub fn levels(&self) -> Option<&Arc<Levels>> {
+        self.levels.as_ref()
+    }
+
+    pub fn set_levels(&mut self, levels: Option<Arc<Levels>>) {
+        self.levels = levels;
+    }
+
+    /// What was odd about the input, in words.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    pub fn vertex_count(&self) -> usize {
+        self.vertices
+    }
+
+    pub fn triangle_count(&self) -> usize {
+        self.triangles
+    }
+
+    /// Grows with every change.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Which work this is, where several took each other's place: a page's number and revision name it within one of them.
+    pub fn lineage(&self) -> u32 {
+        self.lineage
+    }
+
+    pub fn set_lineage(&mut self, lineage: u32) {
+        self.lineage = lineage;
+    }
+
+    /// Lower and upper corner of the box around everything.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.top.bounds()
+    }
+
+    pub fn page_count(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// # Panics
+    /// When there is no such page.
+    pub fn page(&self, index: u32) -> &Arc<Page> {
+        &self.pages[index as usize]
+    }
+
+    /// A page as it was when the open step began; as it is, where the step has not touched it or has changed its topology.
+    ///
+    /// # Panics
+    /// When there is no such page.
+    pub fn before(&self, index: u32) -> &Arc<Page> {
+        let now = &self.pages[index as usize];
+        self.history.before(index).filter(|b| Arc::ptr_eq(&b.topology, &now.topology)).unwrap_or(now)
+    }
+
+    /// Calls `visit` with each page that the reach touches now or touched when the open step began, as it was then: those of
+    /// now in ascending order, then others in the order in which the step met them.
+    pub fn each_page_before(&self, reach: &Reach, mut visit: impl FnMut(u32, &Page)) {
+        self.each_page(reach, |i, _| visit(i, self.before(i)));
+        self.history.each_before(|i, page| {
+            let now = &self.pages[i as usize];
+            let there = |p: &Page| reach.touches(p.lo, p.hi);
+            if !there(now) && there(page) && Arc::ptr_eq(&page.topology, &now.topology) {
+                visit(i, page);
+            }
+        });
+    }
+
+    fn totals(&self) -> Totals {
+        Totals {
+            revision: self.revision,
+            lineage: self.lineage,
+            vertices: self.vertices,
+            triangles: self.triangles,
+            pages: self.pages.len(),
+            next: [self.next_vertex, self.next_triangle],
+        }
+    }
+
+    /// The clay as it is now, for others to read. Costs as much as what changed since the last one.
+    pub fn snapshot(&mut self) -> Snapshot {
+        let now = self.clock.unwrap_or(|| 0);
+        let t0 = now();
+        let spine = self.shelf.publish(&self.pages, &mut self.stale);
+        self.phases.publish += now() - t0;
+        Snapshot { spine, totals: self.totals(), levels: self.levels.clone() }
+    }
+
+    /// The nearest point of the surface on the ray, seen from either side. Exact: no ray passes between two triangles that
+    /// share an edge or a vertex.
+    pub fn pick(&self, ray: Ray) -> Option<Hit> {
+        pick::everywhere(&self.top, &self.pages, ray)
+    }
+
+    /// Calls `visit` with each page that the reach may touch, in ascending order.
+    pub fn each_page(&self, reach: &Reach, mut visit: impl FnMut(u32, &Arc<Page>)) {
+        self.top.walk_boxes(|lo, hi| reach.touches(lo, hi), |p| visit(p as u32, &self.pages[p]));
+    }
+
+    /// Calls `visit` with each vertex within the reach: page, local index, squared distance to the centre or the axis.
+    /// In an order that only the clay decides.
+    pub fn each_vertex(&self, reach: &Reach, mut visit: impl FnMut(&Page, usize, f32)) {
+        let radius2 = reach.radius() * reach.radius();
+        self.each_page(reach, |_, page| {
+            for v in 0..page.own() {
+                let d2 = reach.distance_squared(page.point(v));
+                if d2 <= radius2 {
+                    visit(page, v, d2);
+                }
+            }
+        });
+    }
+
+    /// Opens an undo step, unless one is open.
+    pub fn begin_step(&mut self) {
+        self.history.begin();
+    }
+
+    /// Closes the open undo step; one that changed nothing is forgotten. Whether there is one more.
+    pub fn end_step(&mut self) -> bool {
+        self.history.end()
+    }
+
+    /// Whether an undo step is open.
+    pub fn is_in_step(&self) -> bool {
+        self.history.is_open()
+    }
+
+    /// Takes back the newest step. False when there is none.
+    pub fn undo(&mut self) -> bool {
+        self.history.end();
+        self.travel(|history, swap| history.undo(swap))
+    }
+
+    /// Does the step again that was taken back last. False when there is none.
+    pub fn redo(&mut self) -> bool {
+        self.history.end();
+        self.travel(|history, swap| history.redo(swap))
+    }
+
+    fn travel(
+        &mut self,
+        way: impl FnOnce(&mut History, &mut dyn FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool,
+    ) -> bool {
+        let Mesh { history, pages, top, stale, vertices, triangles, empty, .. } = self;
+        let done = way(history, &mut |i, page| {
+            top.set_leaf(i as usize, page.lo, page.hi);
+            stale.add(i);
+            let old = std::mem::replace(&mut pages[i as usize], page);
+            let new = &pages[i as usize].topology;
+            if !Arc::ptr_eq(&old.topology, new) {
+                *vertices = *vertices + new.own - old.topology.own;
+                *triangles = *triangles + new.triangles.len() - old.topology.triangles.len();
+                if new.own == 0 {
+                    empty.push(i);
+                }
+            }
+            old
+        });
+        for &leaf in stale.paths() {
+            top.refit_path(leaf as usize);
+        }
+        stale.clear_paths();
+        self.revision += u64::from(done);
+        done
+    }
+
+    /// What was taken back can no longer be done again.
+    pub fn forget_redo(&mut self) {
+        self.history.forget_redo();
+    }
+
+    /// Keeps the totals after a page took the place of `old`.
+    pub(super) fn recount(&mut self, index: u32, old: &Page) {
+        let (new, old) = (&self.pages[index as usize].topology, &old.topology);
+        self.vertices = self.vertices + new.own - old.own;
+        self.triangles = self.triangles + new.triangles.len() - old.triangles.len();
+    }
+
+    /// Everything that has an entry a page gets one for each page that was added at the end.
+    pub(super) fn grow(&mut self) {
+        let count = self.pages.len();
+        self.bench.grow(count);
+        self.history.grow(count);
+        self.stale.grow(count);
+        if count > self.top.leaves() {
+            // Room for more than one, or each new page would build the tree anew.
+            self.top.reset((count + count / 8).next_multiple_of(64));
+            for (i, page) in self.pages.iter().enumerate() {
+                self.top.set_leaf(i, page.lo, page.hi);
+            }
+            self.top.refit_all();
+        }
+    }
+
+    pub fn undo_steps(&self) -> usize {
+        self.history.undo_steps()
+    }
+
+    pub fn redo_steps(&self) -> usize {
+        self.history.redo_steps()
+    }
+
+    /// Bytes that undo may hold; the oldest steps go first.
+    pub fn set_undo_bytes(&mut self, bytes: u64) {
+        self.history.limit = bytes;
+        self.history.trim();
+    }
+
+    /// Measures the phases of all that follows with this clock, nanoseconds. Without one nothing is measured.
+    pub fn set_clock(&mut self, now: fn() -> u64) {
+        self.clock = Some(now);
+        self.phases = PhaseTimes::default();
+    }
+
+    /// Time spent since [`Mesh::set_clock`], by phase; `pick` stays 0, its caller measures it.
+    pub fn phases(&self) -> PhaseTimes {
+        self.phases
+    }
+
+    /// Cost of a ray in the tree over the pages, against what it was after loading.
+    pub fn tree_growth(&self) -> f32 {
+        if self.built_cost > 0.0 { self.top.cost() / self.built_cost } else { 1.0 }
+    }
+
+    /// In the order of the mesh that was loaded; triangles that were left out then are not there.
+    pub fn to_tri(&self) -> TriMesh {
+        to_tri(&|i| &self.pages[i as usize], self.totals())
+    }
+
+    /// One number for positions, mask, colours and triangles; costs as much as the clay is large.
+    pub fn hash(&self) -> u64 {
+        hash(&|i| &self.pages[i as usize], self.totals())
+    }
+
+    /// What the pages weigh, bytes: the same in every run, unlike [`Mesh::memory`].
+    pub fn weight(&self) -> usize {
+        self.pages.iter().map(|p| p.weight() + p.topology.bytes()).sum()
+    }
+
+    pub fn memory(&self) -> Memory {
+        Memory {
+            pages: self.pages.iter().map(|p| p.bytes()).sum(),
+            topology: self.pages.iter().map(|p| p.topology.bytes()).sum(),
+            top: self.top.bytes() + self.pages.len() * (8 + 8 + 4 + 8 + 8),
+            pool: self.pool.bytes(),
+            undo: self.history.bytes() as usize,
+        }
+    }
+}

@@ -1,0 +1,468 @@
+//! One dab: what it costs follows the pages it reaches.
+//!
+//! 1. *query*: pages whose box the reach touches.
+//! 2. *displace*: each page is copied to a fresh one, where the kernel writes. Kernels read only the old pages.
+//! 3. *normals*, *bvh*: halos take over what moved at home; normals of moved vertices and of their neighbours; trees.
+//!    Then halos take over the turned normals.
+//! 4. *undo*: the new pages take the old ones' places; the old ones go to the open step or to the pool.
+//!
+//! Each array element is written by one task, and each task reads only what earlier phases wrote: the same bits with any
+//! number of workers. All memory is kept from dab to dab.
+
+use std::sync::Arc;
+
+use glam::Vec4;
+
+use super::clay::Mesh;
+use super::kernel::{Kernel, PageIn, PageOut};
+use super::normals::{MOVED, PAINTED, TURNED, around_moved};
+use super::page::{BLOCK, Page, block_of};
+use super::reach::Reach;
+use super::workers::Workers;
+use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
+
+/// Rows below which one thread does a dab alone: waking another costs more than it helps.
+const PARALLEL: usize = 6 * 1024;
+
+/// What a dab did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DabReport {
+    /// Vertices that the kernel counted.
+    pub affected: usize,
+    /// Vertices with a new position, mask or colour.
+    pub moved: usize,
+    /// Pages written anew.
+    pub pages: usize,
+}
+
+/// Nanoseconds spent since the clock was set, by phase.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PhaseTimes {
+    pub pick: u64,
+    pub query: u64,
+    pub displace: u64,
+    pub normals: u64,
+    pub bvh: u64,
+    pub publish: u64,
+    pub undo: u64,
+}
+
+/// A page at work: what other pages' tasks may read.
+#[derive(Debug)]
+struct Slot {
+    index: u32,
+    page: Arc<Page>,
+    /// One an own vertex: [`MOVED`] and so on.
+    marks: Vec<u8>,
+    /// All marks, joined, those of the halo's homes too.
+    any: u8,
+    /// The blocks in which something moved.
+    touched: u32,
+    moved: usize,
+    affected: usize,
+    /// The page holds the old page's normals and tree already.
+    complete: bool,
+    normals_ns: u64,
+    bvh_ns: u64,
+}
+
+/// A page at work: what only its own task touches.
+#[derive(Debug)]
+struct Side {
+    /// Parts of the halo to take over.
+    incoming: Vec<Part>,
+    /// Their rows, one part after the other.
+    rows: Vec<Vec4>,
+    colours: Vec<(u16, [u8; 4])>,
+}
+
+/// Halo rows in a row that one home gives.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    first: u16,
+    count: u16,
+    /// The marks they come with, joined.
+    marks: u8,
+}
+
+impl Side {
+    /// Each part with its rows.
+    #[inline(always)]
+    fn parts(&self) -> impl Iterator<Item = (Part, &[Vec4])> {
+        let mut rows = self.rows.as_slice();
+        self.incoming.iter().map(move |&part| {
+            let (one, rest) = rows.split_at(part.count as usize);
+            rows = rest;
+            (part, one)
+        })
+    }
+}
+
+/// The memory of dabs.
+#[derive(Debug, Default)]
+pub(super) struct Bench {
+    slots: Vec<Slot>,
+    sides: Vec<Side>,
+    spare: Vec<(Slot, Side)>,
+    /// For each page its slot in this dab plus one, or 0.
+    slot_of: Vec<u32>,
+    /// What a spare slot holds: making an empty page would allocate.
+    blank: Arc<Page>,
+    /// Rows that a new slot gets room for.
+    rows: usize,
+}
+
+impl Bench {
+    /// `rows`: of the largest page.
+    pub(super) fn new(pages: usize, rows: usize) -> Self {
+        Bench { slot_of: vec![0; pages], rows, ..Bench::default() }
+    }
+
+    /// Room for any page at once, or slots would grow one by one, long into a stroke.
+    fn fresh(&self) -> (Slot, Side) {
+        let slot = Slot {
+            index: 0,
+            page: self.blank.clone(),
+            marks: Vec::with_capacity(self.rows),
+            any: 0,
+            touched: 0,
+            moved: 0,
+            affected: 0,
+            complete: false,
+            normals_ns: 0,
+            bvh_ns: 0,
+        };
+        let side = Side {
+            incoming: Vec::with_capacity(16),
+            rows: Vec::with_capacity(self.rows),
+            colours: Vec::new(),
+        };
+        (slot, side)
+    }
+
+    pub(super) fn grow(&mut self, pages: usize) {
+        self.slot_of.resize(pages, 0);
+    }
+
+    fn add(&mut self, index: u32, page: Arc<Page>) {
+        let (mut slot, mut side) = self.spare.pop().unwrap_or_else(|| self.fresh());
+        slot.index = index;
+        slot.page = page;
+        slot.marks.clear();
+        (slot.any, slot.touched, slot.moved, slot.affected, slot.complete) = (0, 0, 0, 0, false);
+        (slot.normals_ns, slot.bvh_ns) = (0, 0);
+        side.incoming.clear();
+        side.rows.clear();
+        side.colours.clear();
+        self.slots.push(slot);
+        self.sides.push(side);
+        self.slot_of[index as usize] = self.slots.len() as u32;
+    }
+
+    /// The slot of a page, if it changed in a way of `kinds`.
+    fn changed(slots: &[Slot], slot_of: &[u32], page: u32, kinds: u8) -> Option<usize> {
+        let s = (slot_of[page as usize] as usize).checked_sub(1)?;
+        (slots[s].any & kinds != 0).then_some(s)
+    }
+}
+
+/// Adds the pages whose halo holds a vertex that changed in a way of `kinds` and that have no slot yet.
+fn add_neighbours(mesh: &mut Mesh, from: usize, kinds: u8) {
+    for s in 0..from {
+        if mesh.bench.slots[s].any & kinds == 0 {
+            continue;
+        }
+        let home = mesh.bench.slots[s].index;
+        let topology = mesh.pages[home as usize].topology.clone();
+        for n in &topology.neighbours {
+            if mesh.bench.slot_of[n.page as usize] != 0 {
+                continue;
+            }
+            let other = &mesh.pages[n.page as usize].topology;
+            let marks = &mesh.bench.slots[s].marks;
+            let touched = other.halo_parts().find(|(page, _)| *page == home).is_some_and(|(_, part)| {
+                other.halo_sources[part].iter().any(|&l| marks[l as usize] & kinds != 0)
+            });
+            if touched {
+                let page = mesh.pool.take();
+                mesh.bench.add(n.page, page);
+            }
+        }
+    }
+}
+
+impl Mesh {
+    /// Lets `kernel` change what `reach` touches. See the module for what happens.
+    pub fn dab<K: Kernel>(&mut self, reach: &Reach, kernel: &K, workers: &Workers) -> DabReport {
+        let now = self.clock.unwrap_or(|| 0);
+        let t0 = now();
+        let mut rows = 0;
+        {
+            let Mesh { top, bench, pool, pages, .. } = self;
+            top.walk_boxes(
+                |lo, hi| reach.touches(lo, hi),
+                |p| {
+                    rows += pages[p].points.len();
+                    bench.add(p as u32, pool.take());
+                },
+            );
+        }
+        let t1 = now();
+        let parallel = rows > PARALLEL;
+        let selected = self.bench.slots.len();
+        {
+            let Mesh { bench, pages, history, .. } = self;
+            workers.each(parallel, &mut bench.slots, &mut bench.sides, |slot, side| {
+                let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
+                dispatch(false, Displace { slot, side, old, before, kernel });
+            });
+        }
+        add_neighbours(self, selected, MOVED | PAINTED);
+        let t2 = now();
+        {
+            let Mesh { bench, pages, .. } = self;
+            let Bench { slots, sides, slot_of, .. } = bench;
+            let mut indices = std::mem::take(&mut self.order);
+            indices.clear();
+            indices.extend(0..slots.len() as u32);
+            workers.each(parallel, &mut indices, sides, |s, side| {
+                gather(slots, slot_of, *s, &pages[slots[*s as usize].index as usize], side, MOVED | PAINTED);
+            });
+            self.order = indices;
+            let clock = now;
+            workers.each(parallel, slots, sides, |slot, side| {
+                let old = &pages[slot.index as usize];
+                dispatch(false, Turn { slot, side, old, now: clock });
+            });
+        }
+        let turned = self.bench.slots.len();
+        add_neighbours(self, turned, TURNED | PAINTED);
+        {
+            let Mesh { bench, pages, .. } = self;
+            let Bench { slots, sides, slot_of, .. } = bench;
+            let mut indices = std::mem::take(&mut self.order);
+            indices.clear();
+            indices.extend(0..slots.len() as u32);
+            workers.each(parallel, &mut indices, sides, |s, side| {
+                gather(slots, slot_of, *s, &pages[slots[*s as usize].index as usize], side, TURNED | PAINTED);
+            });
+            self.order = indices;
+            workers.each(parallel, slots, sides, |slot, side| {
+                settle(slot, side, &pages[slot.index as usize]);
+            });
+        }
+        let t3 = now();
+        let (report, normals_ns, bvh_ns) = self.commit();
+        let t4 = now();
+        if self.clock.is_some() {
+            let times = &mut self.phases;
+            times.query += t1 - t0;
+            times.displace += t2 - t1;
+            // Both happen in one pass over the pages: parted by what each took within it.
+            let within = (normals_ns + bvh_ns).max(1);
+            let bvh = (t3 - t2) * bvh_ns / within;
+            times.bvh += bvh;
+            times.normals += t3 - t2 - bvh;
+            times.undo += t4 - t3;
+        }
+        report
+    }
+
+    /// New pages take the old ones' places.
+    fn commit(&mut self) -> (DabReport, u64, u64) {
+        let mut report = DabReport::default();
+        let (mut normals_ns, mut bvh_ns) = (0, 0);
+        let Mesh { bench, pages, pool, history, top, stale, revision, .. } = self;
+        let changes = bench.slots.iter().any(|s| s.any != 0);
+        *revision += u64::from(changes);
+        let retired = bench.slots.len();
+        for (mut slot, side) in bench.slots.drain(..).zip(bench.sides.drain(..)) {
+            bench.slot_of[slot.index as usize] = 0;
+            report.affected += slot.affected;
+            report.moved += slot.moved;
+            normals_ns += slot.normals_ns;
+            bvh_ns += slot.bvh_ns;
+            let mut page = std::mem::replace(&mut slot.page, bench.blank.clone());
+            if slot.any == 0 {
+                pool.give_back(page);
+            } else {
+                report.pages += 1;
+                if let Some(page) = Arc::get_mut(&mut page) {
+                    page.revision = *revision;
+                    top.set_leaf(slot.index as usize, page.lo, page.hi);
+                }
+                stale.add(slot.index);
+                let old = std::mem::replace(&mut pages[slot.index as usize], page);
+                if let Some(old) = history.keep(slot.index, old) {
+                    pool.retire(old);
+                }
+            }
+            bench.spare.push((slot, side));
+        }
+        for &chunk in stale.paths() {
+            top.refit_path(chunk as usize);
+        }
+        stale.clear_paths();
+        history.trim();
+        pool.reclaim(2 * retired + 4);
+        (report, normals_ns, bvh_ns)
+    }
+}
+
+/// [`displace`], compiled for this processor.
+struct Displace<'a, K> {
+    slot: &'a mut Slot,
+    side: &'a mut Side,
+    old: &'a Page,
+    before: Option<&'a Arc<Page>>,
+    kernel: &'a K,
+}
+
+impl<K: Kernel> WideWork for Displace<'_, K> {
+    type Out = ();
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) {
+        displace(self.slot, self.side, self.old, self.before, self.kernel);
+    }
+}
+
+/// [`turn`], compiled for this processor.
+struct Turn<'a> {
+    slot: &'a mut Slot,
+    side: &'a mut Side,
+    old: &'a Page,
+    now: fn() -> u64,
+}
+
+impl WideWork for Turn<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<W: Wide>(self, w: W) {
+        turn(w, self.slot, self.side, self.old, self.now);
+    }
+}
+
+/// Copies the points and lets the kernel write.
+#[inline(always)]
+fn displace<K: Kernel>(slot: &mut Slot, side: &mut Side, old: &Page, before: Option<&Arc<Page>>, kernel: &K) {
+    let Some(page) = Arc::get_mut(&mut slot.page) else { return };
+    page.points.clear();
+    page.points.extend_from_slice(&old.points);
+    let own = old.topology.own;
+    slot.marks.resize(own, 0);
+    let before = before.filter(|b| Arc::ptr_eq(&b.topology, &old.topology)).map_or(old, |b| b);
+    let mut out = PageOut {
+        points: &mut page.points[..own],
+        marks: &mut slot.marks,
+        colours: &mut side.colours,
+        affected: 0,
+    };
+    kernel.page(&PageIn::new(slot.index, old, before), &mut out);
+    slot.affected = out.affected;
+    tally(slot);
+}
+
+/// Joins all marks, counts them, and finds the blocks in which something moved.
+#[inline(always)]
+fn tally(slot: &mut Slot) {
+    for (b, chunk) in slot.marks.chunks(BLOCK).enumerate() {
+        let (mut any, mut few) = (0, 0u8);
+        for &m in chunk {
+            any |= m;
+            few += u8::from(m != 0);
+        }
+        slot.any |= any;
+        slot.moved += few as usize;
+        slot.touched |= if any & MOVED != 0 { block_of(b * BLOCK) } else { 0 };
+    }
+}
+
+/// Collects what changed at the homes of slot `s`'s halo.
+fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, kinds: u8) {
+    side.incoming.clear();
+    side.rows.clear();
+    let t = &old.topology;
+    for (home, part) in t.halo_parts() {
+        let Some(from) = Bench::changed(slots, slot_of, home, kinds) else { continue };
+        if from == s as usize {
+            continue;
+        }
+        let from = &slots[from];
+        let marks = t.halo_sources[part.clone()].iter().fold(0, |m, &l| m | from.marks[l as usize]) & kinds;
+        if marks != 0 {
+            // All of the part: what did not change is the same there and here.
+            let rows = if kinds & MOVED != 0 { &from.page.points } else { &from.page.normals };
+            side.rows.extend(t.halo_sources[part.clone()].iter().map(|&l| rows[l as usize]));
+            let first = (t.own + part.start) as u16;
+            side.incoming.push(Part { first, count: part.len() as u16, marks });
+        }
+    }
+}
+
+/// Takes over the halo's new places, and computes the normals and the tree.
+#[inline(always)]
+fn turn<W: Wide>(w: W, slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -> u64) {
+    if slot.any == 0 && side.incoming.is_empty() {
+        return;
+    }
+    let Some(page) = Arc::get_mut(&mut slot.page) else { return };
+    let t0 = now();
+    if slot.marks.is_empty() {
+        page.points.clear();
+        page.points.extend_from_slice(&old.points);
+        slot.marks.resize(old.topology.own, 0);
+    }
+    for (part, rows) in side.parts() {
+        let first = part.first as usize;
+        page.points[first..first + rows.len()].copy_from_slice(rows);
+        slot.any |= part.marks;
+        if part.marks & MOVED != 0 {
+            (first..first + rows.len()).step_by(BLOCK).for_each(|row| slot.touched |= block_of(row));
+            slot.touched |= block_of(first + rows.len() - 1);
+        }
+    }
+    slot.complete = true;
+    if !Arc::ptr_eq(&page.topology, &old.topology) {
+        page.topology = old.topology.clone();
+    }
+    let moved = slot.any & MOVED != 0;
+    if moved {
+        around_moved(w, page, &old.normals, &mut slot.marks, slot.touched);
+        slot.any |= TURNED;
+    } else {
+        page.normals.clear();
+        page.normals.extend_from_slice(&old.normals);
+    }
+    for &(v, colour) in &side.colours {
+        page.normals[v as usize].w = f32::from_bits(u32::from_le_bytes(colour));
+    }
+    let t1 = now();
+    page.tree.copy_from(&old.tree);
+    (page.lo, page.hi) = (old.lo, old.hi);
+    if moved {
+        page.refit(slot.touched);
+    }
+    slot.normals_ns = t1 - t0;
+    slot.bvh_ns = now() - t1;
+}
+
+/// Takes over the halo's new normals and colours.
+fn settle(slot: &mut Slot, side: &mut Side, old: &Page) {
+    if side.incoming.is_empty() {
+        return;
+    }
+    let Some(page) = Arc::get_mut(&mut slot.page) else { return };
+    if !slot.complete {
+        page.topology.clone_from(&old.topology);
+        page.points.clear();
+        page.points.extend_from_slice(&old.points);
+        page.normals.clear();
+        page.normals.extend_from_slice(&old.normals);
+        page.tree.copy_from(&old.tree);
+        (page.lo, page.hi) = (old.lo, old.hi);
+    }
+    for (part, rows) in side.parts() {
+        page.normals[part.first as usize..][..rows.len()].copy_from_slice(rows);
+        slot.any |= part.marks;
+    }
+}

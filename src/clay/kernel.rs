@@ -1,0 +1,232 @@
+//! What a brush sees of a page, and where it writes.
+
+use glam::{BVec4A, Vec3, Vec4};
+
+use super::normals::{MOVED, PAINTED};
+use super::page::{BLOCK, BREAK, Page, Points, Ring};
+use sculptd_geometry::simd::cotangents;
+
+/// What a brush does to one page. Called once for each page that the dab may reach, on any thread, in any order; it sees the
+/// state before the dab everywhere, also of neighbours in other pages, so that the order cannot show.
+pub trait Kernel: Sync {
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);
+}
+
+/// A page as a kernel reads it: the state before the dab, halo included. Own vertices are `0..own()`.
+#[derive(Debug, Clone, Copy)]
+pub struct PageIn<'a> {
+    page: &'a Page,
+    before: &'a Page,
+    number: u32,
+    /// Own, then halo.
+    pub positions: Points<'a>,
+    /// Own, then halo; zero where all triangles are degenerate.
+    pub normals: Points<'a>,
+}
+
+impl<'a> PageIn<'a> {
+    /// `before`: the page when the stroke began, of the same topology.
+    pub(super) fn new(number: u32, page: &'a Page, before: &'a Page) -> Self {
+        PageIn { page, before, number, positions: Points(&page.points), normals: Points(&page.normals) }
+    }
+
+    pub fn own(&self) -> usize {
+        self.page.topology.own
+    }
+
+    /// Which page of the clay it is.
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Own and halo vertices as rows of x, y, z, mask: for vectorised loops.
+    pub fn rows(&self) -> &'a [Vec4] {
+        &self.page.points
+    }
+
+    /// Own and halo normals; the fourth lane is the colour's bits.
+    pub fn normal_rows(&self) -> &'a [Vec4] {
+        &self.page.normals
+    }
+
+    /// An own or a halo vertex by local index.
+    #[inline(always)]
+    pub fn point(&self, local: u16) -> Vec3 {
+        self.page.point(local as usize)
+    }
+
+    /// 0 free to 1 protected; own or halo.
+    #[inline(always)]
+    pub fn mask(&self, local: usize) -> f32 {
+        self.page.mask(local)
+    }
+
+    /// RGBA, sRGB; own or halo.
+    #[inline(always)]
+    pub fn colour(&self, local: usize) -> [u8; 4] {
+        self.page.colour(local)
+    }
+
+    /// Where the vertex was when the stroke (the open undo step) began; own or halo. With [`PageIn::normal_before`] this is
+    /// all that "displacement so far" brushes need.
+    #[inline(always)]
+    pub fn before(&self, local: usize) -> Vec3 {
+        self.before.point(local)
+    }
+
+    #[inline(always)]
+    pub fn normal_before(&self, local: usize) -> Vec3 {
+        self.before.normal(local)
+    }
+
+    #[inline(always)]
+    pub fn mask_before(&self, local: usize) -> f32 {
+        self.before.mask(local)
+    }
+
+    #[inline(always)]
+    pub fn colour_before(&self, local: usize) -> [u8; 4] {
+        self.before.colour(local)
+    }
+
+    /// The vertex's number in the mesh that was loaded: a seed that does not depend on the pages. Own vertices only.
+    #[inline(always)]
+    pub fn id(&self, own: usize) -> u32 {
+        self.page.topology.ids[own]
+    }
+
+    /// Whether an own vertex lies on the border of the surface, or on a non-manifold edge.
+    #[inline(always)]
+    pub fn is_border(&self, own: usize) -> bool {
+        self.page.topology.kinds[own] != Ring::Closed
+    }
+
+    /// Whether an own vertex lies on the border of the surface, all its triangles in one open fan: its ring then begins and
+    /// ends on the border.
+    #[inline(always)]
+    pub fn is_open(&self, own: usize) -> bool {
+        self.page.topology.kinds[own] == Ring::Open
+    }
+
+    /// Whether all is regular about an own vertex: one closed fan.
+    #[inline(always)]
+    pub fn is_closed(&self, own: usize) -> bool {
+        self.page.topology.kinds[own] == Ring::Closed
+    }
+
+    /// Neighbours of an own vertex, counter-clockwise, as local indices. About a non-manifold vertex one may come twice.
+    #[inline(always)]
+    pub fn ring(&self, own: usize) -> impl ExactSizeIterator<Item = u16> + 'a {
+        self.page.topology.ring(own).iter().map(|k| k & !BREAK)
+    }
+
+    /// Cotangent-weighted sums about an own vertex with a closed ring of six: see [`cotangents::about`].
+    #[inline(always)]
+    pub fn cotangents(&self, own: usize) -> Option<Vec4> {
+        cotangents::about(&self.page.topology.hexes, &self.page.points, own)
+    }
+
+    /// The same of several; those before [`PageIn::regular`] only.
+    #[inline(always)]
+    pub fn cotangents_of(&self, who: &[u16], out: &mut [Vec4]) {
+        cotangents::about_each(&self.page.topology.hexes, &self.page.points, who, out);
+    }
+
+    /// Own vertices from the first on that are known to have a closed ring of six each.
+    pub fn regular(&self) -> usize {
+        self.page.topology.hexes.len()
+    }
+
+    /// The two other corners of each triangle about an own vertex, counter-clockwise.
+    #[inline(always)]
+    pub fn wedges(&self, own: usize) -> impl Iterator<Item = [u16; 2]> + 'a {
+        let t = &self.page.topology;
+        let ring = t.ring(own);
+        let inner = ring.windows(2).filter(|w| w[1] & BREAK == 0).map(|w| [w[0] & !BREAK, w[1]]);
+        let last = match (t.kinds[own], ring) {
+            (Ring::Closed, [first, .., last]) => Some([*last, *first]),
+            _ => None,
+        };
+        inner.chain(last)
+    }
+}
+
+/// Where a kernel writes. Each vertex at most once a dab.
+#[derive(Debug)]
+pub struct PageOut<'a> {
+    pub(super) points: &'a mut [Vec4],
+    pub(super) marks: &'a mut [u8],
+    pub(super) colours: &'a mut Vec<(u16, [u8; 4])>,
+    pub(super) affected: usize,
+}
+
+impl PageOut<'_> {
+    /// Counts a vertex within the reach.
+    #[inline(always)]
+    pub fn visit(&mut self) {
+        self.affected += 1;
+    }
+
+    /// Counts several.
+    #[inline(always)]
+    pub fn visit_many(&mut self, count: usize) {
+        self.affected += count;
+    }
+
+    /// Gives own vertex `v` a new place. A place that is not finite, or the same as before, changes nothing.
+    #[inline(always)]
+    pub fn set(&mut self, v: usize, p: Vec3) {
+        let row = &mut self.points[v];
+        if p.is_finite() && p != row.truncate() {
+            *row = p.extend(row.w);
+            self.marks[v] |= MOVED;
+        }
+    }
+
+    /// Gives own vertex `v` a new mask, 0 free to 1 protected; clamped.
+    #[inline(always)]
+    pub fn set_mask(&mut self, v: usize, mask: f32) {
+        let row = &mut self.points[v];
+        // `max` first: it turns a NaN into 0.
+        let mask = mask.max(0.0).min(1.0);
+        if mask != row.w {
+            row.w = mask;
+            self.marks[v] |= PAINTED;
+        }
+    }
+
+    /// Gives own vertex `v` a new colour, RGBA, sRGB.
+    #[inline(always)]
+    pub fn set_colour(&mut self, v: usize, colour: [u8; 4]) {
+        self.colours.push((v as u16, colour));
+        self.marks[v] |= PAINTED;
+    }
+
+    /// Adds `offset * weights[v]` to every own vertex: the way for brushes whose offset has one direction. A sum that is not
+    /// finite changes nothing. `weights`: one an own vertex, 0 where nothing is to happen.
+    #[inline(always)]
+    pub fn push_all(&mut self, offset: Vec3, weights: &[f32]) {
+        let offset = offset.extend(0.0);
+        let blocks =
+            self.points.chunks_mut(BLOCK).zip(self.marks.chunks_mut(BLOCK)).zip(weights.chunks(BLOCK));
+        for ((rows, marks), weights) in blocks {
+            if weights.iter().fold(0, |bits, w| bits | w.to_bits()) == 0 {
+                continue;
+            }
+            let mut news = [Vec4::ZERO; BLOCK];
+            let mut finite = BVec4A::TRUE;
+            for ((new, row), &w) in news.iter_mut().zip(&*rows).zip(weights) {
+                *new = *row + offset * w;
+                finite &= new.abs().cmplt(Vec4::INFINITY);
+            }
+            let all = finite.all();
+            for ((row, mark), new) in rows.iter_mut().zip(marks).zip(news) {
+                if all || new.is_finite() {
+                    let differs = new.cmpne(*row);
+                    *mark |= if differs.any() { MOVED } else { 0 };
+                    *row = Vec4::select(differs, new, *row);
+                }
+            }
+        }
+    }
+}

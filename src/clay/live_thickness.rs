@@ -1,0 +1,307 @@
+//! Thickness of clay that is being sculpted: after each change only what could have changed is measured again.
+//!
+//! The bound: a vertex's value depends on nothing outside the box around the vertex and its rays' hits. Its own normal comes
+//! from triangles that touch it; a triangle that is hit, passed through or newly in the way meets that box, before the
+//! change or after it. So the vertices whose box meets a box of changed triangles, as they were or as they are, are
+//! measured again, and no others can differ: the map equals a full recomputation bit for bit once nothing is stale.
+//! A ray that hits nothing has no end, and its vertex is measured again after every change.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::{Ranks, Snapshot};
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::bvh::{Parents, WideTree};
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::thickness::cone::{Cone, Outliers, Weights, fold, frame};
+use sculptd_geometry::thickness::ray::{Caster, Correction, Site};
+
+/// Full angle of the cone, degrees.
+const OPENING: f32 = 60.0;
+/// Boxes grow by this share of the largest coordinate, more than a hit's rounding.
+const MARGIN: f32 = 1e-5;
+
+/// The map and all that keeps it up to date.
+#[derive(Debug)]
+pub struct LiveMap {
+    snapshot: Snapshot,
+    /// From the clay's numbers to the mesh's.
+    ranks: Ranks,
+    mesh: TriMesh,
+    tree: WideTree,
+    parents: Parents,
+    starts: Vec<u32>,
+    around: Vec<u32>,
+    face_normals: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    cone: Cone,
+    values: Vec<f32>,
+    /// Around each vertex and its hits.
+    reach: Vec<(Vec3, Vec3)>,
+    stale: Vec<u32>,
+    is_stale: Vec<bool>,
+}
+
+/// The clay has another topology than the map: make a new map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the clay's topology changed")]
+pub struct Rebuild;
+
+impl LiveMap {
+    /// Prepares the map of a snapshot; every vertex is stale. `rays` from 1 to 1000, corrected by the hit angle.
+    pub fn new(snapshot: &Snapshot, rays: usize, job: &Job) -> Result<LiveMap, Cancelled> {
+        let mesh = snapshot.to_tri();
+        let tree = WideTree::build(&mesh, job)?;
+        let (n, triangles) = (mesh.positions.len(), mesh.triangles.len());
+        let mut starts = vec![0u32; n + 1];
+        mesh.triangles.iter().flatten().for_each(|&v| starts[v as usize + 1] += 1);
+        for v in 0..n {
+            starts[v + 1] += starts[v];
+        }
+        let mut next = starts.clone();
+        let mut around = vec![0u32; triangles * 3];
+        for (t, corners) in mesh.triangles.iter().enumerate() {
+            for &v in corners {
+                around[next[v as usize] as usize] = t as u32;
+                next[v as usize] += 1;
+            }
+        }
+        job.check()?;
+        let parents = tree.parents(triangles);
+        let mut map = LiveMap {
+            snapshot: snapshot.clone(),
+            ranks: snapshot.ranks(),
+            tree,
+            parents,
+            starts,
+            around,
+            face_normals: (0..triangles).into_par_iter().map(|t| face_normal(&mesh, t)).collect(),
+            normals: Vec::new(),
+            cone: Cone::new(rays.clamp(1, 1000), OPENING.to_radians(), Weights::Plain),
+            values: vec![f32::NAN; n],
+            reach: vec![(Vec3::INFINITY, Vec3::NEG_INFINITY); n],
+            stale: (0..n as u32).collect(),
+            is_stale: vec![true; n],
+            mesh,
+        };
+        job.check()?;
+        map.normals = (0..n).into_par_iter().map(|v| map.normal(v)).collect();
+        Ok(map)
+    }
+
+    /// Takes a newer snapshot: the tree and the normals follow at once, values that may have changed become stale. Costs
+    /// what moved, and a look at every vertex's box.
+    pub fn advance(&mut self, newer: &Snapshot) -> Result<(), Rebuild> {
+        if newer.vertex_count() != self.mesh.positions.len()
+            || newer.page_count() != self.snapshot.page_count()
+        {
+            return Err(Rebuild);
+        }
+        let mut moved: Vec<(u32, Vec3)> = Vec::new();
+        let mut same = true;
+        newer.each_changed(&self.snapshot, |number, page| {
+            let old = self.snapshot.page(number);
+            same &= Arc::ptr_eq(old.topology(), page.topology());
+            for (v, &id) in page.topology().ids.iter().enumerate() {
+                let to = page.point(v);
+                // After cuts numbers have gaps: another topology, which is told below.
+                let Some(row) = self.ranks.find(id) else { continue };
+                if self.mesh.positions.get(row as usize).is_some_and(|at| *at != to) {
+                    moved.push((row, to));
+                }
+            }
+        });
+        if !same {
+            return Err(Rebuild);
+        }
+        self.snapshot = newer.clone();
+        if moved.is_empty() {
+            return Ok(());
+        }
+        let mut triangles: Vec<u32> = moved
+            .iter()
+            .flat_map(|&(v, _)| {
+                &self.around[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
+            })
+            .copied()
+            .collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        let before: Vec<_> = triangles.iter().map(|&t| bounds(&self.mesh, t)).collect();
+        for &(v, to) in &moved {
+            self.mesh.positions[v as usize] = to;
+        }
+        let largest = self.mesh.positions.iter().fold(0.0f32, |m, p| m.max(p.abs().max_element()));
+        let margin = Vec3::splat(largest * MARGIN);
+        let mut boxes: Vec<(Vec3, Vec3)> = triangles
+            .iter()
+            .zip(before)
+            .map(|(&t, old)| {
+                let new = bounds(&self.mesh, t);
+                (old.0.min(new.0) - margin, old.1.max(new.1) + margin)
+            })
+            .collect();
+        for &t in &triangles {
+            self.face_normals[t as usize] = face_normal(&self.mesh, t as usize);
+        }
+        let mut touched: Vec<u32> = triangles.iter().flat_map(|&t| self.mesh.triangles[t as usize]).collect();
+        touched.sort_unstable();
+        touched.dedup();
+        for &v in &touched {
+            self.normals[v as usize] = self.normal(v as usize);
+        }
+        self.tree.refit(&self.mesh, &triangles, &mut self.parents);
+        coarsen(&mut boxes);
+        let all =
+            boxes.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (reach, is_stale) = (&self.reach, &self.is_stale);
+        let mut fresh: Vec<u32> = (0..reach.len() as u32)
+            .into_par_iter()
+            .filter(|&v| {
+                let own = reach[v as usize];
+                !is_stale[v as usize] && meet(own, all) && boxes.iter().any(|&b| meet(own, b))
+            })
+            .collect();
+        // A vertex beside a changed triangle has a new normal; its box holds it, so it is among them, unless it has none.
+        fresh.extend(touched.iter().filter(|&&v| !is_stale[v as usize]));
+        fresh.sort_unstable();
+        fresh.dedup();
+        for &v in &fresh {
+            self.is_stale[v as usize] = true;
+        }
+        self.stale.extend(fresh);
+        Ok(())
+    }
+
+    /// Measures at most `most` stale vertices, those nearest to `brush` first, on the current rayon pool; returns how many
+    /// are stale still. With [`Job::cancel`] nothing of this call is kept.
+    pub fn work(&mut self, brush: Vec3, most: usize, job: &Job) -> Result<usize, Cancelled> {
+        let far = |v: &u32| self.mesh.positions[*v as usize].distance_squared(brush);
+        if most < self.stale.len() {
+            self.stale.select_nth_unstable_by(most, |a, b| far(a).total_cmp(&far(b)).then(a.cmp(b)));
+        }
+        let mut now: Vec<u32> = self.stale[..most.min(self.stale.len())].to_vec();
+        // In the order of the loaded mesh: neighbours in memory, as a rule in space.
+        now.sort_unstable();
+        let caster = Caster {
+            tree: &self.tree,
+            face_normals: &self.face_normals,
+            corner_normals: &[],
+            sign: 1.0,
+            cone: &self.cone,
+            outliers: Outliers::SigmaMedian,
+            correction: Correction::Angle,
+        };
+        let found: Vec<(f32, (Vec3, Vec3))> = now
+            .par_chunks(256)
+            .map(|chunk| {
+                job.check()?;
+                Ok(chunk.iter().map(|&v| self.measure(&caster, v as usize)).collect::<Vec<_>>())
+            })
+            .collect::<Result<Vec<_>, Cancelled>>()?
+            .concat();
+        for (&v, (value, reach)) in now.iter().zip(found) {
+            self.values[v as usize] = value;
+            self.reach[v as usize] = reach;
+            self.is_stale[v as usize] = false;
+        }
+        let is_stale = &self.is_stale;
+        self.stale.retain(|&v| is_stale[v as usize]);
+        Ok(self.stale.len())
+    }
+
+    /// One a vertex of the loaded mesh; NaN where there is none, or none yet.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// Whether each value is of an older state of the clay.
+    pub fn is_stale(&self) -> &[bool] {
+        &self.is_stale
+    }
+
+    /// Vertices still to be measured.
+    pub fn stale(&self) -> usize {
+        self.stale.len()
+    }
+
+    /// Of the snapshot that the map follows.
+    pub fn revision(&self) -> u64 {
+        self.snapshot.revision()
+    }
+
+    pub fn rays(&self) -> usize {
+        self.cone.dirs.len()
+    }
+
+    fn measure(&self, caster: &Caster<'_>, v: usize) -> (f32, (Vec3, Vec3)) {
+        let point = self.mesh.positions[v];
+        let away = self.normals[v];
+        if away == Vec3::ZERO {
+            return (f32::NAN, (point, point));
+        }
+        let own = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
+        let site = Site { point, away, own };
+        let (x, y) = frame(away);
+        let (mut lo, mut hi) = (point, point);
+        let mut found = Vec::with_capacity(self.cone.dirs.len());
+        for d in &self.cone.dirs {
+            let dir = x * d.x + y * d.y - away * d.z;
+            match caster.hit(&site, dir) {
+                Some(hit) => {
+                    let end = point + dir * hit.t;
+                    (lo, hi) = (lo.min(end), hi.max(end));
+                    // One ray is the axis itself: its length is the thickness.
+                    let cos = self.face_normals[hit.triangle as usize].dot(dir).abs();
+                    found.push((if self.cone.dirs.len() == 1 { hit.t } else { hit.t * cos }, 1.0));
+                }
+                None => (lo, hi) = (Vec3::NEG_INFINITY, Vec3::INFINITY),
+            }
+        }
+        (fold(&mut found, caster.outliers).map_or(f32::NAN, |f| f.value), (lo, hi))
+    }
+
+    fn normal(&self, v: usize) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for &t in &self.around[self.starts[v] as usize..self.starts[v + 1] as usize] {
+            let c = self.mesh.triangles[t as usize];
+            let k = c.iter().position(|&x| x as usize == v).unwrap_or(0);
+            let p = self.mesh.corners(t as usize);
+            sum += self.face_normals[t as usize] * sculptd_geometry::thickness::surface::corner_angle(p, k);
+        }
+        sum.normalize_or_zero()
+    }
+}
+
+fn face_normal(mesh: &TriMesh, t: usize) -> Vec3 {
+    let [a, b, c] = mesh.corners(t).map(Vec3::as_dvec3);
+    (b - a).cross(c - a).normalize_or_zero().as_vec3()
+}
+
+fn bounds(mesh: &TriMesh, t: u32) -> (Vec3, Vec3) {
+    let [a, b, c] = mesh.corners(t as usize);
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+fn meet(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
+    a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
+}
+
+/// At most 32 boxes that hold all: cut by the longest side of the whole, each part's union.
+fn coarsen(boxes: &mut Vec<(Vec3, Vec3)>) {
+    const PARTS: usize = 32;
+    if boxes.len() <= PARTS {
+        return;
+    }
+    let all = boxes.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let size = all.1 - all.0;
+    let axis = size.max_position();
+    boxes.sort_by(|a, b| a.0[axis].total_cmp(&b.0[axis]));
+    let per = boxes.len().div_ceil(PARTS);
+    *boxes = boxes
+        .chunks(per)
+        .map(|c| c.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1))))
+        .collect();
+}

@@ -1,0 +1,306 @@
+//! One page: some five hundred vertices, their surroundings, and the triangles between them.
+//!
+//! Laws kept here:
+//! * A page holds its **own** vertices and copies (the **halo**) of the foreign vertices that its triangles and rings need, so
+//!   every inner loop stays within the page. Local index `< own` is own, the rest is halo.
+//! * What never changes while the topology stands ([`Topology`]) is apart from what a dab changes, so that copy on write
+//!   copies only the latter.
+//! * A vertex is two 16-byte rows: position with mask, normal with colour. A ring's neighbour is one aligned load.
+
+use std::sync::Arc;
+
+use glam::{Vec3, Vec4};
+use serde::{Deserialize, Serialize};
+
+use super::boxtree::{BoxTree, LEAF};
+use sculptd_geometry::simd::leaves::Leaves;
+use sculptd_geometry::simd::rings::Hexes;
+
+/// The bit of a ring's entry that says: between the entry before and this one there is no triangle.
+pub const BREAK: u16 = 0x8000;
+
+/// Vertices, own and halo in a row, that are told apart no further when what moved is looked for.
+pub(super) const BLOCK: usize = 32;
+
+/// The bit of the block that a row is in. All beyond the last bit share it.
+#[inline(always)]
+pub(super) fn block_of(row: usize) -> u32 {
+    1 << (row / BLOCK).min(31)
+}
+
+/// How the triangles lie about a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum Ring {
+    /// One closed fan: the last neighbour and the first make a triangle too.
+    Closed,
+    /// One open fan: the vertex lies on the border of the surface. Also a vertex without triangles.
+    Open,
+    /// Several fans, parted by [`BREAK`]; a closed one among them repeats its first neighbour.
+    Several,
+}
+
+/// A page from which others are seen: its number, and where its part of the halo begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Neighbour {
+    pub page: u32,
+    /// Index into [`Topology::halo_sources`]; the part ends where the next neighbour's begins.
+    pub first: u32,
+}
+
+/// What stands still while a mesh is only displaced.
+#[derive(Debug, Default, Clone, Serialize, Deserialize)]
+pub struct Topology {
+    pub own: usize,
+    /// The own vertices' numbers in the mesh that was loaded.
+    pub ids: Box<[u32]>,
+    /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight make a leaf.
+    pub triangles: Box<[[u16; 3]]>,
+    /// The triangles' numbers in the mesh that was loaded.
+    pub triangle_ids: Box<[u32]>,
+    /// The rings of the first own vertices: they have a closed one of six each, as most vertices of most meshes have.
+    pub hexes: Hexes,
+    /// The rings of the others: vertex `hexes.len() + i` has `rings[ring_starts[i]..ring_starts[i + 1]]`.
+    pub ring_starts: Box<[u16]>,
+    pub rings: Box<[u16]>,
+    pub kinds: Box<[Ring]>,
+    /// The vertices of each leaf of the page's tree. This and what comes after follows from the rest: [`Topology::index`].
+    #[serde(skip)]
+    pub leaves: Leaves,
+    /// For each [`BLOCK`] of own vertices the blocks that they and their rings lie in.
+    #[serde(skip)]
+    pub ring_blocks: Box<[u32]>,
+    /// For each eight leaves of the page's tree the blocks that their vertices lie in.
+    #[serde(skip)]
+    pub leaf_blocks: Box<[u32]>,
+    /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does not know them.
+    #[serde(skip)]
+    pub loose: Box<[u16]>,
+    /// Local index of each halo vertex in its home page.
+    pub halo_sources: Box<[u16]>,
+    /// The homes of the halo, ascending. Neighbourhood is mutual.
+    pub neighbours: Box<[Neighbour]>,
+}
+
+impl Topology {
+    /// The neighbours of own vertex `v`, counter-clockwise, [`BREAK`] bits included.
+    #[inline(always)]
+    pub fn ring(&self, v: usize) -> &[u16] {
+        match self.hexes.get(v) {
+            Some(ring) => ring,
+            None => {
+                let i = v - self.hexes.len();
+                &self.rings[self.ring_starts[i] as usize..self.ring_starts[i + 1] as usize]
+            }
+        }
+    }
+
+    /// Fills in what follows from the rest: the leaves, which blocks lie where, and what the tree does not know. False where the
+    /// leaves have too many corners.
+    #[must_use]
+    pub(super) fn index(&mut self) -> bool {
+        let each_once = |eight: &[[u16; 3]]| {
+            let mut some: Vec<u16> = eight.iter().flatten().copied().collect();
+            some.sort_unstable();
+            some.dedup();
+            some
+        };
+        let Some(leaves) = Leaves::new(self.triangles.chunks(LEAF).map(each_once)) else { return false };
+        self.leaves = leaves;
+        self.ring_blocks = (0..self.own.div_ceil(BLOCK))
+            .map(|b| {
+                (b * BLOCK..self.own.min((b + 1) * BLOCK)).fold(block_of(b * BLOCK), |bits, v| {
+                    self.ring(v).iter().fold(bits, |bits, &k| bits | block_of((k & !BREAK) as usize))
+                })
+            })
+            .collect();
+        self.leaf_blocks = self
+            .triangles
+            .chunks(8 * LEAF)
+            .map(|some| some.iter().flatten().fold(0, |bits, &v| bits | block_of(v as usize)))
+            .collect();
+        let mut known = vec![false; self.own];
+        for &v in self.triangles.iter().flatten() {
+            if let Some(known) = known.get_mut(v as usize) {
+                *known = true;
+            }
+        }
+        self.loose = (0..self.own as u16).filter(|&v| !known[v as usize]).collect();
+        true
+    }
+
+    /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index there.
+    pub fn halo_home(&self, k: usize) -> (u32, u16) {
+        let n = self.neighbours.partition_point(|n| n.first as usize <= k) - 1;
+        (self.neighbours[n].page, self.halo_sources[k])
+    }
+
+    /// The halo's parts: home page, and which halo vertices are its.
+    pub fn halo_parts(&self) -> impl Iterator<Item = (u32, std::ops::Range<usize>)> + '_ {
+        self.neighbours.iter().enumerate().map(|(i, n)| {
+            let end = self.neighbours.get(i + 1).map_or(self.halo_sources.len(), |next| next.first as usize);
+            (n.page, n.first as usize..end)
+        })
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Topology>()
+            + self.ids.len() * 4
+            + self.triangles.len() * 10
+            + self.hexes.len() * 12
+            + (self.ring_blocks.len() + self.leaf_blocks.len()) * 4
+            + self.loose.len() * 2
+            + self.ring_starts.len() * 2
+            + self.leaves.bytes()
+            + self.rings.len() * 2
+            + self.kinds.len()
+            + self.halo_sources.len() * 2
+            + self.neighbours.len() * size_of::<Neighbour>()
+    }
+}
+
+/// Rows of 16 bytes, read as points.
+#[derive(Debug, Clone, Copy)]
+pub struct Points<'a>(pub &'a [Vec4]);
+
+impl Points<'_> {
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Vec3 {
+        self.0[i].truncate()
+    }
+
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+/// What a dab may change, and the topology it belongs to.
+#[derive(Debug, Default)]
+pub struct Page {
+    pub(super) topology: Arc<Topology>,
+    /// Own, then halo: x, y, z, mask (0 free to 1 protected).
+    pub(super) points: Vec<Vec4>,
+    /// Own, then halo: unit normal (zero where all triangles are degenerate), and RGBA as the bits of a float.
+    pub(super) normals: Vec<Vec4>,
+    /// Over the page's triangles, eight a leaf.
+    pub(super) tree: BoxTree,
+    /// Of the page's triangles and own vertices.
+    pub(super) lo: Vec3,
+    pub(super) hi: Vec3,
+    /// The clay's revision that wrote this page.
+    pub(super) revision: u64,
+}
+
+impl Page {
+    /// The same page again, its topology shared.
+    pub(super) fn copy(&self) -> Page {
+        Page {
+            topology: self.topology.clone(),
+            points: self.points.clone(),
+            normals: self.normals.clone(),
+            tree: self.tree.clone(),
+            lo: self.lo,
+            hi: self.hi,
+            revision: self.revision,
+        }
+    }
+
+    pub fn topology(&self) -> &Arc<Topology> {
+        &self.topology
+    }
+
+    /// Own vertices; the rest of every array is halo.
+    pub fn own(&self) -> usize {
+        self.topology.own
+    }
+
+    /// Own and halo vertices as rows of x, y, z, mask: ready for a GPU.
+    pub fn point_rows(&self) -> &[Vec4] {
+        &self.points
+    }
+
+    /// Own and halo normals as rows of x, y, z and RGBA bits: ready for a GPU. Never compare or add whole rows: the
+    /// colour's bits may spell "not a number".
+    pub fn normal_rows(&self) -> &[Vec4] {
+        &self.normals
+    }
+
+    pub fn positions(&self) -> Points<'_> {
+        Points(&self.points)
+    }
+
+    pub fn normals(&self) -> Points<'_> {
+        Points(&self.normals)
+    }
+
+    /// An own or a halo vertex.
+    #[inline]
+    pub fn point(&self, local: usize) -> Vec3 {
+        self.points[local].truncate()
+    }
+
+    #[inline]
+    pub fn normal(&self, local: usize) -> Vec3 {
+        self.normals[local].truncate()
+    }
+
+    /// 0 free to 1 protected.
+    #[inline]
+    pub fn mask(&self, local: usize) -> f32 {
+        self.points[local].w
+    }
+
+    /// RGBA, sRGB.
+    #[inline]
+    pub fn colour(&self, local: usize) -> [u8; 4] {
+        self.normals[local].w.to_bits().to_le_bytes()
+    }
+
+    /// Local corners of each triangle, into own and halo vertices.
+    pub fn triangles(&self) -> &[[u16; 3]] {
+        &self.topology.triangles
+    }
+
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.topology.triangles[triangle].map(|v| self.point(v as usize))
+    }
+
+    /// Lower and upper corner of the box around the page's triangles and own vertices.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        (self.lo, self.hi)
+    }
+
+    /// The clay's revision that wrote this page.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Brings the page's tree and bounds up to date after vertices in the blocks `touched` moved.
+    #[inline(always)]
+    pub(super) fn refit(&mut self, touched: u32) {
+        let Page { topology: t, points, tree, .. } = self;
+        let (mut lo, mut hi) =
+            tree.refit_leaves(&t.leaves, points, |eight| t.leaf_blocks[eight] & touched != 0);
+        for &v in &t.loose {
+            let p = points[v as usize].truncate();
+            (lo, hi) = (lo.min(p), hi.max(p));
+        }
+        (self.lo, self.hi) = (lo, hi);
+    }
+
+    /// What undo counts for the page, bytes: the same however much room its vectors happen to have, for a replay must forget
+    /// the same steps.
+    pub(super) fn weight(&self) -> usize {
+        // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
+        size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4
+    }
+
+    /// Heap bytes of what a copy on write copies.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Page>() + 16 + (self.points.capacity() + self.normals.capacity()) * 16 + self.tree.bytes()
+    }
+}

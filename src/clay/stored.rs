@@ -1,0 +1,196 @@
+//! Pages as bytes, and clay put together from pages that were stored: what a session file keeps of a work's history.
+//!
+//! A page is named by its number and the revision that wrote it: within one lineage two pages of one name are the same, to
+//! the bit. Trees are not stored, they follow from the points.
+
+use std::sync::Arc;
+
+use glam::{Vec3, Vec4};
+use serde::{Deserialize, Serialize};
+
+use super::boxtree::LEAF;
+use super::clay::Mesh;
+use super::page::{BREAK, Page, Topology};
+use crate::assembly::Built;
+
+/// The bytes are not those of a page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the bytes are not those of a page")]
+pub struct BadPage;
+
+/// What clay is besides its pages.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rest {
+    pub pages: u32,
+    pub revision: u64,
+    pub lineage: u32,
+    /// The numbers that the next new vertex and triangle get.
+    pub next: [u32; 2],
+    /// Pages without vertices that are used first.
+    pub empty: Vec<u32>,
+}
+
+impl Topology {
+    pub fn to_bytes(&self) -> Vec<u8> {
+        // Plain data always serialises.
+        postcard::to_stdvec(self).unwrap_or_default()
+    }
+
+    /// # Errors
+    /// [`BadPage`] where anything points outside.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Topology, BadPage> {
+        let mut t: Topology = postcard::from_bytes(bytes).map_err(|_| BadPage)?;
+        let halo = t.halo_sources.len();
+        let all = t.own.checked_add(halo).filter(|n| *n < BREAK as usize).ok_or(BadPage)?;
+        let ascending = |ends: &[u16]| ends.windows(2).all(|w| w[0] <= w[1]);
+        let sane = t.ids.len() == t.own
+            && t.kinds.len() == t.own
+            && t.triangle_ids.len() == t.triangles.len()
+            && t.triangles.iter().flatten().all(|&v| (v as usize) < all)
+            && t.hexes.len() <= t.own
+            && t.hexes.rows() <= all
+            // A page without anything has no starts at all.
+            && (t.ring_starts.len() == t.own - t.hexes.len() + 1 || t.own == 0)
+            && ascending(&t.ring_starts)
+            && t.ring_starts.last().is_none_or(|e| *e as usize == t.rings.len())
+            && t.rings.iter().all(|&v| ((v & !BREAK) as usize) < all)
+            && t.neighbours.windows(2).all(|w| w[0].page < w[1].page && w[0].first <= w[1].first)
+            && t.neighbours.first().is_none_or(|n| n.first == 0)
+            && t.neighbours.iter().all(|n| n.first as usize <= halo)
+            && (halo == 0 || !t.neighbours.is_empty());
+        if sane && t.index() { Ok(t) } else { Err(BadPage) }
+    }
+}
+
+impl Page {
+    /// What a dab may change: points and normals, own and halo, 32 bytes a vertex.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(self.points.len() * 32);
+        for row in self.points.iter().chain(&self.normals) {
+            for x in row.to_array() {
+                out.extend_from_slice(&x.to_bits().to_le_bytes());
+            }
+        }
+        out
+    }
+
+    /// The page again, with what stands still in it.
+    ///
+    /// # Errors
+    /// [`BadPage`] where the bytes are of another page, or a place is not finite.
+    pub fn from_bytes(bytes: &[u8], topology: Arc<Topology>, revision: u64) -> Result<Page, BadPage> {
+        let all = topology.own + topology.halo_sources.len();
+        if bytes.len() != all * 32 {
+            return Err(BadPage);
+        }
+        let row = |b: &[u8]| {
+            let x = |k: usize| f32::from_bits(u32::from_le_bytes([b[k], b[k + 1], b[k + 2], b[k + 3]]));
+            Vec4::new(x(0), x(4), x(8), x(12))
+        };
+        let (points, normals) = bytes.split_at(all * 16);
+        let points: Vec<Vec4> = points.chunks_exact(16).map(row).collect();
+        let normals: Vec<Vec4> = normals.chunks_exact(16).map(row).collect();
+        // The colour's bits may spell anything.
+        if !points.iter().all(|p| p.is_finite()) || !normals.iter().all(|n| n.truncate().is_finite()) {
+            return Err(BadPage);
+        }
+        let leaves = topology.triangles.len().div_ceil(LEAF);
+        let mut page = Page { topology, points, normals, revision, ..Page::default() };
+        page.tree.reset(leaves);
+        if page.topology.own == 0 && page.topology.triangles.is_empty() {
+            (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        } else {
+            page.refit(u32::MAX);
+        }
+        Ok(page)
+    }
+
+    /// The page that stands where there was none before.
+    pub fn nothing() -> Page {
+        let mut page = Page { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY, ..Page::default() };
+        page.tree.reset(0);
+        page
+    }
+}
+
+/// Whether every page's halo names vertices that are there.
+fn fit(pages: &[Arc<Page>]) -> bool {
+    pages.iter().all(|p| {
+        let t = p.topology();
+        t.halo_parts().all(|(home, part)| {
+            pages.get(home as usize).is_some_and(|h| {
+                t.halo_sources.get(part).is_some_and(|s| s.iter().all(|&l| (l as usize) < h.own()))
+            })
+        })
+    })
+}
+
+impl Mesh {
+    /// What [`Mesh::of_stored`] needs besides the pages.
+    pub fn rest(&self) -> Rest {
+        Rest {
+            pages: self.pages.len() as u32,
+            revision: self.revision,
+            lineage: self.lineage,
+            next: [self.next_vertex, self.next_triangle],
+            empty: self.empty.clone(),
+        }
+    }
+
+    /// Clay of stored pages, as it was but for undo, which has nothing to take back.
+    ///
+    /// # Errors
+    /// [`BadPage`] where the pages are not all there, or do not fit each other.
+    pub fn of_stored(pages: Vec<Arc<Page>>, rest: &Rest) -> Result<Mesh, BadPage> {
+        if pages.len() != rest.pages as usize || !fit(&pages) || rest.empty.iter().any(|&i| i >= rest.pages) {
+            return Err(BadPage);
+        }
+        let vertices = pages.iter().map(|p| p.own()).sum();
+        let triangles = pages.iter().map(|p| p.triangles().len()).sum();
+        let built = Built { pages, vertices, triangles, warnings: Vec::new(), next: rest.next };
+        let mut mesh = Mesh::of(built, rest.revision);
+        mesh.lineage = rest.lineage;
+        mesh.empty.clone_from(&rest.empty);
+        Ok(mesh)
+    }
+
+    /// Which empty pages are used first, as [`Mesh::rest`] told it.
+    pub fn set_empty(&mut self, empty: Vec<u32>) {
+        let count = self.pages.len() as u32;
+        self.empty = empty;
+        self.empty.retain(|i| *i < count);
+    }
+
+    /// Stored pages take the place of those that are here: a jump within the history of this work. Nothing can be taken back
+    /// or done again after it. False, and nothing done, where the pages are not of this work.
+    pub fn jump(&mut self, pages: &[(u32, Arc<Page>)]) -> bool {
+        let count = pages.iter().map(|(i, _)| *i as usize + 1).max().unwrap_or(0);
+        if count > self.pages.len() + pages.len() {
+            return false;
+        }
+        self.history.forget();
+        if count > self.pages.len() {
+            while self.pages.len() < count {
+                self.push_empty();
+            }
+            self.grow();
+        }
+        for (index, page) in pages {
+            let i = *index as usize;
+            self.top.set_leaf(i, page.lo, page.hi);
+            self.stale.add(*index);
+            let old = std::mem::replace(&mut self.pages[i], page.clone());
+            self.recount(*index, &old);
+            if page.own() == 0 {
+                self.empty.push(*index);
+            }
+            self.pool.retire(old);
+        }
+        for &leaf in self.stale.paths() {
+            self.top.refit_path(leaf as usize);
+        }
+        self.stale.clear_paths();
+        self.revision += 1;
+        true
+    }
+}

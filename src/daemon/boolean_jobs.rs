@@ -1,0 +1,227 @@
+//! The thing in the hands and the work made one, on a thread of its own.
+//!
+//! A choice from the hands' menu (or a call on the control socket) asks; the joiner takes the newest snapshot, computes the
+//! Boolean and sends what came of it as commands. The loop never waits for it. Where the work was changed meanwhile elsewhere,
+//! a cut is made all the same; where it was changed there, it is computed again: nothing that was sculpted is lost.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use arc_swap::ArcSwap;
+use crossbeam_channel as cc;
+use serde::Serialize;
+
+use super::published::Published;
+use sculptd_clay::{Grafted, Level, LevelError, Levels, Mesh, PAGE_VERTICES, Snapshot};
+use sculptd_engine::command::{Carving, Command, NewClay};
+use sculptd_engine::hand::Choice;
+use sculptd_geometry::boolean;
+use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, TriMesh};
+
+/// Tries before a work that never rests is told so.
+const TRIES: usize = 3;
+/// Pages that a cut may concern: the tick that makes it waits for no more than this.
+const MOST_PAGES: usize = 64;
+/// For the loop to say whether a cut was made.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+#[derive(Debug, thiserror::Error)]
+pub enum JoinError {
+    #[error("nothing is in the hands")]
+    Empty,
+    #[error(transparent)]
+    Boolean(#[from] boolean::Error),
+    #[error("this part of the view holds nothing that could be cut off")]
+    NoPart,
+    #[error(transparent)]
+    Level(#[from] LevelError),
+    #[error("nothing of the work would be left")]
+    Nothing,
+    #[error("the result cannot be sculpted: {0}")]
+    Build(String),
+    #[error("the work was changed while it was joined, {TRIES} times over")]
+    Restless,
+    #[error("the loop has ended")]
+    Ended,
+}
+
+/// What a choice from the menu means for the work and the thing.
+pub fn operation(choice: Choice) -> Option<Operation> {
+    match choice {
+        Choice::Add => Some(Operation::Union),
+        Choice::Carve => Some(Operation::Difference),
+        Choice::Keep => Some(Operation::Intersection),
+        _ => None,
+    }
+}
+
+/// The work and a tool made one: the commands that put the result in place. Where the tool reaches little of the work, only that
+/// is computed and written; every other page stays as it is. `held`: the tool is the thing in the hands.
+pub fn join(
+    work: &Snapshot,
+    tool: &PolyMesh,
+    held: bool,
+    operation: Operation,
+    job: &Job,
+) -> Result<Vec<Command>, JoinError> {
+    let options = Options::default();
+    if let Some(cut) = sculptd_clay::local_boolean::local(work, tool, operation, &options, job)?
+        && cut.page_count() <= MOST_PAGES
+        && cut.can_be_made(work)
+    {
+        return Ok(vec![Command::Cut(Carving { cut: Arc::new(cut), put_down: held, answer: None })]);
+    }
+    let masks = work.masks();
+    let work = work.to_tri().to_poly();
+    job.check().map_err(boolean::Error::from)?;
+    let (solids, _) = boolean::compute([&work, tool], &[operation], &options, job, || 0.0)?;
+    let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
+    if solid.mesh.face_count() == 0 {
+        return Err(JoinError::Nothing);
+    }
+    let plain: TriMesh = solid.mesh.triangulate().0;
+    let masks = masks.map(|m| boolean::mixed(&solid, &work, &m));
+    let built = Mesh::build_masked(&plain, masks.as_deref().unwrap_or(&[]), job);
+    let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
+    let new = NewClay::new(Arc::new(plain), built, true);
+    let mut out = vec![match masks {
+        Some(masks) => Command::Remake(new, Arc::new(masks)),
+        None => Command::Replace(new),
+    }];
+    out.extend(held.then_some(Command::PutDown));
+    Ok(out)
+}
+
+/// The work one level finer or coarser: the command that puts it in place, and which level of how many it is.
+pub fn level(shown: &ArcSwap<Published>, finer: bool) -> Result<(Command, (usize, usize)), JoinError> {
+    settled(shown, |now| {
+        let (work, job) = (Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() }, Job::default());
+        let levels = now.mesh.levels().map(|l| &**l);
+        let (level, levels) = match (finer, levels) {
+            // Where triangles were cut the levels end: what is there now is the lowest of new ones.
+            (true, levels) => Levels::up(levels.filter(|l| l.fits(&work.mesh)), &work, &job)?,
+            (false, Some(levels)) => levels.down(&work, &job)?,
+            (false, None) => return Err(LevelError::Lowest.into()),
+        };
+        let built = Mesh::build_masked(&level.mesh, level.masks.as_deref().unwrap_or(&[]), &job);
+        let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
+        let at = levels.at();
+        let mut clay = NewClay::new(Arc::new(level.mesh), built, true);
+        clay.levels = Some(Arc::new(levels));
+        let command = match level.masks {
+            Some(masks) => Command::Remake(clay, Arc::new(masks)),
+            None => Command::Replace(clay),
+        };
+        Ok((command, at))
+    })
+}
+
+/// A running joiner; it ends when this is dropped and what it computes is done.
+#[derive(Debug)]
+pub struct Joiner {
+    asked: cc::Sender<Choice>,
+}
+
+impl Joiner {
+    /// # Errors
+    /// If no thread can be started.
+    pub fn start(shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) -> std::io::Result<Self> {
+        let (asked, todo) = cc::bounded::<Choice>(1);
+        std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
+            for choice in todo {
+                match at_rest(&shown, choice, &Job::default(), &commands) {
+                    Ok(_) => {}
+                    Err(JoinError::Ended) => return,
+                    Err(e) => tracing::warn!("{}: {e}", choice.label()),
+                }
+            }
+        })?;
+        Ok(Joiner { asked })
+    }
+
+    /// Asks for a join. One at a time: a second wish while one is under way is not taken.
+    pub fn ask(&self, choice: Choice) -> bool {
+        self.asked.try_send(choice).is_ok()
+    }
+}
+
+/// What a join came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Joined {
+    /// Computed and written only where the tool is.
+    pub local: bool,
+    /// Pages written anew, and pages that stayed as they were.
+    pub pages_written: usize,
+    pub pages_shared: usize,
+    /// Times that it was computed: again where the work was changed meanwhile.
+    pub tries: usize,
+}
+
+/// Joins the work as it is now with the thing in the hands.
+pub fn at_rest(
+    shown: &ArcSwap<Published>,
+    choice: Choice,
+    job: &Job,
+    commands: &cc::Sender<Command>,
+) -> Result<Joined, JoinError> {
+    let operation = operation(choice).ok_or(JoinError::Empty)?;
+    let held = |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
+    carry_out(shown, held, true, operation, job, commands)
+}
+
+/// What `of` makes of the work; made again when the work was changed meanwhile.
+pub fn settled<T>(
+    shown: &ArcSwap<Published>,
+    of: impl Fn(&Published) -> Result<T, JoinError>,
+) -> Result<T, JoinError> {
+    for _ in 0..TRIES {
+        let before = shown.load_full();
+        let done = of(&before)?;
+        if shown.load().mesh.revision() == before.mesh.revision() {
+            return Ok(done);
+        }
+    }
+    Err(JoinError::Restless)
+}
+
+/// Joins the work as it is now with the tool; again where the work was changed there meanwhile.
+pub fn carry_out(
+    shown: &ArcSwap<Published>,
+    tool: impl Fn(&Published) -> Result<PolyMesh, JoinError>,
+    held: bool,
+    operation: Operation,
+    job: &Job,
+    commands: &cc::Sender<Command>,
+) -> Result<Joined, JoinError> {
+    let send = |c| commands.send(c).map_err(|_| JoinError::Ended);
+    for tries in 1..=TRIES {
+        let before = shown.load_full();
+        let mut done = join(&before.mesh, &tool(&before)?, held, operation, job)?;
+        job.check().map_err(boolean::Error::from)?;
+        if let [Command::Cut(carving)] = &mut done[..] {
+            let (answer, made) = cc::bounded(1);
+            carving.answer = Some(answer);
+            done.into_iter().try_for_each(send)?;
+            match made.recv_timeout(PATIENCE) {
+                Ok(Some(Grafted { written, shared })) => {
+                    return Ok(Joined { local: true, pages_written: written, pages_shared: shared, tries });
+                }
+                Ok(None) => continue,
+                Err(_) => return Err(JoinError::Ended),
+            }
+        }
+        if shown.load().mesh.revision() == before.mesh.revision() {
+            let pages = done.iter().find_map(|c| match c {
+                Command::Replace(new) | Command::Remake(new, _) => {
+                    Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
+                }
+                _ => None,
+            });
+            done.into_iter().try_for_each(send)?;
+            return Ok(Joined { local: false, pages_written: pages.unwrap_or(0), pages_shared: 0, tries });
+        }
+    }
+    Err(JoinError::Restless)
+}

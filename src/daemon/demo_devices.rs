@@ -1,0 +1,175 @@
+//! Ghosts: simulated devices that perform the demo's journal. They speak bytes (HID reports, packets on a pseudo-terminal,
+//! frames on a loopback WebSocket), and the same adaptors read them that read real devices.
+
+use std::time::Duration;
+
+use crate::simulated_loop::Feed;
+use sculptd_devices::catalogue::{Catalogue, Found, Identification};
+use sculptd_devices::queue::SenderFactory;
+use sculptd_devices::{Clock, DeviceId, hid, leap, serial, sim};
+
+/// Ids of the ghosts, apart from those of real devices (see [`super::adaptors`]).
+const TABLET: DeviceId = DeviceId(500);
+const SERIAL: DeviceId = DeviceId(501);
+const HANDS: DeviceId = DeviceId(502);
+
+/// The tablet that the ghost holds: a common one with tilt, hover distance and an eraser.
+const MODEL: &str = "Wacom PTK-440";
+
+/// How long an adaptor may take to find its simulated device on a loaded machine.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// After the journal's last act: long enough for a silent pen to be seen to have left.
+const AFTER_US: u64 = 200_000;
+
+#[derive(Debug, thiserror::Error)]
+pub enum GhostError {
+    #[error("a simulated {device} could not be started: {source}")]
+    Start { device: &'static str, source: std::io::Error },
+    #[error("the adaptor did not find the simulated {0}")]
+    NotFound(&'static str),
+    #[error("the tablet {MODEL} is not in the catalogue")]
+    NoTablet,
+}
+
+/// The ghosts and the adaptors that read them, connected.
+#[derive(Debug)]
+struct Ghosts {
+    tablet: sim::Tablet,
+    serial: sim::SerialPen,
+    tracker: sim::Tracker,
+    adaptors: Adaptors,
+    end_us: u64,
+}
+
+/// The adaptors that read the ghosts; they stop when this is dropped.
+#[derive(Debug)]
+pub struct Adaptors {
+    _tablet: hid::reader::Handle,
+    _serial: serial::Handle,
+    _leap: leap::Handle,
+}
+
+fn model(catalogue: &Catalogue) -> Option<Found> {
+    match catalogue.identify(&sim::tablet::identity(catalogue, MODEL)?) {
+        Identification::Identified(found) => Some(found),
+        Identification::Ambiguous(all) => all.into_iter().find(|f| f.tablet.name == MODEL),
+        Identification::Declined(_) => None,
+    }
+}
+
+fn summon(clock: &Clock, factory: &SenderFactory) -> Result<Ghosts, GhostError> {
+    let journal = sim::journal();
+    let start = |device| move |source| GhostError::Start { device, source };
+    let catalogue = Catalogue::builtin().map_err(|_| GhostError::NoTablet)?;
+    let found = model(&catalogue).ok_or(GhostError::NoTablet)?;
+
+    let (tablet, end) = sim::Tablet::new(&found, journal.pen, sim::TabletConfig::default());
+    let descriptor = sim::tablet::descriptor(&found);
+    let _tablet =
+        hid::reader::start(Box::new(end), &found, descriptor, TABLET, clock.clone(), factory.sender())
+            .map_err(start("tablet"))?;
+
+    let config = sim::SerialPenConfig::new(serial::Protocol::Isdv4, journal.area_mm);
+    let pen = sim::SerialPen::new(journal.serial_pen, config).map_err(start("serial pen"))?;
+    let config = serial::Config {
+        port: Some(pen.port().into()),
+        protocol: Some(serial::Protocol::Isdv4),
+        device: SERIAL,
+        ..Default::default()
+    };
+    let _serial = serial::start(config, clock.clone(), factory.sender()).map_err(start("serial pen"))?;
+
+    let tracker =
+        sim::Tracker::new(journal.hands, sim::TrackerConfig::default()).map_err(start("tracker"))?;
+    let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
+    let _leap = leap::start(config, clock.clone(), factory.sender()).map_err(start("tracker"))?;
+
+    if !pen.wait_for_reader(PATIENCE) {
+        return Err(GhostError::NotFound("serial pen"));
+    }
+    if !tracker.wait_for_client(PATIENCE) {
+        return Err(GhostError::NotFound("tracker"));
+    }
+    let adaptors = Adaptors { _tablet, _serial, _leap };
+    Ok(Ghosts { tablet, serial: pen, tracker, adaptors, end_us: journal.duration_us + AFTER_US })
+}
+
+/// A simulated device stepped tick by tick.
+struct SimFeed<S> {
+    sim: S,
+    advance: fn(&mut S, u64) -> u32,
+    expected: u64,
+    now_us: u64,
+    end_us: u64,
+}
+
+impl<S> SimFeed<S> {
+    fn new(sim: S, advance: fn(&mut S, u64) -> u32, end_us: u64) -> Self {
+        SimFeed { sim, advance, expected: 0, now_us: 0, end_us }
+    }
+}
+
+impl<S> Feed for SimFeed<S> {
+    fn advance(&mut self, until_us: u64) -> u64 {
+        self.expected += u64::from((self.advance)(&mut self.sim, until_us.min(self.end_us)));
+        self.now_us = until_us;
+        self.expected
+    }
+
+    fn finished(&self) -> bool {
+        self.now_us >= self.end_us
+    }
+}
+
+/// The ghosts for a stepped run.
+pub fn stepped(clock: &Clock, factory: &SenderFactory) -> Result<(Vec<Box<dyn Feed>>, Adaptors), GhostError> {
+    let g = summon(clock, factory)?;
+    let feeds: Vec<Box<dyn Feed>> = vec![
+        Box::new(SimFeed::new(g.tablet, sim::Tablet::advance, g.end_us)),
+        Box::new(SimFeed::new(g.serial, sim::SerialPen::advance, g.end_us)),
+        Box::new(SimFeed::new(g.tracker, sim::Tracker::advance, g.end_us)),
+    ];
+    Ok((feeds, g.adaptors))
+}
+
+/// A tracker alone, stepped, and the adaptor that reads it: for lessons and tests with a hand of one's own making.
+pub fn tracker(
+    script: sim::HandScript,
+    config: sim::TrackerConfig,
+    clock: &Clock,
+    factory: &SenderFactory,
+) -> Result<(Box<dyn Feed>, leap::Handle), GhostError> {
+    let start = |source| GhostError::Start { device: "tracker", source };
+    let end_us = script.end_us() + AFTER_US;
+    let tracker = sim::Tracker::new(script, config).map_err(start)?;
+    let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
+    let handle = leap::start(config, clock.clone(), factory.sender()).map_err(start)?;
+    if !tracker.wait_for_client(PATIENCE) {
+        return Err(GhostError::NotFound("tracker"));
+    }
+    Ok((Box::new(SimFeed::new(tracker, sim::Tracker::advance, end_us)), handle))
+}
+
+/// Ghosts that play by themselves; they are gone when this is dropped.
+#[derive(Debug)]
+pub struct Playing {
+    _tablet: sim::tablet::PlayingTablet,
+    _serial: sim::serial::PlayingPen,
+    _tracker: sim::tracker::Playing,
+    _adaptors: Adaptors,
+    /// Microseconds on the clock at which the journal is over.
+    pub ends_us: u64,
+}
+
+/// The ghosts for a live loop, from now on.
+pub fn playing(clock: &Clock, factory: &SenderFactory) -> Result<Playing, GhostError> {
+    let g = summon(clock, factory)?;
+    let start = |device| move |source| GhostError::Start { device, source };
+    Ok(Playing {
+        ends_us: clock.now_us() + g.end_us,
+        _tablet: g.tablet.play(clock.clone()).map_err(start("tablet"))?,
+        _serial: g.serial.play(clock.clone()).map_err(start("serial pen"))?,
+        _tracker: g.tracker.play(clock.clone()).map_err(start("tracker"))?,
+        _adaptors: g.adaptors,
+    })
+}

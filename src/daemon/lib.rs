@@ -1,0 +1,32 @@
+//! The daemon: the tick loop, its clock, what it publishes, where input comes from, and what
+//! outlives it.
+//!
+//! Read first: [`live`] (the loop with real devices), [`simulated_loop`] (the loop in simulated
+//! time), [`published`] (what others see), [`session`] (what is kept).
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
+pub mod adaptors;
+pub mod boolean_jobs;
+pub mod config;
+#[cfg(unix)]
+pub mod control;
+pub mod demo_devices;
+pub mod doctor;
+pub mod kiosk;
+pub mod live;
+#[cfg(unix)]
+pub mod metrics;
+pub mod pacer;
+pub mod published;
+#[cfg(unix)]
+pub mod service;
+pub mod session;
+pub mod simulated_loop;
+pub mod startup;
+#[cfg(unix)]
+pub mod systemd;
+pub mod tick_statistics;
+pub mod trim;
+
+pub use published::{Published, Publisher};
+pub use tick_statistics::{Figures, Summary};

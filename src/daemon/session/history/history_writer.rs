@@ -1,0 +1,431 @@
+//! What the keeper writes: nodes, the versions of pages that they name, checkpoints. See [`super`].
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::store::{Checkpoint, Name, Store, StoreError};
+use super::tree::{Change, NOTHING, Node, Tree};
+use crate::session::history::retention::{Freed, High, Pin, bound};
+use crate::session::history::thumbnail as sight;
+use sculptd_clay::{Page, Snapshot};
+use sculptd_engine::world::{Deed, Moment, Saved, Side};
+
+/// Bytes of one transaction: the journal's own rows wait for no longer than that takes.
+const CHUNK: usize = 4 << 20;
+
+/// The file and the tree, and the work at the cursor.
+#[derive(Debug)]
+pub struct Ledger {
+    pub store: Store,
+    pub tree: Tree,
+    /// The work at the cursor.
+    pub now: Snapshot,
+    /// The revision of each page's topology in `now`, where it is not 0.
+    pub topology: BTreeMap<u32, u64>,
+    names: BTreeMap<Name, u64>,
+    topologies: BTreeSet<Name>,
+    sides: Vec<(Side, u64)>,
+    next_side: u64,
+    /// Bytes in the open transaction.
+    open: usize,
+    /// Bytes that the history takes in the file, and may take.
+    pub bytes: u64,
+    pub most: u64,
+    /// Another person's work began: no history is kept from there on.
+    pub closed: bool,
+}
+
+/// What a page's version is called.
+fn version(page: &Page) -> u64 {
+    if page.own() == 0 && page.revision() == 0 { NOTHING } else { page.revision() }
+}
+
+fn same(a: &Side, b: &Side) -> bool {
+    match (a, b) {
+        (Side::Thing(a), Side::Thing(b)) => Arc::ptr_eq(a, b),
+        (Side::Picture(a), Side::Picture(b)) => Arc::ptr_eq(a, b),
+        (Side::Levels(a), Side::Levels(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    }
+}
+
+impl Ledger {
+    /// What the file holds, without the nodes after `purge` and without pages that belong to no node.
+    pub fn open(store: Store, purge: u64, now: Snapshot, most: u64) -> Result<Ledger, StoreError> {
+        let mut tree = Tree::default();
+        store.db.execute_batch("BEGIN IMMEDIATE")?;
+        for node in store.tree()?.nodes() {
+            if node.tick <= purge && node.parent.is_none_or(|p| tree.node(p).is_some()) {
+                tree.add(node.clone());
+            } else {
+                store.db.execute("DELETE FROM node WHERE id = ?1", [node.id as i64])?;
+                store.db.execute("DELETE FROM sight WHERE node = ?1", [node.id as i64])?;
+            }
+        }
+        let until = i64::try_from(purge).unwrap_or(i64::MAX);
+        store.db.execute("DELETE FROM checkpoint WHERE tick > ?1", [until])?;
+        let mut used: BTreeSet<Name> = BTreeSet::new();
+        for n in tree.nodes() {
+            used.extend(n.changes.iter().flat_map(|c| [(n.lineage, c.0, c.1), (n.lineage, c.0, c.2)]));
+        }
+        // What the log's jumps name stays, whatever became of the places.
+        store.settle_pins(purge)?;
+        for (_, _, pin) in store.pins()? {
+            used.extend(pin.pages.iter().map(|&(i, revision)| (pin.lineage, i, revision)));
+        }
+        let mut names = store.names()?;
+        for name in names.keys().filter(|n| !used.contains(*n)) {
+            store.db.execute(
+                "DELETE FROM page WHERE lineage = ?1 AND number = ?2 AND revision = ?3",
+                (name.0, name.1, name.2 as i64),
+            )?;
+        }
+        names.retain(|n, _| used.contains(n));
+        // A topology is older than the pages that have it.
+        let mut topologies = store.topologies()?;
+        let kept: BTreeSet<Name> = names.iter().map(|(n, t)| (n.0, n.1, *t)).collect();
+        for name in topologies.iter().filter(|n| n.2 != 0 && !kept.contains(*n)) {
+            store.db.execute(
+                "DELETE FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = ?3",
+                (name.0, name.1, name.2 as i64),
+            )?;
+        }
+        topologies.retain(|n| n.2 == 0 || kept.contains(n));
+        store.db.execute_batch("COMMIT")?;
+        let next_side = store.next_side()?;
+        let bytes = store.total()?;
+        Ok(Ledger {
+            store,
+            tree,
+            now,
+            topology: BTreeMap::new(),
+            names,
+            topologies,
+            sides: Vec::new(),
+            next_side,
+            open: 0,
+            bytes,
+            most,
+            closed: false,
+        })
+    }
+
+    /// Puts the cursor where the world is: at `at`, or at a node of its own below it.
+    pub fn begin(&mut self, tick: u64, first: &Moment, at: Option<u64>) -> Result<(), StoreError> {
+        let work = &first.work;
+        let parent = at.filter(|id| self.tree.node(*id).is_some());
+        let known = parent.map(|id| self.tree.versions(id)).unwrap_or_default();
+        let lineage = parent.and_then(|id| self.tree.node(id)).map_or(0, |n| n.lineage);
+        let other = lineage != work.lineage();
+        let changed: Vec<(u32, u64)> = (0..work.page_count() as u32)
+            .map(|i| (i, if other { NOTHING } else { known.get(&i).copied().unwrap_or(0) }))
+            .filter(|(i, before)| {
+                let now = version(work.page(*i));
+                now != *before && (now != NOTHING || other)
+            })
+            .collect();
+        self.topology = if other {
+            BTreeMap::new()
+        } else {
+            let of = |(i, rev): (&u32, &u64)| Some((*i, *self.names.get(&(lineage, *i, *rev))?));
+            known.iter().filter_map(of).filter(|(_, t)| *t != 0).collect()
+        };
+        if parent.is_some() && changed.is_empty() {
+            self.tree.go(parent.unwrap_or_default());
+            return Ok(());
+        }
+        let node = self.node(tick, first, parent, if other { Deed::Replace } else { Deed::Step });
+        self.store.db.execute_batch("BEGIN IMMEDIATE")?;
+        self.open = 0;
+        let mut changes: Vec<Change> = Vec::with_capacity(changed.len());
+        for (i, before) in changed {
+            let page = work.page(i);
+            if version(page) == NOTHING {
+                changes.push((i, before, NOTHING));
+                continue;
+            }
+            // What it is made of is not known to be stored: so it is stored.
+            self.topology.insert(i, page.revision());
+            self.keep_topology((work.lineage(), i, page.revision()), page)?;
+            self.keep_page((work.lineage(), i, page.revision()), page.revision(), page)?;
+            changes.push((i, before, page.revision()));
+        }
+        self.finish_node(Node { changes, ..node }, work)
+    }
+
+    /// After an error: what the file holds is read again, for a part of it may not have been written.
+    pub fn recover(&mut self) {
+        let _ = self.store.db.execute_batch("ROLLBACK");
+        if let (Ok(names), Ok(topologies)) = (self.store.names(), self.store.topologies()) {
+            (self.names, self.topologies) = (names, topologies);
+        }
+        if let Ok(bytes) = self.store.total() {
+            self.bytes = bytes;
+        }
+        self.sides.clear();
+    }
+
+    fn node(&mut self, tick: u64, moment: &Moment, parent: Option<u64>, deed: Deed) -> Node {
+        let levels = moment.work.levels().map(|l| Side::Levels(l.clone()));
+        Node {
+            id: self.tree.next_id(),
+            parent,
+            tick,
+            deed,
+            lineage: moment.work.lineage(),
+            changes: Vec::new(),
+            pages: moment.work.page_count() as u32,
+            middle: moment.middle,
+            extent: moment.extent,
+            next: moment.work.next_numbers(),
+            levels: levels.and_then(|l| self.side(l).ok()),
+        }
+    }
+
+    /// Where a side is kept; written when it is first met.
+    fn side(&mut self, side: Side) -> Result<u64, StoreError> {
+        if let Some((_, id)) = self.sides.iter().find(|(known, _)| same(known, &side)) {
+            return Ok(*id);
+        }
+        let id = self.next_side;
+        self.bytes += self.store.put_side(id, &side)? as u64;
+        self.next_side += 1;
+        // One of each kind is remembered: the next one of it is seldom an older one.
+        self.sides.retain(|(known, _)| std::mem::discriminant(known) != std::mem::discriminant(&side));
+        self.sides.push((side, id));
+        Ok(id)
+    }
+
+    /// The pages that differ from the work at the cursor; `None` for another work.
+    fn differences(&self, work: &Snapshot) -> Option<Vec<Change>> {
+        if work.lineage() != self.now.lineage() {
+            return None;
+        }
+        let mut changes = Vec::new();
+        work.each_changed(&self.now, |i, page| {
+            let old = (i as usize) < self.now.page_count();
+            let before = if old { version(self.now.page(i)) } else { NOTHING };
+            let after = version(page);
+            if before != after {
+                changes.push((i, before, after));
+            }
+        });
+        Some(changes)
+    }
+
+    /// Goes where a deed led, or writes a node for it.
+    pub fn moment(&mut self, tick: u64, moment: &Moment) -> Result<(), StoreError> {
+        let work = &moment.work;
+        // Visitors come and go: nothing of one is kept for the next.
+        if self.closed || moment.deed == Deed::Begin {
+            self.closed = true;
+            self.now = work.clone();
+            return Ok(());
+        }
+        let changes = self.differences(work);
+        let known = match moment.deed {
+            Deed::Jump(id) => self.tree.node(id).map(|n| n.id),
+            _ if changes.as_ref().is_some_and(|c| c.is_empty()) => Some(self.tree.cursor),
+            Deed::Undo => self.tree.here().and_then(|here| {
+                let back = |c: &Change| (c.0, c.2, c.1);
+                let fits = match &changes {
+                    Some(changes) => {
+                        here.deed != Deed::Replace
+                            && here.changes.iter().map(back).eq(changes.iter().copied())
+                    }
+                    None => here.deed == Deed::Replace,
+                };
+                here.parent
+                    .filter(|p| fits && self.tree.node(*p).is_some_and(|p| p.lineage == work.lineage()))
+            }),
+            Deed::Redo => self.tree.children(self.tree.cursor).iter().copied().find(|id| {
+                self.tree.node(*id).is_some_and(|n| {
+                    n.lineage == work.lineage() && changes.as_ref().is_none_or(|c| *c == n.changes)
+                })
+            }),
+            Deed::Step | Deed::Replace | Deed::Begin => None,
+        };
+        if let Some(id) = known {
+            self.tree.go(id);
+            self.stand(work);
+            return Ok(());
+        }
+        let parent = Some(self.tree.cursor);
+        let deed = if changes.is_none() { Deed::Replace } else { Deed::Step };
+        let mut node = self.node(tick, moment, parent, deed);
+        self.store.db.execute_batch("BEGIN IMMEDIATE")?;
+        self.open = 0;
+        node.changes = match changes.filter(|_| deed == Deed::Step) {
+            Some(changes) => {
+                for &(i, before, after) in &changes {
+                    self.step_page(work, i, before, after)?;
+                }
+                changes
+            }
+            None => self.whole(work)?,
+        };
+        self.finish_node(node, work)
+    }
+
+    /// A page that a step changed: before, if it was never stored, and after.
+    fn step_page(&mut self, work: &Snapshot, i: u32, before: u64, after: u64) -> Result<(), StoreError> {
+        let lineage = work.lineage();
+        let page = work.page(i).clone();
+        let had = self.topology.get(&i).copied().unwrap_or(0);
+        let mut topology = after;
+        if before != NOTHING {
+            let old = self.now.page(i).clone();
+            let stays = Arc::ptr_eq(old.topology(), page.topology());
+            if stays {
+                topology = had;
+            } else {
+                self.keep_topology((lineage, i, had), &old)?;
+            }
+            self.keep_page((lineage, i, before), had, &old)?;
+        }
+        if after == NOTHING {
+            return Ok(());
+        }
+        if topology == after {
+            self.keep_topology((lineage, i, after), &page)?;
+        }
+        self.keep_page((lineage, i, after), topology, &page)
+    }
+
+    /// Another work, with all its pages.
+    fn whole(&mut self, work: &Snapshot) -> Result<Vec<Change>, StoreError> {
+        let lineage = work.lineage();
+        (0..work.page_count() as u32)
+            .map(|i| {
+                let page = work.page(i).clone();
+                let revision = version(&page);
+                if revision == NOTHING {
+                    return Ok((i, NOTHING, NOTHING));
+                }
+                // Where the work comes back by undo, it is stored already.
+                if !self.names.contains_key(&(lineage, i, revision)) {
+                    self.keep_topology((lineage, i, revision), &page)?;
+                    self.keep_page((lineage, i, revision), revision, &page)?;
+                }
+                Ok((i, NOTHING, revision))
+            })
+            .collect()
+    }
+
+    fn keep_page(&mut self, name: Name, topology: u64, page: &Page) -> Result<(), StoreError> {
+        if self.names.contains_key(&name) {
+            return Ok(());
+        }
+        let bytes = self.store.put_page(name, topology, page)?;
+        self.names.insert(name, topology);
+        self.chunk(bytes)
+    }
+
+    fn keep_topology(&mut self, name: Name, page: &Page) -> Result<(), StoreError> {
+        if self.topologies.contains(&name) {
+            return Ok(());
+        }
+        let bytes = self.store.put_topology(name, page.topology())?;
+        self.topologies.insert(name);
+        self.chunk(bytes)
+    }
+
+    fn chunk(&mut self, bytes: usize) -> Result<(), StoreError> {
+        self.open += bytes;
+        self.bytes += bytes as u64;
+        if self.open > CHUNK {
+            self.open = 0;
+            self.store.db.execute_batch("COMMIT; BEGIN IMMEDIATE")?;
+        }
+        Ok(())
+    }
+
+    fn finish_node(&mut self, node: Node, work: &Snapshot) -> Result<(), StoreError> {
+        self.bytes += self.store.put_node(&node)? as u64;
+        if let Some(png) = sight::png(work) {
+            self.bytes += self.store.put_sight(node.id, &png)? as u64;
+        }
+        self.store.db.execute_batch("COMMIT")?;
+        let id = node.id;
+        self.tree.add(node);
+        self.tree.go(id);
+        self.stand(work);
+        Ok(())
+    }
+
+    /// The work at the cursor is this one.
+    fn stand(&mut self, work: &Snapshot) {
+        let lineage = work.lineage();
+        match self.differences(work) {
+            Some(changes) => {
+                for (i, _, after) in changes {
+                    let t = self.names.get(&(lineage, i, after)).copied().unwrap_or(0);
+                    self.topology.insert(i, t);
+                }
+            }
+            None => {
+                self.topology = (0..work.page_count() as u32)
+                    .filter_map(|i| Some((i, *self.names.get(&(lineage, i, work.page(i).revision()))?)))
+                    .collect();
+            }
+        }
+        self.now = work.clone();
+    }
+
+    /// Writes a checkpoint.
+    pub fn state(&mut self, saved: &Saved) -> Result<(), StoreError> {
+        // After moments that were left out, this is not the work at the cursor.
+        let now = (self.now.lineage(), self.now.revision());
+        if self.closed || (saved.rest.lineage, saved.rest.revision) != now {
+            return Ok(());
+        }
+        self.store.db.execute_batch("BEGIN IMMEDIATE")?;
+        let sides = [
+            saved.thing.clone().map(Side::Thing),
+            saved.picture.clone().map(Side::Picture),
+            saved.levels.clone().map(Side::Levels),
+        ];
+        let mut ids = [None; 3];
+        for (id, side) in ids.iter_mut().zip(sides) {
+            *id = side.map(|s| self.side(s)).transpose()?;
+        }
+        let bytes = self.store.put_checkpoint(&Checkpoint {
+            tick: saved.tick,
+            node: self.tree.cursor,
+            rest: saved.rest.clone(),
+            core: saved.core.clone(),
+            sides: ids,
+            steps: saved.steps,
+        })?;
+        self.store.db.execute_batch("COMMIT")?;
+        self.bytes += bytes as u64;
+        Ok(())
+    }
+
+    /// Lets the oldest places go where the history takes more than it may, so many at once that it is seldom done.
+    pub fn keep_within(&mut self) -> Result<Option<Freed>, StoreError> {
+        if self.bytes <= self.most {
+            return Ok(None);
+        }
+        let most = self.most - self.most / 8;
+        let (tree, names, topologies) = (&mut self.tree, &mut self.names, &mut self.topologies);
+        let (freed, left) = bound(&self.store, tree, names, topologies, self.bytes, most)?;
+        self.bytes = left;
+        // Things that were let go are written anew when they come again.
+        self.sides.clear();
+        Ok(Some(freed))
+    }
+
+    /// A jump to a node will stand in the log: what it names stays as long as it can.
+    pub fn pin(&mut self, node: u64, pages: &[(u32, u64)], levels: Option<u64>) -> Result<(), StoreError> {
+        let Some(lineage) = self.tree.node(node).map(|n| n.lineage) else { return Ok(()) };
+        self.bytes += self.store.put_pin(&Pin { lineage, pages: pages.to_vec(), levels })? as u64;
+        Ok(())
+    }
+
+    /// The highest numbers that a lineage ever had.
+    pub fn high(&self, lineage: u32) -> Result<High, StoreError> {
+        let first = self.store.high(lineage)?;
+        Ok(self.tree.nodes().filter(|n| n.lineage == lineage).fold(first, High::over))
+    }
+}

@@ -1,0 +1,253 @@
+//! Putting a world together: the work, the settings, the workers.
+
+use std::path::Path;
+
+use glam::Vec2;
+
+use crate::config::Config;
+use sculptd_clay::{BuildError, Mesh, Workers};
+use sculptd_devices::Body;
+use sculptd_devices::queue::Sender;
+use sculptd_devices::recording::Player;
+use sculptd_engine::command::Command;
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::io::{ReadError, read_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
+
+use super::live::Journal;
+use super::session::format::Settings;
+use super::session::history::{StoreError, keeper::Keeper};
+use super::session::writer::{CreateError, WriterThread};
+use super::session::{self, OpenError, Opened, SessionWriter};
+use crate::simulated_loop::Feed;
+
+/// The work that one starts with: a ball of this many vertices, fine enough for detail, light on any machine.
+pub const START_VERTICES: usize = 160_000;
+
+#[derive(Debug, thiserror::Error)]
+pub enum RigError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error("{path}: {source}")]
+    Build { path: String, source: BuildError },
+}
+
+/// A work as it was loaded.
+#[derive(Debug)]
+pub struct Loaded {
+    pub plain: TriMesh,
+    pub mesh: Mesh,
+    pub warnings: Vec<String>,
+}
+
+/// Reads a work from a file, or makes the ball that a session starts with.
+pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, RigError> {
+    let (plain, mut warnings, name) = match path {
+        Some(path) => {
+            let loaded = read_mesh(path, job)?;
+            let (plain, _) = loaded.mesh.triangulate();
+            (plain, loaded.warnings, path.display().to_string())
+        }
+        None => (shapes::sphere_of_about(START_VERTICES), vec![], "the start ball".into()),
+    };
+    let mesh = Mesh::build(&plain, job).map_err(|source| RigError::Build { path: name, source })?;
+    warnings.extend(mesh.warnings().iter().cloned());
+    Ok(Loaded { plain, mesh, warnings })
+}
+
+/// The world of a fresh session.
+pub fn world(mesh: Mesh, config: &Config) -> World {
+    let options = WorldOptions {
+        dab_budget: config.r#loop.dab_budget,
+        undo_bytes: config.undo.bytes,
+        hands: config.hand,
+    };
+    let workers = Workers::new(config.r#loop.worker_count());
+    World::new(mesh, config.camera.camera(), config.brush, workers, options)
+}
+
+/// A world, and the session that records it, if one was asked for.
+#[derive(Debug)]
+pub struct Begun {
+    pub world: World,
+    pub journal: Option<(SessionWriter, WriterThread)>,
+    pub warnings: Vec<String>,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum BeginError {
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error(transparent)]
+    Salvage(#[from] session::salvage::SalvageError),
+    #[error(transparent)]
+    Create(#[from] CreateError),
+}
+
+/// Begins with a mesh and, where `session` names a file, records into it. A session that exists is replayed to its end and
+/// goes on from there; it brings its own start, so `mesh` must not be given beside it.
+pub fn begin(
+    mesh: Option<&Path>,
+    session: Option<&Path>,
+    config: &Config,
+    job: &Job,
+) -> Result<Begun, BeginError> {
+    if let Some(path) = session.filter(|p| p.exists()) {
+        let workers = Workers::new(config.r#loop.worker_count());
+        let mut warnings = Vec::new();
+        let mut path = path.to_path_buf();
+        let mut opened = session::open(&path);
+        if !matches!(
+            &opened,
+            Ok(Opened { loss: None, .. }) | Err(OpenError::OtherLayout { .. } | OpenError::Io { .. })
+        ) {
+            // A damaged file is kept as it is; the work goes on in another, beside it.
+            match session::salvage(&path) {
+                Ok(saved) => {
+                    warnings.push(saved.to_string());
+                    path = saved.path;
+                    opened = session::open(&path);
+                }
+                Err(e) => return Err(opened.err().map_or(BeginError::Salvage(e), BeginError::Open)),
+            }
+        }
+        let opened = opened?;
+        let count = config.r#loop.worker_count();
+        let (mut replayed, purge, node) = match session::history::reopen(&path, &opened, None, count, job) {
+            Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
+            None => {
+                let replayed = session::replay::replay(&opened, None, workers, job)
+                    .map_err(|source| RigError::Build { path: path.display().to_string(), source })?;
+                let ticks = replayed.ticks;
+                (replayed, ticks, None)
+            }
+        };
+        if replayed.jumps_missed > 0 {
+            warnings.push(format!(
+                "{}: {} jumps within the history could not be made again",
+                path.display(),
+                replayed.jumps_missed
+            ));
+        }
+        let (mut writer, mut thread) = session::resume(&path)?;
+        let world = &mut replayed.world;
+        // What was open ends as a lifted pen; what can be taken back is in the file from here on.
+        let (tick, reopened) = (replayed.ticks + 1, [Command::Reopened]);
+        world.step(tick, &[], &reopened);
+        let keeper = Keeper::start(&path, world, purge, node, config.undo.history_bytes);
+        keep(keeper, &mut writer, &mut thread, &mut warnings);
+        writer.tick(tick, &[], &reopened, world);
+        return Ok(Begun { world: replayed.world, journal: Some((writer, thread)), warnings });
+    }
+    let loaded = load(mesh, job)?;
+    let mut warnings = loaded.warnings;
+    let mut world = world(loaded.mesh, config);
+    let journal = match session {
+        None => None,
+        Some(path) => {
+            let settings = Settings {
+                rate_hz: config.r#loop.rate_hz,
+                dab_budget: config.r#loop.dab_budget,
+                undo_bytes: config.undo.bytes,
+                camera: config.camera.camera(),
+                brush: config.brush,
+                hands: config.hand,
+            };
+            let (mut writer, mut thread) = session::create(path, &loaded.plain, &settings)?;
+            let keeper = Keeper::start(path, &mut world, 0, None, config.undo.history_bytes);
+            keep(keeper, &mut writer, &mut thread, &mut warnings);
+            Some((writer, thread))
+        }
+    };
+    Ok(Begun { world, journal, warnings })
+}
+
+/// The session goes on without its history where that cannot be written; that is said.
+fn keep(
+    keeper: Result<Keeper, StoreError>,
+    writer: &mut SessionWriter,
+    thread: &mut WriterThread,
+    warnings: &mut Vec<String>,
+) {
+    match keeper {
+        Ok(keeper) => {
+            writer.keep(keeper.handle.clone());
+            thread.history = Some(keeper);
+        }
+        Err(e) => warnings.push(format!("no history is kept, undo goes back as far as memory does: {e}")),
+    }
+}
+
+/// Part of a tablet, in mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Area {
+    pub min: Vec2,
+    pub size: Vec2,
+}
+
+/// The part of the tablet that a recording mostly touches: the median of its contacts in the middle, half of them within the
+/// middle half, as wide as the view. A recording made in a corner then lies over the work and not beside it. `None` where
+/// nothing ever touches.
+pub fn used_area(mut player: Player, aspect: f32) -> Option<Area> {
+    let mut touched: Vec<Vec2> = Vec::new();
+    player.advance(u64::MAX, &mut |sample| {
+        if let Body::Pen(pen) = sample.body
+            && pen.tip
+        {
+            touched.push(pen.pos_mm);
+        }
+    });
+    if touched.is_empty() {
+        return None;
+    }
+    let median = |value: &dyn Fn(&Vec2) -> f32| {
+        let mut all: Vec<f32> = touched.iter().map(value).collect();
+        all.sort_unstable_by(f32::total_cmp);
+        all[all.len() / 2]
+    };
+    let middle = Vec2::new(median(&|p| p.x), median(&|p| p.y));
+    let spread = Vec2::new(median(&|p| (p.x - middle.x).abs()), median(&|p| (p.y - middle.y).abs()));
+    // At least 10 mm: a recording of one dot is a dot in the middle.
+    let size = (spread * 4.0).max(Vec2::splat(10.0));
+    let size = Vec2::new(size.x.max(size.y * aspect), size.y.max(size.x / aspect));
+    Some(Area { min: middle - size * 0.5, size })
+}
+
+/// A recording, fed through its parser into the channel.
+#[derive(Debug)]
+pub struct RecordingFeed {
+    player: Player,
+    sender: Sender,
+    sent: u64,
+    /// The part of the tablet that is laid over the view; `None`: all of it.
+    area: Option<Area>,
+}
+
+impl RecordingFeed {
+    pub fn new(player: Player, sender: Sender, area: Option<Area>) -> Self {
+        RecordingFeed { player, sender, sent: 0, area }
+    }
+}
+
+impl Feed for RecordingFeed {
+    fn advance(&mut self, until_us: u64) -> u64 {
+        let (sender, sent, area) = (&mut self.sender, &mut self.sent, self.area);
+        self.player.advance(until_us, &mut |mut sample| {
+            if let (Body::Pen(pen), Some(area)) = (&mut sample.body, area) {
+                pen.pos_mm -= area.min;
+                pen.area_mm = area.size;
+            }
+            sender.push(sample);
+            *sent += 1;
+        });
+        sender.flush();
+        *sent
+    }
+
+    fn finished(&self) -> bool {
+        self.player.finished()
+    }
+}

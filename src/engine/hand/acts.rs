@@ -1,0 +1,106 @@
+//! What a hand asks of the world, as plain data.
+
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::{Similarity, Volume};
+use sculptd_clay::Reach;
+use sculptd_clay::brush;
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Act {
+    Push(Push),
+    Drag(Drag),
+    Palm(PalmPress),
+    /// View fractions, as [`crate::camera::Camera::orbit`] takes them.
+    Orbit(Vec2),
+    /// The work moves by this much of the world.
+    Move(Vec3),
+    /// Above 1 comes nearer.
+    Zoom(f32),
+    /// The tracked volume was moved, turned and scaled under two pinches; the camera goes with it.
+    Hold {
+        before: Volume,
+        after: Volume,
+    },
+    /// The thing in the hands goes along.
+    Carry(Similarity),
+}
+
+impl Act {
+    /// Lengthens this act by the next one of its kind; `false` if they are of different kinds.
+    pub fn join(&mut self, next: &Act) -> bool {
+        match (self, next) {
+            (Act::Push(a), Act::Push(b)) => a.to = b.to,
+            (Act::Drag(a), Act::Drag(b)) => a.to = b.to,
+            (Act::Palm(a), Act::Palm(b)) => (a.to, a.normal) = (b.to, b.normal),
+            (Act::Orbit(a), Act::Orbit(b)) => *a += *b,
+            (Act::Move(a), Act::Move(b)) => *a += *b,
+            (Act::Zoom(a), Act::Zoom(b)) => *a *= *b,
+            (Act::Hold { after: a, .. }, Act::Hold { after: b, .. }) => *a = *b,
+            (Act::Carry(a), Act::Carry(b)) => *a = a.then(b),
+            _ => return false,
+        }
+        true
+    }
+}
+
+/// A ball swept from one place to another, world units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Push {
+    pub from: Vec3,
+    pub to: Vec3,
+    pub radius: f32,
+    /// Share of the full displacement, 0 to 1.
+    pub strength: f32,
+}
+
+impl Push {
+    pub fn reach(&self) -> Reach {
+        Reach::Capsule { from: self.from, to: self.to, radius: self.radius }
+    }
+
+    pub fn kernel(&self) -> brush::Push {
+        brush::Push::new(self.from, self.to, self.radius, self.strength)
+    }
+}
+
+/// Two fingertips that hold clay and carry it along.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Drag {
+    pub from: Vec3,
+    pub to: Vec3,
+    pub radius: f32,
+    pub strength: f32,
+}
+
+impl Drag {
+    pub fn reach(&self) -> Reach {
+        Reach::Sphere { centre: self.from, radius: self.radius }
+    }
+
+    pub fn kernel(&self) -> brush::Drag {
+        brush::Drag::new(self.from, (self.to - self.from) * self.strength, self.radius)
+    }
+}
+
+/// A palm pressed on the clay: a disc, facing along `normal`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PalmPress {
+    pub from: Vec3,
+    pub to: Vec3,
+    /// Out of the palm, unit length.
+    pub normal: Vec3,
+    pub radius: f32,
+    pub strength: f32,
+}
+
+impl PalmPress {
+    pub fn reach(&self) -> Reach {
+        Reach::Capsule { from: self.from, to: self.to, radius: self.radius }
+    }
+
+    pub fn kernel(&self) -> brush::Palm {
+        brush::Palm::new(self.from, self.to, self.normal, self.radius, self.strength)
+    }
+}

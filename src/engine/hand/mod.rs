@@ -1,0 +1,434 @@
+//! Bare hands: from tracked joints to tools that touch the clay, and to the view that turns.
+//!
+//! Laws kept here:
+//! * A hand acts by **contact**, never by a click: the swept path of its tool is what touches, so no speed tunnels through.
+//! * Nothing acts at full strength at once: a hand that appears, a pose that changes, a hand at the edge of what is tracked
+//!   or badly seen, all fade in ([`machine::Track::strength`], [`Volume::edge_fade`]).
+//! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has let go.
+//! * Every joint is steadied before anything looks at it, the same in a replay as live.
+//! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
+
+pub mod acts;
+pub mod comfort;
+pub mod held_object;
+pub mod machine;
+pub mod menu;
+pub mod pose;
+pub mod settings;
+mod volume;
+
+pub use acts::{Act, Drag, PalmPress, Push};
+pub use comfort::{Calibrated, Fatigue, Reach, ReachBox};
+pub use held_object::{Similarity, Thing};
+pub use machine::Track;
+pub use menu::{Choice, Menu};
+pub use pose::Pose;
+pub use settings::HandSettings;
+pub use volume::Volume;
+
+use std::collections::VecDeque;
+
+use glam::{Quat, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+use sculptd_devices::filter::HandsFilter;
+use sculptd_devices::{DeviceId, Hands};
+
+/// Acts waiting for the tick's budget; beyond it the newest sweep is joined to the one before.
+const MAX_WAITING: usize = 256;
+/// Hands followed at a time, over all trackers.
+const MAX_TRACKS: usize = 16;
+
+/// A hand as it was one frame ago, in the world.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Held {
+    track: Track,
+    /// Where the tool was; `None` just after the pose began.
+    tool: Option<Vec3>,
+    /// How the hand was turned then.
+    turn: Option<Quat>,
+    /// From the palm to the pinch when the pinch began, in the hand's own axes, mm.
+    grip: Option<Vec3>,
+    /// The palm when it last rested, mm: motion counts from here once it left the dead zone.
+    anchor_mm: Vec3,
+    free: bool,
+    moved_us: u64,
+}
+
+/// The state of all hands between samples.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct HandTools {
+    pub settings: HandSettings,
+    held: Vec<Held>,
+    waiting: VecDeque<Act>,
+    volume: Volume,
+    /// The camera's yaw that the volume was laid for.
+    yaw: f32,
+    /// The two world points that two pinching hands hold.
+    pair: Option<[Vec3; 2]>,
+    /// Distance of two open hands one frame ago, mm.
+    apart_mm: Option<f32>,
+    /// A thing is in the hands: pinches carry it and not the clay.
+    pub carrying: bool,
+    menu: Menu,
+    chosen: Option<Choice>,
+    fatigue: Fatigue,
+    reach: Option<Reach>,
+    sculpted_us: Option<u64>,
+    now_us: u64,
+    /// One for each tracker.
+    steady: Vec<(DeviceId, HandsFilter)>,
+}
+
+impl HandTools {
+    pub fn new(settings: HandSettings) -> Self {
+        HandTools {
+            settings,
+            held: Vec::with_capacity(MAX_TRACKS),
+            waiting: VecDeque::with_capacity(MAX_WAITING),
+            volume: Volume::over(Vec3::ZERO, 1.0, 0.0, &settings.reach),
+            yaw: 0.0,
+            pair: None,
+            apart_mm: None,
+            carrying: false,
+            menu: Menu::default(),
+            chosen: None,
+            fatigue: Fatigue::default(),
+            reach: None,
+            sculpted_us: None,
+            now_us: 0,
+            steady: Vec::new(),
+        }
+    }
+
+    /// Lays the tracked volume over a work anew.
+    pub fn lay(&mut self, middle: Vec3, extent: f32, yaw: f32) {
+        self.volume = Volume::over(middle, extent, yaw, &self.settings.reach);
+        self.yaw = yaw;
+    }
+
+    pub fn volume(&self) -> &Volume {
+        &self.volume
+    }
+
+    /// Every hand that is followed, for showing its state.
+    pub fn tracks(&self) -> impl Iterator<Item = &Track> {
+        self.held.iter().map(|h| &h.track)
+    }
+
+    /// The volume turns with the camera, whoever turned it: toward the user stays toward the user.
+    pub fn follow(&mut self, target: Vec3, yaw: f32) {
+        let by = yaw - self.yaw;
+        if by != 0.0 {
+            let turn = Quat::from_rotation_y(by);
+            self.volume.origin = target + turn * (self.volume.origin - target);
+            self.volume.turn = (turn * self.volume.turn).normalize();
+            self.yaw = yaw;
+        }
+    }
+
+    /// A frame with the tremble taken out of it.
+    fn steadied(&mut self, device: DeviceId, t_us: u64, hands: &Hands) -> Hands {
+        let at = self.steady.iter().position(|(d, _)| *d == device).unwrap_or_else(|| {
+            self.steady.push((device, HandsFilter::new(self.settings.steady)));
+            self.steady.len() - 1
+        });
+        let filter = &mut self.steady[at].1;
+        filter.figures = self.settings.steady;
+        let mut hands = *hands;
+        filter.apply(&mut hands, t_us);
+        hands
+    }
+
+    /// Takes one frame of one tracker.
+    pub fn take(&mut self, device: DeviceId, t_us: u64, hands: &Hands) {
+        let s = self.settings;
+        let hands = &self.steadied(device, t_us, hands);
+        self.now_us = t_us;
+        self.forget(t_us);
+        self.fatigue.take(t_us, hands.as_slice());
+        if let Some(reach) = &mut self.reach {
+            match reach.take(t_us, hands.as_slice()) {
+                Calibrated::Listening(_) => return,
+                Calibrated::TooLittle => self.reach = None,
+                Calibrated::Done(found) => (self.settings.reach, self.reach) = (found, None),
+            }
+        }
+        for hand in hands.as_slice() {
+            let known =
+                self.held.iter().position(|h| h.track.device == device && h.track.id == hand.id).or_else(
+                    || {
+                        // The tracker gave the same hand a new number.
+                        let lost = |h: &Held| {
+                            h.track.device == device
+                                && !hands.as_slice().iter().any(|o| o.id == h.track.id)
+                                && h.track.may_continue(t_us, hand, &s)
+                        };
+                        self.held.iter().position(lost)
+                    },
+                );
+            match known {
+                Some(i) => {
+                    let held = &mut self.held[i];
+                    let changed = held.track.take(t_us, hand, &s);
+                    if changed {
+                        (held.tool, held.turn, held.grip) = (None, None, None);
+                        (held.free, held.anchor_mm) = (false, hand.palm);
+                    }
+                }
+                None if self.held.len() < MAX_TRACKS => self.held.push(Held {
+                    track: Track::new(device, t_us, hand),
+                    tool: None,
+                    turn: None,
+                    grip: None,
+                    anchor_mm: hand.palm,
+                    free: false,
+                    moved_us: t_us,
+                }),
+                None => {}
+            }
+        }
+        let tip = self.held.iter().find(|h| h.track.seen_us == t_us && h.track.pose == Pose::Point);
+        let tip = tip.and_then(|h| h.track.index_tip);
+        if let Some(choice) = self.menu.take(tip, t_us, self.carrying, &s) {
+            self.chosen = Some(choice);
+        }
+        self.act(t_us);
+    }
+
+    /// What was chosen from the menu since the last call.
+    pub fn take_choice(&mut self) -> Option<Choice> {
+        self.chosen.take()
+    }
+
+    pub fn menu(&self) -> &Menu {
+        &self.menu
+    }
+
+    pub fn fatigue(&self) -> &Fatigue {
+        &self.fatigue
+    }
+
+    /// From now on the hands' movement says what the person can reach, for five seconds; they do nothing else meanwhile.
+    pub fn calibrate(&mut self) {
+        self.lift();
+        self.reach = Some(Reach::default());
+    }
+
+    pub fn is_calibrating(&self) -> bool {
+        self.reach.is_some()
+    }
+
+    /// Lets go of hands that were not seen for longer than is bridged.
+    fn forget(&mut self, t_us: u64) {
+        let bridge_us = (self.settings.bridge_ms * 1000.0) as u64;
+        self.held.retain(|h| t_us.saturating_sub(h.track.seen_us) <= bridge_us);
+    }
+
+    fn act(&mut self, t_us: u64) {
+        let mut posed = self.held.iter().filter(|h| h.track.seen_us == t_us);
+        let two = posed.next().zip(posed.next()).map(|(a, b)| [a.track, b.track]);
+        let both = |pose: Pose| two.filter(|p| p.iter().all(|t| t.pose == pose));
+        if let Some([a, b]) = both(Pose::Pinch) {
+            self.hold_between(a, b);
+            return;
+        }
+        self.pair = None;
+        if let Some([a, b]) = both(Pose::Open) {
+            self.zoom_between(a, b, t_us);
+            return;
+        }
+        self.apart_mm = None;
+        for i in 0..self.held.len() {
+            if self.held[i].track.seen_us == t_us {
+                self.one_hand(i, t_us);
+            }
+        }
+    }
+
+    /// Two pinches hold two points of the world: move, turn, scale.
+    fn hold_between(&mut self, a: Track, b: Track) {
+        if self.carrying {
+            self.carry_between(a, b);
+            return;
+        }
+        if a.lets_go(&self.settings) || b.lets_go(&self.settings) {
+            self.pair = None;
+            return;
+        }
+        let Some((pa, pb)) = a.pinch_point.zip(b.pinch_point) else { return };
+        let fingers = [self.volume.to_world(pa), self.volume.to_world(pb)];
+        let held = *self.pair.get_or_insert(fingers);
+        if let Some(volume) = self.volume.holding(held, [pa, pb]) {
+            let before = self.volume;
+            self.volume = volume;
+            self.wait(Act::Hold { before, after: volume });
+        }
+    }
+
+    /// Two pinches carry a thing: by their grips, so that fingers that open leave it where it is.
+    fn carry_between(&mut self, a: Track, b: Track) {
+        let index =
+            |t: Track| self.held.iter().position(|h| (h.track.device, h.track.id) == (t.device, t.id));
+        let Some((i, j)) = index(a).zip(index(b)) else { return };
+        let Some((pa, pb)) = self.grip_mm(i).zip(self.grip_mm(j)) else { return };
+        let now = [self.volume.to_world(pa), self.volume.to_world(pb)];
+        let before = self.pair.replace(now);
+        for held in &mut self.held {
+            (held.tool, held.turn) = (None, None);
+        }
+        if let Some(by) = before.and_then(|before| Similarity::between(before, now)) {
+            self.wait(Act::Carry(by));
+        }
+    }
+
+    /// Where the pinch would be if the fingers had kept still since it began: what is carried goes with the palm.
+    fn grip_mm(&mut self, i: usize) -> Option<Vec3> {
+        let held = &mut self.held[i];
+        let (track, turn) = (held.track, held.track.orientation.unwrap_or(Quat::IDENTITY));
+        let grip = match held.grip {
+            Some(grip) => grip,
+            None => *held.grip.insert(turn.inverse() * (track.pinch_point? - track.palm)),
+        };
+        Some(track.palm + turn * grip)
+    }
+
+    fn zoom_between(&mut self, a: Track, b: Track, t_us: u64) {
+        let apart = (a.palm - b.palm).length();
+        if let Some(before) = self.apart_mm
+            && self.view_may_move(t_us)
+            && before > 30.0
+        {
+            self.wait(Act::Zoom((apart / before).clamp(0.8, 1.25)));
+        }
+        self.apart_mm = Some(apart);
+    }
+
+    fn view_may_move(&self, t_us: u64) -> bool {
+        self.sculpted_us.is_none_or(|at| t_us.saturating_sub(at) as f32 * 1e-3 > self.settings.view_rest_ms)
+    }
+
+    fn one_hand(&mut self, i: usize, t_us: u64) {
+        let s = self.settings;
+        let Held { track, tool, turn, .. } = self.held[i];
+        let v = self.volume;
+        if self.carrying && track.pose == Pose::Pinch {
+            let now = track.orientation.map(|q| (v.turn * q).normalize());
+            let to = self.grip_mm(i).map(|p| v.to_world(p));
+            if let Some((from, to)) = tool.zip(to) {
+                let turned = turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
+                self.wait(Act::Carry(Similarity::carried(from, to, turned)));
+            }
+            (self.held[i].tool, self.held[i].turn) = (to, now);
+            return;
+        }
+        let strength = track.strength(t_us, &s);
+        let at_mm = match track.pose {
+            Pose::Point => track.index_tip,
+            Pose::Pinch if track.lets_go(&s) => None,
+            Pose::Pinch => track.pinch_point,
+            Pose::Flat => Some(track.palm),
+            Pose::Neutral | Pose::Grab | Pose::Open => None,
+        };
+        if let Some(mm) = at_mm {
+            let to = v.to_world(mm);
+            let strength = strength * Volume::edge_fade(mm);
+            if let Some(from) = tool.filter(|_| strength > 0.0) {
+                match track.pose {
+                    Pose::Point => {
+                        self.wait(Act::Push(Push { from, to, radius: s.tip_radius_mm * v.scale, strength }))
+                    }
+                    Pose::Pinch => {
+                        self.wait(Act::Drag(Drag {
+                            from,
+                            to,
+                            radius: s.pinch_radius_mm * v.scale,
+                            strength,
+                        }));
+                    }
+                    _ => {
+                        let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
+                        let radius = s.palm_radius_mm * v.scale;
+                        self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
+                    }
+                }
+            }
+            self.held[i].tool = Some(to);
+            return;
+        }
+        self.held[i].tool = None;
+        if matches!(track.pose, Pose::Grab | Pose::Open) {
+            self.view_by(i, t_us);
+        }
+    }
+
+    /// An open hand turns the work, a fist moves it, once the palm has left its dead zone.
+    fn view_by(&mut self, i: usize, t_us: u64) {
+        let s = self.settings;
+        let may = self.view_may_move(t_us);
+        let held = &mut self.held[i];
+        let by = held.track.palm - held.anchor_mm;
+        let rests_ms = t_us.saturating_sub(held.moved_us) as f32 * 1e-3;
+        let zone = s.dead_zone_mm + if rests_ms > s.view_rest_ms { s.dwell_zone_mm } else { 0.0 };
+        if !held.free {
+            held.free = by.length() > zone;
+            if held.free {
+                held.anchor_mm = held.track.palm;
+            }
+            return;
+        }
+        if by.length() < 0.3 {
+            if rests_ms > s.view_rest_ms {
+                held.free = false;
+            }
+            return;
+        }
+        (held.anchor_mm, held.moved_us) = (held.track.palm, t_us);
+        let pose = held.track.pose;
+        if may {
+            let act = match pose {
+                // 300 mm of travel, a comfortable sweep of the forearm, is a half turn.
+                Pose::Open => Act::Orbit(Vec2::new(by.x, -by.y) / 300.0),
+                _ => Act::Move(self.volume.direction(by) * self.volume.scale),
+            };
+            self.wait(act);
+        }
+    }
+
+    fn wait(&mut self, act: Act) {
+        if self.waiting.len() >= MAX_WAITING {
+            if let Some(last) = self.waiting.back_mut()
+                && last.join(&act)
+            {
+                return;
+            }
+            self.waiting.pop_front();
+        }
+        self.waiting.push_back(act);
+    }
+
+    pub fn has_waiting(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    pub fn next_act(&mut self) -> Option<Act> {
+        self.waiting.pop_front()
+    }
+
+    /// The world tells that an act moved clay: the view rests for a while.
+    pub fn sculpted(&mut self) {
+        self.sculpted_us = Some(self.now_us);
+    }
+
+    /// A tool is on the clay or an act waits: the undo step stays open.
+    pub fn is_touching(&self) -> bool {
+        !self.waiting.is_empty() || self.held.iter().any(|h| h.tool.is_some())
+    }
+
+    /// Forgets every hand: what was touching stops.
+    pub fn lift(&mut self) {
+        self.held.clear();
+        self.pair = None;
+        self.apart_mm = None;
+    }
+}

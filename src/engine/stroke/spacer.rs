@@ -1,0 +1,409 @@
+//! Resampling: a stroke is a chain of dabs one *spacing* apart, however slow the frame or fast the pen.
+//!
+//! After Cipollini 2020 ("Fast Digital Sculpting on CPU"), a stroke is sampled every 20 % of the radius, the missing points
+//! are placed along the **screen** path, and each is picked anew on the surface. Here the next point is the one on the screen
+//! segment whose picked position is one spacing away from the last dab *as it stands now* (the last dab's own view point is
+//! picked again after it was applied), found by a guarded bisection, so that perspective, foreshortening and the relief just
+//! raised are all accounted for.
+//!
+//! The law: **within a run, a dab is never further than the spacing from the one before it.** A run goes on
+//! * where the surface is seen without a break along the path: the next dab lies 0.94 to 1 of the spacing on;
+//! * where it leaps, and what is hidden by a crest is at most [`BRIDGED`] spacings wide, brink to far side: one more dab is laid
+//!   on the brink, and if the far side is still too far, others on the hidden clay between, found straight below the line of
+//!   sight over it, until it is not.
+//!
+//! It ends, and the first dab beyond begins another (it says so: [`Laid::first`]), only where the path leaves the surface,
+//! where the leap is wider (another limb, what stands behind), or where no surface without a break leads across (the brink
+//! hangs over). A dab on a brink has a share of the strength for the way that led to it, so that what a stroke lays down
+//! depends on its way and not on how often the surface leapt, nor on how the path was cut into frames.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::surface::{Flow, Laid, PenPoint, Surface};
+use sculptd_clay::{Hit, Ray};
+
+/// A dab is accepted between these shares of the spacing: never above one, so that the law holds with room for rounding.
+const ACCEPT: std::ops::RangeInclusive<f32> = 0.94..=1.0;
+/// Hidden clay up to so many spacings from brink to far side is crossed within a run.
+pub const BRIDGED: f32 = 2.0;
+/// No dab on a brink that is nearer to the last one than this share of the spacing.
+const ON_BRINK: f32 = 0.1;
+/// Dabs on hidden clay at a leap: a slope of five times its width is the steepest that is gone down.
+const MOST_HIDDEN: usize = 10;
+/// Beyond so many spacings the surface at a dab's own view point is another one than that which the dab was laid on.
+const JUMPED: f32 = 4.0;
+/// Bisection steps for one dab: 2^-20 of a spacing as it is seen, or what single precision can tell apart.
+const MAX_BISECTIONS: u32 = 20;
+/// Steps over a stretch with no surface, in heights of the view.
+const BLIND_STEP: f32 = 0.004;
+
+/// Where a stroke stands between two pen points.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Spacer {
+    /// Where the surface of the last dab stood after it.
+    last: Option<Vec3>,
+    /// The last dab made its surface leap away from under the pen: the next run begins a step further.
+    leapt: bool,
+    /// Height and width of the view in the same unit: x is multiplied by this before lengths are taken.
+    aspect: f32,
+}
+
+/// From one report of the pen to the next.
+#[derive(Clone, Copy)]
+struct Segment<'a> {
+    from: &'a PenPoint,
+    to: &'a PenPoint,
+    /// In heights of the view, above 0.
+    length: f32,
+}
+
+impl Segment<'_> {
+    fn at(&self, t: f32) -> PenPoint {
+        self.from.lerp(self.to, t)
+    }
+
+    /// The share of the segment that a spacing takes up where it is seen face on.
+    fn step(&self, at: &PenPoint, hit: Option<&Hit>, on: &dyn Surface) -> f32 {
+        match hit.map(|h| on.world_per_view(h)) {
+            Some(scale) => on.spacing(at) / (scale * self.length).max(1e-20),
+            None => BLIND_STEP / self.length,
+        }
+    }
+}
+
+/// What a path meets at a share of its length, and how far from the last dab that is, in spacings.
+#[derive(Clone, Copy)]
+struct Sight {
+    at: f32,
+    hit: Hit,
+    off: f32,
+}
+
+/// How a path goes on.
+enum Step {
+    Dab(Sight),
+    /// The surface leaps from the first, less than a spacing away, to the second, which is further.
+    Leap(Sight, Sight),
+    Lost(f32),
+    End,
+}
+
+/// The next point a spacing away along a path from `start`, by advancing `step` and bisecting. `seek` says what is met.
+fn advance(
+    start: f32,
+    mut step: f32,
+    here: Option<Sight>,
+    seek: &mut dyn FnMut(f32) -> Option<Sight>,
+) -> Step {
+    let off = |s: &Option<Sight>| s.map_or(f32::INFINITY, |s| s.off);
+    let (mut low, mut low_at) = (here, start);
+    match here {
+        Some(here) if ACCEPT.contains(&here.off) => return Step::Dab(here),
+        // The surface moved under the pen since.
+        Some(here) if here.off > 1.0 => return Step::Leap(Sight { off: 0.0, ..here }, here),
+        _ => {}
+    }
+    loop {
+        let mut high_at = (low_at + step.max(1e-5)).min(1.0);
+        let mut high = seek(high_at);
+        if off(&high) < *ACCEPT.start() {
+            if high_at >= 1.0 {
+                return Step::End;
+            }
+            // Onward by what is missing, at least a tenth of a step, so that the walk always ends.
+            step *= (1.0 - off(&high)).clamp(0.1, 1.0);
+            (low, low_at) = (high, high_at);
+            continue;
+        }
+        for _ in 0..MAX_BISECTIONS {
+            let mid_at = 0.5 * (low_at + high_at);
+            if ACCEPT.contains(&off(&high)) || mid_at <= low_at || mid_at >= high_at {
+                break;
+            }
+            let mid = seek(mid_at);
+            if off(&mid) < *ACCEPT.start() {
+                (low, low_at) = (mid, mid_at);
+            } else {
+                (high, high_at) = (mid, mid_at);
+            }
+        }
+        return match (low, high) {
+            (_, Some(high)) if high.off <= *ACCEPT.end() => Step::Dab(high),
+            (Some(low), Some(high)) => Step::Leap(low, high),
+            _ => Step::Lost(high_at),
+        };
+    }
+}
+
+impl Spacer {
+    pub fn new(aspect: f32) -> Self {
+        Spacer { last: None, leapt: false, aspect }
+    }
+
+    /// The pen touches: a dab at once.
+    pub fn begin(&mut self, at: &PenPoint, on: &mut dyn Surface) -> Flow {
+        (self.last, self.leapt) = (None, false);
+        self.rest(at, on)
+    }
+
+    /// A dab more where the pen rests: the run goes on from it.
+    pub fn rest(&mut self, at: &PenPoint, on: &mut dyn Surface) -> Flow {
+        match on.pick(at.view) {
+            Some(hit) => self.place(at, &hit, 1.0, &mut |on| on.pick(at.view), on),
+            None => Flow::Go,
+        }
+    }
+
+    /// Lays a dab. `again` finds its place once more, on what the dab made of the surface.
+    fn place(
+        &mut self,
+        at: &PenPoint,
+        hit: &Hit,
+        share: f32,
+        again: &mut dyn FnMut(&mut dyn Surface) -> Option<Hit>,
+        on: &mut dyn Surface,
+    ) -> Flow {
+        let along = self.last.and_then(|p| (hit.position - p).try_normalize());
+        let flow = on.dab(at, hit, Laid { first: self.last.is_none(), along, share });
+        let now = again(on).map_or(hit.position, |h| h.position);
+        // The dab may have folded its own place out of sight.
+        self.leapt = (now - hit.position).length() > JUMPED * on.spacing(at) + 1e-30;
+        self.last = (!self.leapt).then_some(now);
+        flow
+    }
+
+    /// Walks the segment from `from` to `to`, starting at the share `start` of it. Returns 1 when the whole segment was
+    /// walked, else the share at which the budget ended.
+    pub fn walk(&mut self, from: &PenPoint, to: &PenPoint, start: f32, on: &mut dyn Surface) -> f32 {
+        let d = to.view - from.view;
+        let length = (d.x * self.aspect).hypot(d.y);
+        let mut t = start;
+        if length <= 0.0 || !length.is_finite() {
+            return 1.0;
+        }
+        let way = Segment { from, to, length };
+        let mut bridged = -1.0;
+        while t < 1.0 {
+            let flow = match self.next(&way, t, on) {
+                Step::Dab(sight) => self.lay(&way, &mut t, &sight, 1.0, on),
+                Step::Leap(brink, _) if brink.off > ON_BRINK => self.lay(&way, &mut t, &brink, brink.off, on),
+                Step::Leap(_, beyond) if beyond.at <= bridged => {
+                    // What was laid to get there tore it away.
+                    (self.last, self.leapt) = (None, true);
+                    Flow::Go
+                }
+                Step::Leap(_, beyond) => {
+                    (t, bridged) = (beyond.at, beyond.at);
+                    self.bridge(&way.at(t), &beyond, on)
+                }
+                Step::Lost(at) => {
+                    t = at;
+                    self.last = None;
+                    Flow::Go
+                }
+                Step::End => return 1.0,
+            };
+            if flow == Flow::Pause && t < 1.0 {
+                return t;
+            }
+        }
+        1.0
+    }
+
+    fn lay(
+        &mut self,
+        way: &Segment<'_>,
+        t: &mut f32,
+        sight: &Sight,
+        share: f32,
+        on: &mut dyn Surface,
+    ) -> Flow {
+        *t = sight.at;
+        let at = way.at(*t);
+        self.place(&at, &sight.hit, share, &mut |on| on.pick(at.view), on)
+    }
+
+    fn next(&mut self, way: &Segment<'_>, mut start: f32, on: &mut dyn Surface) -> Step {
+        let at = way.at(start);
+        let hit = on.pick(at.view);
+        let step = way.step(&at, hit.as_ref(), on);
+        let Some(last) = self.last else {
+            if std::mem::take(&mut self.leapt) {
+                start = (start + step.max(1e-4)).min(1.0);
+            }
+            return first_seen(way, start, on);
+        };
+        let off =
+            |hit: &Hit, at: &PenPoint, on: &dyn Surface| (hit.position - last).length() / on.spacing(at);
+        let here = hit.map(|hit| Sight { at: start, hit, off: off(&hit, &at, on) });
+        advance(start, step, here, &mut |t| {
+            let at = way.at(t);
+            let hit = on.pick(at.view)?;
+            Some(Sight { at: t, hit, off: off(&hit, &at, on) })
+        })
+    }
+
+    /// The last dab lies on a brink: dabs on the hidden clay from there to what is seen `beyond`, where they can lead to it;
+    /// else the run ends.
+    fn bridge(&mut self, at: &PenPoint, beyond: &Sight, on: &mut dyn Surface) -> Flow {
+        let spacing = on.spacing(at);
+        let Some(from) = self.last else { return Flow::Go };
+        let to = beyond.hit.position;
+        let out = beyond.hit.normal;
+        let far = BRIDGED * spacing;
+        let mut flow = Flow::Go;
+        let mut u = 0.0;
+        // Straight below the line from brink to far side, as the far side lies.
+        let below = |u: f32, on: &mut dyn Surface| {
+            let from = from.lerp(to, u) + out * far;
+            on.drop(Ray { origin: from, dir: -out }, 3.0 * far).filter(|h| h.normal.dot(out) > 0.0)
+        };
+        if beyond.off <= BRIDGED {
+            for _ in 0..MOST_HIDDEN {
+                let Some(last) = self.last else { break };
+                if (to - last).length() <= spacing {
+                    return flow;
+                }
+                let mut seek = |u: f32| {
+                    let hit = below(u, on)?;
+                    Some(Sight { at: u, hit, off: (hit.position - last).length() / spacing })
+                };
+                let here = Some(Sight { at: u, hit: beyond.hit, off: 0.0 });
+                let Step::Dab(sight) = advance(u, 1.0 / beyond.off, here, &mut seek) else { break };
+                u = sight.at;
+                if self.place(at, &sight.hit, 1.0, &mut |on| below(u, on), on) == Flow::Pause {
+                    flow = Flow::Pause;
+                }
+            }
+        }
+        self.last = None;
+        flow
+    }
+}
+
+/// The first point of the surface at or after `start`.
+fn first_seen(way: &Segment<'_>, start: f32, on: &mut dyn Surface) -> Step {
+    let step = (BLIND_STEP / way.length).max(1e-4);
+    let (mut low, mut high) = (start, start);
+    loop {
+        if let Some(mut hit) = on.pick(way.at(high).view) {
+            for _ in 0..6 {
+                let mid = 0.5 * (low + high);
+                if let Some(nearer) = on.pick(way.at(mid).view) {
+                    (high, hit) = (mid, nearer);
+                } else {
+                    low = mid;
+                }
+            }
+            return Step::Dab(Sight { at: high, hit, off: 1.0 });
+        }
+        if high >= 1.0 {
+            return Step::End;
+        }
+        low = high;
+        high = (high + step).min(1.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+
+    /// A height field seen from straight above: view (x, y) is world (x, h(x), y).
+    struct Field<F: Fn(f32) -> Option<f32>> {
+        height: F,
+        dabs: Vec<Vec3>,
+        budget: usize,
+    }
+
+    impl<F: Fn(f32) -> Option<f32>> Surface for Field<F> {
+        fn pick(&mut self, view: Vec2) -> Option<Hit> {
+            (self.height)(view.x).map(|h| Hit {
+                t: 1.0,
+                position: Vec3::new(view.x, h, view.y),
+                normal: Vec3::Y,
+                page: 0,
+                triangle: 0,
+                barycentric: [1.0, 0.0, 0.0],
+            })
+        }
+        fn spacing(&self, _: &PenPoint) -> f32 {
+            0.02
+        }
+        fn world_per_view(&self, _: &Hit) -> f32 {
+            1.0
+        }
+        fn drop(&mut self, ray: Ray, _: f32) -> Option<Hit> {
+            self.pick(Vec2::new(ray.origin.x, ray.origin.z))
+        }
+        fn dab(&mut self, _: &PenPoint, hit: &Hit, _: Laid) -> Flow {
+            self.dabs.push(hit.position);
+            self.budget -= 1;
+            if self.budget == 0 { Flow::Pause } else { Flow::Go }
+        }
+    }
+
+    fn point(x: f32) -> PenPoint {
+        PenPoint { view: Vec2::new(x, 0.5), pressure: 1.0, tilt: None, inverted: false }
+    }
+
+    fn widest(dabs: &[Vec3]) -> f32 {
+        dabs.windows(2).map(|w| (w[1] - w[0]).length()).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn one_fast_move_leaves_no_gap_on_flat_steep_or_wavy_ground() {
+        for height in [|_: f32| Some(0.0), |x: f32| Some(4.0 * x), |x: f32| Some((x * 20.0).sin() * 0.1)] {
+            let mut field = Field { height, dabs: vec![], budget: usize::MAX };
+            let mut spacer = Spacer::new(1.0);
+            spacer.begin(&point(0.05), &mut field);
+            assert_eq!(spacer.walk(&point(0.05), &point(0.95), 0.0, &mut field), 1.0);
+            assert!(widest(&field.dabs) <= 1.05 * 0.02, "gap of {}", widest(&field.dabs));
+            assert!(field.dabs.len() >= 45);
+            assert!((field.dabs[field.dabs.len() - 1].x - 0.95).abs() < 0.021);
+        }
+    }
+
+    #[test]
+    fn the_same_path_in_one_move_or_in_many_gives_the_same_count_of_dabs() {
+        let run = |pieces: usize| {
+            let mut field = Field { height: |_| Some(0.0), dabs: vec![], budget: usize::MAX };
+            let mut spacer = Spacer::new(1.0);
+            spacer.begin(&point(0.0), &mut field);
+            for i in 0..pieces {
+                let at = |k: usize| point(k as f32 / pieces as f32);
+                spacer.walk(&at(i), &at(i + 1), 0.0, &mut field);
+            }
+            field.dabs.len() as i64
+        };
+        assert!((run(1) - run(77)).abs() <= 2 && (run(1) - run(1000)).abs() <= 3);
+    }
+
+    #[test]
+    fn a_gap_in_the_surface_is_crossed_and_the_far_side_begins_at_its_edge() {
+        let height = |x: f32| if (0.4..0.6).contains(&x) { None } else { Some(0.0) };
+        let mut field = Field { height, dabs: vec![], budget: usize::MAX };
+        let mut spacer = Spacer::new(1.0);
+        spacer.begin(&point(0.1), &mut field);
+        spacer.walk(&point(0.1), &point(0.9), 0.0, &mut field);
+        let before = field.dabs.iter().rfind(|p| p.x < 0.5).expect("dabs before the gap").x;
+        let after = field.dabs.iter().find(|p| p.x > 0.5).expect("dabs after the gap").x;
+        assert!(before > 0.375 && (0.6..0.601).contains(&after), "{before} {after}");
+    }
+
+    #[test]
+    fn a_paused_walk_goes_on_where_it_stopped() {
+        let mut field = Field { height: |_| Some(0.0), dabs: vec![], budget: 10 };
+        let mut spacer = Spacer::new(1.0);
+        spacer.begin(&point(0.0), &mut field);
+        let mut t = spacer.walk(&point(0.0), &point(1.0), 0.0, &mut field);
+        while t < 1.0 {
+            field.budget = 10;
+            t = spacer.walk(&point(0.0), &point(1.0), t, &mut field);
+        }
+        assert!(widest(&field.dabs) <= 1.05 * 0.02 && field.dabs.len() >= 50);
+    }
+}

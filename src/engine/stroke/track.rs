@@ -1,0 +1,340 @@
+//! One pen's visit to the surface, as a bounded queue of path points that the world walks within its budget.
+
+use std::collections::VecDeque;
+
+use glam::Vec2;
+use serde::{Deserialize, Serialize};
+
+use super::curve::Curve;
+use super::spacer::Spacer;
+use super::surface::{Flow, PenPoint, Surface, Way};
+use crate::stroke::curve_stroke::Draft;
+use crate::stroke::stabilizer::Steady;
+use sculptd_clay::brush::PathSettings;
+use sculptd_devices::{Pen, Tool};
+
+/// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears; beyond that the newest
+/// motion replaces the one before it (the path is cut short between two points, never broken).
+const MAX_WAITING: usize = 2048;
+
+/// What a pen sample means for a stroke.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum PenEvent {
+    Down(PenPoint),
+    Move(PenPoint),
+    Up,
+    /// The curve that is being laid is drawn.
+    Draw,
+}
+
+/// A pen's stroke between its samples and its dabs.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct PenTrack {
+    waiting: VecDeque<PenEvent>,
+    steady: Steady,
+    /// Where the pen came down: a straight line begins there.
+    start: PenPoint,
+    /// The line from there, or the curve, is being drawn; so many pieces of it are done.
+    drawing: bool,
+    pieces: usize,
+    /// What the pen draws freely, to be made a curve of, and the curve.
+    curve: Curve,
+    draft: Draft,
+    laying: Laying,
+    spacer: Spacer,
+    /// Where the walk stands: the point reached, and the share of the segment to the first waiting point.
+    from: PenPoint,
+    share: f32,
+    /// The pen is down as its samples tell.
+    down: bool,
+    /// A stroke is open as its dabs tell: it lags behind `down` by what is waiting.
+    open: bool,
+    /// The last hover or contact, for the cursor.
+    pub seen: Option<PenPoint>,
+    /// Motion merged because the queue was full.
+    pub merged: u64,
+}
+
+impl Default for PenTrack {
+    fn default() -> Self {
+        PenTrack {
+            waiting: VecDeque::with_capacity(MAX_WAITING),
+            steady: Steady::default(),
+            start: PenPoint::default(),
+            drawing: false,
+            pieces: 0,
+            curve: Curve::default(),
+            draft: Draft::default(),
+            laying: Laying::No,
+            spacer: Spacer::default(),
+            from: PenPoint::default(),
+            share: 0.0,
+            down: false,
+            open: false,
+            seen: None,
+            merged: 0,
+        }
+    }
+}
+
+/// What a pen that is down does to a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Laying {
+    No,
+    /// It draws freely, and handles are put on that.
+    Free,
+    /// It holds a handle.
+    Handle,
+}
+
+/// What walking changed about the stroke itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Walked {
+    pub began: bool,
+    pub ended: bool,
+    pub paused: bool,
+}
+
+impl PenTrack {
+    /// Takes one pen sample.
+    pub fn take(&mut self, pen: &Pen, path: &PathSettings, aspect: f32) {
+        let area = pen.area_mm.max(Vec2::splat(1e-3));
+        let at = PenPoint {
+            // Beyond the view by at most its own size: there is nothing to hit, and nothing to overflow.
+            view: (pen.pos_mm / area).clamp(Vec2::splat(-1.0), Vec2::splat(2.0)),
+            pressure: pen.pressure.unwrap_or(1.0),
+            tilt: pen.tilt,
+            inverted: pen.tool == Tool::Eraser,
+        };
+        self.seen = pen.in_range.then_some(at);
+        match (self.down, pen.tip && pen.in_range) {
+            (false, true) => {
+                self.steady.begin(&at);
+                self.push(PenEvent::Down(at));
+            }
+            (true, true) => {
+                if let Some(at) = self.steady.follow(&at, path, aspect) {
+                    self.push(PenEvent::Move(at));
+                }
+            }
+            (true, false) => self.up(path),
+            (false, false) => {}
+        }
+        self.down = pen.tip && pen.in_range;
+    }
+
+    fn up(&mut self, path: &PathSettings) {
+        if let Some(end) = self.steady.catch_up(path) {
+            self.push(PenEvent::Move(end));
+        }
+        self.push(PenEvent::Up);
+    }
+
+    /// The pen is gone, without a word: the stroke ends as a lifted pen.
+    pub fn lift(&mut self, path: &PathSettings) {
+        if self.down {
+            self.up(path);
+            self.down = false;
+        }
+        self.seen = None;
+    }
+
+    fn push(&mut self, event: PenEvent) {
+        if self.waiting.len() >= MAX_WAITING {
+            if let (Some(PenEvent::Move(last)), PenEvent::Move(at)) = (self.waiting.back_mut(), event) {
+                *last = at;
+                self.merged += 1;
+                return;
+            }
+            // A full queue that ends in a transition: room is made by dropping the oldest motion.
+            if let Some(i) = self.waiting.iter().position(|e| matches!(e, PenEvent::Move(_))) {
+                self.waiting.remove(i);
+                self.merged += 1;
+            }
+        }
+        self.waiting.push_back(event);
+    }
+
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Whether the next thing to happen is that a stroke begins.
+    pub fn begins(&self) -> bool {
+        match self.waiting.front() {
+            Some(PenEvent::Down(_)) => true,
+            Some(PenEvent::Draw) => !self.drawing,
+            _ => false,
+        }
+    }
+
+    /// The curve that is being laid; empty: none is.
+    pub fn draft(&self) -> &Draft {
+        &self.draft
+    }
+
+    /// The curve is drawn, once all that waits is done.
+    pub fn apply(&mut self) {
+        if !self.draft.is_empty() && self.waiting.back() != Some(&PenEvent::Draw) {
+            self.push(PenEvent::Draw);
+        }
+    }
+
+    /// The curve is put away, if it is not being drawn already. False: there is none.
+    pub fn cancel(&mut self) -> bool {
+        let there = !self.draft.is_empty() && !self.is_drawn();
+        if there {
+            self.draft.clear();
+        }
+        self.laying = Laying::No;
+        there
+    }
+
+    /// A handle of the curve is taken away. False: there is none.
+    pub fn delete(&mut self, handle: usize) -> bool {
+        let there = handle < self.draft.points().len() && !self.is_drawn();
+        if there {
+            self.draft.delete(handle);
+        }
+        there
+    }
+
+    fn is_drawn(&self) -> bool {
+        self.waiting.contains(&PenEvent::Draw)
+    }
+
+    pub fn is_idle(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// Walks one waiting event over the surface; `None` when nothing waits.
+    pub fn walk_one(&mut self, aspect: f32, on: &mut dyn Surface) -> Option<Walked> {
+        let event = *self.waiting.front()?;
+        let mut walked = Walked::default();
+        let flow = match event {
+            PenEvent::Down(at) if on.way() == Way::Curve => {
+                self.from = at;
+                if self.draft.is_empty() {
+                    self.curve.begin(&at);
+                    self.laying = Laying::Free;
+                } else {
+                    self.draft.grab(&at, aspect);
+                    self.laying = Laying::Handle;
+                }
+                Flow::Go
+            }
+            PenEvent::Move(to) if self.laying != Laying::No => {
+                match self.laying {
+                    Laying::Free => self.curve.take(&to),
+                    _ => self.draft.drag(&to),
+                }
+                self.from = to;
+                Flow::Go
+            }
+            PenEvent::Up if self.laying != Laying::No => {
+                if self.laying == Laying::Free {
+                    self.curve.end(aspect);
+                    self.draft.lay(&self.curve, aspect);
+                }
+                self.draft.release();
+                self.laying = Laying::No;
+                Flow::Go
+            }
+            PenEvent::Draw => {
+                walked.began = !self.open;
+                self.open = true;
+                if !self.draw_curve(aspect, on) {
+                    walked.paused = true;
+                    return Some(walked);
+                }
+                self.draft.clear();
+                (walked.ended, self.open, self.drawing) = (true, false, false);
+                Flow::Go
+            }
+            PenEvent::Down(at) => {
+                walked.began = !self.open;
+                self.open = true;
+                self.spacer = Spacer::new(aspect);
+                (self.from, self.start, self.drawing) = (at, at, false);
+                match on.way() {
+                    Way::Spaced | Way::Each => self.spacer.begin(&at, on),
+                    Way::Held => on.hold(&at, true),
+                    Way::Line | Way::Curve => Flow::Go,
+                }
+            }
+            // Its curve was put away while it was down.
+            PenEvent::Move(to) if !self.open => {
+                self.from = to;
+                Flow::Go
+            }
+            PenEvent::Move(to) => {
+                let flow = match on.way() {
+                    Way::Spaced => {
+                        self.share = self.spacer.walk(&self.from, &to, self.share, on);
+                        if self.share < 1.0 {
+                            walked.paused = true;
+                            return Some(walked);
+                        }
+                        Flow::Go
+                    }
+                    Way::Each => self.spacer.begin(&to, on),
+                    // Only where it is now matters: what came between is passed over.
+                    Way::Held if matches!(self.waiting.get(1), Some(PenEvent::Move(_))) => Flow::Go,
+                    Way::Held => on.hold(&to, false),
+                    Way::Line | Way::Curve => Flow::Go,
+                };
+                self.from = to;
+                flow
+            }
+            PenEvent::Up => {
+                if on.way() == Way::Line && self.open && !self.draw_line(on) {
+                    walked.paused = true;
+                    return Some(walked);
+                }
+                walked.ended = self.open;
+                (self.open, self.drawing) = (false, false);
+                Flow::Go
+            }
+        };
+        walked.paused = flow == Flow::Pause;
+        self.share = 0.0;
+        self.waiting.pop_front();
+        Some(walked)
+    }
+
+    /// Draws the line that waited for the pen to lift. False: there is more of it, for the next tick.
+    fn draw_line(&mut self, on: &mut dyn Surface) -> bool {
+        if !self.drawing {
+            (self.drawing, self.share) = (true, 0.0);
+            self.spacer.begin(&self.start, on);
+        }
+        self.share = self.spacer.walk(&self.start, &self.from, self.share, on);
+        self.share >= 1.0
+    }
+
+    /// Draws the curve that was laid. False: there is more of it, for the next tick.
+    fn draw_curve(&mut self, aspect: f32, on: &mut dyn Surface) -> bool {
+        if !self.drawing {
+            (self.drawing, self.pieces, self.share) = (true, 0, 0.0);
+            self.spacer = Spacer::new(aspect);
+            self.from = self.draft.at(0, aspect);
+            self.spacer.begin(&self.from, on);
+        }
+        while self.pieces < self.draft.pieces() {
+            let (from, to) = (self.draft.at(self.pieces, aspect), self.draft.at(self.pieces + 1, aspect));
+            self.share = self.spacer.walk(&from, &to, self.share, on);
+            if self.share < 1.0 {
+                return false;
+            }
+            (self.share, self.from) = (0.0, to);
+            self.pieces += 1;
+        }
+        true
+    }
+
+    /// One more dab where the pen rests. The stroke goes on from it as from any other.
+    pub fn rest(&mut self, on: &mut dyn Surface) {
+        let at = self.from;
+        self.spacer.rest(&at, on);
+    }
+}

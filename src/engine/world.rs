@@ -1,0 +1,598 @@
+//! The world: clay, camera, brush, strokes. [`World::step`] is the only writer.
+//!
+//! Laws kept here:
+//! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
+//! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same samples and commands, same
+//!   bits, with any number of workers.
+//! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
+
+mod saved;
+mod stroke_context;
+
+use std::sync::Arc;
+
+use glam::{DVec3, Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+pub use self::saved::{BadState, Deed, Moment, Saved, Side};
+use self::stroke_context::{Clay, Stroke};
+use crate::camera::Camera;
+use crate::command::{Command, NewClay};
+use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
+use crate::replaced::Works;
+use crate::stroke::{Draft, DraftAct, PenPoint, PenTrack};
+use sculptd_clay::brush::mask_all::MaskAll;
+use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
+use sculptd_clay::{Kernel, Mesh, Reach, Workers};
+use sculptd_devices::{Body, DeviceId, Hands, Sample};
+use sculptd_geometry::{PolyMesh, TriMesh, shapes};
+
+/// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
+pub const MAX_PENS: usize = 16;
+
+/// What one step did. Reused from step to step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StepReport {
+    pub samples: u64,
+    pub dabs: u64,
+    /// Summed over dabs: a vertex moved by two dabs counts twice.
+    pub vertices_moved: u64,
+    /// Path points still waiting because the budget was spent.
+    pub paused: bool,
+    /// A pen rests on the clay and its brush goes on by time: ticks without input matter.
+    pub resting: bool,
+    /// Samples of devices beyond [`MAX_PENS`].
+    pub ignored: u64,
+    /// A hand asked for the thing that it holds to be joined with the work: for a worker, see [`World::thing`].
+    pub join: Option<Choice>,
+    /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the history outside.
+    pub missed: Option<Deed>,
+    /// Jumps within the history that were made.
+    pub jumps: u64,
+}
+
+/// Fixed for the life of a world.
+#[derive(Debug, Clone, Copy)]
+pub struct WorldOptions {
+    /// Vertices that the dabs of one step may visit.
+    pub dab_budget: u64,
+    pub undo_bytes: u64,
+    pub hands: HandSettings,
+}
+
+/// One pen at work.
+#[derive(Debug, Serialize, Deserialize)]
+struct Seat {
+    device: DeviceId,
+    track: PenTrack,
+    stroke: Stroke,
+}
+
+#[derive(Debug)]
+pub struct World {
+    tick: u64,
+    mesh: Mesh,
+    workers: Workers,
+    options: WorldOptions,
+    brush: BrushSettings,
+    camera: Camera,
+    /// Middle and bounding radius of the work when it was put in place: the measure of brushes, mirrors and hands.
+    middle: Vec3,
+    extent: f32,
+    pens: Vec<Seat>,
+    scratch: Scratch,
+    /// Strokes begun.
+    strokes: u32,
+    hands: HandTools,
+    last_hands: Option<Hands>,
+    /// What the hands hold.
+    thing: Option<Thing>,
+    report: StepReport,
+    /// Works before and after this one, for undo.
+    works: Works,
+    /// Works that were replaced, for somebody else to drop.
+    retired: Vec<Mesh>,
+    /// Works put in place so far.
+    lineages: u32,
+    /// What was done in this tick, for whoever keeps the history; `None`: nobody does.
+    moments: Option<Vec<Moment>>,
+}
+
+impl World {
+    pub fn new(
+        mut mesh: Mesh,
+        camera: Camera,
+        brush: BrushSettings,
+        workers: Workers,
+        options: WorldOptions,
+    ) -> Self {
+        mesh.set_undo_bytes(options.undo_bytes);
+        let mut world = World {
+            tick: 0,
+            mesh,
+            workers,
+            options,
+            brush: brush.clamped(),
+            camera,
+            middle: Vec3::ZERO,
+            extent: 1.0,
+            pens: Vec::with_capacity(MAX_PENS),
+            scratch: Scratch::default(),
+            strokes: 0,
+            hands: HandTools::new(options.hands),
+            last_hands: None,
+            thing: None,
+            report: StepReport::default(),
+            works: Works::default(),
+            retired: Vec::with_capacity(16),
+            lineages: 0,
+            moments: None,
+        };
+        world.measure();
+        world.frame();
+        world
+    }
+
+    fn measure(&mut self) {
+        let (lo, hi) = self.mesh.bounds();
+        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::splat(-1.0), Vec3::ONE) };
+        self.middle = (lo + hi) * 0.5;
+        self.extent = ((hi - lo).length() * 0.5).max(1e-12);
+        self.hands.lay(self.middle, self.extent, self.camera.yaw);
+    }
+
+    fn frame(&mut self) {
+        let (lo, hi) = self.mesh.bounds();
+        if lo.cmple(hi).all() {
+            self.camera.frame(lo, hi);
+        }
+    }
+
+    /// One tick: commands first, in order, then samples in order of time (ties by device), then what waited from before.
+    pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
+        self.tick = tick;
+        self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
+        if let Some(moments) = &mut self.moments {
+            moments.clear();
+        }
+        for command in commands {
+            self.obey(command);
+        }
+        for sample in samples {
+            self.hear(sample);
+        }
+        self.sculpt();
+        if self.report.vertices_moved > 0 {
+            let retired = &mut self.retired;
+            self.works.forget_future(|m| retired.push(m));
+        }
+        &self.report
+    }
+
+    fn obey(&mut self, command: &Command) {
+        match command {
+            Command::Brush(brush) => {
+                self.brush = brush.clamped();
+                let lays = self.brush.kind.grip() == Grip::Surface && self.brush.path.method == Method::Curve;
+                if !lays {
+                    self.put_away();
+                }
+            }
+            // What was laid last goes first.
+            Command::Undo if self.put_away() => {}
+            Command::Draft(act) => match act {
+                DraftAct::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
+                DraftAct::Cancel => {
+                    self.put_away();
+                }
+                DraftAct::Delete(handle) => {
+                    let _ = self.pens.iter_mut().any(|s| s.track.delete(*handle));
+                }
+            },
+            Command::Camera(camera) => {
+                if camera.is_sane() {
+                    self.camera = *camera;
+                }
+            }
+            Command::Undo => {
+                self.lift_all();
+                match self.mesh.undo() || self.works.back(&mut self.mesh) {
+                    true => self.note(Deed::Undo),
+                    false => self.report.missed = Some(Deed::Undo),
+                }
+            }
+            Command::Redo => {
+                self.lift_all();
+                match self.mesh.redo() || self.works.forth(&mut self.mesh) {
+                    true => self.note(Deed::Redo),
+                    false => self.report.missed = Some(Deed::Redo),
+                }
+            }
+            Command::LiftAll => self.lift_all(),
+            Command::TakeUp(plain) => self.take_up(plain.clone()),
+            Command::PutDown => self.put_down(),
+            Command::CalibrateReach => self.hands.calibrate(),
+            Command::Reach(reach) => self.set_reach(*reach),
+            Command::Picture(picture) => {
+                if picture.is_sane() {
+                    self.scratch.picture = Some(picture.clone());
+                }
+            }
+            Command::Begin(new) => {
+                self.lift_all();
+                let clay = &new.clay;
+                let built = clay.take().or_else(|| Mesh::build(&clay.plain, &Default::default()).ok());
+                if let (Some(mesh), true) = (built, new.camera.is_sane()) {
+                    let workers = std::mem::replace(&mut self.workers, Workers::new(1));
+                    let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
+                    let mut old = std::mem::replace(self, fresh);
+                    self.lineages = old.lineages + 1;
+                    self.mesh.set_lineage(self.lineages);
+                    self.moments = old.moments.take();
+                    self.tick = old.tick;
+                    self.report = old.report;
+                    std::mem::swap(&mut self.retired, &mut old.retired);
+                    let retired = &mut self.retired;
+                    old.works.forget(|m| retired.push(m));
+                    self.retired.push(old.mesh);
+                    self.note(Deed::Begin);
+                }
+            }
+            Command::Mask(action) => {
+                self.lift_all();
+                self.mesh.begin_step();
+                let kernel = MaskAll { action: *action, extent: self.extent };
+                self.mesh.dab(&MaskAction::reach(), &kernel, &self.workers);
+                self.close();
+            }
+            Command::Place(place) => {
+                if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {
+                    thing.place = *place;
+                }
+            }
+            Command::Cut(carving) => {
+                self.lift_all();
+                self.mesh.begin_step();
+                let made = self.mesh.graft(&carving.cut);
+                self.close();
+                if made.is_some() {
+                    let retired = &mut self.retired;
+                    self.works.forget_future(|m| retired.push(m));
+                    if carving.put_down {
+                        self.put_down();
+                    }
+                }
+                if let Some(answer) = &carving.answer {
+                    let _ = answer.try_send(made);
+                }
+            }
+            Command::Replace(new) => self.replace(new, &[]),
+            Command::Remake(new, masks) => self.replace(new, masks),
+            Command::Jump(jump) => self.jump(jump),
+            Command::Reopened => {
+                self.lift_all();
+                self.forget_steps();
+            }
+        }
+    }
+
+    /// Curves that pens have laid are put away. False: there were none.
+    fn put_away(&mut self) -> bool {
+        self.pens.iter_mut().fold(false, |any, s| s.track.cancel() | any)
+    }
+
+    fn replace(&mut self, new: &NewClay, masks: &[f32]) {
+        self.lift_all();
+        let build = || Mesh::build_masked(&new.plain, masks, &Default::default()).ok();
+        let Some(mut mesh) = new.take().or_else(build) else { return };
+        mesh.set_undo_bytes(self.options.undo_bytes);
+        mesh.set_levels(new.levels.clone());
+        self.lineages += 1;
+        mesh.set_lineage(self.lineages);
+        let World { works, retired, mesh: now, options, .. } = self;
+        if new.keep_camera {
+            works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));
+        } else {
+            works.forget(|m| retired.push(m));
+            retired.push(std::mem::replace(now, mesh));
+            self.measure();
+            self.frame();
+        }
+        self.note(Deed::Replace);
+    }
+
+    /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must see the strokes ended.
+    fn lift_all(&mut self) {
+        for seat in &mut self.pens {
+            seat.track.lift(&self.brush.path);
+        }
+        self.hands.lift();
+        self.walk(u64::MAX);
+        self.close();
+    }
+
+    /// Closes the open step.
+    fn close(&mut self) {
+        if self.mesh.end_step() {
+            self.note(Deed::Step);
+        }
+    }
+
+    /// A thing appears beside the work, a third as large as it, for the hands to carry.
+    fn take_up(&mut self, plain: Arc<TriMesh>) {
+        let (lo, hi) = plain.bounds();
+        let size = (hi - lo).length() * 0.5;
+        if !(size.is_finite() && size > 0.0) {
+            return;
+        }
+        let scale = self.extent / 3.0 / size;
+        let turn = Quat::from_rotation_y(self.camera.yaw);
+        let at = self.middle + turn * Vec3::new(self.extent * 1.2, self.extent * 0.4, 0.0);
+        let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
+        if place.is_sane() {
+            self.thing = Some(Thing { plain, place });
+            self.hands.carrying = true;
+        }
+    }
+
+    fn put_down(&mut self) {
+        self.thing = None;
+        self.hands.carrying = false;
+    }
+
+    fn set_reach(&mut self, reach: ReachBox) {
+        if reach.is_sane() {
+            self.hands.settings.reach = reach;
+            self.hands.lay(self.middle, self.extent, self.camera.yaw);
+        }
+    }
+
+    fn choose(&mut self, choice: Choice) {
+        let primitive = |solid: PolyMesh| Arc::new(solid.triangulate().0);
+        match choice {
+            Choice::Undo => self.obey(&Command::Undo),
+            Choice::Redo => self.obey(&Command::Redo),
+            Choice::PutAway => self.put_down(),
+            Choice::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
+            Choice::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
+            Choice::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
+            Choice::Add | Choice::Carve | Choice::Keep => self.report.join = Some(choice),
+        }
+    }
+
+    fn hear(&mut self, sample: &Sample) {
+        match &sample.body {
+            Body::Pen(pen) => {
+                let index = self.pens.iter().position(|s| s.device == sample.device).or_else(|| {
+                    (self.pens.len() < MAX_PENS).then(|| {
+                        self.pens.push(Seat {
+                            device: sample.device,
+                            track: PenTrack::default(),
+                            stroke: Stroke::default(),
+                        });
+                        self.pens.len() - 1
+                    })
+                });
+                match index {
+                    Some(i) => self.pens[i].track.take(pen, &self.brush.path, self.camera.aspect),
+                    None => self.report.ignored += 1,
+                }
+            }
+            Body::Hands(hands) => {
+                self.hands.follow(self.camera.target, self.camera.yaw);
+                let before = self.hands.settings.reach;
+                self.hands.take(sample.device, sample.t_us, hands);
+                self.last_hands = Some(*hands);
+                if let Some(choice) = self.hands.take_choice() {
+                    self.choose(choice);
+                }
+                if before != self.hands.settings.reach {
+                    self.set_reach(self.hands.settings.reach);
+                }
+            }
+            Body::Pad(_) => {}
+        }
+    }
+
+    fn sculpt(&mut self) {
+        self.walk(self.options.dab_budget);
+        let active =
+            self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle()) || self.hands.is_touching();
+        if !active {
+            self.close();
+        }
+    }
+
+    /// Walks what waits on every pen in turn, then the hands, until `budget` vertices were visited.
+    fn walk(&mut self, budget: u64) {
+        let goes_on = self.goes_on_by_time();
+        let every = self.brush.path.every_ticks as u32;
+        let mut clay = Clay {
+            mesh: &mut self.mesh,
+            workers: &self.workers,
+            scratch: &mut self.scratch,
+            stroke: Stroke::default(),
+            camera: &self.camera,
+            brush: &self.brush,
+            middle: self.middle,
+            extent: self.extent,
+            report: &mut self.report,
+            left: budget,
+        };
+        for seat in &mut self.pens {
+            if seat.track.begins() {
+                self.strokes = self.strokes.wrapping_add(1);
+                seat.stroke.begin(self.strokes);
+            }
+            clay.stroke = seat.stroke;
+            clay.stroke.rested += 1;
+            while let Some(walked) = seat.track.walk_one(clay.camera.aspect, &mut clay) {
+                if walked.paused {
+                    clay.report.paused = true;
+                    break;
+                }
+                if walked.ended && seat.track.begins() {
+                    self.strokes = self.strokes.wrapping_add(1);
+                    clay.stroke.begin(self.strokes);
+                }
+            }
+            if goes_on && seat.track.is_open() {
+                clay.report.resting = true;
+                if seat.track.is_idle() && clay.stroke.rested >= every {
+                    seat.track.rest(&mut clay);
+                }
+            }
+            seat.stroke = clay.stroke;
+        }
+        let mut left = clay.left;
+        while left > 0 {
+            let Some(act) = self.hands.next_act() else { return };
+            left = self.by_hand(&act, left);
+        }
+        self.report.paused |= self.hands.has_waiting();
+    }
+
+    /// Whether dabs go on while a pen rests.
+    fn goes_on_by_time(&self) -> bool {
+        let path = &self.brush.path;
+        let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);
+        self.brush.kind.grip() == Grip::Surface
+            && spaced
+            && (path.continuous || path.method == Method::Airbrush)
+    }
+
+    /// One act of a hand; returns what is left of the budget.
+    fn by_hand(&mut self, act: &Act, left: u64) -> u64 {
+        let camera = &mut self.camera;
+        match act {
+            Act::Orbit(by) => camera.orbit(*by),
+            Act::Zoom(factor) => camera.zoom(*factor),
+            Act::Move(by) => camera.target -= *by,
+            Act::Hold { before, after } => {
+                // The camera keeps its place among the hands.
+                let mm = before.turn.inverse() * (camera.target - before.origin) / before.scale;
+                camera.target = after.to_world(mm);
+                camera.distance = (camera.distance * after.scale / before.scale).clamp(1e-6, 1e9);
+            }
+            Act::Carry(by) => {
+                if let Some(thing) = &mut self.thing {
+                    thing.carry(by);
+                }
+            }
+            Act::Push(a) => return self.touch(&a.reach(), &a.kernel(), left),
+            Act::Drag(a) => return self.touch(&a.reach(), &a.kernel(), left),
+            Act::Palm(a) => return self.touch(&a.reach(), &a.kernel(), left),
+        }
+        left
+    }
+
+    fn touch<K: Kernel>(&mut self, reach: &Reach, kernel: &K, left: u64) -> u64 {
+        self.mesh.begin_step();
+        let report = self.mesh.dab(reach, kernel, &self.workers);
+        if report.moved > 0 {
+            self.report.dabs += 1;
+            self.hands.sculpted();
+        }
+        self.report.vertices_moved += report.moved as u64;
+        left.saturating_sub(report.affected as u64 + 1)
+    }
+
+    /// The pose of every hand that is followed.
+    pub fn poses(&self) -> impl Iterator<Item = (DeviceId, i32, Pose)> + '_ {
+        self.hands.tracks().map(|t| (t.device, t.id, t.pose))
+    }
+
+    /// What the last step did.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Steps that undo can take back, replaced works included.
+    pub fn undo_steps(&self) -> usize {
+        self.mesh.undo_steps() + self.works.past()
+    }
+
+    pub fn redo_steps(&self) -> usize {
+        self.mesh.redo_steps() + self.works.future()
+    }
+
+    /// For publishing only: nothing of the clay changes.
+    pub fn snapshot(&mut self) -> sculptd_clay::Snapshot {
+        self.mesh.snapshot()
+    }
+
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    pub fn brush(&self) -> &BrushSettings {
+        &self.brush
+    }
+
+    /// The brush's radius in mesh units at full pressure.
+    pub fn brush_radius(&self) -> f32 {
+        self.brush.radius * self.extent
+    }
+
+    /// Bounding radius of the work when it was put in place.
+    pub fn extent(&self) -> f32 {
+        self.extent
+    }
+
+    pub fn middle(&self) -> Vec3 {
+        self.middle
+    }
+
+    /// The tracked volume of hands over the work.
+    pub fn volume(&self) -> &Volume {
+        self.hands.volume()
+    }
+
+    /// Where each pen is, over the view, while in range.
+    pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
+        self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
+    }
+
+    /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
+    pub fn draft(&self) -> Option<&Draft> {
+        self.pens.iter().map(|s| s.track.draft()).find(|d| !d.is_empty())
+    }
+
+    /// What the hands hold, and where.
+    pub fn thing(&self) -> Option<&Thing> {
+        self.thing.as_ref()
+    }
+
+    pub fn hand_tools(&self) -> &HandTools {
+        &self.hands
+    }
+
+    pub fn hands(&self) -> Option<&Hands> {
+        self.last_hands.as_ref()
+    }
+
+    /// Works that were replaced since the last call, for another thread to drop.
+    pub fn take_retired(&mut self) -> Option<Mesh> {
+        self.retired.pop()
+    }
+
+    /// One number for the whole state of the clay; costs as much as the clay is large.
+    pub fn hash(&self) -> u64 {
+        self.mesh.hash()
+    }
+
+    pub fn verify_invariants(&self) -> Result<(), String> {
+        if !self.camera.is_sane() {
+            return Err(format!("the camera is not sane: {:?}", self.camera));
+        }
+        self.mesh.verify_invariants()
+    }
+}

@@ -1,0 +1,223 @@
+//! What the world remembers of itself for others: the deeds of a tick, and its whole state while it is at rest.
+//!
+//! Laws kept here:
+//! * A world made of a saved state goes on, to the bit, as the one that was saved: everything is in it but undo, which a
+//!   session keeps outside ([`sculptd_daemon::session`]).
+//! * A moment costs what its step changed: it holds a snapshot, not a copy.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Seat, World, WorldOptions};
+use crate::camera::Camera;
+use crate::command::{Fetched, Jump};
+use crate::hand::{HandTools, Similarity, Thing};
+use sculptd_clay::brush::{BrushSettings, Picture};
+use sculptd_clay::{Levels, Mesh, Rest, Snapshot, Workers};
+use sculptd_devices::Hands;
+use sculptd_geometry::TriMesh;
+
+/// What was done to the work as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Deed {
+    /// A stroke, a mask, a cut: one step of undo.
+    Step,
+    Undo,
+    Redo,
+    /// Another work took its place.
+    Replace,
+    /// Another person's work began: nothing before it is of any concern.
+    Begin,
+    /// To this place of the history.
+    Jump(u64),
+}
+
+/// A deed, and the work right after it.
+#[derive(Debug, Clone)]
+pub struct Moment {
+    pub deed: Deed,
+    pub work: Snapshot,
+    /// Middle and bounding radius of the work when it was put in place.
+    pub middle: glam::Vec3,
+    pub extent: f32,
+}
+
+/// Large things that seldom change, kept beside the state and named by it.
+#[derive(Debug, Clone)]
+pub enum Side {
+    Thing(Arc<TriMesh>),
+    Picture(Arc<Picture>),
+    Levels(Arc<Levels>),
+}
+
+/// A world at rest.
+#[derive(Debug, Clone)]
+pub struct Saved {
+    pub tick: u64,
+    pub rest: Rest,
+    /// Everything small, as bytes.
+    pub core: Vec<u8>,
+    pub thing: Option<Arc<TriMesh>>,
+    pub picture: Option<Arc<Picture>>,
+    pub levels: Option<Arc<Levels>>,
+    /// Steps that could be taken back and done again then; a world made of this has none.
+    pub steps: (u32, u32),
+}
+
+/// The bytes are not those of a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the bytes are not those of a world's state")]
+pub struct BadState;
+
+#[derive(Serialize)]
+struct CoreRef<'a> {
+    brush: &'a BrushSettings,
+    camera: &'a Camera,
+    middle: glam::Vec3,
+    extent: f32,
+    pens: &'a [Seat],
+    strokes: u32,
+    hands: &'a HandTools,
+    last_hands: &'a Option<Hands>,
+    place: Option<Similarity>,
+    lineages: u32,
+}
+
+#[derive(Deserialize)]
+struct Core {
+    brush: BrushSettings,
+    camera: Camera,
+    middle: glam::Vec3,
+    extent: f32,
+    pens: Vec<Seat>,
+    strokes: u32,
+    hands: HandTools,
+    last_hands: Option<Hands>,
+    place: Option<Similarity>,
+    lineages: u32,
+}
+
+impl World {
+    /// From now on every tick's deeds are kept until the next one.
+    pub fn keep_moments(&mut self) {
+        self.moments.get_or_insert_with(|| Vec::with_capacity(16));
+    }
+
+    /// The deeds of the last tick, in order.
+    pub fn moments(&self) -> &[Moment] {
+        self.moments.as_deref().unwrap_or_default()
+    }
+
+    /// The work as it is, as a moment: what a history begins with.
+    pub fn moment(&mut self, deed: Deed) -> Moment {
+        Moment { deed, work: self.mesh.snapshot(), middle: self.middle, extent: self.extent }
+    }
+
+    pub(super) fn note(&mut self, deed: Deed) {
+        if self.moments.is_some() {
+            let moment = self.moment(deed);
+            self.moments.as_mut().into_iter().for_each(|all| all.push(moment.clone()));
+        }
+    }
+
+    /// Nothing can be taken back or done again.
+    pub(super) fn forget_steps(&mut self) {
+        let retired = &mut self.retired;
+        self.works.forget(|m| retired.push(m));
+        self.mesh.jump(&[]);
+    }
+
+    pub(super) fn jump(&mut self, jump: &Jump) {
+        if jump.from != (self.mesh.lineage(), self.mesh.revision()) {
+            return;
+        }
+        let Some(fetched) = jump.fetched.try_lock().ok().and_then(|mut slot| slot.take()) else { return };
+        self.lift_all();
+        // A stroke that ended here has changed the work after all.
+        if jump.from != (self.mesh.lineage(), self.mesh.revision()) {
+            return;
+        }
+        match (fetched, &jump.other) {
+            (Fetched::Pages(pages), None) if self.mesh.jump(&pages) => {
+                let retired = &mut self.retired;
+                self.works.forget(|m| retired.push(m));
+            }
+            (Fetched::Work(mut mesh), Some(other)) => {
+                self.forget_steps();
+                mesh.set_undo_bytes(self.options.undo_bytes);
+                self.retired.push(std::mem::replace(&mut self.mesh, *mesh));
+                (self.middle, self.extent) = (other.middle, other.extent);
+                self.hands.lay(self.middle, self.extent, self.camera.yaw);
+            }
+            _ => return,
+        }
+        self.report.jumps += 1;
+        self.note(Deed::Jump(jump.node));
+    }
+
+    /// Whether nothing is under way: no stroke, nothing that waits, no open step.
+    pub fn is_at_rest(&self) -> bool {
+        !self.mesh.is_in_step()
+            && !self.report.paused
+            && self.pens.iter().all(|s| !s.track.is_open() && s.track.is_idle())
+    }
+
+    /// The whole state; only at rest.
+    pub fn save(&self) -> Option<Saved> {
+        if !self.is_at_rest() {
+            return None;
+        }
+        let core = CoreRef {
+            brush: &self.brush,
+            camera: &self.camera,
+            middle: self.middle,
+            extent: self.extent,
+            pens: &self.pens,
+            strokes: self.strokes,
+            hands: &self.hands,
+            last_hands: &self.last_hands,
+            place: self.thing.as_ref().map(|t| t.place),
+            lineages: self.lineages,
+        };
+        Some(Saved {
+            tick: self.tick,
+            rest: self.mesh.rest(),
+            core: postcard::to_stdvec(&core).ok()?,
+            thing: self.thing.as_ref().map(|t| t.plain.clone()),
+            picture: self.scratch.picture.clone(),
+            levels: self.mesh.levels().cloned(),
+            steps: (self.undo_steps() as u32, self.redo_steps() as u32),
+        })
+    }
+
+    /// The world that was saved, around its work.
+    ///
+    /// # Errors
+    /// [`BadState`]
+    pub fn restore(
+        mut mesh: Mesh,
+        saved: Saved,
+        workers: Workers,
+        options: WorldOptions,
+    ) -> Result<World, BadState> {
+        let core: Core = postcard::from_bytes(&saved.core).map_err(|_| BadState)?;
+        if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
+            return Err(BadState);
+        }
+        mesh.set_levels(saved.levels);
+        let mut world = World::new(mesh, core.camera, core.brush, workers, options);
+        world.tick = saved.tick;
+        world.camera = core.camera;
+        (world.middle, world.extent) = (core.middle, core.extent);
+        world.pens = core.pens;
+        world.strokes = core.strokes;
+        world.hands = core.hands;
+        world.last_hands = core.last_hands;
+        world.thing = saved.thing.zip(core.place).map(|(plain, place)| Thing { plain, place });
+        world.scratch.picture = saved.picture;
+        world.lineages = core.lineages;
+        Ok(world)
+    }
+}

@@ -1,0 +1,409 @@
+//! The clay as a stroke sees it: from a place over the view to dabs, with all their images.
+
+use glam::{Mat3, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::StepReport;
+use crate::camera::Camera;
+use crate::stroke::{Flow, Laid, PenPoint, Surface, Way};
+use sculptd_clay::brush::dab::IMAGES;
+use sculptd_clay::brush::restore::Restore;
+use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
+use sculptd_clay::{DabReport, Detail, Hit, Mesh, Ray, Reach, Workers};
+
+/// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this one stopped.
+const MOST_CUTS: usize = 2000;
+
+/// What one pen's stroke remembers from dab to dab.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(super) struct Stroke {
+    /// Which stroke of the world it is, and its dabs so far.
+    pub(super) number: u32,
+    dabs: u32,
+    /// Centre of the last dab.
+    last: Option<Vec3>,
+    travelled: f32,
+    /// What a held brush holds.
+    held: Option<Held>,
+    /// Ticks that the pen has rested.
+    pub(super) rested: u32,
+}
+
+/// Where a held brush took hold, and how far it was drawn.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Held {
+    from: PenPoint,
+    hit: Hit,
+    drag: Vec3,
+    /// The dab that is not final yet: what it may have changed, its own ball first.
+    shown: Option<(Vec3, f32)>,
+}
+
+impl Stroke {
+    pub(super) fn begin(&mut self, number: u32) {
+        *self = Stroke { number, ..Stroke::default() };
+    }
+}
+
+/// A map from the brush to one of its images: `m * p + t`.
+#[derive(Debug, Clone, Copy)]
+struct Image {
+    m: Mat3,
+    t: Vec3,
+    hand: f32,
+}
+
+impl Image {
+    fn about(m: Mat3, point: Vec3) -> Image {
+        Image { m, t: point - m * point, hand: m.determinant().signum() }
+    }
+
+    fn then(&self, next: &Image) -> Image {
+        Image { m: next.m * self.m, t: next.m * self.t + next.t, hand: self.hand * next.hand }
+    }
+
+    fn at(&self, p: Vec3) -> Vec3 {
+        self.m * p + self.t
+    }
+}
+
+/// All images, the brush itself first; [`IMAGES`] at most.
+#[derive(Debug, Clone, Copy)]
+struct Images {
+    list: [Image; IMAGES],
+    count: usize,
+}
+
+impl Images {
+    fn of(brush: &BrushSettings, middle: Vec3, extent: f32) -> Images {
+        let one = Image { m: Mat3::IDENTITY, t: Vec3::ZERO, hand: 1.0 };
+        let mut images = Images { list: [one; IMAGES], count: 1 };
+        for axis in 0..3 {
+            if brush.symmetry[axis] {
+                let mut sign = Vec3::ONE;
+                sign[axis] = -1.0;
+                images.double(&Image::about(Mat3::from_diagonal(sign), middle));
+            }
+        }
+        if let Some(n) = Vec3::from(brush.mirror.plane).try_normalize() {
+            // p - 2 n (n . p): Householder's reflection.
+            let m = Mat3::from_cols(
+                Vec3::X - n * (2.0 * n.x),
+                Vec3::Y - n * (2.0 * n.y),
+                Vec3::Z - n * (2.0 * n.z),
+            );
+            images.double(&Image::about(m, middle + n * (brush.mirror.offset * extent)));
+        }
+        let turns = usize::from(brush.mirror.radial).max(1);
+        let (base, kept) = (images.list, images.count);
+        for k in 1..turns {
+            let angle = std::f32::consts::TAU * k as f32 / turns as f32;
+            let m = match brush.mirror.axis {
+                0 => Mat3::from_rotation_x(angle),
+                1 => Mat3::from_rotation_y(angle),
+                _ => Mat3::from_rotation_z(angle),
+            };
+            let turn = Image::about(m, middle);
+            base[..kept].iter().for_each(|i| images.add(i.then(&turn)));
+        }
+        images
+    }
+
+    fn add(&mut self, image: Image) {
+        if self.count < IMAGES {
+            self.list[self.count] = image;
+            self.count += 1;
+        }
+    }
+
+    fn double(&mut self, by: &Image) {
+        for i in 0..self.count {
+            self.add(self.list[i].then(by));
+        }
+    }
+
+    fn each(&self) -> &[Image] {
+        &self.list[..self.count]
+    }
+}
+
+/// The clay while pens walk over it.
+pub(super) struct Clay<'a> {
+    pub(super) mesh: &'a mut Mesh,
+    pub(super) workers: &'a Workers,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) camera: &'a Camera,
+    pub(super) brush: &'a BrushSettings,
+    pub(super) middle: Vec3,
+    pub(super) extent: f32,
+    pub(super) report: &'a mut StepReport,
+    pub(super) left: u64,
+    pub(super) stroke: Stroke,
+}
+
+impl Clay<'_> {
+    fn radius(&self, pressure: f32) -> f32 {
+        self.brush.radius * self.extent * self.brush.pressure_radius.factor(pressure)
+    }
+
+    /// A number between 0 and 1 that only the seed, the stroke, the dab and `salt` decide.
+    fn dice(&self, salt: u32) -> f32 {
+        let mut x = u64::from(self.brush.path.seed) << 32 | u64::from(self.stroke.number);
+        x = x.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(self.stroke.dabs) << 8 ^ u64::from(salt);
+        // The finaliser of splitmix64.
+        x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ x >> 31) >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    /// The pen's own direction, from its tip up, in the world.
+    fn pen_direction(&self, tilt: Vec2) -> Vec3 {
+        let (right, up) = self.camera.axes();
+        let lean = Vec2::new(tilt.x.clamp(-1.4, 1.4).tan(), tilt.y.clamp(-1.4, 1.4).tan());
+        (self.camera.backward() + right * lean.x - up * lean.y).normalize()
+    }
+
+    /// One dab and its images. `share`: of the strength. `drag`: what a held brush was drawn, now and before.
+    fn one_dab(&mut self, at: &PenPoint, hit: &Hit, radius: f32, share: f32, drag: Option<(Vec3, Vec3)>) {
+        self.mesh.begin_step();
+        let s = self.brush;
+        let mut strength = s.strength * s.pressure_strength.factor(at.pressure);
+        if s.path.compensate {
+            strength = (strength * (s.spacing / 0.2)).min(1.0);
+        }
+        strength *= share;
+        let normal = match at.tilt {
+            Some(tilt) if s.tilt > 0.0 => {
+                hit.normal.lerp(self.pen_direction(tilt), s.tilt).try_normalize().unwrap_or(hit.normal)
+            }
+            _ => hit.normal,
+        };
+        let moved = self.stroke.last.map_or(Vec3::ZERO, |last| hit.position - last);
+        if drag.is_none() {
+            self.stroke.travelled += moved.length();
+            self.stroke.last = Some(hit.position);
+        }
+        let (motion, last) = drag.unwrap_or((moved, Vec3::ZERO));
+        let ray = self.camera.ray(at.view);
+        let first = Dab {
+            settings: s,
+            centre: hit.position,
+            normal,
+            radius,
+            strength,
+            sign: if s.negative != at.inverted { -1.0 } else { 1.0 },
+            motion,
+            last,
+            eye: -ray.dir,
+            right: self.camera.axes().0,
+            lens: self.camera.lens(),
+            hand: 1.0,
+            image: 0,
+            travelled: self.stroke.travelled,
+            stroke: self.stroke.number,
+        };
+        let mut dabs = [first; IMAGES];
+        let mut count = 1;
+        for (i, image) in Images::of(s, self.middle, self.extent).each().iter().enumerate().skip(1) {
+            let (centre, normal) = (image.at(hit.position), image.m * normal);
+            // The same view from the mirrored eye. On a symmetric work it lands on the mirrored point, which is then
+            // taken as it is; else the brush lies on what is there.
+            let there = self.mesh.pick(Ray { origin: image.at(ray.origin), dir: image.m * ray.dir });
+            let held = drag.is_some();
+            let (centre, normal) = match there {
+                _ if held => (centre, normal),
+                Some(h) if (h.position - centre).length() < radius * 1e-3 => (centre, normal),
+                Some(h) => (h.position, h.normal),
+                None => continue,
+            };
+            dabs[count] = Dab {
+                image: i,
+                centre,
+                normal,
+                motion: image.m * motion,
+                last: image.m * last,
+                eye: image.m * first.eye,
+                right: image.m * first.right,
+                lens: first.lens.image(image.m, image.t),
+                hand: image.hand,
+                ..first
+            };
+            count += 1;
+        }
+        self.stroke.dabs += 1;
+        self.stroke.rested = 0;
+        if !(strength > 0.0) {
+            return;
+        }
+        self.cut(&dabs[..count], hit);
+        let mut tool = Tool {
+            mesh: self.mesh,
+            workers: self.workers,
+            scratch: self.scratch,
+            report: DabReport::default(),
+        };
+        s.kind.apply(&dabs[..count], &mut tool);
+        let done = tool.report;
+        self.report.dabs += count as u64;
+        self.report.vertices_moved += done.moved as u64;
+        self.left = self.left.saturating_sub(done.affected as u64 + 1);
+    }
+
+    /// Cuts the triangles under a dab and its images to the wanted size, where the brush is set to.
+    fn cut(&mut self, dabs: &[Dab<'_>], hit: &Hit) {
+        let t = &self.brush.topology;
+        let measure = match t.by {
+            Measure::Off => return,
+            Measure::Brush => dabs[0].radius,
+            Measure::Work => self.extent,
+            Measure::View => self.world_per_view(hit),
+        };
+        let path = self.brush.path.method;
+        let counts = self.brush.saturation > 0.0 || matches!(path, Method::Anchored | Method::DragDot);
+        if counts || !self.brush.kind.cuts() {
+            return;
+        }
+        for dab in dabs {
+            let detail = Detail {
+                centre: dab.centre,
+                radius: dab.radius,
+                edge: t.edge * measure,
+                split: t.split,
+                collapse: t.collapse,
+                most: MOST_CUTS,
+            };
+            let cuts = self.mesh.remodel(&detail);
+            self.left = self.left.saturating_sub(8 * (cuts.splits + cuts.collapses + cuts.flips) as u64);
+        }
+    }
+
+    /// A place strewn about a hit, in its tangent plane, and the surface there.
+    fn strewn(&mut self, hit: &Hit, radius: f32) -> Hit {
+        let j = self.brush.path.jitter;
+        if j <= 0.0 {
+            return *hit;
+        }
+        let (angle, far) = (self.dice(1) * std::f32::consts::TAU, self.dice(2).sqrt() * j * radius);
+        let (u, v) = hit.normal.any_orthonormal_pair();
+        let aside = hit.position + (u * angle.cos() + v * angle.sin()) * far;
+        let down = Ray { origin: aside + hit.normal * radius, dir: -hit.normal };
+        self.mesh.pick(down).filter(|h| (h.position - aside).length() < 2.0 * radius).unwrap_or(*hit)
+    }
+
+    /// Takes back the dab that is not final, and all its images.
+    fn take_back(&mut self, held: &mut Held) {
+        let Some((centre, radius)) = held.shown.take() else { return };
+        for image in Images::of(self.brush, self.middle, self.extent).each() {
+            let centre = image.at(centre);
+            let reach = Reach::Sphere { centre, radius: radius * 2.5 };
+            let done = self.mesh.dab(&reach, &Restore { centre, radius: radius * 1.01 }, self.workers);
+            self.left = self.left.saturating_sub(done.affected as u64 + 1);
+        }
+    }
+
+    /// How far a pen at `at` was drawn, parallel to the view at the depth where it took hold.
+    fn drawn(&self, held: &Held, at: &PenPoint) -> Vec3 {
+        let (right, up) = self.camera.axes();
+        let scale = self.world_per_view(&held.hit);
+        let d = at.view - held.from.view;
+        right * (d.x * self.camera.aspect * scale) - up * (d.y * scale)
+    }
+
+    fn move_held(&mut self, mut held: Held, at: &PenPoint) -> Held {
+        let drag = self.drawn(&held, at);
+        match (self.brush.path.method, self.brush.kind.grip()) {
+            (Method::Anchored, Grip::Surface) => {
+                self.take_back(&mut held);
+                let radius = drag.length().min(self.extent * 2.0);
+                if radius > self.extent * 1e-3 {
+                    self.one_dab(at, &held.hit, radius, 1.0, Some((drag, held.drag)));
+                    held.shown = Some((held.hit.position, radius));
+                }
+            }
+            (Method::DragDot, Grip::Surface) => {
+                self.take_back(&mut held);
+                if let Some(hit) = self.pick(at.view) {
+                    let radius = self.radius(at.pressure);
+                    self.one_dab(at, &hit, radius, 1.0, Some((drag - held.drag, Vec3::ZERO)));
+                    held.shown = Some((hit.position, radius));
+                }
+            }
+            (_, Grip::Tow) => {
+                // In steps that are short against the brush, each from where the last one left the clay.
+                let radius = self.radius(at.pressure);
+                let whole = drag - held.drag;
+                let steps = (whole.length() / (radius * self.brush.spacing)).ceil().clamp(1.0, 4096.0);
+                let by = whole / steps;
+                for _ in 0..steps as usize {
+                    self.one_dab(at, &held.hit, radius, 1.0, Some((by, Vec3::ZERO)));
+                    held.hit.position += by;
+                }
+            }
+            _ => {
+                // What was held at the start is held on: pressure later does not change how much that is.
+                let radius = self.radius(held.from.pressure);
+                self.one_dab(at, &held.hit, radius, 1.0, Some((drag, held.drag)));
+            }
+        }
+        held.drag = drag;
+        held
+    }
+}
+
+impl Surface for Clay<'_> {
+    fn pick(&mut self, view: Vec2) -> Option<Hit> {
+        self.mesh.pick(self.camera.ray(view))
+    }
+
+    fn spacing(&self, at: &PenPoint) -> f32 {
+        self.radius(at.pressure) * self.brush.spacing
+    }
+
+    fn world_per_view(&self, hit: &Hit) -> f32 {
+        let depth = (self.camera.eye() - hit.position).dot(self.camera.backward());
+        self.camera.world_per_view(depth.max(1e-6))
+    }
+
+    fn way(&self) -> Way {
+        match (self.brush.kind.grip(), self.brush.path.method) {
+            (Grip::Anchor | Grip::Tow, _) => Way::Held,
+            (Grip::Surface, Method::Anchored | Method::DragDot) => Way::Held,
+            (Grip::Surface, Method::Space | Method::Airbrush) => Way::Spaced,
+            (Grip::Surface, Method::Dots) => Way::Each,
+            (Grip::Surface, Method::Line) => Way::Line,
+            (Grip::Surface, Method::Curve) => Way::Curve,
+        }
+    }
+
+    fn hold(&mut self, at: &PenPoint, began: bool) -> Flow {
+        if began {
+            self.stroke.held = self.pick(at.view).map(|hit| {
+                self.mesh.begin_step();
+                Held { from: *at, hit, drag: Vec3::ZERO, shown: None }
+            });
+            if self.brush.path.method != Method::DragDot {
+                return Flow::Go;
+            }
+        }
+        if let Some(held) = self.stroke.held {
+            let held = self.move_held(held, at);
+            self.stroke.held = Some(held);
+        }
+        if self.left == 0 { Flow::Pause } else { Flow::Go }
+    }
+
+    fn drop(&mut self, ray: Ray, far: f32) -> Option<Hit> {
+        self.mesh.pick(ray).filter(|h| h.t <= far)
+    }
+
+    fn dab(&mut self, at: &PenPoint, hit: &Hit, laid: Laid) -> Flow {
+        let radius = self.radius(at.pressure);
+        if laid.first && self.way() != Way::Each {
+            // Nothing leads over from the run before.
+            self.stroke.last = None;
+        }
+        let hit = self.strewn(hit, radius);
+        self.one_dab(at, &hit, radius, laid.share, None);
+        if self.left == 0 { Flow::Pause } else { Flow::Go }
+    }
+}

@@ -1,0 +1,150 @@
+//! Both surfaces cut at each other, and each piece in its place: from this every result is chosen.
+
+use glam::DVec3;
+
+use super::Operation;
+use super::common::{Common, common};
+use super::curve::chains;
+use super::emit::Origin;
+use super::merge::{self, Polygon};
+use super::pieces::{self, Piece, Shape};
+use super::points::Points;
+use crate::PolyMesh;
+use crate::boolean::classify::{Fates, place};
+use crate::boolean::intersect as meet;
+use crate::boolean::intersect::Meeting;
+use crate::job::{Cancelled, Job};
+
+/// How often a surface goes around a point, where the operand at hand is only a part of it.
+pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
+
+#[derive(Debug)]
+pub struct Arrangement {
+    pub points: Points,
+    /// The operands, corners over the common points.
+    pub meshes: [PolyMesh; 2],
+    triangles: [Vec<[u32; 3]>; 2],
+    starts: [Vec<u32>; 2],
+    /// Of the faces that something cuts, or may.
+    pieces: [Vec<Piece>; 2],
+    /// Of all other faces.
+    fates: [Fates; 2],
+    meeting: Meeting,
+    /// Corners below this are the operands' own: those of A, then those of B.
+    pub own: usize,
+    eps: f64,
+    floor: f64,
+}
+
+impl Arrangement {
+    /// `eps`: places nearer than this are one; `floor`: what rounding alone does. `around`: for a patch of A, the whole of it.
+    pub fn new(
+        operands: [&PolyMesh; 2],
+        eps: f64,
+        floor: f64,
+        around: Option<Around<'_>>,
+        job: &Job,
+        lap: &mut dyn FnMut(&'static str),
+    ) -> Result<Arrangement, Cancelled> {
+        let Common { mut points, meshes, triangles, starts, bounds, pairs } =
+            common(operands, eps, job, lap)?;
+        let own = points.at.len();
+        job.progress(0.2);
+        let meeting = meet::meet([&triangles[0], &triangles[1]], pairs, &mut points, eps, job)?;
+        lap("meet");
+        job.progress(0.5);
+        let mut pieces: [Vec<Piece>; 2] = [Vec::new(), Vec::new()];
+        for s in 0..2 {
+            let flat = |f: usize| merge::is_flat(&meshes[s], f, &points.at, 4.0 * floor);
+            let cut = pieces::cut(&meshes[s], s, &triangles[s], &starts[s], &meeting, &points.at, flat, job);
+            pieces[s] = cut?;
+        }
+        lap("cut");
+        let fates = place(&meshes, &triangles, bounds, &mut pieces, &meeting, &points, around, job)?;
+        lap("place");
+        job.progress(0.8);
+        Ok(Arrangement { points, meshes, triangles, starts, pieces, fates, meeting, own, eps, floor })
+    }
+
+    /// Calls `take(origin, corners, whole)` for each face of a result; `whole`: an operand's face as it came. A cancelled job
+    /// leaves faces out.
+    pub fn faces(
+        &self,
+        operation: Operation,
+        keep_contact: bool,
+        job: &Job,
+        mut take: impl FnMut(Origin, &[u32], bool),
+    ) {
+        let takes = |s: usize, place| operation.takes(s, place, keep_contact);
+        let flat =
+            |s: usize, f: u32| merge::is_flat(&self.meshes[s], f as usize, &self.points.at, 4.0 * self.floor);
+        let mut used = vec![false; self.own];
+        let mut back = Vec::new();
+        let mut give = |origin, corners: &[u32], turned: bool, whole: bool| {
+            if turned {
+                back.clear();
+                back.extend(corners.iter().rev());
+                take(origin, &back, false);
+            } else {
+                take(origin, corners, whole);
+            }
+        };
+        for s in 0..2 {
+            let mut pieces = self.pieces[s].iter().peekable();
+            for face in 0..self.meshes[s].face_count() as u32 {
+                if face % 65_536 == 0 && job.cancelled() {
+                    return;
+                }
+                let mut whole = self.fates[s].of(face);
+                while let Some(p) = pieces.next_if(|p| p.face == face) {
+                    whole = matches!(p.shape, Shape::Whole).then_some(p.place);
+                }
+                let Some(turned) = whole.and_then(|place| takes(s, place)) else { continue };
+                let corners = self.meshes[s].face(face as usize);
+                corners.iter().for_each(|&v| used[v as usize] = true);
+                let origin = Origin { operand: s as u8, face };
+                // A bent face seen from behind may come in other triangles: then these are what is turned.
+                if turned && corners.len() > 3 && !flat(s, face) {
+                    let (first, last) = (self.starts[s][face as usize], self.starts[s][face as usize + 1]);
+                    for t in &self.triangles[s][first as usize..last as usize] {
+                        give(origin, t, true, false);
+                    }
+                } else {
+                    give(origin, corners, turned, true);
+                }
+            }
+        }
+        let mut cut: Vec<Polygon> = Vec::new();
+        let mut turns = Vec::new();
+        for s in 0..2 {
+            let cells: Vec<&Piece> =
+                self.pieces[s].iter().filter(|p| !matches!(p.shape, Shape::Whole)).collect();
+            // Cells of one face with one fate are one again.
+            for group in cells.chunk_by(|p, q| p.face == q.face) {
+                for side in [false, true] {
+                    let own: Vec<&Piece> =
+                        group.iter().copied().filter(|p| takes(s, p.place) == Some(side)).collect();
+                    if let Some(first) = own.first() {
+                        let made =
+                            merge::polygons(s as u8, first.face, &own, flat(s, first.face), &self.points.at);
+                        turns.resize(turns.len() + made.len(), side);
+                        cut.extend(made);
+                    }
+                }
+            }
+        }
+        let kept = |v: u32| used.get(v as usize).copied().unwrap_or(false);
+        merge::straighten(&mut cut, &self.meshes, kept, &self.points.at, self.eps);
+        for (p, turned) in cut.iter().zip(turns) {
+            give(Origin { operand: p.side, face: p.face }, &p.corners, turned, false);
+        }
+    }
+
+    /// The curve in which the surfaces meet, in polylines; see [`chains`].
+    pub fn curve(&self) -> Vec<Vec<DVec3>> {
+        let mut ends: Vec<(u32, u32)> = self.meeting.curve.keys().copied().collect();
+        ends.sort_unstable();
+        let place = |i: u32| self.points.at[i as usize];
+        chains(&ends).into_iter().map(|c| c.into_iter().map(place).collect()).collect()
+    }
+}

@@ -1,0 +1,142 @@
+//! Both operands over one list of points: places of theirs within the tolerance of each other are one point, where the surfaces
+//! are near each other; elsewhere each keeps its own.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::points::Points;
+use crate::boolean::box_tree::Span;
+use crate::boolean::broad_phase as near;
+use crate::boolean::broad_phase::Surface;
+use crate::job::{Cancelled, Job};
+use crate::{PolyMesh, triangulate};
+
+/// The operands, ready to meet.
+pub struct Common {
+    pub points: Points,
+    /// Corners over the points.
+    pub meshes: [PolyMesh; 2],
+    pub triangles: [Vec<[u32; 3]>; 2],
+    /// First triangle of each face, and the number of all.
+    pub starts: [Vec<u32>; 2],
+    pub bounds: [Span; 2],
+    /// Triangles whose boxes are within the tolerance of each other, ascending.
+    pub pairs: Vec<(u32, u32)>,
+}
+
+pub fn common(
+    operands: [&PolyMesh; 2],
+    eps: f64,
+    job: &Job,
+    lap: &mut dyn FnMut(&'static str),
+) -> Result<Common, Cancelled> {
+    let bases = [0, operands[0].positions.len() as u32];
+    let slack = 4.0 * eps;
+    let bounds = operands.map(|m| bounds(&m.positions));
+    let (a, b) = rayon::join(
+        || split(operands[0], &operands[0].positions, job),
+        || split(operands[1], &operands[1].positions, job),
+    );
+    let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
+    let surface = |s: usize, triangles| Surface { triangles, at: &operands[s].positions, base: 0 };
+    let mut pairs = near::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
+    lap("near");
+    let mut points = Points::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
+    let mut names: Vec<u32> = (0..points.at.len() as u32).collect();
+    let corners = |t: &[[u32; 3]], of: &dyn Fn(&(u32, u32)) -> u32| -> Vec<u32> {
+        let mut near: Vec<u32> = pairs.iter().flat_map(|p| t[of(p) as usize]).collect();
+        near.sort_unstable();
+        near.dedup();
+        near
+    };
+    let close = [corners(&ta, &|p| p.0), corners(&tb, &|p| p.1)];
+    let (mut renamed, mut shrunk) = ([false; 2], [false; 2]);
+    for s in 0..2 {
+        job.check()?;
+        for v in &close[s] {
+            let own = bases[s] + v;
+            let name = points.list(own);
+            names[own as usize] = name;
+            renamed[s] |= name != own;
+        }
+        let mut known: Vec<u32> = close[s].iter().map(|v| names[(bases[s] + v) as usize]).collect();
+        known.sort_unstable();
+        shrunk[s] = known.windows(2).any(|w| w[0] == w[1]);
+    }
+    let named = |s: usize, v: u32| names[(bases[s] + v) as usize];
+    let mut again = false;
+    let mut one = |s: usize, t: &mut Vec<[u32; 3]>, starts: &mut Vec<u32>| -> Result<PolyMesh, Cancelled> {
+        let m = operands[s];
+        job.check()?;
+        // Polygons of both that are the same by now are to come in the same triangles.
+        if shrunk[s] || renamed[s] && t.len() != m.face_count() {
+            let mesh = without_doubles(m, |v| named(s, v));
+            (*t, *starts) = split(&mesh, &points.at, job)?;
+            again = true;
+            return Ok(mesh);
+        }
+        t.par_iter_mut().for_each(|t| *t = t.map(|v| named(s, v)));
+        let corners = m.corners.par_iter().map(|&v| named(s, v)).collect();
+        Ok(PolyMesh { face_starts: m.face_starts.clone(), corners, ..PolyMesh::new() })
+    };
+    let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
+    if again {
+        let surface = |triangles| Surface { triangles, at: &points.at, base: 0 };
+        pairs = near::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
+    }
+    lap("weld");
+    Ok(Common { points, meshes, triangles: [ta, tb], starts: [sa, sb], bounds, pairs })
+}
+
+fn bounds(at: &[DVec3]) -> Span {
+    at.par_chunks(1 << 15).map(|c| Span::of(c.iter().copied())).reduce(|| Span::EMPTY, Span::join)
+}
+
+/// The mesh with other names for its corners, and no corner twice in a row.
+fn without_doubles(m: &PolyMesh, name: impl Fn(u32) -> u32) -> PolyMesh {
+    let mut out = PolyMesh::new();
+    out.corners.reserve(m.corners.len());
+    let mut ring: Vec<u32> = Vec::new();
+    for f in m.faces() {
+        ring.clear();
+        for &c in f {
+            let v = name(c);
+            if ring.last() != Some(&v) {
+                ring.push(v);
+            }
+        }
+        while ring.len() > 1 && ring.first() == ring.last() {
+            ring.pop();
+        }
+        // A face that shrank to an edge keeps its number and has no corners.
+        if ring.len() < 3 {
+            ring.clear();
+        }
+        out.push_face(&ring);
+    }
+    out
+}
+
+/// Triangles, and the first of each face.
+fn split(mesh: &PolyMesh, at: &[DVec3], job: &Job) -> Result<(Vec<[u32; 3]>, Vec<u32>), Cancelled> {
+    let n = mesh.face_count();
+    if mesh.corners.len() == 3 * n && mesh.face_starts.par_windows(2).all(|w| w[1] - w[0] == 3) {
+        let triangles = mesh.corners.par_chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+        return Ok((triangles, (0..=n as u32).collect()));
+    }
+    let mut triangles = Vec::with_capacity(mesh.corners.len());
+    let mut starts = Vec::with_capacity(n + 1);
+    starts.push(0);
+    for (i, f) in mesh.faces().enumerate() {
+        if i % 65_536 == 0 {
+            job.check()?;
+        }
+        match *f {
+            [] => {}
+            [a, b, c] => triangles.push([a, b, c]),
+            _ => triangulate::face(at, f, &mut triangles),
+        }
+        starts.push(triangles.len() as u32);
+    }
+    Ok((triangles, starts))
+}

@@ -1,0 +1,242 @@
+//! A result as a mesh: chosen pieces, turned where the operation asks, and vertices doubled where the solid touches itself, so
+//! that what comes out is an oriented 2-manifold.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::fans;
+use super::points::Sets;
+use crate::PolyMesh;
+use crate::job::{Cancelled, Job};
+use crate::triangulate::area_vector;
+
+/// Which face of which operand a face of the result is, or is a part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Origin {
+    /// 0 for A, 1 for B.
+    pub operand: u8,
+    pub face: u32,
+}
+
+/// Facts of a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Facts {
+    pub volume: f64,
+    pub area: f64,
+    /// Connected shells.
+    pub components: usize,
+    /// Every edge has as many faces on one side as on the other.
+    pub closed: bool,
+    /// Every edge has two faces, every vertex one fan.
+    pub manifold: bool,
+}
+
+/// Makes the chosen faces, whose corners index `at`, a mesh of its own, and says what it is.
+pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Cancelled> {
+    let closed = match fans::degrees(mesh, at.len(), job)? {
+        Some(degrees) => {
+            job.check()?;
+            compact(mesh, at, &degrees);
+            true
+        }
+        None => separate(mesh, at, job)?,
+    };
+    job.check()?;
+    let count = || {
+        let mut shells = Sets::new(mesh.positions.len());
+        for (i, f) in mesh.faces().enumerate() {
+            // What a cancelled job counts is thrown away.
+            if i % 65_536 == 0 && job.cancelled() {
+                return 0;
+            }
+            f.windows(2).for_each(|w| shells.join(w[0], w[1]));
+        }
+        (0..mesh.positions.len() as u32).filter(|&v| shells.root(v) == v).count()
+    };
+    let (components, (volume, area)) = rayon::join(count, || measure(mesh));
+    job.check()?;
+    Ok(Facts { volume, area, components, closed, manifold: closed })
+}
+
+/// Drops the points without a corner.
+fn compact(mesh: &mut PolyMesh, at: &[DVec3], degrees: &[u32]) {
+    let mut next = 0;
+    let names: Vec<u32> = degrees
+        .iter()
+        .map(|&d| {
+            let own = next;
+            next += u32::from(d > 0);
+            own
+        })
+        .collect();
+    mesh.positions = at.iter().zip(degrees).filter(|(_, d)| **d > 0).map(|(p, _)| *p).collect();
+    mesh.corners.par_iter_mut().for_each(|c| *c = names[*c as usize]);
+}
+
+/// Drops unused points, doubles vertices where the surface touches itself, and where that leaves one edge between two pairs of
+/// faces, gives one pair a corner in the middle. Corners of `mesh` index `at`. Returns whether each edge found its partner:
+/// then the mesh is closed, oriented and manifold.
+pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Cancelled> {
+    let n = mesh.corners.len();
+    let mut face_of = vec![0u32; n];
+    let mut next = vec![0u32; n];
+    for f in 0..mesh.face_count() {
+        let (s, e) = (mesh.face_starts[f], mesh.face_starts[f + 1]);
+        for c in s..e {
+            face_of[c as usize] = f as u32;
+            next[c as usize] = if c + 1 == e { s } else { c + 1 };
+        }
+    }
+    let mut half: Vec<(u64, u32)> = (0..n as u32)
+        .into_par_iter()
+        .map(|c| {
+            let (a, b) = (mesh.corners[c as usize], mesh.corners[next[c as usize] as usize]);
+            ((a.min(b) as u64) << 32 | a.max(b) as u64, c)
+        })
+        .collect();
+    // In parts, to be ended between them; then the runs are one.
+    for part in half.chunks_mut(1 << 18) {
+        part.par_sort_unstable();
+        job.check()?;
+    }
+    half.sort();
+    job.check()?;
+    let mut closed = true;
+    let mut several: Vec<(u32, u32)> = Vec::new();
+    let mut sets = Sets::new(n);
+    let mut i = 0;
+    while i < n {
+        let mut j = i + 1;
+        while j < n && half[j].0 == half[i].0 {
+            j += 1;
+        }
+        let group = &half[i..j];
+        let forward = |c: u32| mesh.corners[c as usize] as u64 == group[0].0 >> 32;
+        let mut pair = |g: u32, h: u32| {
+            sets.join(g, next[h as usize]);
+            sets.join(next[g as usize], h);
+        };
+        if group.len() == 2 && forward(group[0].1) != forward(group[1].1) {
+            pair(group[0].1, group[1].1);
+        } else if group.iter().filter(|h| forward(h.1)).count() * 2 != group.len() {
+            closed = false;
+        } else {
+            for (g, h) in around(mesh, at, group, &face_of) {
+                pair(g, h);
+                several.push((g, h));
+            }
+        }
+        i = j;
+    }
+    job.check()?;
+    // One vertex a fan, numbered by first use.
+    let mut id = vec![u32::MAX; n];
+    let mut corners = vec![0u32; n];
+    mesh.positions.clear();
+    for c in 0..n as u32 {
+        let r = sets.root(c) as usize;
+        if id[r] == u32::MAX {
+            id[r] = mesh.positions.len() as u32;
+            mesh.positions.push(at[mesh.corners[c as usize] as usize]);
+        }
+        corners[c as usize] = id[r];
+    }
+    mesh.corners = corners;
+    // Pairs at one edge that found the same ends by other ways.
+    several.sort_unstable_by_key(|&(g, _)| {
+        let (a, b) = (mesh.corners[g as usize], mesh.corners[next[g as usize] as usize]);
+        (a.min(b), a.max(b), g)
+    });
+    let mut middles: Vec<(u32, u32)> = Vec::new();
+    let ends = |g: u32| {
+        let (a, b) = (mesh.corners[g as usize], mesh.corners[next[g as usize] as usize]);
+        (a.min(b), a.max(b))
+    };
+    for w in several.windows(2) {
+        if ends(w[0].0) == ends(w[1].0) {
+            let (a, b) = ends(w[1].0);
+            let v = mesh.positions.len() as u32;
+            let middle = (mesh.positions[a as usize] + mesh.positions[b as usize]) * 0.5;
+            mesh.positions.push(middle);
+            middles.extend([(w[1].0, v), (w[1].1, v)]);
+        }
+    }
+    if !middles.is_empty() {
+        middles.sort_unstable();
+        let old = std::mem::replace(mesh, PolyMesh::new());
+        mesh.positions.clone_from(&old.positions);
+        let (mut face, mut m) = (Vec::new(), 0);
+        for f in 0..old.face_count() {
+            face.clear();
+            for c in old.face_starts[f]..old.face_starts[f + 1] {
+                face.push(old.corners[c as usize]);
+                if middles.get(m).is_some_and(|x| x.0 == c) {
+                    face.push(middles[m].1);
+                    m += 1;
+                }
+            }
+            mesh.push_face(&face);
+        }
+    }
+    Ok(closed)
+}
+
+/// Partners around an edge with more than two faces: those with the solid between them, as Requicha's regularised boundary
+/// has it, so that what only touches comes apart.
+fn around(mesh: &PolyMesh, at: &[DVec3], group: &[(u64, u32)], face_of: &[u32]) -> Vec<(u32, u32)> {
+    let (a, b) = ((group[0].0 >> 32) as usize, (group[0].0 & 0xffff_ffff) as usize);
+    let d = (at[b] - at[a]).normalize_or(DVec3::Z);
+    let (x, y) = d.any_orthonormal_pair();
+    let mut all: Vec<(f64, bool, u32)> = group
+        .iter()
+        .map(|&(_, c)| {
+            let forward = mesh.corners[c as usize] as usize == a;
+            let n = area_vector(at, mesh.face(face_of[c as usize] as usize)).normalize_or_zero();
+            let w = n.cross(if forward { d } else { -d });
+            let (s, t) = (w.dot(x), w.dot(y));
+            // Directions that differ by rounding only are one direction; the solid starts after it.
+            let angle = (t.atan2(s) * 1e9).round();
+            (if angle <= -(std::f64::consts::PI * 1e9).round() { -angle } else { angle }, forward, c)
+        })
+        .collect();
+    all.sort_by(|p, q| p.0.total_cmp(&q.0).then(q.1.cmp(&p.1)).then(p.2.cmp(&q.2)));
+    // Like brackets: a face after which the solid starts, the next free one before which it ends.
+    let (mut open, mut out, mut done) = (Vec::new(), Vec::new(), vec![false; all.len()]);
+    for turn in 0..2 * all.len() {
+        let i = turn % all.len();
+        if done[i] {
+            continue;
+        }
+        if !all[i].1 {
+            if turn < all.len() {
+                open.push(i);
+            }
+        } else if let Some(o) = open.pop() {
+            out.push((all[i].2, all[o].2));
+            done[i] = true;
+            done[o] = true;
+        }
+    }
+    out
+}
+
+/// Volume and area, about the box's centre; faces in the triangles that [`PolyMesh::triangles`] gives.
+pub fn measure(mesh: &PolyMesh) -> (f64, f64) {
+    let (lo, hi) =
+        mesh.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let centre = (lo + hi) * 0.5;
+    let part = |t: &[u32]| {
+        t.chunks_exact(3).fold((0.0, 0.0), |(v, s), t| {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|i| mesh.positions[i as usize] - centre);
+            let n = (b - a).cross(c - a);
+            (v + a.dot(n), s + n.length())
+        })
+    };
+    // Sums of fixed blocks, in order: the same bits with any number of workers.
+    let blocks = |c: &[u32]| c.par_chunks(3 * 4096).map(part).collect();
+    let plain = mesh.corners.len() == 3 * mesh.face_count() && mesh.faces().all(|f| f.len() == 3);
+    let sums: Vec<(f64, f64)> =
+        if plain { blocks(&mesh.corners) } else { blocks(mesh.triangles().0.as_flattened()) };
+    let (v, s) = sums.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    (v / 6.0, s / 2.0)
+}

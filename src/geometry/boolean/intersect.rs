@@ -1,0 +1,340 @@
+//! Where two surfaces meet: points of one on vertices, edges and faces of the other, each found once and known by all
+//! triangles around it; then the segments that cut each triangle.
+
+use glam::DVec3;
+use robust::{Coord3D, orient3d};
+
+use super::points::{Map, Points};
+use crate::job::{Cancelled, Job};
+
+/// What happened to one triangle.
+#[derive(Debug, Default, Clone)]
+pub struct Marks {
+    pub inner: Vec<u32>,
+    pub segments: Vec<(u32, u32)>,
+    /// It lies, within the tolerance, on a face of the other side.
+    pub flat: bool,
+}
+
+#[derive(Debug)]
+pub struct Edge {
+    pub ends: [u32; 2],
+    /// From `ends[0]` to `ends[1]`, once sorted.
+    pub inner: Vec<u32>,
+}
+
+/// All that the two sides share.
+#[derive(Debug, Default)]
+pub struct Meeting {
+    pub edge_ids: Map<(u32, u32), u32>,
+    pub edges: Vec<Edge>,
+    /// Triangle to its marks, a side each.
+    pub marks: [Map<u32, Marks>; 2],
+    /// Pieces of the curve in which the surfaces meet, lesser end first: between two points that both have, and nothing between.
+    pub curve: Map<(u32, u32), ()>,
+    /// Points on both surfaces; one a point.
+    pub shared: Vec<bool>,
+}
+
+pub fn c3(p: DVec3) -> Coord3D<f64> {
+    Coord3D { x: p.x, y: p.y, z: p.z }
+}
+
+struct Finder<'a> {
+    points: &'a mut Points,
+    eps: f64,
+    m: Meeting,
+    crossings: Map<(u32, u32), Option<u32>>,
+    piercings: Map<(u32, u32, u32), Option<u32>>,
+}
+
+/// Where the triangles of the pairs (ascending) meet.
+pub fn meet(
+    triangles: [&[[u32; 3]]; 2],
+    mut pairs: Vec<(u32, u32)>,
+    points: &mut Points,
+    eps: f64,
+    job: &Job,
+) -> Result<Meeting, Cancelled> {
+    let [a, b] = triangles;
+    pairs.retain(|&(i, j)| {
+        let (s, t) = (a[i as usize], b[j as usize]);
+        near_plane(&points.at, s, t, eps) && near_plane(&points.at, t, s, eps)
+    });
+    job.check()?;
+    let mut f =
+        Finder { points, eps, m: Meeting::default(), crossings: Map::default(), piercings: Map::default() };
+    for (n, &(i, j)) in pairs.iter().enumerate() {
+        if n % 1024 == 0 {
+            job.check()?;
+        }
+        f.events([i, j], [a[i as usize], b[j as usize]]);
+    }
+    let mut m = f.m;
+    for e in &mut m.edges {
+        let [p, q] = e.ends;
+        let (o, d) = (points.at[p as usize], points.at[q as usize] - points.at[p as usize]);
+        let along = |i: u32| (points.at[i as usize] - o).dot(d);
+        e.inner.sort_unstable_by(|&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
+        e.inner.dedup();
+        e.inner.retain(|&i| i != p && i != q);
+    }
+    m.shared.resize(points.at.len(), false);
+    for (n, &(i, j)) in pairs.iter().enumerate() {
+        if n % 1024 == 0 {
+            job.check()?;
+        }
+        m.segments(&points.at, [i, j], [a[i as usize], b[j as usize]], eps);
+    }
+    Ok(m)
+}
+
+/// Whether `t` reaches the plane of `s`.
+fn near_plane(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
+    let [a, b, c] = s.map(|i| at[i as usize]);
+    let n = (b - a).cross(c - a).normalize_or_zero();
+    let d = t.map(|i| (at[i as usize] - a).dot(n));
+    d.iter().any(|&x| x <= 2.0 * eps) && d.iter().any(|&x| x >= -2.0 * eps)
+}
+
+impl Finder<'_> {
+    fn edge(&mut self, a: u32, b: u32) -> u32 {
+        let key = (a.min(b), a.max(b));
+        let next = self.m.edges.len() as u32;
+        let id = *self.m.edge_ids.entry(key).or_insert(next);
+        if id == next {
+            self.m.edges.push(Edge { ends: [key.0, key.1], inner: Vec::new() });
+        }
+        id
+    }
+
+    fn p(&self, i: u32) -> DVec3 {
+        self.points.at[i as usize]
+    }
+
+    fn on_edge(&self, p: u32, e: u32) -> bool {
+        let [a, b] = self.m.edges[e as usize].ends;
+        if p == a || p == b {
+            return false;
+        }
+        let (o, d, x) = (self.p(a), self.p(b) - self.p(a), self.p(p));
+        let t = (x - o).dot(d) / d.length_squared();
+        t > 0.0 && t < 1.0 && (o + d * t).distance_squared(x) <= self.eps * self.eps
+    }
+
+    fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2]) {
+        let edges = tris.map(|t| [self.edge(t[0], t[1]), self.edge(t[1], t[2]), self.edge(t[2], t[0])]);
+        let mut touch = [[[false; 3]; 3]; 2];
+        let mut lies = [[false; 3]; 2];
+        for s in 0..2 {
+            self.m.marks[s].entry(ids[s]).or_default();
+            let o = 1 - s;
+            for v in 0..3 {
+                let p = tris[s][v];
+                if tris[o].contains(&p) {
+                    continue;
+                }
+                let mut any = false;
+                for k in 0..3 {
+                    if self.on_edge(p, edges[o][k]) {
+                        self.m.edges[edges[o][k] as usize].inner.push(p);
+                        touch[s][v][k] = true;
+                        any = true;
+                    }
+                }
+                lies[s][v] = any || self.in_face(p, tris[o]);
+                if lies[s][v] && !any {
+                    self.m.marks[o].entry(ids[o]).or_default().inner.push(p);
+                }
+            }
+        }
+        let mut crossed = [[false; 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                let (a, b) = (edges[0][i], edges[1][j]);
+                if a == b
+                    || touch[0][i][j]
+                    || touch[0][(i + 1) % 3][j]
+                    || touch[1][j][i]
+                    || touch[1][(j + 1) % 3][i]
+                {
+                    crossed[i][j] = true;
+                    continue;
+                }
+                if let Some(p) = self.crossing(a, b) {
+                    crossed[i][j] = true;
+                    self.m.edges[a as usize].inner.push(p);
+                    self.m.edges[b as usize].inner.push(p);
+                }
+            }
+        }
+        for s in 0..2 {
+            let o = 1 - s;
+            for i in 0..3 {
+                let met = (0..3).any(|j| if s == 0 { crossed[i][j] } else { crossed[j][i] });
+                if !met && !lies[s][i] && !lies[s][(i + 1) % 3] {
+                    self.pierce(s, edges[s][i], ids[o], tris[o]);
+                }
+            }
+        }
+    }
+
+    /// The point where two edges cross, within the tolerance.
+    fn crossing(&mut self, a: u32, b: u32) -> Option<u32> {
+        let (ea, eb) = (self.m.edges[a as usize].ends, self.m.edges[b as usize].ends);
+        if ea.contains(&eb[0]) || ea.contains(&eb[1]) {
+            return None;
+        }
+        if let Some(&known) = self.crossings.get(&(a, b)) {
+            return known;
+        }
+        let (o, u) = (self.p(ea[0]), self.p(ea[1]) - self.p(ea[0]));
+        let (q, v) = (self.p(eb[0]), self.p(eb[1]) - self.p(eb[0]));
+        let n = u.cross(v);
+        let (nn, w) = (n.length_squared(), q - o);
+        if nn <= 1e-24 * u.length_squared() * v.length_squared() {
+            return None;
+        }
+        let gap = w.dot(n);
+        if gap * gap > self.eps * self.eps * nn {
+            return None;
+        }
+        let s = w.cross(v).dot(n) / nn;
+        let t = w.cross(u).dot(n) / nn;
+        if !(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) {
+            return None;
+        }
+        let p = self.points.point((o + u * s + q + v * t) * 0.5);
+        self.crossings.insert((a, b), Some(p));
+        Some(p)
+    }
+
+    /// Where an edge of side `s` goes through the inside of triangle `t`.
+    fn pierce(&mut self, s: usize, e: u32, id: u32, t: [u32; 3]) {
+        let ends = self.m.edges[e as usize].ends;
+        if t.contains(&ends[0]) || t.contains(&ends[1]) {
+            return;
+        }
+        let key = (s as u32, e, id);
+        let found = match self.piercings.get(&key) {
+            Some(&k) => k,
+            None => {
+                let [a, b, c] = t.map(|i| self.p(i));
+                let (p, q) = (self.p(ends[0]), self.p(ends[1]));
+                let height = |x: DVec3| orient3d(c3(a), c3(b), c3(c), c3(x));
+                let turn = |i: DVec3, j: DVec3| orient3d(c3(p), c3(q), c3(i), c3(j));
+                let (x, y) = (height(p), height(q));
+                // An end that lies on the triangle is known to; all else is as the numbers say, exactly.
+                let through = (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0);
+                let inside = through && {
+                    let w = [turn(a, b), turn(b, c), turn(c, a)];
+                    w.iter().all(|&x| x > 0.0) || w.iter().all(|&x| x < 0.0)
+                };
+                let k = inside.then(|| self.points.point(p + (q - p) * (x / (x - y))));
+                self.piercings.insert(key, k);
+                k
+            }
+        };
+        if let Some(p) = found {
+            self.m.edges[e as usize].inner.push(p);
+            self.m.marks[1 - s].entry(id).or_default().inner.push(p);
+        }
+    }
+
+    fn in_face(&self, p: u32, t: [u32; 3]) -> bool {
+        let [a, b, c] = t.map(|i| self.p(i));
+        let (n, x) = ((b - a).cross(c - a), self.p(p));
+        let d = (x - a).dot(n);
+        d * d <= self.eps * self.eps * n.length_squared()
+            && [(a, b), (b, c), (c, a)].iter().all(|&(i, j)| (j - i).cross(x - i).dot(n) > 0.0)
+    }
+}
+
+impl Meeting {
+    pub fn edge_of(&self, a: u32, b: u32) -> Option<u32> {
+        self.edge_ids.get(&(a.min(b), a.max(b))).copied()
+    }
+
+    fn closure(&self, side: usize, id: u32, t: [u32; 3], out: &mut Vec<u32>) {
+        out.clear();
+        out.extend(t);
+        for k in 0..3 {
+            if let Some(e) = self.edge_of(t[k], t[(k + 1) % 3]) {
+                out.extend(&self.edges[e as usize].inner);
+            }
+        }
+        out.extend(self.marks[side].get(&id).into_iter().flat_map(|m| &m.inner));
+        out.sort_unstable();
+        out.dedup();
+    }
+
+    /// Whether both points are on one and the same edge of the triangle.
+    fn on_one_edge(&self, t: [u32; 3], p: u32, q: u32) -> bool {
+        (0..3).any(|k| {
+            self.edge_of(t[k], t[(k + 1) % 3]).is_some_and(|e| {
+                let e = &self.edges[e as usize];
+                let on = |x: u32| e.ends.contains(&x) || e.inner.contains(&x);
+                on(p) && on(q)
+            })
+        })
+    }
+
+    fn segments(&mut self, at: &[DVec3], ids: [u32; 2], tris: [[u32; 3]; 2], eps: f64) {
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        self.closure(0, ids[0], tris[0], &mut x);
+        self.closure(1, ids[1], tris[1], &mut y);
+        x.retain(|i| y.binary_search(i).is_ok());
+        for &i in &x {
+            self.shared[i as usize] = true;
+        }
+        if x.len() < 2 {
+            return;
+        }
+        // The farthest two, and whether the others are on their line.
+        let mut far = (0.0, x[0], x[1]);
+        for (n, &i) in x.iter().enumerate() {
+            for &j in &x[n + 1..] {
+                let d = at[i as usize].distance_squared(at[j as usize]);
+                if d > far.0 {
+                    far = (d, i, j);
+                }
+            }
+        }
+        let o = at[far.1 as usize];
+        let d = (at[far.2 as usize] - o) / far.0.sqrt();
+        let straight = x.iter().all(|&i| {
+            let w = at[i as usize] - o;
+            (w - d * w.dot(d)).length() <= 4.0 * eps
+        });
+        let mut found: [Vec<(u32, u32)>; 2] = Default::default();
+        let chain = |list: &mut Vec<u32>, d: DVec3, out: &mut Vec<(u32, u32)>| {
+            list.sort_by(|&i, &j| at[i as usize].dot(d).total_cmp(&at[j as usize].dot(d)).then(i.cmp(&j)));
+            out.extend(list.windows(2).map(|w| (w[0], w[1])));
+        };
+        if straight {
+            chain(&mut x, d, &mut found[0]);
+            found[1] = found[0].clone();
+        } else {
+            for s in 0..2 {
+                let t = tris[1 - s];
+                self.marks[s].entry(ids[s]).or_default().flat = true;
+                for k in 0..3 {
+                    let Some(e) = self.edge_of(t[k], t[(k + 1) % 3]) else { continue };
+                    let e = &self.edges[e as usize];
+                    let mut on: Vec<u32> =
+                        x.iter().copied().filter(|i| e.ends.contains(i) || e.inner.contains(i)).collect();
+                    let d = at[e.ends[1] as usize] - at[e.ends[0] as usize];
+                    chain(&mut on, d, &mut found[s]);
+                }
+            }
+        }
+        for s in 0..2 {
+            for (p, q) in std::mem::take(&mut found[s]) {
+                self.curve.insert((p.min(q), p.max(q)), ());
+                if !self.on_one_edge(tris[s], p, q) {
+                    self.marks[s].entry(ids[s]).or_default().segments.push((p.min(q), p.max(q)));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The faces of both operands near the cut: whole where nothing cuts them, in cells where something does.
+
+use glam::DVec3;
+
+use super::planar::{Cell, cells, flatten};
+use crate::PolyMesh;
+use crate::boolean::intersect::Meeting;
+use crate::job::{Cancelled, Job};
+
+/// Where a piece lies as seen from the other operand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Place {
+    Inside,
+    Outside,
+    /// On its surface, facing the same way.
+    Same,
+    /// On its surface, facing the other way.
+    Against,
+}
+
+#[derive(Debug, Clone)]
+pub struct Piece {
+    pub face: u32,
+    pub shape: Shape,
+    pub place: Place,
+}
+
+#[derive(Debug, Clone)]
+pub enum Shape {
+    /// The face as it came.
+    Whole,
+    /// The face, with more corners on its border.
+    Border(Vec<u32>),
+    Cell(Cell),
+}
+
+impl Piece {
+    /// All loops, whichever the shape.
+    pub fn loops<'a>(&'a self, face: impl FnOnce(u32) -> &'a [u32]) -> Vec<&'a [u32]> {
+        match &self.shape {
+            Shape::Whole => vec![face(self.face)],
+            Shape::Border(b) => vec![b],
+            Shape::Cell(c) => std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect(),
+        }
+    }
+}
+
+/// Cuts the faces of one operand that the other may meet. `mesh` has its corners over the common points; `starts[f]` is the
+/// first triangle of face `f`. A face with a corner on the other surface is among them.
+pub fn cut(
+    mesh: &PolyMesh,
+    side: usize,
+    triangles: &[[u32; 3]],
+    starts: &[u32],
+    m: &Meeting,
+    points: &[DVec3],
+    flat: impl Fn(usize) -> bool,
+    job: &Job,
+) -> Result<Vec<Piece>, Cancelled> {
+    let mut out = Vec::new();
+    let marks = &m.marks[side];
+    let mut near: Vec<u32> = marks.keys().map(|t| starts.partition_point(|s| s <= t) as u32 - 1).collect();
+    near.sort_unstable();
+    near.dedup();
+    for (n, f) in near.into_iter().map(|f| f as usize).enumerate() {
+        if n % 1024 == 0 {
+            job.check()?;
+        }
+        let mut push = |shape| out.push(Piece { face: f as u32, shape, place: Place::Outside });
+        let range = starts[f]..starts[f + 1];
+        let own = &triangles[range.start as usize..range.end as usize];
+        let split = range.clone().any(|t| marks.get(&t).is_some_and(|k| k.flat || !k.segments.is_empty()))
+            || (range.len() > 1 && along_diagonal(mesh.face(f), own, m));
+        if !split {
+            let border = ring(mesh.face(f), m);
+            if border.len() == mesh.face(f).len() {
+                push(Shape::Whole);
+                continue;
+            }
+            if flat(f) {
+                push(Shape::Border(border));
+                continue;
+            }
+        }
+        for t in range {
+            let tri = triangles[t as usize];
+            let ring = ring(&tri, m);
+            let none = Vec::new();
+            let segments = marks.get(&t).map_or(&none, |k| &k.segments);
+            if segments.is_empty() {
+                push(Shape::Cell(Cell { outer: ring, holes: Vec::new() }));
+                continue;
+            }
+            let [a, b, c] = tri.map(|i| points[i as usize]);
+            let flat = flatten((b - a).cross(c - a));
+            for cell in cells(&ring, segments, |i| flat(points[i as usize])) {
+                push(Shape::Cell(cell));
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Whether the cut runs along a diagonal by which the face came in triangles.
+fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Meeting) -> bool {
+    let side = |a: u32, b: u32| {
+        (0..corners.len()).any(|i| {
+            let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
+            (p, q) == (a, b) || (q, p) == (a, b)
+        })
+    };
+    triangles.iter().any(|t| {
+        (0..3).any(|k| {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            !side(a, b) && {
+                let line = ring(&[a, b], m);
+                // There and back: the second half repeats the first.
+                line.windows(2).any(|w| m.curve.contains_key(&(w[0].min(w[1]), w[0].max(w[1]))))
+            }
+        })
+    })
+}
+
+/// A loop with the points that the meeting found on its edges.
+fn ring(corners: &[u32], m: &Meeting) -> Vec<u32> {
+    let mut out = Vec::with_capacity(corners.len() + 2);
+    for (i, &a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        out.push(a);
+        if let Some(e) = m.edge_of(a, b) {
+            let e = &m.edges[e as usize];
+            if e.ends[0] == a {
+                out.extend(&e.inner);
+            } else {
+                out.extend(e.inner.iter().rev());
+            }
+        }
+    }
+    out
+}
+
+/// The triangles of a polygon with holes.
+pub fn triangles(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<[u32; 3]> {
+    let mut out = Vec::new();
+    if loops.len() == 1 {
+        crate::triangulate::face(at, loops[0], &mut out);
+    } else if let Some(made) = super::planar::delaunay(loops, n, at) {
+        out = made;
+    } else {
+        crate::triangulate::face(at, &bridged(loops, n, at), &mut out);
+    }
+    out
+}
+
+/// Holes joined to the border by the shortest bridges that cross nothing: one loop that runs along each bridge twice.
+fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
+    let flat = flatten(n);
+    let spot = |v: u32| flat(at[v as usize]);
+    let mut ring = loops[0].to_vec();
+    let mut left: Vec<&[u32]> = loops[1..].to_vec();
+    while !left.is_empty() {
+        let mut ways: Vec<(f64, usize, usize, usize)> = Vec::new();
+        for (h, hole) in left.iter().enumerate() {
+            for (i, &p) in ring.iter().enumerate() {
+                for (j, &q) in hole.iter().enumerate() {
+                    ways.push((at[p as usize].distance_squared(at[q as usize]), i, h, j));
+                }
+            }
+        }
+        ways.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
+        let crosses = |p: u32, q: u32| {
+            std::iter::once(&ring[..]).chain(left.iter().copied()).any(|l| {
+                (0..l.len()).any(|k| {
+                    let (a, b) = (l[k], l[(k + 1) % l.len()]);
+                    if [a, b].contains(&p) || [a, b].contains(&q) {
+                        return false;
+                    }
+                    let turn = |x: u32, y: u32, z: u32| robust::orient2d(spot(x), spot(y), spot(z));
+                    turn(p, q, a) * turn(p, q, b) <= 0.0 && turn(a, b, p) * turn(a, b, q) <= 0.0
+                })
+            })
+        };
+        // Where a ring's corner comes twice, the bridge must start in the right one of its angles.
+        let opens = |i: usize, q: u32| {
+            let len = ring.len();
+            let (p, v, x) = (spot(ring[(i + len - 1) % len]), spot(ring[i]), spot(ring[(i + 1) % len]));
+            let turn = robust::orient2d(p, v, x);
+            let (l, r) = (robust::orient2d(p, v, spot(q)), robust::orient2d(v, x, spot(q)));
+            if turn > 0.0 { l > 0.0 && r > 0.0 } else { l > 0.0 || r > 0.0 }
+        };
+        let way = ways.iter().find(|w| opens(w.1, left[w.2][w.3]) && !crosses(ring[w.1], left[w.2][w.3]));
+        let &(_, i, h, j) = way.unwrap_or(&ways[0]);
+        let hole = left.remove(h);
+        let mut next = ring[..=i].to_vec();
+        next.extend(hole[j..].iter().chain(&hole[..=j]));
+        next.extend(&ring[i..]);
+        ring = next;
+    }
+    ring
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::triangulate::area_vector;
+
+    #[test]
+    fn a_thin_hole_is_left_out_once() {
+        let at: Vec<DVec3> = [
+            [0., 3., 1.],
+            [2., 2., 4.],
+            [3., 1., 4.],
+            [26. / 11., 16. / 11., 38. / 11.],
+            [14. / 9., 19. / 9., 3.],
+            [11. / 6., 11. / 6., 3.],
+        ]
+        .map(DVec3::from)
+        .to_vec();
+        let loops: [&[u32]; 2] = [&[0, 1, 2], &[3, 4, 5]];
+        let want: DVec3 = loops.iter().map(|l| area_vector(&at, l)).sum();
+        let made = triangles(&loops, want, &at);
+        let got: f64 = made.iter().map(|t| area_vector(&at, t).length()).sum();
+        assert!((got - want.length()).abs() < 1e-12, "{made:?}: {got} instead of {}", want.length());
+        // A corner of the hole is in line with one of the border: no triangle is that line.
+        assert!(made.iter().all(|t| area_vector(&at, t).length() > 1e-6), "{made:?}");
+    }
+}

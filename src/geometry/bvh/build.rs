@@ -1,0 +1,132 @@
+//! From triangles to the wide tree.
+
+use glam::Vec3;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+use super::collapse::Plan;
+use super::{LEAF, NO_TRIANGLE, Node, Pack, WideTree};
+use crate::TriMesh;
+use crate::job::{Cancelled, Job};
+
+/// Share of the nodes that each reinsertion pass looks at.
+const REINSERTION: f32 = 0.02;
+/// Boxes grow by this share of the largest coordinate: the triangle test's shear rounds a corner by less.
+pub(super) const PAD: f32 = 1e-6;
+
+pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
+    let corners = |t: u32| -> Option<[Vec3; 3]> {
+        let [a, b, c] = mesh.triangles[t as usize].map(|v| mesh.positions.get(v as usize).copied());
+        Some([a?, b?, c?])
+            .filter(|c| c.iter().all(|p| p.is_finite() && p.abs().max_element() <= super::REACH as f32))
+    };
+    let mut used = Vec::with_capacity(mesh.triangles.len());
+    let mut boxes = Vec::with_capacity(mesh.triangles.len());
+    let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for t in 0..mesh.triangles.len() as u32 {
+        let Some([a, b, c]) = corners(t) else { continue };
+        let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+        bounds = (bounds.0.min(lo), bounds.1.max(hi));
+        boxes.push(Aabb::new(lo.into(), hi.into()));
+        used.push(t);
+    }
+    let mut tree = WideTree { nodes: Vec::new(), packs: Vec::new(), bounds, stack: 0, scalar: false };
+    if used.is_empty() {
+        return Ok(tree);
+    }
+    job.check()?;
+    let count = boxes.len();
+    // A search threshold above 0 ruins the tree of long thin triangles, the surface of most mechanical parts.
+    let mut binary = PlocBuilder::with_capacity(count).build(
+        PlocSearchDistance::Low,
+        &boxes,
+        (0..count as u32).collect(),
+        SortPrecision::U64,
+        0,
+    );
+    job.check()?;
+    ReinsertionOptimizer::default().run(&mut binary, REINSERTION, Some(vec![1.0, 0.5, 0.25]));
+    job.check()?;
+    let plan = Plan::new(&binary);
+    job.check()?;
+
+    let (lo, hi) = bounds;
+    let pad = Vec3::splat(lo.abs().max(hi.abs()).max_element() * PAD);
+    let mut maker =
+        Maker { binary: &binary, plan: &plan, used: &used, pad, corners, tree: &mut tree, depth: 0 };
+    maker.tree.nodes.reserve(count / 6);
+    maker.tree.packs.reserve(count / 2);
+    maker.root();
+    tree.stack = maker_stack(maker.depth);
+    Ok(tree)
+}
+
+/// Seven wait on each level.
+fn maker_stack(depth: usize) -> usize {
+    depth * 7 + 8
+}
+
+struct Maker<'a, C> {
+    binary: &'a Bvh2,
+    plan: &'a Plan<'a>,
+    used: &'a [u32],
+    pad: Vec3,
+    corners: C,
+    tree: &'a mut WideTree,
+    depth: usize,
+}
+
+impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
+    fn root(&mut self) {
+        // (binary node, wide node to fill, depth); a work list, for the binary tree may be deeper than the thread's stack.
+        let mut todo = vec![(0usize, 0usize, 1usize)];
+        self.tree.nodes.push(empty());
+        while let Some((from, to, depth)) = todo.pop() {
+            self.depth = self.depth.max(depth);
+            let (children, n) = self.plan.children(from);
+            for (lane, &c) in children[..n].iter().enumerate() {
+                let b = self.binary.nodes[c];
+                let child = if self.plan.is_leaf(c) {
+                    self.leaf(c)
+                } else {
+                    let index = self.tree.nodes.len();
+                    self.tree.nodes.push(empty());
+                    todo.push((c, index, depth + 1));
+                    index as u32
+                };
+                let node = &mut self.tree.nodes[to];
+                node.child[lane] = child;
+                let (lo, hi) = (b.min - self.pad, b.max + self.pad);
+                for axis in 0..3 {
+                    node.planes[axis][lane] = lo[axis];
+                    node.planes[3 + axis][lane] = hi[axis];
+                }
+            }
+        }
+    }
+
+    fn leaf(&mut self, from: usize) -> u32 {
+        let mut pack = Pack { v: [[[f32::NAN; 4]; 3]; 3], id: [NO_TRIANGLE; 4] };
+        let (ids, count) = self.plan.triangles(from);
+        for (lane, &i) in ids[..count].iter().enumerate() {
+            let t = self.used[i as usize];
+            let Some(corners) = (self.corners)(t) else { continue };
+            pack.id[lane] = t;
+            for (c, p) in corners.iter().enumerate() {
+                for axis in 0..3 {
+                    pack.v[c][axis][lane] = p[axis];
+                }
+            }
+        }
+        self.tree.packs.push(pack);
+        LEAF | (self.tree.packs.len() - 1) as u32
+    }
+}
+
+fn empty() -> Node {
+    let mut planes = [[f32::INFINITY; 8]; 6];
+    planes[3..].fill([f32::NEG_INFINITY; 8]);
+    Node { planes, child: [0; 8] }
+}

@@ -1,0 +1,180 @@
+//! The eight-wide tree: rays and closest points against a triangle mesh that does not change.
+//!
+//! Guaranteed: a ray never slips between two triangles that share an edge or a vertex (watertight test); the answer is the
+//! same with and without AVX2 and does not depend on the tree's shape (of two triangles at the same distance the one of
+//! lower index wins). Not guaranteed: distances better than single precision gives them, about 1e-6 of the larger of the
+//! mesh's extent and the ray's distance from it.
+//!
+//! Built as a binary tree by locally ordered clustering (Meister and Bittner 2018, crate `obvhs`), improved by a short
+//! reinsertion (Meister and Bittner 2017), then collapsed into wide nodes at the least expected cost.
+
+mod build;
+mod closest;
+mod collapse;
+mod interleaved;
+mod refit;
+mod traverse;
+
+use glam::Vec3;
+
+use crate::TriMesh;
+use crate::job::{Cancelled, Job};
+use crate::simd::wide;
+pub use refit::Parents;
+pub use traverse::Stack;
+
+pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};
+pub use closest::{Feature, Nearest, REACH, nearest_on_triangle};
+
+/// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <= t_max` count.
+#[derive(Debug, Clone, Copy)]
+pub struct Ray {
+    pub origin: Vec3,
+    pub dir: Vec3,
+    pub t_min: f32,
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// Unbounded ahead, from the origin itself.
+    pub fn new(origin: Vec3, dir: Vec3) -> Self {
+        Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY }
+    }
+}
+
+/// Where a ray met a triangle: at `origin + t * dir`, and at `(1 - u - v) a + u b + v c` of its corners.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TreeHit {
+    pub t: f32,
+    /// Index into the mesh's `triangles`.
+    pub triangle: u32,
+    pub u: f32,
+    pub v: f32,
+}
+
+/// The tree. It keeps its own copy of the corners, in the order in which rays meet them, and no reference to the mesh.
+#[derive(Debug, Clone)]
+pub struct WideTree {
+    nodes: Vec<Node>,
+    packs: Vec<Pack>,
+    bounds: (Vec3, Vec3),
+    /// Entries that a traversal can have waiting at once.
+    stack: usize,
+    scalar: bool,
+}
+
+/// Bytes of leaves from which on a tree is read from memory rather than from the processor's caches.
+const CACHED: usize = 16 << 20;
+
+impl WideTree {
+    /// Builds the tree in about 0.35 us a triangle on one core. Triangles with a coordinate that is not finite or is beyond [`REACH`], or with a
+    /// corner index past the end, are left out: no ray and no point meets them. `job` is looked at between the phases, of
+    /// which none takes more than about 40 ms per 100,000 triangles.
+    pub fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
+        build::build(mesh, job)
+    }
+
+    /// The same tree that answers without AVX2; for the comparison of the two.
+    pub fn without_simd(mut self) -> WideTree {
+        self.scalar = true;
+        self
+    }
+
+    /// Lower and upper corner of the box around all triangles; an empty tree has them inverted (+inf, -inf).
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.bounds
+    }
+
+    /// No triangle at all.
+    pub fn is_empty(&self) -> bool {
+        self.packs.is_empty()
+    }
+
+    /// The wide nodes. Node 0 is the root; children come after their parent. The boxes are padded by about 1e-6 of the extent.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The leaves, each of one to four triangles; unused lanes hold NaN and [`NO_TRIANGLE`].
+    pub fn packs(&self) -> &[Pack] {
+        &self.packs
+    }
+
+    /// Entries that a depth-first traversal needs at most when it pushes every child of a node at once.
+    pub fn stack_need(&self) -> usize {
+        self.stack
+    }
+
+    /// Whether plain Rust was asked for, to be handed to [`wide::dispatch`].
+    pub fn scalar(&self) -> bool {
+        self.scalar
+    }
+
+    /// The nearest hit on a triangle that `accept` takes.
+    pub fn closest_hit(&self, ray: Ray, accept: impl Fn(u32) -> bool) -> Option<TreeHit> {
+        self.closest_hit_with(&mut Stack::new(), ray, accept)
+    }
+
+    /// The same for many rays: `stack` is reused, which saves about a tenth of a short ray's time.
+    #[inline]
+    pub fn closest_hit_with(
+        &self,
+        stack: &mut Stack,
+        ray: Ray,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<TreeHit> {
+        let stack = stack.slots(self);
+        wide::dispatch(self.scalar, traverse::Closest { tree: self, ray: &ray, accept, stack })
+    }
+
+    /// The nearest hit of each ray on a triangle that `accept` takes (it is told the ray's index); `hits` becomes as long
+    /// as `rays`. The same answers as [`Self::closest_hit`]; in a tree too large for the caches a fifth faster, for there
+    /// rays take turns.
+    #[inline]
+    pub fn closest_hits(
+        &self,
+        stack: &mut Stack,
+        rays: &[Ray],
+        accept: impl Fn(usize, u32) -> bool,
+        hits: &mut Vec<Option<TreeHit>>,
+    ) {
+        hits.clear();
+        hits.resize(rays.len(), None);
+        let (tree, stack) = (self, stack.slots(self));
+        if self.packs.len() * size_of::<Pack>() < CACHED {
+            wide::dispatch(self.scalar, traverse::OneByOne { tree, rays, accept, stack, hits });
+        } else {
+            wide::dispatch(self.scalar, interleaved::Several { tree, rays, accept, stack, hits });
+        }
+    }
+
+    /// Any hit on a triangle that `accept` takes: is the way between `t_min` and `t_max` blocked?
+    #[inline]
+    pub fn any_hit(&self, ray: Ray, accept: impl Fn(u32) -> bool) -> bool {
+        let mut found = false;
+        self.each_hit(ray, |hit| {
+            found |= accept(hit.triangle);
+            !found
+        });
+        found
+    }
+
+    /// Every hit, each triangle once, in no order; `visit` returns whether to go on.
+    #[inline]
+    pub fn each_hit(&self, ray: Ray, visit: impl FnMut(TreeHit) -> bool) {
+        let mut stack = Stack::new();
+        let stack = stack.slots(self);
+        wide::dispatch(self.scalar, traverse::Each { tree: self, ray: &ray, visit, stack });
+    }
+
+    /// Every hit, nearest first; equal distances by triangle.
+    pub fn all_hits(&self, ray: Ray) -> Vec<TreeHit> {
+        let mut hits = Vec::new();
+        self.each_hit(ray, |hit| {
+            hits.push(hit);
+            true
+        });
+        hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        hits
+    }
+}

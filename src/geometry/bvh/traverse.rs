@@ -1,0 +1,254 @@
+//! The walk down the tree, written once and compiled for each processor.
+
+use super::{LEAF, Node, Pack, Ray, TreeHit, WideTree};
+use crate::simd::wide::{Prepared, Wide, WideWork};
+
+/// A subtree still to visit: in the upper half where the ray enters it, in the lower half its place. As whole numbers
+/// two of them are put in order without a branch that the processor would have to guess. Floats that are not negative
+/// have the order of their bits; where the ray may start behind its origin the order is only less good.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Waiting(i64);
+
+impl Waiting {
+    #[inline(always)]
+    pub fn new(at: u32, near: f32) -> Self {
+        Waiting((near.to_bits() as i64) << 32 | at as i64)
+    }
+
+    #[inline(always)]
+    pub fn at(self) -> u32 {
+        self.0 as u32
+    }
+
+    #[inline(always)]
+    pub fn near(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+}
+
+/// The subtrees still to visit; kept between rays so that it is made once.
+#[derive(Debug, Clone, Default)]
+pub struct Stack(Vec<Waiting>);
+
+impl Stack {
+    pub fn new() -> Self {
+        Stack::default()
+    }
+
+    #[inline(always)]
+    pub(super) fn slots(&mut self, tree: &WideTree) -> &mut [Waiting] {
+        let need = tree.stack * crate::bvh::interleaved::LANES;
+        if self.0.len() < need {
+            self.0.resize(need, Waiting(0));
+        }
+        &mut self.0
+    }
+}
+
+/// Visits leaves roughly nearest first until none is nearer than the bound that `leaf` returns.
+#[inline(always)]
+fn walk<W: Wide>(
+    w: W,
+    tree: &WideTree,
+    ray: &Ray,
+    slots: &mut [Waiting],
+    mut leaf: impl FnMut(&Prepared, u32, f32) -> f32,
+) {
+    if tree.nodes.is_empty() {
+        return;
+    }
+    let ready = Prepared::new(ray.origin.to_array(), ray.dir.to_array(), ray.t_min);
+    let mut t_max = ray.t_max;
+    let mut near = [0.0f32; 8];
+    let mut top = 0;
+    let mut at = 0u32;
+    'next: loop {
+        // Down, until a leaf or a dead end.
+        while at & LEAF == 0 {
+            let node = &tree.nodes[at as usize];
+            let mask = w.boxes(&ready, node, t_max, &mut near);
+            if mask == 0 {
+                break;
+            }
+            at = open(w, tree, node, mask, &near, slots, &mut top);
+        }
+        if at & LEAF != 0 {
+            t_max = leaf(&ready, at & !LEAF, t_max);
+            if t_max < ray.t_min {
+                return;
+            }
+        }
+        loop {
+            if top == 0 {
+                return;
+            }
+            top -= 1;
+            if slots[top].near() <= t_max {
+                at = slots[top].at();
+                continue 'next;
+            }
+        }
+    }
+}
+
+/// Of the children in `mask`, which is not empty, the nearest, to go on with; the others wait, the nearest of them on top.
+#[inline(always)]
+pub(super) fn open<W: Wide>(
+    w: W,
+    tree: &WideTree,
+    node: &Node,
+    mut mask: u32,
+    near: &[f32; 8],
+    slots: &mut [Waiting],
+    top: &mut usize,
+) -> u32 {
+    let child = |mask: u32| {
+        let i = mask.trailing_zeros() as usize & 7;
+        Waiting::new(node.child[i], near[i])
+    };
+    let mut best = child(mask);
+    mask &= mask - 1;
+    if mask == 0 {
+        return best.at();
+    }
+    let other = child(mask);
+    mask &= mask - 1;
+    let base = *top;
+    *top += 1;
+    slots[base] = best.max(other);
+    fetch(w, tree, slots[base].at());
+    best = best.min(other);
+    while mask != 0 {
+        let other = child(mask);
+        mask &= mask - 1;
+        let one = best.max(other);
+        best = best.min(other);
+        let mut j = *top;
+        while j > base && slots[j - 1] < one {
+            slots[j] = slots[j - 1];
+            j -= 1;
+        }
+        slots[j] = one;
+        fetch(w, tree, one.at());
+        *top += 1;
+    }
+    best.at()
+}
+
+/// Asks for what is visited later, before it is needed.
+#[inline(always)]
+pub(super) fn fetch<W: Wide>(w: W, tree: &WideTree, at: u32) {
+    if at & LEAF == 0 {
+        w.fetch(&tree.nodes, at as usize);
+    } else {
+        w.fetch(&tree.packs, (at & !LEAF) as usize);
+    }
+}
+
+/// The nearest of a leaf's triangles and of what was found before; the new bound.
+#[inline(always)]
+pub(super) fn nearest_of<W: Wide>(
+    w: W,
+    ready: &Prepared,
+    pack: &Pack,
+    mut t_max: f32,
+    best: &mut Option<TreeHit>,
+    accept: impl Fn(u32) -> bool,
+) -> f32 {
+    let hits = w.triangles(ready, pack, t_max);
+    let mut mask = hits.mask;
+    while mask != 0 {
+        let i = mask.trailing_zeros() as usize & 3;
+        mask &= mask - 1;
+        let (t, triangle) = (hits.t[i], pack.id[i]);
+        let nearer = best.is_none_or(|b| t < b.t || (t == b.t && triangle < b.triangle));
+        if nearer && accept(triangle) {
+            *best = Some(TreeHit { t, triangle, u: hits.u[i], v: hits.v[i] });
+            t_max = t;
+        }
+    }
+    t_max
+}
+
+pub(super) struct Closest<'a, A> {
+    pub tree: &'a WideTree,
+    pub ray: &'a Ray,
+    pub accept: A,
+    pub stack: &'a mut [Waiting],
+}
+
+impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
+    type Out = Option<TreeHit>;
+
+    #[inline(always)]
+    fn run<W: Wide>(self, w: W) -> Option<TreeHit> {
+        closest(w, self.tree, self.ray, self.stack, self.accept)
+    }
+}
+
+#[inline(always)]
+fn closest<W: Wide>(
+    w: W,
+    tree: &WideTree,
+    ray: &Ray,
+    stack: &mut [Waiting],
+    accept: impl Fn(u32) -> bool,
+) -> Option<TreeHit> {
+    let mut best = None::<TreeHit>;
+    walk(w, tree, ray, stack, |ready, pack, t_max| {
+        nearest_of(w, ready, &tree.packs[pack as usize], t_max, &mut best, &accept)
+    });
+    best
+}
+
+/// The nearest hits of many rays, one after the other.
+pub(super) struct OneByOne<'a, A> {
+    pub tree: &'a WideTree,
+    pub rays: &'a [Ray],
+    /// Which triangles ray `i` may hit.
+    pub accept: A,
+    pub stack: &'a mut [Waiting],
+    /// One for each ray.
+    pub hits: &'a mut [Option<TreeHit>],
+}
+
+impl<A: Fn(usize, u32) -> bool> WideWork for OneByOne<'_, A> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<W: Wide>(self, w: W) {
+        for (i, (ray, hit)) in self.rays.iter().zip(self.hits).enumerate() {
+            *hit = closest(w, self.tree, ray, self.stack, |t| (self.accept)(i, t));
+        }
+    }
+}
+
+pub(super) struct Each<'a, V> {
+    pub tree: &'a WideTree,
+    pub ray: &'a Ray,
+    pub visit: V,
+    pub stack: &'a mut [Waiting],
+}
+
+impl<V: FnMut(TreeHit) -> bool> WideWork for Each<'_, V> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<W: Wide>(mut self, w: W) {
+        let tree = self.tree;
+        walk(w, tree, self.ray, self.stack, |ready, pack, t_max| {
+            let pack = &tree.packs[pack as usize];
+            let hits = w.triangles(ready, pack, t_max);
+            let mut mask = hits.mask;
+            while mask != 0 {
+                let i = mask.trailing_zeros() as usize & 3;
+                mask &= mask - 1;
+                if !(self.visit)(TreeHit { t: hits.t[i], triangle: pack.id[i], u: hits.u[i], v: hits.v[i] }) {
+                    // Nothing is nearer than this: the walk ends.
+                    return f32::NEG_INFINITY;
+                }
+            }
+            t_max
+        });
+    }
+}

@@ -1,0 +1,120 @@
+//! Signed distance to a mesh: negative inside, positive outside, zero on the surface.
+//!
+//! Guaranteed: the distance is that of an exhaustive search in double precision; the sign does not depend on the number of
+//! threads. On a closed mesh, self-intersecting or not, the winding number gives the sign that filling it would; the
+//! pseudonormal gives the same on meshes that do not cross themselves, for less. Not guaranteed: a meaningful sign within
+//! a hole of an open mesh; there it follows the generalised winding number, which closes holes smoothly.
+
+pub mod topology;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::winding::Winding;
+use crate::TriMesh;
+use crate::bvh::{Nearest, WideTree};
+use crate::job::{Cancelled, Job};
+pub use topology::Topology;
+
+/// How inside is told from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sign {
+    /// By the winding number: right on every closed mesh, also where shells overlap, and smooth across holes.
+    #[default]
+    Winding,
+    /// By the angle-weighted normal of the nearest face, edge or vertex (Baerentzen and Aanaes, "Signed distance computation
+    /// using the angle weighted pseudonormal", 2005). Right on closed meshes that do not cross themselves.
+    Pseudonormal,
+}
+
+/// A mesh made ready for questions of distance.
+#[derive(Debug, Clone)]
+pub struct Solid {
+    pub tree: WideTree,
+    winding: Winding,
+    pub topology: Topology,
+    sign: Sign,
+}
+
+/// Points that one task works through.
+const CHUNK: usize = 256;
+
+impl Solid {
+    /// About 0.4 us a triangle. The sign is the winding number's; [`Solid::with_sign`] changes that.
+    pub fn build(mesh: &TriMesh, job: &Job) -> Result<Solid, Cancelled> {
+        let (tree, topology) = rayon::join(|| WideTree::build(mesh, job), || Topology::build(mesh));
+        let tree = tree?;
+        job.check()?;
+        let winding = Winding::build(&tree);
+        Ok(Solid { tree, winding, topology, sign: Sign::default() })
+    }
+
+    /// [`Sign::Pseudonormal`] is refused, and the winding number kept, on meshes that are not closed.
+    pub fn with_sign(mut self, sign: Sign) -> Solid {
+        self.sign = if self.topology.closed { sign } else { Sign::Winding };
+        self
+    }
+
+    pub fn sign(&self) -> Sign {
+        self.sign
+    }
+
+    /// The generalised winding number of `p`.
+    pub fn winding(&self, p: DVec3) -> f64 {
+        self.winding.at(&self.tree, p)
+    }
+
+    /// Whether `p` is inside. `nearest` is the mesh's nearest point, where the caller has it.
+    pub fn inside(&self, p: DVec3, nearest: Option<&Nearest>) -> bool {
+        if self.sign == Sign::Pseudonormal
+            && let Some(n) = nearest.copied().or_else(|| self.tree.nearest(p, f64::INFINITY))
+            && let Some(normal) = self.topology.pseudonormal(&n)
+        {
+            let away = p - n.point;
+            let side = away.dot(normal);
+            // Too close to call where rounding of the nearest point matters: the winding number decides.
+            if side.abs() > 1e-9 * away.length() * normal.length() {
+                return side < 0.0;
+            }
+        }
+        // Either way round: a mesh turned inside out is a solid too.
+        self.winding(p).abs() > 0.5
+    }
+
+    /// Negative inside; infinite for an empty mesh or a point that is not finite.
+    pub fn signed_distance(&self, p: DVec3) -> f64 {
+        match self.tree.nearest(p, f64::INFINITY) {
+            Some(n) if self.inside(p, Some(&n)) => -n.distance(),
+            Some(n) => n.distance(),
+            None => f64::INFINITY,
+        }
+    }
+
+    /// [`Solid::signed_distance`] of each point, on all threads.
+    pub fn signed_distances(&self, points: &[DVec3], job: &Job) -> Result<Vec<f64>, Cancelled> {
+        self.batch(points, f64::INFINITY, job, |p| self.signed_distance(p))
+    }
+
+    /// The nearest point to each, on all threads; `None` as in [`WideTree::nearest`].
+    pub fn nearest(&self, points: &[DVec3], job: &Job) -> Result<Vec<Option<Nearest>>, Cancelled> {
+        self.batch(points, None, job, |p| self.tree.nearest(p, f64::INFINITY))
+    }
+
+    fn batch<T: Clone + Send>(
+        &self,
+        points: &[DVec3],
+        fill: T,
+        job: &Job,
+        each: impl Fn(DVec3) -> T + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        let mut out = vec![fill; points.len()];
+        out.par_chunks_mut(CHUNK).zip(points.par_chunks(CHUNK)).try_for_each(|(out, points)| {
+            job.check()?;
+            for (o, &p) in out.iter_mut().zip(points) {
+                *o = each(p);
+            }
+            Ok(())
+        })?;
+        Ok(out)
+    }
+}

@@ -1,0 +1,75 @@
+//! Meshes as plain arrays: what a file holds, what a Boolean takes, what an analysis reads.
+//! The clay itself is paged ([`sculptd_clay::Mesh`]); these are the shapes in which it comes and goes.
+
+use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// A polygon mesh in double precision. Corners run counter-clockwise seen from outside.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PolyMesh {
+    pub positions: Vec<DVec3>,
+    /// Face `f` owns `corners[face_starts[f]..face_starts[f + 1]]`; one entry more than faces, the first is 0.
+    pub face_starts: Vec<u32>,
+    pub corners: Vec<u32>,
+    /// One RGBA a vertex, sRGB, where the file has colours.
+    pub colours: Option<Vec<[u8; 4]>>,
+    /// One group (OBJ `g`/`usemtl`, 3MF object) a face, where the file has them.
+    pub groups: Option<Vec<u32>>,
+}
+
+impl PolyMesh {
+    pub fn new() -> Self {
+        PolyMesh { face_starts: vec![0], ..Default::default() }
+    }
+
+    pub fn face_count(&self) -> usize {
+        self.face_starts.len().saturating_sub(1)
+    }
+
+    pub fn face(&self, f: usize) -> &[u32] {
+        &self.corners[self.face_starts[f] as usize..self.face_starts[f + 1] as usize]
+    }
+
+    pub fn faces(&self) -> impl Iterator<Item = &[u32]> {
+        self.face_starts.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
+    }
+
+    pub fn push_face(&mut self, corners: &[u32]) {
+        if self.face_starts.is_empty() {
+            self.face_starts.push(0);
+        }
+        self.corners.extend_from_slice(corners);
+        self.face_starts.push(self.corners.len() as u32);
+    }
+}
+
+/// A triangle mesh in single precision, the clay's own.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct TriMesh {
+    pub positions: Vec<Vec3>,
+    pub triangles: Vec<[u32; 3]>,
+    /// One RGBA a vertex, sRGB.
+    pub colours: Option<Vec<[u8; 4]>>,
+}
+
+impl TriMesh {
+    pub fn corners(&self, t: usize) -> [Vec3; 3] {
+        self.triangles[t].map(|v| self.positions[v as usize])
+    }
+
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.positions
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)))
+    }
+
+    /// The same surface in double precision, one polygon a triangle.
+    pub fn to_poly(&self) -> PolyMesh {
+        let mut out = PolyMesh::new();
+        out.positions = self.positions.iter().map(|p| p.as_dvec3()).collect();
+        out.corners = self.triangles.iter().flatten().copied().collect();
+        out.face_starts = (0..=self.triangles.len() as u32).map(|i| i * 3).collect();
+        out.colours.clone_from(&self.colours);
+        out
+    }
+}

@@ -1,0 +1,446 @@
+//! glTF 2.0, as JSON with its buffers beside it or inside it, and as GLB. The JSON's meaning is read by the kept crate
+//! `gltf-json`; buffers, views and accessors by us, so that each length is checked against the bytes there are.
+//!
+//! Triangles (lists, strips, fans) of the default scene, each node's transform applied; coordinates as they stand, y up and
+//! without a unit's change. Corners of one node that are equal in place are one vertex: files of this format have a vertex for each
+//! normal and texture coordinate. Skins, morph targets and materials are passed over.
+
+use std::path::{Component, Path, PathBuf};
+
+use glam::{DMat4, DQuat, DVec3};
+use gltf_json::accessor::{ComponentType, Type};
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
+use gltf_json::{Index, Root};
+
+use super::problem::{At, Problem, Stop, excerpt};
+use super::stl::weld;
+use super::text::refuse;
+use crate::job::Job;
+use crate::{PolyMesh, repair as mend};
+
+/// Corners that instances may add up to: a small file can name one mesh a million times.
+pub(super) const MAX_INSTANCED: usize = 200_000_000;
+
+fn bad(at: At, expected: impl Into<String>, found: impl Into<String>) -> Stop {
+    Problem::new(at, expected.into(), found.into()).into()
+}
+
+/// A GLB container's two chunks.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Stop> {
+    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let (Some(version), Some(length)) = (word(4), word(8)) else {
+        return Err(bad(At::Byte(bytes.len() as u64), "a GLB header of 12 bytes", "the end of the file"));
+    };
+    if version != 2 {
+        return Err(bad(At::Byte(4), "version 2", version.to_string()));
+    }
+    if length as usize > bytes.len() {
+        let found = format!("the end of the file after {} bytes", bytes.len());
+        return Err(bad(At::Byte(bytes.len() as u64), format!("{length} bytes as the header states"), found));
+    }
+    let (mut at, mut json, mut binary) = (12, None, None);
+    while at + 8 <= length as usize {
+        let (Some(size), Some(kind)) = (word(at), word(at + 4)) else { break };
+        let Some(body) = bytes.get(at + 8..at + 8 + size as usize) else {
+            return Err(bad(At::Byte(at as u64), format!("a chunk of {size} bytes"), "the end of the file"));
+        };
+        match kind {
+            0x4e4f_534a if json.is_none() => json = Some(body),
+            0x004e_4942 if binary.is_none() => binary = Some(body),
+            _ => {}
+        }
+        at += 8 + size as usize;
+    }
+    let json = json.ok_or_else(|| bad(At::Byte(12), "a chunk of JSON", "none"))?;
+    Ok((json, binary))
+}
+
+pub(super) fn parse(
+    bytes: &[u8],
+    name: &Path,
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, Stop> {
+    let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
+    let root: Root = serde_json::from_slice(json)
+        .map_err(|e| bad(At::Line(e.line() as u64), "glTF 2.0 as JSON", format!("{e}")))?;
+    for needed in &root.extensions_required {
+        if needed.contains("compression") || needed.contains("meshopt") {
+            return Err(bad(At::File, "geometry that is not compressed", format!("the extension {needed}")));
+        }
+        warnings.push(format!("the extension {needed} is not looked at"));
+    }
+    let mut file = File {
+        root: &root,
+        buffers: Vec::new(),
+        mesh: PolyMesh::new(),
+        colours: Vec::new(),
+        coloured: false,
+        groups: Vec::new(),
+        left_out: 0,
+    };
+    for (n, buffer) in root.buffers.iter().enumerate() {
+        job.check()?;
+        let bytes = match &buffer.uri {
+            None if n == 0 => binary
+                .map(|b| b.to_vec())
+                .ok_or_else(|| bad(At::File, "a binary chunk for buffer 0", "none"))?,
+            None => return Err(bad(At::File, format!("a uri of buffer {n}"), "none")),
+            Some(uri) => fetch(uri, name, n)?,
+        };
+        if (bytes.len() as u64) < buffer.byte_length.0 {
+            let found = format!("{} bytes", bytes.len());
+            return Err(bad(At::File, format!("{} bytes in buffer {n}", buffer.byte_length.0), found));
+        }
+        file.buffers.push(bytes);
+    }
+    job.progress(0.3);
+    let scene = root.scene.or(if root.scenes.is_empty() { None } else { Some(Index::new(0)) });
+    let mut todo: Vec<(usize, DMat4)> = match scene.and_then(|s| root.scenes.get(s.value())) {
+        Some(s) => s.nodes.iter().rev().map(|n| (n.value(), DMat4::IDENTITY)).collect(),
+        None => (0..root.nodes.len()).rev().map(|n| (n, DMat4::IDENTITY)).collect(),
+    };
+    let mut seen = vec![false; root.nodes.len()];
+    while let Some((n, outer)) = todo.pop() {
+        job.check()?;
+        let Some(node) = root.nodes.get(n) else {
+            return Err(bad(At::File, format!("a node below {}", root.nodes.len()), n.to_string()));
+        };
+        if std::mem::replace(&mut seen[n], true) {
+            if scene.is_none() {
+                continue;
+            }
+            return Err(bad(At::File, "a tree of nodes", format!("node {n} twice")));
+        }
+        let own = match node.matrix {
+            Some(m) => DMat4::from_cols_array(&m.map(f64::from)),
+            None => DMat4::from_scale_rotation_translation(
+                DVec3::from(node.scale.unwrap_or([1.0; 3]).map(f64::from)),
+                node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from))),
+                DVec3::from(node.translation.unwrap_or_default().map(f64::from)),
+            ),
+        };
+        let place = outer * own;
+        if let Some(m) = node.mesh {
+            file.instance(m.value(), place, job)?;
+        }
+        for child in node.children.iter().flatten().rev() {
+            todo.push((child.value(), place));
+        }
+    }
+    if file.left_out > 0 {
+        warnings.push(format!("{} primitives of points or lines left out", file.left_out));
+    }
+    let mut mesh = file.mesh;
+    if mesh.face_count() == 0 {
+        return Err(bad(At::File, "a node with triangles in the default scene", "none"));
+    }
+    mesh.groups = (file.groups.windows(2).any(|w| w[0] != w[1])).then_some(file.groups);
+    mesh.colours = file.coloured.then_some(file.colours);
+    Ok(mesh)
+}
+
+/// A buffer's bytes, inside the JSON or in a file in the same folder or below it, and nowhere else.
+fn fetch(uri: &str, name: &Path, n: usize) -> Result<Vec<u8>, Stop> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let body = data.split_once(";base64,").map(|(_, b)| b);
+        return body
+            .and_then(base64)
+            .ok_or_else(|| bad(At::File, format!("base64 data in buffer {n}"), excerpt(uri.as_bytes())));
+    }
+    let refused = |why: &str| {
+        bad(
+            At::File,
+            format!("the name of a file beside this one as buffer {n}"),
+            format!("\"{uri}\" ({why})"),
+        )
+    };
+    let relative = PathBuf::from(percent(uri).ok_or_else(|| refused("no valid name"))?);
+    if uri.contains("://")
+        || !relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
+    {
+        return Err(refused("it leads elsewhere"));
+    }
+    let folder = match name.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    let told = |e: std::io::Error| refused(&e.to_string());
+    let path = folder.join(&relative).canonicalize().map_err(told)?;
+    if !path.starts_with(folder.canonicalize().map_err(told)?) {
+        return Err(refused("it leads elsewhere"));
+    }
+    let meta = std::fs::metadata(&path).map_err(told)?;
+    if !meta.is_file() || meta.len() > super::MAX_FILE {
+        return Err(refused("no plain file of a sane size"));
+    }
+    std::fs::read(&path).map_err(told)
+}
+
+fn percent(uri: &str) -> Option<String> {
+    let mut out = Vec::with_capacity(uri.len());
+    let mut bytes = uri.bytes();
+    while let Some(b) = bytes.next() {
+        if b == b'%' {
+            let digits = [bytes.next()?, bytes.next()?];
+            out.push(u8::from_str_radix(std::str::from_utf8(&digits).ok()?, 16).ok()?);
+        } else {
+            out.push(b);
+        }
+    }
+    String::from_utf8(out).ok().filter(|s| !s.contains('\0'))
+}
+
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut n) = (0u32, 0);
+    for b in text.trim_end_matches('=').bytes() {
+        let v = match b {
+            b'A'..=b'Z' => b - b'A',
+            b'a'..=b'z' => b - b'a' + 26,
+            b'0'..=b'9' => b - b'0' + 52,
+            b'+' | b'-' => 62,
+            b'/' | b'_' => 63,
+            _ => return None,
+        };
+        bits = bits << 6 | v as u32;
+        n += 6;
+        if n >= 8 {
+            n -= 8;
+            out.push((bits >> n) as u8);
+        }
+    }
+    Some(out)
+}
+
+struct File<'a> {
+    root: &'a Root,
+    buffers: Vec<Vec<u8>>,
+    mesh: PolyMesh,
+    colours: Vec<[u8; 4]>,
+    coloured: bool,
+    groups: Vec<u32>,
+    left_out: usize,
+}
+
+impl File<'_> {
+    fn instance(&mut self, mesh: usize, place: DMat4, job: &Job) -> Result<(), Stop> {
+        let root = self.root;
+        let Some(source) = root.meshes.get(mesh) else {
+            return Err(bad(At::File, format!("a mesh below {}", root.meshes.len()), mesh.to_string()));
+        };
+        let (mut points, mut colours, mut corners, mut groups) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (p, primitive) in source.primitives.iter().enumerate() {
+            job.check()?;
+            let what = format!("primitive {p} of mesh {mesh}");
+            let first = points.len() as u32;
+            let Some(triangles) = self.primitive(primitive, &what, &mut points, &mut colours)? else {
+                continue;
+            };
+            if self.mesh.corners.len() + corners.len() + triangles.len() > MAX_INSTANCED {
+                return Err(bad(
+                    At::File,
+                    format!("at most {MAX_INSTANCED} corners in all instances"),
+                    "more",
+                ));
+            }
+            groups.resize(
+                groups.len() + triangles.len() / 3,
+                self.groups.last().map_or(0, |g| g + 1) + p as u32,
+            );
+            corners.extend(triangles.iter().map(|i| first + i));
+        }
+        let mut placed = Vec::with_capacity(points.len());
+        for p in &points {
+            let q = place.transform_point3(*p) + DVec3::ZERO;
+            if let Some(found) = q.to_array().into_iter().find_map(refuse) {
+                return Err(bad(At::File, format!("finite coordinates in mesh {mesh}"), found));
+            }
+            placed.push(q.to_array().map(f64::to_bits));
+        }
+        let (unique, of) = weld(placed.len(), job, |i| placed[i])?;
+        let base = self.mesh.positions.len() as u32;
+        self.mesh.positions.extend(unique.iter().map(|b| DVec3::from(b.map(f64::from_bits))));
+        self.coloured |= colours.iter().any(|&c| c != [255; 4]);
+        self.colours.resize(self.mesh.positions.len(), [255; 4]);
+        for (v, c) in of.iter().zip(&colours).rev() {
+            self.colours[(base + v) as usize] = *c;
+        }
+        let mut part = PolyMesh::new();
+        let mut kept = Vec::new();
+        for (t, g) in corners.chunks_exact(3).zip(groups) {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|i| base + of[i as usize]);
+            if a != b && b != c && c != a {
+                part.push_face(&[a, b, c]);
+                kept.push(g);
+            }
+        }
+        if place.determinant() < 0.0 {
+            mend::flip(&mut part);
+        }
+        part.faces().for_each(|f| self.mesh.push_face(f));
+        self.groups.extend(kept);
+        Ok(())
+    }
+
+    /// Appends a primitive's points (and white where it has no colours); its triangles' corners, or `None` if it has none.
+    fn primitive(
+        &mut self,
+        primitive: &Primitive,
+        what: &str,
+        points: &mut Vec<DVec3>,
+        colours: &mut Vec<[u8; 4]>,
+    ) -> Result<Option<Vec<u32>>, Stop> {
+        let (Checked::Valid(mode), Some(at)) =
+            (primitive.mode, primitive.attributes.get(&Checked::Valid(Semantic::Positions)))
+        else {
+            self.left_out += 1;
+            return Ok(None);
+        };
+        let place = self.accessor(at.value(), &format!("positions of {what}"))?;
+        if place.parts != 3 {
+            return Err(bad(
+                At::File,
+                format!("three coordinates in the positions of {what}"),
+                place.parts.to_string(),
+            ));
+        }
+        let first = points.len();
+        for i in 0..place.count {
+            let mut v = [0.0; 3];
+            for (c, v) in v.iter_mut().enumerate() {
+                *v = place.get(i, c);
+            }
+            points.push(DVec3::from(v));
+        }
+        colours.resize(points.len(), [255; 4]);
+        if let Some(c) = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) {
+            let c = self.accessor(c.value(), &format!("colours of {what}"))?;
+            let top = match c.kind {
+                ComponentType::U8 => 255.0,
+                ComponentType::U16 => 65535.0,
+                _ => 1.0,
+            };
+            for i in 0..c.count.min(place.count) {
+                for part in 0..c.parts.min(4) {
+                    let linear = (c.get(i, part) / top).clamp(0.0, 1.0);
+                    let v = if part == 3 { linear } else { to_srgb(linear) };
+                    colours[first + i][part] = (v * 255.0).round() as u8;
+                }
+            }
+        }
+        let count = place.count as u32;
+        let order: Vec<u32> = match primitive.indices {
+            None => (0..count).collect(),
+            Some(i) => {
+                let list = self.accessor(i.value(), &format!("indices of {what}"))?;
+                if !matches!(list.kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+                    || list.parts != 1
+                {
+                    return Err(bad(At::File, format!("whole numbers as indices of {what}"), "another type"));
+                }
+                (0..list.count).map(|i| list.get(i, 0) as u32).collect()
+            }
+        };
+        if let Some(out) = order.iter().find(|&&i| i >= count) {
+            return Err(bad(At::File, format!("indices below {count} in {what}"), out.to_string()));
+        }
+        Ok(Some(match mode {
+            Mode::Triangles => order[..order.len() - order.len() % 3].to_vec(),
+            Mode::TriangleStrip => order
+                .windows(3)
+                .enumerate()
+                .flat_map(|(n, w)| if n % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
+                .collect(),
+            Mode::TriangleFan => order.windows(2).skip(1).flat_map(|w| [order[0], w[0], w[1]]).collect(),
+            _ => {
+                self.left_out += 1;
+                points.truncate(first);
+                colours.truncate(first);
+                return Ok(None);
+            }
+        }))
+    }
+
+    fn accessor(&self, n: usize, what: &str) -> Result<Values<'_>, Stop> {
+        let wrong =
+            |expected: &str, found: String| bad(At::File, format!("{expected} for the {what}"), found);
+        let a =
+            self.root.accessors.get(n).ok_or_else(|| {
+                wrong("an accessor", format!("number {n} of {}", self.root.accessors.len()))
+            })?;
+        if a.sparse.is_some() {
+            return Err(wrong("a plain accessor", "a sparse one".into()));
+        }
+        let (Checked::Valid(kind), Checked::Valid(shape)) = (a.component_type, a.type_) else {
+            return Err(wrong("a known type", "another".into()));
+        };
+        let view = a.buffer_view.ok_or_else(|| wrong("a buffer view", "none".into()))?.value();
+        let view = self
+            .root
+            .buffer_views
+            .get(view)
+            .ok_or_else(|| wrong("a buffer view", format!("number {view}")))?;
+        let buffer = self
+            .buffers
+            .get(view.buffer.value())
+            .ok_or_else(|| wrong("a buffer", format!("number {}", view.buffer.value())))?;
+        let start = view.byte_offset.map_or(0, |o| o.0) as usize;
+        let bytes = start
+            .checked_add(view.byte_length.0 as usize)
+            .and_then(|end| buffer.get(start..end))
+            .and_then(|b| b.get(a.byte_offset.map_or(0, |o| o.0) as usize..))
+            .ok_or_else(|| {
+                wrong("bytes inside its buffer", format!("a view past its end ({} bytes)", buffer.len()))
+            })?;
+        let size = kind.0.size();
+        let parts = match shape {
+            Type::Scalar => 1,
+            Type::Vec2 => 2,
+            Type::Vec3 => 3,
+            Type::Vec4 => 4,
+            _ => return Err(wrong("numbers or vectors", "matrices".into())),
+        };
+        let stride = view.byte_stride.map_or(size * parts, |s| s.0);
+        let count = a.count.0 as usize;
+        let need = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size * parts));
+        if stride == 0 || need.is_none_or(|n| n > bytes.len()) || count >= u32::MAX as usize {
+            return Err(wrong(
+                "as many bytes as its count needs",
+                format!("a count of {count} in {} bytes", bytes.len()),
+            ));
+        }
+        Ok(Values { bytes, stride, count, parts, kind: kind.0, size })
+    }
+}
+
+/// The numbers of an accessor; all within `bytes`.
+struct Values<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    count: usize,
+    parts: usize,
+    kind: ComponentType,
+    size: usize,
+}
+
+impl Values<'_> {
+    fn get(&self, i: usize, part: usize) -> f64 {
+        let b = &self.bytes[i * self.stride + part * self.size..][..self.size];
+        match (self.kind, b) {
+            (ComponentType::I8, &[a]) => a as i8 as f64,
+            (ComponentType::U8, &[a]) => a as f64,
+            (ComponentType::I16, &[a, b]) => i16::from_le_bytes([a, b]) as f64,
+            (ComponentType::U16, &[a, b]) => u16::from_le_bytes([a, b]) as f64,
+            (ComponentType::U32, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]) as f64,
+            (ComponentType::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]) as f64,
+            _ => f64::NAN,
+        }
+    }
+}
+
+fn to_srgb(v: f64) -> f64 {
+    if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
+}

@@ -1,0 +1,146 @@
+//! Mesh files: OBJ, STL, PLY, glTF/GLB, 3MF, OFF, in and out.
+//!
+//! A file is what its content says; the extension decides only where the content does not. Positions keep double precision and
+//! faces their corners, as far as the format has them. Counts in a file are held against its length before memory is
+//! taken for them; what may grow beyond it (3MF's packed parts, instances in glTF and 3MF) has a bound of its own. What is wrong is
+//! told with its line or byte where the format has one, what was expected and what was found.
+
+pub mod beside;
+mod gltf;
+mod obj;
+mod off;
+mod ply;
+pub mod problem;
+mod stl;
+mod text;
+mod threemf;
+mod write;
+mod write_packed;
+
+use std::path::Path;
+
+pub use beside::write_beside;
+pub use problem::{At, Problem, ReadError, Stop, WriteError};
+pub use write::{encode, writable_format, write_mesh};
+
+use super::PolyMesh;
+use crate::job::Job;
+
+/// Longest file that is read: what needs more memory than a workstation has is refused before it is taken.
+pub const MAX_FILE: u64 = 16 << 30;
+
+/// What a file turned out to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    Obj,
+    StlBinary,
+    StlAscii,
+    PlyAscii,
+    PlyLittle,
+    PlyBig,
+    Off,
+    Gltf,
+    Glb,
+    ThreeMf,
+}
+
+impl Format {
+    /// As people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Obj => "OBJ",
+            Format::StlBinary => "STL (binary)",
+            Format::StlAscii => "STL (text)",
+            Format::PlyAscii => "PLY (text)",
+            Format::PlyLittle => "PLY (binary, little-endian)",
+            Format::PlyBig => "PLY (binary, big-endian)",
+            Format::Off => "OFF",
+            Format::Gltf => "glTF",
+            Format::Glb => "GLB",
+            Format::ThreeMf => "3MF",
+        }
+    }
+}
+
+/// A mesh from a file.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    pub mesh: PolyMesh,
+    pub format: Format,
+    /// What was left out or guessed, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the mesh at `path`. Every vertex is finite in single precision too, every face has at least three corners, every
+/// index is in range; nothing else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
+pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
+    let io = |source| ReadError::Io { path: path.into(), source };
+    let meta = std::fs::metadata(path).map_err(io)?;
+    if meta.is_dir() {
+        return Err(io(std::io::Error::new(
+            std::io::ErrorKind::IsADirectory,
+            "expected a mesh file, found a folder",
+        )));
+    }
+    if meta.len() > MAX_FILE {
+        let found = format!("{} bytes; the file and its mesh must both fit into memory", meta.len());
+        let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
+        return Err(ReadError::Format { path: path.into(), problem });
+    }
+    let bytes = std::fs::read(path).map_err(io)?;
+    job.progress(0.1);
+    parse(&bytes, path, job).map_err(|stop| match stop {
+        Stop::Problem(problem) => ReadError::Format { path: path.into(), problem },
+        Stop::Cancelled => ReadError::Cancelled { path: path.into() },
+    })
+}
+
+/// The mesh in `bytes`; `name` gives the extension.
+pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
+    let extension = extension(name);
+    if bytes.is_empty() {
+        return Err(Problem::new(At::Byte(0), "a mesh", "an empty file").into());
+    }
+    let mut warnings = Vec::new();
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let is = |e: &str| extension == e;
+    let (mesh, format) = if bytes.starts_with(b"ply") && bytes.get(3).is_some_and(u8::is_ascii_whitespace)
+        || is("ply")
+    {
+        ply::parse(bytes, &mut warnings, job)?
+    } else if bytes.starts_with(b"glTF") || is("glb") {
+        if !bytes.starts_with(b"glTF") {
+            return Err(Problem::new(At::Byte(0), "\"glTF\"", problem::excerpt(bytes)).into());
+        }
+        (gltf::parse(bytes, name, &mut warnings, job)?, Format::Glb)
+    } else if text.trim_ascii_start().starts_with(b"{") || is("gltf") {
+        (gltf::parse(text, name, &mut warnings, job)?, Format::Gltf)
+    } else if bytes.starts_with(b"PK\x03\x04") || is("3mf") {
+        (threemf::parse(bytes, job)?, Format::ThreeMf)
+    } else if off::header(text).is_some() || is("off") {
+        (off::parse(text, &mut warnings, job)?, Format::Off)
+    } else if stl::binary_exact(bytes) {
+        (stl::parse_binary(bytes, &mut warnings, job)?, Format::StlBinary)
+    } else if stl::looks_ascii(text) {
+        (stl::parse_ascii(text, &mut warnings, job)?, Format::StlAscii)
+    } else if is("stl") {
+        (stl::parse_binary(bytes, &mut warnings, job)?, Format::StlBinary)
+    } else if is("obj") || looks_obj(text) {
+        (obj::parse(text, &mut warnings, job)?, Format::Obj)
+    } else {
+        let found = problem::excerpt(bytes);
+        return Err(Problem::new(At::Byte(0), "a mesh as OBJ, STL, PLY, OFF, glTF, GLB or 3MF", found).into());
+    };
+    job.progress(1.0);
+    Ok(Loaded { mesh, format, warnings })
+}
+
+fn extension(name: &Path) -> String {
+    name.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// OBJ has no mark of its own: its first words are looked at where the extension says nothing.
+fn looks_obj(text: &[u8]) -> bool {
+    let word = text::Cursor::new(&text[..text.len().min(1 << 16)]).word_anywhere(true);
+    matches!(word, Some(b"v" | b"o" | b"g" | b"mtllib" | b"usemtl" | b"vn" | b"vt"))
+}

@@ -1,0 +1,267 @@
+//! Binary data of either byte order.
+
+use rayon::prelude::*;
+
+use super::super::problem::{At, Problem, Stop};
+use super::header::{Element, Header, Role, Scalar};
+use super::{Making, colour, index_problem, place, too_many};
+use crate::job::Job;
+
+/// A byte order. The two are compiled apart, so that neither asks a question a value.
+pub(super) trait Order: Sync {
+    fn u16(b: [u8; 2]) -> u16;
+    fn u32(b: [u8; 4]) -> u32;
+    fn u64(b: [u8; 8]) -> u64;
+}
+
+pub(super) struct Little;
+pub(super) struct Big;
+
+impl Order for Little {
+    fn u16(b: [u8; 2]) -> u16 {
+        u16::from_le_bytes(b)
+    }
+    fn u32(b: [u8; 4]) -> u32 {
+        u32::from_le_bytes(b)
+    }
+    fn u64(b: [u8; 8]) -> u64 {
+        u64::from_le_bytes(b)
+    }
+}
+
+impl Order for Big {
+    fn u16(b: [u8; 2]) -> u16 {
+        u16::from_be_bytes(b)
+    }
+    fn u32(b: [u8; 4]) -> u32 {
+        u32::from_be_bytes(b)
+    }
+    fn u64(b: [u8; 8]) -> u64 {
+        u64::from_be_bytes(b)
+    }
+}
+
+fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
+    bytes.get(at..at.checked_add(N)?)?.try_into().ok()
+}
+
+#[inline]
+fn number<O: Order>(bytes: &[u8], at: usize, kind: Scalar) -> Option<f64> {
+    Some(match kind {
+        Scalar::I8 => *bytes.get(at)? as i8 as f64,
+        Scalar::U8 => *bytes.get(at)? as f64,
+        Scalar::I16 => O::u16(bytes_at(bytes, at)?) as i16 as f64,
+        Scalar::U16 => O::u16(bytes_at(bytes, at)?) as f64,
+        Scalar::I32 => O::u32(bytes_at(bytes, at)?) as i32 as f64,
+        Scalar::U32 => O::u32(bytes_at(bytes, at)?) as f64,
+        Scalar::F32 => f32::from_bits(O::u32(bytes_at(bytes, at)?)) as f64,
+        Scalar::F64 => f64::from_bits(O::u64(bytes_at(bytes, at)?)),
+    })
+}
+
+pub(super) fn read<O: Order>(
+    bytes: &[u8],
+    header: &Header,
+    made: &mut Making,
+    job: &Job,
+) -> Result<(), Stop> {
+    let mut at = header.data;
+    made.mesh.face_starts.push(0);
+    for element in &header.elements {
+        at = match element.role {
+            Role::Vertex if element.fixed() => vertices::<O>(bytes, at, element, header, made, job)?,
+            _ if element.fixed() => fixed_end(bytes, at, element)?,
+            _ => rows::<O>(bytes, at, element, header, made, job)?,
+        };
+        job.progress(at as f32 / bytes.len() as f32);
+    }
+    Ok(())
+}
+
+fn ended(bytes: &[u8], what: &str) -> Stop {
+    Problem::new(At::Byte(bytes.len() as u64), what.to_string(), "the end of the file").into()
+}
+
+/// Where an element of rows of one length ends.
+fn fixed_end(bytes: &[u8], at: usize, element: &Element) -> Result<usize, Stop> {
+    element
+        .least()
+        .checked_mul(element.count)
+        .and_then(|n| n.checked_add(at))
+        .filter(|&end| end <= bytes.len())
+        .ok_or_else(|| {
+            ended(
+                bytes,
+                &format!("{} of \"{}\" with {} bytes each", element.count, element.name, element.least()),
+            )
+        })
+}
+
+/// Rows of one length: on all cores.
+fn vertices<O: Order>(
+    bytes: &[u8],
+    at: usize,
+    element: &Element,
+    header: &Header,
+    made: &mut Making,
+    job: &Job,
+) -> Result<usize, Stop> {
+    const BLOCK: usize = 1 << 14;
+    let end = fixed_end(bytes, at, element)?;
+    let stride = element.least();
+    let mut plan = [None; 7];
+    let mut offset = 0;
+    for (p, role) in element.properties.iter().zip(element.roles()) {
+        if let Some(role) = role {
+            plan[role] = Some((offset, p.kind));
+        }
+        offset += p.kind.size();
+    }
+    let (coloured, scale) = (header.coloured(), header.colour_scale());
+    made.mesh.positions.resize(element.count, glam::DVec3::ZERO);
+    made.colours.resize(if coloured { element.count } else { 0 }, [255; 4]);
+    let mut none: Vec<[u8; 4]> = vec![[0; 4]; if coloured { 0 } else { element.count.div_ceil(BLOCK) }];
+    let colours: Vec<&mut [[u8; 4]]> =
+        if coloured { made.colours.chunks_mut(BLOCK).collect() } else { none.chunks_mut(1).collect() };
+    let bad = made
+        .mesh
+        .positions
+        .par_chunks_mut(BLOCK)
+        .zip(bytes[at..end].par_chunks(BLOCK * stride))
+        .zip(colours)
+        .enumerate()
+        .filter_map(|(block, ((positions, rows), colours))| {
+            if job.cancelled() {
+                return Some(None);
+            }
+            for (n, (position, row)) in positions.iter_mut().zip(rows.chunks_exact(stride)).enumerate() {
+                let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
+                for (value, step) in values.iter_mut().zip(&plan) {
+                    if let Some((offset, kind)) = *step
+                        && let Some(v) = number::<O>(row, offset, kind)
+                    {
+                        *value = v;
+                    }
+                }
+                if let Some(found) = place(&values) {
+                    return Some(Some((block * BLOCK + n, found)));
+                }
+                *position = glam::DVec3::new(values[0], values[1], values[2]);
+                if coloured {
+                    colours[n] = colour(&values, scale);
+                }
+            }
+            None
+        })
+        .min_by_key(|b| b.map_or(0, |(v, _)| v));
+    match bad {
+        None => Ok(end),
+        Some(None) => Err(Stop::Cancelled),
+        Some(Some((v, found))) => {
+            let at = At::Byte((at + v * stride) as u64);
+            Err(Problem::new(at, format!("a finite coordinate of vertex {v}"), found).into())
+        }
+    }
+}
+
+/// Rows that hold lists, one after another.
+fn rows<O: Order>(
+    bytes: &[u8],
+    mut at: usize,
+    element: &Element,
+    header: &Header,
+    made: &mut Making,
+    job: &Job,
+) -> Result<usize, Stop> {
+    let corners = element.corners();
+    let roles = element.roles();
+    let (coloured, scale) = (header.coloured(), header.colour_scale());
+    let plain = element.role == Role::Face && corners == Some(0) && element.properties.len() == 1;
+    let fast = plain
+        .then(|| &element.properties[0])
+        .filter(|p| p.list == Some(Scalar::U8) && matches!(p.kind, Scalar::I32 | Scalar::U32));
+    if element.role == Role::Face {
+        made.mesh.face_starts.reserve_exact(element.count);
+        // As if all were triangles: never more than the file can hold.
+        made.mesh.corners.reserve(element.count.saturating_mul(3).min(bytes.len()));
+    }
+    let count = made.mesh.positions.len();
+    let mut list: Vec<i64> = Vec::new();
+    for row in 0..element.count {
+        if row.is_multiple_of(1 << 16) {
+            job.check()?;
+        }
+        let start = at;
+        let first = made.mesh.corners.len();
+        if fast.is_some() {
+            let n = *bytes.get(at).ok_or_else(|| row_ended(bytes, element, row))? as usize;
+            let indices = bytes.get(at + 1..at + 1 + n * 4).ok_or_else(|| row_ended(bytes, element, row))?;
+            made.mesh.corners.extend(indices.as_chunks::<4>().0.iter().map(|&b| O::u32(b)));
+            at += 1 + n * 4;
+        } else {
+            let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
+            for (p, property) in element.properties.iter().enumerate() {
+                let wanted = corners == Some(p);
+                let Some(count_kind) = property.list else {
+                    let v = number::<O>(bytes, at, property.kind)
+                        .ok_or_else(|| row_ended(bytes, element, row))?;
+                    at += property.kind.size();
+                    if let Some(role) = roles[p] {
+                        values[role] = v;
+                    }
+                    continue;
+                };
+                let n = number::<O>(bytes, at, count_kind).ok_or_else(|| row_ended(bytes, element, row))?;
+                if n < 0.0 {
+                    let found = n.to_string();
+                    return Err(Problem::new(At::Byte(at as u64), "a list's length", found).into());
+                }
+                at += count_kind.size();
+                let size = property.kind.size();
+                let end = (n as usize).checked_mul(size).and_then(|s| s.checked_add(at));
+                let Some(items) = end.and_then(|end| bytes.get(at..end)) else {
+                    return Err(row_ended(bytes, element, row));
+                };
+                at += items.len();
+                if !wanted {
+                    continue;
+                }
+                list.clear();
+                for i in 0..n as usize {
+                    let v = number::<O>(items, i * size, property.kind).unwrap_or(-1.0);
+                    if element.role == Role::Face {
+                        let whole = (0.0..u32::MAX as f64).contains(&v) && v.fract() == 0.0;
+                        made.mesh.corners.push(if whole { v as u32 } else { u32::MAX });
+                    } else {
+                        list.push(v as i64);
+                    }
+                }
+            }
+            if element.role == Role::Vertex {
+                if let Some(found) = place(&values) {
+                    return Err(Problem::new(At::Byte(start as u64), "a finite coordinate", found).into());
+                }
+                made.vertex(&values, coloured, scale);
+            }
+        }
+        if made.mesh.corners.len() >= u32::MAX as usize {
+            return Err(too_many(header).into());
+        }
+        let here = At::Byte(start as u64);
+        match element.role {
+            Role::Face if corners.is_some() => {
+                made.face(first, count).map_err(|bad| index_problem(here, bad as i32 as i64, count))?;
+            }
+            Role::Strips if corners.is_some() => {
+                made.strip(&list, count).map_err(|bad| index_problem(here, bad, count))?;
+            }
+            _ => {}
+        }
+    }
+    Ok(at)
+}
+
+#[cold]
+fn row_ended(bytes: &[u8], element: &Element, row: usize) -> Stop {
+    ended(bytes, &format!("the rest of {} {row} of {}", element.name, element.count))
+}

@@ -1,0 +1,109 @@
+//! Text data. Rows are read word by word, as the format has it: line ends mean nothing.
+
+use super::super::problem::{At, Problem, Stop};
+use super::super::text::{Cursor, float, unexpected};
+use super::header::{Header, Role};
+use super::{Making, index_problem, place, too_many};
+use crate::job::Job;
+
+pub(super) fn read(bytes: &[u8], header: &Header, made: &mut Making, job: &Job) -> Result<(), Stop> {
+    let text = &bytes[header.data..];
+    let shift = |mut p: Problem| {
+        if let At::Line(n) = &mut p.at {
+            *n += header.data_line - 1;
+        }
+        Stop::Problem(p)
+    };
+    let mut cursor = Cursor::new(text);
+    let (coloured, scale) = (header.coloured(), header.colour_scale());
+    let mut list: Vec<i64> = Vec::new();
+    for element in &header.elements {
+        let roles = element.roles();
+        let corners = element.corners();
+        match element.role {
+            Role::Vertex => {
+                made.mesh.positions.reserve_exact(element.count);
+                if coloured {
+                    made.colours.reserve_exact(element.count);
+                }
+            }
+            Role::Face => made.mesh.face_starts.reserve_exact(element.count + 1),
+            _ => {}
+        }
+        if made.mesh.face_starts.is_empty() {
+            made.mesh.face_starts.push(0);
+        }
+        for row in 0..element.count {
+            if row.is_multiple_of(1 << 14) {
+                job.check()?;
+                job.progress(cursor.at as f32 / text.len() as f32);
+            }
+            let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
+            let first = made.mesh.corners.len();
+            let row_at = cursor.at;
+            for (p, property) in element.properties.iter().enumerate() {
+                let mut value = || -> Result<f64, Stop> {
+                    let at = cursor.at;
+                    cursor.word_anywhere(false).and_then(float).ok_or_else(|| {
+                        let expected =
+                            format!("a number for \"{}\" of {} {row}", property.name, element.name);
+                        // Past the blanks and line ends, so that the line named is that of the word.
+                        let skip = text[at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
+                        shift(unexpected(text, at + skip, expected))
+                    })
+                };
+                if property.list.is_none() {
+                    let v = value()?;
+                    if let Some(role) = roles[p] {
+                        values[role] = v;
+                    }
+                    continue;
+                }
+                let n = value()?;
+                if !(0.0..=u32::MAX as f64).contains(&n) || n.fract() != 0.0 {
+                    return Err(shift(unexpected(
+                        text,
+                        row_at,
+                        format!("a list's length in {} {row}", element.name),
+                    )));
+                }
+                let wanted = corners == Some(p);
+                list.clear();
+                for _ in 0..n as u64 {
+                    let v = value()?;
+                    if wanted && element.role == Role::Face {
+                        let whole = (0.0..u32::MAX as f64).contains(&v) && v.fract() == 0.0;
+                        made.mesh.corners.push(if whole { v as u32 } else { u32::MAX });
+                    } else if wanted {
+                        list.push(v as i64);
+                    }
+                }
+                if made.mesh.corners.len() >= u32::MAX as usize {
+                    return Err(too_many(header).into());
+                }
+            }
+            let line = || {
+                let skip = text[row_at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
+                At::Line(super::super::text::line_of(text, row_at + skip))
+            };
+            let vertices = made.mesh.positions.len();
+            match element.role {
+                Role::Vertex => {
+                    if let Some(found) = place(&values) {
+                        return Err(shift(Problem::new(line(), "a finite coordinate", found)));
+                    }
+                    made.vertex(&values, coloured, scale);
+                }
+                Role::Face if corners.is_some() => {
+                    made.face(first, vertices)
+                        .map_err(|bad| shift(index_problem(line(), bad as i64, vertices)))?;
+                }
+                Role::Strips if corners.is_some() => {
+                    made.strip(&list, vertices).map_err(|bad| shift(index_problem(line(), bad, vertices)))?;
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,263 @@
+//! STL, both kinds. Own code, so that errors name their byte or line, and the weld's rule and order are ours.
+//!
+//! A file is binary if its length is what its triangle count says, whatever its header starts with. Corners that are equal in
+//! all three coordinates are one vertex, in the order of first use (minus zero is zero); nothing else is merged, so that what
+//! was written apart stays apart.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::problem::{At, Problem, Stop, excerpt};
+use super::text::{Cursor, float, refuse, unexpected};
+use crate::PolyMesh;
+use crate::job::Job;
+
+/// Bytes before the first triangle: 80 of header, 4 of count.
+const HEAD: usize = 84;
+/// Bytes a triangle: a normal, three corners, two of attributes.
+const RECORD: usize = 50;
+
+/// The triangle count in the header, if there is a whole header.
+pub(super) fn binary_count(bytes: &[u8]) -> Option<u64> {
+    Some(u32::from_le_bytes(bytes.get(80..HEAD)?.try_into().ok()?) as u64)
+}
+
+/// Whether the length is exactly what a binary file's count says.
+pub(super) fn binary_exact(bytes: &[u8]) -> bool {
+    binary_count(bytes).is_some_and(|n| HEAD as u64 + n * RECORD as u64 == bytes.len() as u64)
+}
+
+/// Whether this is text: "solid", and then a facet or the end, soon.
+pub(super) fn looks_ascii(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    let start = head.trim_ascii_start();
+    let lower = start.to_ascii_lowercase();
+    lower.starts_with(b"solid")
+        && !head.contains(&0)
+        && (memchr::memmem::find(&lower, b"facet").is_some()
+            || memchr::memmem::find(&lower, b"endsolid").is_some())
+}
+
+pub(super) fn parse_binary(bytes: &[u8], warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+    let Some(count) = binary_count(bytes) else {
+        let problem = Problem::new(
+            At::Byte(bytes.len() as u64),
+            "a binary STL header of 84 bytes",
+            format!("the end of the file after {} bytes", bytes.len()),
+        );
+        return Err(problem.into());
+    };
+    let need = HEAD as u64 + count * RECORD as u64;
+    if need > bytes.len() as u64 {
+        let whole = (bytes.len() - HEAD) / RECORD;
+        let problem = Problem::new(
+            At::Byte(bytes.len() as u64),
+            format!("{need} bytes for the {count} triangles that the header at byte 80 states"),
+            format!(
+                "the end of the file after {whole} whole triangles (not text either: it starts with {})",
+                excerpt(bytes)
+            ),
+        );
+        return Err(problem.into());
+    }
+    if count == 0 {
+        return Err(Problem::new(At::Byte(80), "at least one triangle", "a count of 0").into());
+    }
+    if count * 3 >= u32::MAX as u64 {
+        return Err(
+            Problem::new(At::Byte(80), "fewer than 2^32 corners", format!("{count} triangles")).into()
+        );
+    }
+    if need < bytes.len() as u64 {
+        warnings.push(format!("{} bytes after the last triangle left out", bytes.len() as u64 - need));
+    }
+    let records = &bytes[HEAD..need as usize];
+    let mut corners = vec![[0u32; 3]; count as usize * 3];
+    let bad = corners
+        .par_chunks_mut(3 << 14)
+        .enumerate()
+        .filter_map(|(block, out)| {
+            if job.cancelled() {
+                return Some(None);
+            }
+            let first = block << 14;
+            for (t, three) in out.chunks_exact_mut(3).enumerate() {
+                let record = &records[(first + t) * RECORD + 12..];
+                for (c, corner) in three.iter_mut().enumerate() {
+                    for (axis, value) in corner.iter_mut().enumerate() {
+                        let at = c * 12 + axis * 4;
+                        let raw = [record[at], record[at + 1], record[at + 2], record[at + 3]];
+                        let float = f32::from_le_bytes(raw);
+                        if let Some(found) = refuse(float as f64) {
+                            return Some(Some((HEAD + (first + t) * RECORD + 12 + at, found)));
+                        }
+                        *value = float.to_bits();
+                    }
+                }
+            }
+            None
+        })
+        .min_by_key(|b| b.map_or(0, |(at, _)| at));
+    match bad {
+        None => {}
+        Some(None) => return Err(Stop::Cancelled),
+        Some(Some((at, found))) => {
+            return Err(Problem::new(At::Byte(at as u64), "a finite coordinate", found).into());
+        }
+    }
+    job.progress(0.3);
+    let (positions, corners) =
+        weld(corners.len(), job, |i| corners[i].map(|b| if b == 1 << 31 { 0 } else { b }))?;
+    let positions =
+        positions.into_iter().map(|p| glam::Vec3::from(p.map(f32::from_bits)).as_dvec3()).collect();
+    Ok(triangles(positions, corners))
+}
+
+pub(super) fn parse_ascii(text: &[u8], _warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+    let mut cursor = Cursor::new(text);
+    let mut corners: Vec<[u64; 3]> = Vec::new();
+    let mut in_facet = 0;
+    let mut ended = false;
+    let mut lines = 0u32;
+    while !cursor.ended() {
+        lines = lines.wrapping_add(1);
+        if lines.is_multiple_of(1 << 16) {
+            job.check()?;
+        }
+        let line = cursor.at;
+        let Some(word) = cursor.word() else {
+            cursor.skip_line();
+            continue;
+        };
+        let is = |name: &[u8]| word.eq_ignore_ascii_case(name);
+        if is(b"vertex") {
+            let mut bits = [0; 3];
+            for b in &mut bits {
+                let value = cursor.word().and_then(float);
+                let Some(value) = value else {
+                    return Err(unexpected(text, line, "\"vertex\" and three numbers").into());
+                };
+                if let Some(found) = refuse(value) {
+                    let problem = Problem::new(
+                        At::Line(super::text::line_of(text, line)),
+                        "a finite coordinate",
+                        found,
+                    );
+                    return Err(problem.into());
+                }
+                *b = (value + 0.0).to_bits();
+            }
+            corners.push(bits);
+            in_facet += 1;
+            if in_facet > 3 {
+                return Err(unexpected(text, line, "three corners in a facet").into());
+            }
+        } else if is(b"endfacet") {
+            if in_facet != 3 {
+                return Err(unexpected(
+                    text,
+                    line,
+                    format!("three corners before the facet's end, not {in_facet}"),
+                )
+                .into());
+            }
+            in_facet = 0;
+        } else if is(b"solid") || is(b"endsolid") {
+            ended = is(b"endsolid");
+        } else if !(is(b"facet") || is(b"outer") || is(b"endloop") || is(b"end") || is(b"color")) {
+            return Err(
+                unexpected(text, line, "facet, outer loop, vertex, endloop, endfacet or endsolid").into()
+            );
+        }
+        cursor.skip_line();
+    }
+    if in_facet != 0 || !ended {
+        return Err(unexpected(text, text.len(), "\"endsolid\"").into());
+    }
+    if corners.is_empty() {
+        return Err(Problem::new(At::File, "at least one facet", "none").into());
+    }
+    if corners.len() >= u32::MAX as usize {
+        return Err(Problem::new(At::File, "fewer than 2^32 corners", format!("{}", corners.len())).into());
+    }
+    job.progress(0.7);
+    let (positions, corners) = weld(corners.len(), job, |i| corners[i])?;
+    Ok(triangles(positions.into_iter().map(|p| DVec3::from(p.map(f64::from_bits))).collect(), corners))
+}
+
+fn triangles(positions: Vec<DVec3>, corners: Vec<u32>) -> PolyMesh {
+    let face_starts = (0..=corners.len() as u32 / 3).map(|t| t * 3).collect();
+    PolyMesh { positions, face_starts, corners, ..Default::default() }
+}
+
+/// Equal keys become one, numbered by first use. An open table of half load: one probe and a half a corner.
+pub(crate) fn weld<K: Copy + PartialEq + Bits>(
+    count: usize,
+    job: &Job,
+    key: impl Fn(usize) -> K,
+) -> Result<(Vec<K>, Vec<u32>), crate::job::Cancelled> {
+    // A closed surface has a sixth as many vertices as corners; the table grows where there are more.
+    let mut table = vec![u32::MAX; (count / 2).max(16).next_power_of_two()];
+    let mut unique: Vec<K> = Vec::with_capacity(count / 6 + 1);
+    let mut of = Vec::with_capacity(count);
+    for i in 0..count {
+        if i.is_multiple_of(1 << 18) {
+            job.check()?;
+        }
+        if unique.len() * 2 >= table.len() {
+            let size = table.len() * 2;
+            table = vec![u32::MAX; size];
+            for (n, k) in unique.iter().enumerate() {
+                let mut slot = k.hash() as usize & (size - 1);
+                while table[slot] != u32::MAX {
+                    slot = (slot + 1) & (size - 1);
+                }
+                table[slot] = n as u32;
+            }
+        }
+        let k = key(i);
+        let mask = table.len() - 1;
+        let mut slot = k.hash() as usize & mask;
+        loop {
+            let n = table[slot];
+            if n == u32::MAX {
+                table[slot] = unique.len() as u32;
+                of.push(unique.len() as u32);
+                unique.push(k);
+                break;
+            }
+            if unique[n as usize] == k {
+                of.push(n);
+                break;
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+    Ok((unique, of))
+}
+
+/// A key's hash, well mixed in its low bits.
+pub(crate) trait Bits {
+    fn hash(&self) -> u64;
+}
+
+fn mix(words: impl Iterator<Item = u64>) -> u64 {
+    let mut h = 0x9e37_79b9_7f4a_7c15u64;
+    for w in words {
+        h = (h ^ w).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        h ^= h >> 32;
+    }
+    h
+}
+
+impl Bits for [u32; 3] {
+    fn hash(&self) -> u64 {
+        mix(self.iter().map(|&w| w as u64))
+    }
+}
+
+impl Bits for [u64; 3] {
+    fn hash(&self) -> u64 {
+        mix(self.iter().copied())
+    }
+}

@@ -1,0 +1,185 @@
+//! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in single precision and no
+//! colours, OFF no groups, PLY no groups.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::{WriteError, extension, write_beside, write_packed};
+use crate::PolyMesh;
+
+/// The formats written, by the ending of a name.
+const ENDINGS: [&str; 6] = ["obj", "stl", "ply", "off", "glb", "3mf"];
+
+/// The ending (lower case) by which [`write_mesh`] will write, asked for before the work is done.
+pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {
+    let kind = extension(path);
+    ENDINGS.into_iter().find(|e| *e == kind).ok_or_else(|| WriteError::Extension { path: path.into() })
+}
+
+/// Writes `mesh` in the format that the extension of `path` names, whole or not at all ([`write_beside`]).
+/// The same mesh gives the same bytes. Reading it again gives the same mesh, to the last bit of every coordinate, where the
+/// format keeps double precision (OBJ, OFF, PLY).
+pub fn write_mesh(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
+    let kind = writable_format(path)?;
+    write_beside(path, |out| encode(kind, mesh, out))
+        .map_err(|source| WriteError::Io { path: path.into(), source })
+}
+
+/// The bytes of `mesh` as a file of extension `kind` (lower case) holds them.
+pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    match kind {
+        "obj" => obj(mesh, out),
+        "stl" => stl(mesh, out),
+        "ply" => ply(mesh, out),
+        "off" => off(mesh, out),
+        "glb" => write_packed::glb(mesh, out),
+        "3mf" => write_packed::threemf(mesh, out),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, format!("no mesh format is called \"{kind}\""))),
+    }
+}
+
+fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let mut line = Vec::with_capacity(128);
+    for (v, p) in mesh.positions.iter().enumerate() {
+        line.clear();
+        write!(line, "v {} {} {}", p.x, p.y, p.z)?;
+        if let Some(c) = &mesh.colours {
+            let [r, g, b, _] = c[v].map(|c| c as f64 / 255.0);
+            write!(line, " {r} {g} {b}")?;
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    let mut group = None;
+    for (f, corners) in mesh.faces().enumerate() {
+        line.clear();
+        let now = mesh.groups.as_ref().map(|g| g[f]);
+        if now != group {
+            group = now;
+            if let Some(g) = group {
+                writeln!(line, "g group_{g}")?;
+            }
+        }
+        line.push(b'f');
+        for &c in corners {
+            line.push(b' ');
+            whole(&mut line, c as u64 + 1);
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    Ok(())
+}
+
+fn whole(line: &mut Vec<u8>, mut n: u64) {
+    let mut digits = [0u8; 20];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] = b'0' + (n % 10) as u8;
+        n /= 10;
+        if n == 0 {
+            break;
+        }
+    }
+    line.extend_from_slice(&digits[at..]);
+}
+
+fn stl(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let (triangles, _) = mesh.triangles();
+    let count = u32::try_from(triangles.len())
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidInput, "STL holds at most 2^32 - 1 triangles"))?;
+    let mut head = [0u8; 84];
+    head[..7].copy_from_slice(b"sculptd");
+    head[80..].copy_from_slice(&count.to_le_bytes());
+    out.write_all(&head)?;
+    for t in triangles {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let mut record = [0u8; 50];
+        for (n, p) in [normal, a, b, c].into_iter().enumerate() {
+            for (axis, v) in p.to_array().into_iter().enumerate() {
+                record[n * 12 + axis * 4..][..4].copy_from_slice(&(v as f32).to_le_bytes());
+            }
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}
+
+/// Little-endian; coordinates in single precision where that loses nothing.
+fn ply(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let single = mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
+    let kind = if single { "float" } else { "double" };
+    writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", mesh.positions.len())?;
+    for axis in ["x", "y", "z"] {
+        writeln!(out, "property {kind} {axis}")?;
+    }
+    if mesh.colours.is_some() {
+        for c in ["red", "green", "blue", "alpha"] {
+            writeln!(out, "property uchar {c}")?;
+        }
+    }
+    let long = mesh.faces().any(|f| f.len() > 255);
+    let count = if long { "uint" } else { "uchar" };
+    writeln!(
+        out,
+        "element face {}\nproperty list {count} int vertex_indices\nend_header",
+        mesh.face_count()
+    )?;
+    let mut row = Vec::with_capacity(64);
+    for (v, p) in mesh.positions.iter().enumerate() {
+        row.clear();
+        for c in p.to_array() {
+            if single {
+                row.extend_from_slice(&(c as f32).to_le_bytes());
+            } else {
+                row.extend_from_slice(&c.to_le_bytes());
+            }
+        }
+        if let Some(c) = &mesh.colours {
+            row.extend_from_slice(&c[v]);
+        }
+        out.write_all(&row)?;
+    }
+    for corners in mesh.faces() {
+        row.clear();
+        if long {
+            row.extend_from_slice(&(corners.len() as u32).to_le_bytes());
+        } else {
+            row.push(corners.len() as u8);
+        }
+        for &c in corners {
+            row.extend_from_slice(&c.to_le_bytes());
+        }
+        out.write_all(&row)?;
+    }
+    Ok(())
+}
+
+fn off(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let kind = if mesh.colours.is_some() { "COFF" } else { "OFF" };
+    writeln!(out, "{kind}\n{} {} 0", mesh.positions.len(), mesh.face_count())?;
+    let mut line = Vec::with_capacity(128);
+    for (v, p) in mesh.positions.iter().enumerate() {
+        line.clear();
+        write!(line, "{} {} {}", p.x, p.y, p.z)?;
+        if let Some(c) = &mesh.colours {
+            let [r, g, b, a] = c[v];
+            write!(line, " {r} {g} {b} {a}")?;
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    for corners in mesh.faces() {
+        line.clear();
+        whole(&mut line, corners.len() as u64);
+        for &c in corners {
+            line.push(b' ');
+            whole(&mut line, c as u64);
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    Ok(())
+}

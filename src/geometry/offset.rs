@@ -1,0 +1,225 @@
+//! Solids grown, shrunk, hollowed and melted together, from the same field.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::distance::Solid;
+use super::grid::Grid;
+use super::remesh::dual::extract;
+use super::remesh::{MARGIN, RemeshError, layout};
+use super::unfold::{even, settle_all};
+use crate::TriMesh;
+use crate::job::Job;
+
+/// Newton steps that put a vertex at its distance from the old surface.
+const STEPS: usize = 4;
+
+fn middle(points: &[DVec3]) -> DVec3 {
+    points.iter().sum::<DVec3>() / points.len() as f64
+}
+
+/// A vertex settles within this share of the spacing. Along a ridge the way to the wanted distance leads across it, and what
+/// went further would fold over its neighbours; left where it is, the ridge is a little blunter.
+const ROOM: f64 = 0.25;
+
+/// Moves `p` until the surface is `distance` away (negative inside), as far as it can be in a few steps.
+fn settle(solid: &Solid, start: DVec3, distance: f64, h: f64) -> DVec3 {
+    let mut p = start;
+    for _ in 0..STEPS {
+        let Some(n) = solid.tree.nearest(p, f64::INFINITY) else { return p };
+        let away = p - n.point;
+        let length = away.length();
+        let error = distance.abs() - length;
+        if length < h * 1e-3 || error.abs() < h * 1e-4 {
+            return p;
+        }
+        p += away * (error.clamp(-h, h) / length);
+        p = start + (p - start).clamp_length_max(h * ROOM);
+    }
+    p
+}
+
+/// A surface, and the spacing of the samples that it was made from.
+struct Made {
+    points: Vec<Vec3>,
+    faces: Vec<[u32; 3]>,
+    spacing: f64,
+}
+
+impl Made {
+    fn mesh(self) -> TriMesh {
+        TriMesh { positions: self.points, triangles: self.faces, colours: None }
+    }
+}
+
+/// The surface at `distance` from the solid's, possibly of nothing.
+fn at_distance(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<Made, RemeshError> {
+    let grid = Grid::band([solid], |[d]| d - distance, layout(solid, distance.max(0.0), side)?, job)?;
+    let h = grid.spacing;
+    let (from, faces) = extract(&grid, middle, job)?;
+    let mut moved = even(&from, &faces, h * ROOM);
+    moved.par_iter_mut().try_for_each(|p| {
+        job.check()?;
+        *p = settle(solid, p.as_dvec3(), distance, h).as_vec3();
+        Ok::<_, RemeshError>(())
+    })?;
+    Ok(Made { points: settle_all(&from, moved, &faces, job)?, faces, spacing: h })
+}
+
+/// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold, vertices at that distance to about
+/// a ten-thousandth of the spacing except at creases. [`RemeshError::Empty`] where shrinking leaves nothing.
+pub fn offset(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<TriMesh, RemeshError> {
+    let made = at_distance(solid, distance, side, job)?;
+    if made.faces.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    job.progress(1.0);
+    Ok(made.mesh())
+}
+
+/// A hollowed solid.
+#[derive(Debug, Clone)]
+pub struct Hollow {
+    /// The old surface, bit by bit, and the cavity's, turned inwards.
+    pub mesh: TriMesh,
+    /// Triangles of the cavity; they come last.
+    pub cavity: usize,
+    /// Spacing of the samples that the cavity was made from.
+    pub spacing: f64,
+}
+
+/// Hollows `mesh` to a wall of `wall`: the old surface is kept, and a cavity everywhere further than `wall` inside is cut
+/// out, together with every partition within it that is thinner than the wall. So the wall is nowhere thinner than that by
+/// more than the chord of a cavity's triangle, `spacing^2 / (4 wall)`, except at the old surface's own sharp edges.
+/// [`RemeshError::Empty`] where the solid is nowhere thick enough for a cavity.
+pub fn hollow(
+    mesh: &TriMesh,
+    solid: &Solid,
+    wall: f64,
+    side: usize,
+    job: &Job,
+) -> Result<Hollow, RemeshError> {
+    let deep = at_distance(solid, -wall, side, job)?;
+    let h = deep.spacing;
+    let deep = Made { faces: without_specks(&deep.points, deep.faces, h), ..deep };
+    if deep.faces.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    let Made { points: inner, faces, .. } = closed(deep, wall * 0.5, job)?;
+    let mut out = mesh.clone();
+    let base = out.positions.len() as u32;
+    // Only the points that a cavity kept uses, in their order.
+    let mut used = vec![false; inner.len()];
+    faces.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let mut number = vec![0; inner.len()];
+    for ((number, _), next) in number.iter_mut().zip(&used).filter(|(_, u)| **u).zip(base..) {
+        *number = next;
+    }
+    out.positions.extend(inner.iter().zip(&used).filter(|(_, u)| **u).map(|(p, _)| *p));
+    let of = |v: u32| number[v as usize];
+    out.triangles.extend(faces.iter().map(|&[a, b, c]| [of(a), of(c), of(b)]));
+    if let Some(c) = &mut out.colours {
+        c.resize(out.positions.len(), [255; 4]);
+    }
+    job.progress(1.0);
+    Ok(Hollow { mesh: out, cavity: faces.len(), spacing: h })
+}
+
+/// The cavity grown by `radius` and shrunk again (Serra, "Image analysis and mathematical morphology", 1982). Where the solid
+/// is about twice the wall thick, what lies further inside than the wall falls into several rooms with partitions as thin as
+/// may be between them; this takes out every partition that a ball of `radius` does not fit into, and leaves all else.
+fn closed(cavity: Made, radius: f64, job: &Job) -> Result<Made, RemeshError> {
+    let h = cavity.spacing;
+    let next = |made: Made, distance: f64| {
+        let solid = Solid::build(&made.mesh(), job)?;
+        let (lo, hi) = solid.tree.bounds();
+        let longest = (hi - lo).max_element() as f64 + 2.0 * distance.max(0.0);
+        let side = (longest / h).ceil() as usize + 1 + 2 * MARGIN;
+        at_distance(&solid, distance, side.clamp(8, 1024), job)
+    };
+    let back = next(next(cavity, radius)?, -radius)?;
+    let faces = without_specks(&back.points, back.faces, h);
+    if faces.is_empty() { Err(RemeshError::Empty) } else { Ok(Made { faces, ..back }) }
+}
+
+/// The cavities without those that are flatter than the samples can tell: where a solid is about twice the wall thick, its
+/// middle comes out as flat flakes. Leaving one out makes the part more solid there, never thinner.
+fn without_specks(points: &[Vec3], faces: Vec<[u32; 3]>, h: f64) -> Vec<[u32; 3]> {
+    let mut parent: Vec<u32> = (0..points.len() as u32).collect();
+    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    for &[a, b, c] in &faces {
+        for (u, v) in [(a, b), (b, c)] {
+            let (u, v) = (root(&mut parent, u), root(&mut parent, v));
+            parent[u.max(v) as usize] = u.min(v);
+        }
+    }
+    // Six times the volume and twice the area of each cavity, about a point of its own.
+    let mut sums = vec![(0.0f64, 0.0f64); points.len()];
+    for &face in &faces {
+        let home = root(&mut parent, face[0]);
+        let [a, b, c] = face.map(|v| (points[v as usize] - points[home as usize]).as_dvec3());
+        let sum = &mut sums[home as usize];
+        sum.0 += a.dot(b.cross(c));
+        sum.1 += (b - a).cross(c - a).length();
+    }
+    // A ball of radius r has 3 V / A = r, a sheet of thickness t has 1.5 t.
+    let mut keeps = |v: u32| {
+        let (volume, area) = sums[root(&mut parent, v) as usize];
+        volume > h * area
+    };
+    faces.into_iter().filter(|f| keeps(f[0])).collect()
+}
+
+/// The smaller of two distances, rounded within `k` of where they are equal (Quilez's quadratic polynomial): at most `k / 4`
+/// less. No steeper than its arguments.
+pub fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
+    if k <= 0.0 {
+        return a.min(b);
+    }
+    let x = (k - (a - b).abs()).max(0.0) / k;
+    a.min(b) - x * x * k * 0.25
+}
+
+/// Two solids as one, with a fillet of about `radius` along their seam; a radius of zero is the plain union.
+pub fn smooth_union(
+    a: &Solid,
+    b: &Solid,
+    radius: f64,
+    side: usize,
+    job: &Job,
+) -> Result<TriMesh, RemeshError> {
+    let k = radius.max(0.0) * 2.0;
+    let ((alo, ahi), (blo, bhi)) = (a.tree.bounds(), b.tree.bounds());
+    layout(a, 0.0, side)?;
+    layout(b, 0.0, side)?;
+    let room = DVec3::splat(k * 0.25);
+    let both = (alo.min(blo).as_dvec3() - room, ahi.max(bhi).as_dvec3() + room);
+    let shape = Grid::layout(both, side, MARGIN);
+    let grid = Grid::band([a, b], |[p, q]| smooth_min(p, q, k), shape, job)?;
+    let h = grid.spacing;
+    let field = |p: DVec3| smooth_min(a.signed_distance(p), b.signed_distance(p), k);
+    let (mut positions, triangles) = extract(&grid, middle, job)?;
+    if triangles.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    // Onto the field's zero, along its slope.
+    positions.par_iter_mut().try_for_each(|p| {
+        job.check()?;
+        let q = p.as_dvec3();
+        let e = h * 0.05;
+        let slope = DVec3::from_array(DVec3::AXES.map(|x| field(q + x * e) - field(q - x * e))) / (2.0 * e);
+        let steep = slope.length_squared();
+        if steep > 0.25 {
+            *p = (q - (slope * (field(q) / steep)).clamp_length_max(h * 0.5)).as_vec3();
+        }
+        Ok::<_, RemeshError>(())
+    })?;
+    job.progress(1.0);
+    Ok(TriMesh { positions, triangles, colours: None })
+}

@@ -1,0 +1,125 @@
+//! A new mesh from the field of an old one: even triangles, one closed surface, whatever the old one was.
+
+pub mod dual;
+
+use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::distance::Solid;
+use super::grid::{Grid, MAX_SAMPLES};
+use crate::TriMesh;
+use crate::bvh::REACH;
+use crate::job::{Cancelled, Job};
+
+/// How fine the new mesh is, and whether edges stay sharp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Samples along the longest side of the box, 8 to 1024.
+    pub side: usize,
+    /// Vertices at the meeting point of the faces around (Ju et al., "Dual contouring of Hermite data", 2002) instead of in
+    /// their middle.
+    pub sharp: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { side: 256, sharp: false }
+    }
+}
+
+/// Why there is no new mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum RemeshError {
+    #[error("{0}")]
+    Cancelled(#[from] Cancelled),
+    #[error("expected a surface around some volume, found none")]
+    Empty,
+    #[error("expected 8 to 1024 samples a side, found {0}")]
+    Side(usize),
+}
+
+/// Samples outside the mesh on each side.
+pub(super) const MARGIN: usize = 3;
+
+/// The box of the solid, larger by `more` on each side, as a grid's layout.
+pub(super) fn layout(solid: &Solid, more: f64, side: usize) -> Result<Grid, RemeshError> {
+    if !(8..=1024).contains(&side) {
+        return Err(RemeshError::Side(side));
+    }
+    if solid.tree.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    let (lo, hi) = solid.tree.bounds();
+    if !(lo.abs().max(hi.abs()).max_element() as f64 + more < REACH) {
+        return Err(RemeshError::Empty);
+    }
+    let grid = Grid::layout((lo.as_dvec3() - more, hi.as_dvec3() + more), side, MARGIN);
+    let [x, y, z] = grid.size;
+    if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }
+}
+
+/// Voxel remeshing: one closed 2-manifold around everything that is inside `mesh`, its vertices on the old surface (or,
+/// where a hole was closed, between its rims), with the old colours. `solid` was built from `mesh`.
+pub fn remesh(mesh: &TriMesh, solid: &Solid, settings: Settings, job: &Job) -> Result<TriMesh, RemeshError> {
+    let grid = Grid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
+    let h = grid.spacing;
+    let place = |points: &[DVec3]| {
+        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+        let start = if settings.sharp { corner(solid, points, middle, h) } else { middle };
+        onto(solid, start, h)
+    };
+    let (positions, triangles) = dual::extract(&grid, place, job)?;
+    if triangles.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    let colours = colours(mesh, solid, &positions, job)?;
+    job.progress(1.0);
+    Ok(TriMesh { positions, triangles, colours })
+}
+
+/// The place on the old surface nearest to `p`, less a fiftieth of the way: two vertices that meet at a corner stay two.
+fn onto(solid: &Solid, p: DVec3, h: f64) -> DVec3 {
+    match solid.tree.nearest(p, h) {
+        Some(n) => p + (n.point - p) * 0.98,
+        None => p,
+    }
+}
+
+/// Where the planes of the surface at `points` meet, as near to `middle` as they leave open; at most a spacing away.
+fn corner(solid: &Solid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
+    // A weak pull to the middle decides along a flat or an edge.
+    let (mut a, mut b) = (DMat3::from_diagonal(DVec3::splat(0.01)), DVec3::ZERO);
+    for &p in points {
+        let Some(n) = solid.tree.nearest(p, h) else { continue };
+        let normal = solid.topology.face_normals[n.triangle as usize].normalize_or_zero();
+        a += DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
+        b += normal * normal.dot(n.point - middle);
+    }
+    middle + (a.inverse() * b).clamp_length_max(h)
+}
+
+/// The old colours at new places.
+fn colours(
+    mesh: &TriMesh,
+    solid: &Solid,
+    positions: &[Vec3],
+    job: &Job,
+) -> Result<Option<Vec<[u8; 4]>>, Cancelled> {
+    let Some(old) = mesh.colours.as_ref().filter(|c| c.len() == mesh.positions.len()) else {
+        return Ok(None);
+    };
+    let each = |p: &Vec3| -> Result<[u8; 4], Cancelled> {
+        job.check()?;
+        let Some(n) = solid.tree.nearest(p.as_dvec3(), f64::INFINITY) else { return Ok([255; 4]) };
+        let [a, b, c] = mesh.corners(n.triangle as usize).map(Vec3::as_dvec3);
+        let area = |p: DVec3, q: DVec3| (p - n.point).cross(q - n.point).length();
+        let w = [area(b, c), area(c, a), area(a, b)];
+        let sum = w[0] + w[1] + w[2];
+        let w = if sum > 0.0 { w.map(|x| x / sum) } else { [1.0, 0.0, 0.0] };
+        let t = mesh.triangles[n.triangle as usize];
+        Ok(std::array::from_fn(|k| {
+            (0..3).map(|i| old[t[i] as usize][k] as f64 * w[i]).sum::<f64>().round() as u8
+        }))
+    };
+    positions.par_iter().map(each).collect::<Result<_, _>>().map(Some)
+}

@@ -1,0 +1,351 @@
+//! Wall thickness of a solid, at every vertex or face, by rays or by the inscribed sphere.
+//!
+//! | definition | what it says | where it fails |
+//! |---|---|---|
+//! | one ray | the way through the wall along the normal | jumps at steps; under a rib it sees rib and all |
+//! | cone of rays | the mean depth of the wall ahead (Shapira, Shamir, Cohen-Or 2008) | smooths what is narrower than itself |
+//! | inscribed sphere | the ball that fits | goes to zero in every convex edge: see [`EdgePolicy`] |
+//!
+//! Guaranteed: the same values with any number of threads, with and without AVX2; a face that touches the vertex is never
+//! hit from it; a value is missing only with a [`Reason`]. Not guaranteed: anything about the solid that the triangles
+//! stand for. The stated error is against the triangles' own surface, smoothed where it bends by less than the crease.
+
+pub mod ball;
+pub mod check;
+pub mod colour;
+pub mod cone;
+mod edges;
+pub mod preset;
+pub mod ray;
+pub mod refine;
+pub mod report;
+pub mod summary;
+pub mod surface;
+pub mod warnings;
+pub mod worst;
+
+use std::borrow::Cow;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::TriMesh;
+use crate::bvh::WideTree;
+use crate::job::{Cancelled, Job};
+pub use cone::{Cone, Outliers, Weights};
+pub use ray::Correction;
+use ray::{Caster, Scratch, Site};
+pub use surface::{Faults, Surface};
+
+/// How thickness is defined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    Ray,
+    Sphere,
+}
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The wall behind the surface.
+    Wall,
+    /// The gap in front of it (clearance).
+    Gap,
+}
+
+/// What a vertex on a sharp edge says, where "the opposite side" has no meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgePolicy {
+    /// Whatever was measured with the mean of the normals.
+    Raw,
+    /// The median of the nearest vertices beside the edge; where there are none (a box of eight vertices), the smallest
+    /// of the walls under the faces that meet there.
+    Extrapolate,
+    /// The inscribed sphere, which goes to zero there.
+    Sphere,
+    /// Nothing, with [`Reason::Edge`].
+    Neutral,
+}
+
+/// Why a value is what it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[repr(u8)]
+pub enum Reason {
+    /// Measured here.
+    Measured,
+    /// On a sharp edge, or a ball held by one: the value follows the edge policy, or is missing under `Neutral`.
+    Edge,
+    /// Missing: no wall ahead; the mesh is open there, or nothing lies in front of it.
+    NothingAhead,
+    /// Missing: the faces around the vertex cancel each other, so there is no direction to measure in.
+    NoNormal,
+    /// Missing: the vertex belongs to no face of any area.
+    NoFace,
+}
+
+/// Where values are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum At {
+    Vertices,
+    /// At each triangle's centroid, too.
+    VerticesAndFaces,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Settings {
+    pub method: Method,
+    pub side: Side,
+    /// 1 to 1000.
+    pub rays: usize,
+    /// The cone's full angle, degrees, 0 to 120.
+    pub opening: f32,
+    pub correction: Correction,
+    pub outliers: Outliers,
+    pub weights: Weights,
+    pub edges: EdgePolicy,
+    /// An edge that turns by more than this, degrees, is sharp.
+    pub crease: f32,
+    pub at: At,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            method: Method::Ray,
+            side: Side::Wall,
+            rays: 25,
+            opening: 60.0,
+            correction: Correction::Chord,
+            outliers: Outliers::SigmaMedian,
+            weights: Weights::Plain,
+            edges: EdgePolicy::Extrapolate,
+            crease: 40.0,
+            at: At::Vertices,
+        }
+    }
+}
+
+/// Settings that mean nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refused {
+    #[error("{what} is {got}: it must be {expected}")]
+    Setting { what: &'static str, got: f32, expected: &'static str },
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Settings {
+    fn check(&self) -> Result<(), Refused> {
+        let say = |what, got, expected| Err(Refused::Setting { what, got, expected });
+        if !(1..=1000).contains(&self.rays) {
+            return say("the number of rays", self.rays as f32, "from 1 to 1000");
+        }
+        if !(0.0..=120.0).contains(&self.opening) {
+            return say("the cone's opening", self.opening, "from 0 to 120 degrees");
+        }
+        if !(0.0..=180.0).contains(&self.crease) {
+            return say("the crease angle", self.crease, "from 0 to 180 degrees");
+        }
+        match self.outliers {
+            Outliers::Range(share) if !(0.1..=0.9).contains(&share) => {
+                say("the outliers' share of the range", share, "from 0.1 to 0.9")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The measured map. Lengths are in the mesh's unit; NaN stands for "no value", and `reasons` says why.
+#[derive(Debug, Clone)]
+pub struct Thickness {
+    pub settings: Settings,
+    /// One a vertex of the mesh.
+    pub values: Vec<f32>,
+    pub reasons: Vec<Reason>,
+    /// One a vertex: the standard error of a cone's mean; 0 for a single ray and for the sphere.
+    pub errors: Vec<f32>,
+    /// One a triangle, with [`At::VerticesAndFaces`].
+    pub face_values: Vec<f32>,
+    pub face_reasons: Vec<Reason>,
+    /// Rays and ball queries asked for.
+    pub queries: u64,
+    pub surface: Surface,
+    /// The largest coordinate error of single precision here, in the mesh's unit.
+    pub rounding: f32,
+}
+
+/// Vertices a task takes at once: a cancel is seen within a few milliseconds.
+const CHUNK: usize = 512;
+
+#[derive(Debug, Clone, Copy)]
+struct Value {
+    value: f32,
+    error: f32,
+    reason: Reason,
+    /// The other side is not parallel enough to make a wall: near a sharp edge the value tells of the edge.
+    turned: bool,
+}
+
+impl Value {
+    const fn missing(reason: Reason) -> Self {
+        Value { value: f32::NAN, error: 0.0, reason, turned: false }
+    }
+}
+
+/// Measures a whole mesh on the current rayon pool.
+pub fn measure(mesh: &TriMesh, settings: &Settings, job: &Job) -> Result<Thickness, Refused> {
+    settings.check()?;
+    let (tree, surface) =
+        rayon::join(|| WideTree::build(mesh, job), || Surface::new(mesh, settings.crease.to_radians()));
+    measure_prepared(Cow::Owned(surface), &tree?, settings, job)
+}
+
+/// The same with the tree and the surface at hand, for several measures of one mesh.
+pub fn measure_prepared(
+    surface: Cow<'_, Surface>,
+    tree: &WideTree,
+    settings: &Settings,
+    job: &Job,
+) -> Result<Thickness, Refused> {
+    settings.check()?;
+    let chord =
+        settings.method == Method::Ray && settings.correction == Correction::Chord && settings.rays > 1;
+    let corner_normals =
+        if chord { surface.corner_normals(settings.crease.to_radians()) } else { Vec::new() };
+    let cone = Cone::new(settings.rays, settings.opening.to_radians(), settings.weights);
+    let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
+    let caster = Caster {
+        tree,
+        face_normals: &surface.face_normals,
+        corner_normals: &corner_normals,
+        sign: if settings.side == Side::Wall { inside_out } else { -inside_out },
+        cone: &cone,
+        outliers: settings.outliers,
+        // A single ray is the axis: exact along it whatever the correction, and needs no smooth normals.
+        correction: if settings.rays == 1 { Correction::None } else { settings.correction },
+    };
+    let order = spatial_order(&surface, tree);
+    job.progress(0.2);
+    let at_vertex = |v: usize, scratch: &mut Scratch| -> Value {
+        let own = surface.around(v);
+        if own.is_empty() {
+            return Value::missing(Reason::NoFace);
+        }
+        let n = surface.normals[v];
+        if n == Vec3::ZERO {
+            return Value::missing(Reason::NoNormal);
+        }
+        let site = Site { point: surface.positions[v], away: n * caster.sign, own };
+        one(&caster, &site, settings, surface.sharp[v], scratch)
+    };
+    let mut welded = scattered(&order, surface.positions.len(), job, (0.2, 0.8), at_vertex)?;
+    edges::apply(&caster, &surface, settings, &mut welded);
+    let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
+    if settings.at == At::VerticesAndFaces {
+        let at_face = |t: usize, scratch: &mut Scratch| -> Value {
+            let Some([a, b, c]) = surface.corners(t) else { return Value::missing(Reason::NoFace) };
+            let own = [t as u32];
+            let site =
+                Site { point: (a + b + c) / 3.0, away: surface.face_normals[t] * caster.sign, own: &own };
+            one(&caster, &site, settings, false, scratch)
+        };
+        let order: Vec<u32> =
+            tree.packs().iter().flat_map(|p| p.id).filter(|&t| t != crate::bvh::NO_TRIANGLE).collect();
+        let faces = scattered(&order, surface.triangles.len(), job, (0.8, 0.98), at_face)?;
+        face_values = faces.iter().map(|v| v.value).collect();
+        face_reasons = faces.iter().map(|v| v.reason).collect();
+    }
+    let per_site = if settings.method == Method::Ray { settings.rays } else { 1 };
+    let queries = (order.len() + face_values.len()) as u64 * per_site as u64;
+    let (lo, hi) = tree.bounds();
+    let rounding = if tree.is_empty() { 0.0 } else { lo.abs().max(hi.abs()).max_element() * 1e-6 };
+    let of = |f: fn(&Value) -> f32| surface.weld.iter().map(|&v| f(&welded[v as usize])).collect();
+    let values = of(|v| v.value);
+    let errors = of(|v| v.error);
+    let reasons = surface.weld.iter().map(|&v| welded[v as usize].reason).collect();
+    job.progress(1.0);
+    Ok(Thickness {
+        settings: *settings,
+        values,
+        reasons,
+        errors,
+        face_values,
+        face_reasons,
+        queries,
+        surface: surface.into_owned(),
+        rounding,
+    })
+}
+
+/// One site's value by the chosen method. A value at a sharp vertex is marked for the edge policy.
+fn one(
+    caster: &Caster<'_>,
+    site: &Site<'_>,
+    settings: &Settings,
+    sharp: bool,
+    scratch: &mut Scratch,
+) -> Value {
+    let marked = |edge| if edge { Reason::Edge } else { Reason::Measured };
+    let by_rays = match settings.method {
+        Method::Ray => caster.measure(site, scratch),
+        Method::Sphere => None,
+    };
+    // Where every ray of the cone leaves the solid (a needle's tip), the ball still has a size.
+    let found = by_rays
+        .map(|(f, turned)| Value { value: f.value, error: f.error, reason: marked(sharp), turned })
+        .or_else(|| {
+            let b = caster.ball(site)?;
+            Some(Value { value: b.diameter, error: 0.0, reason: marked(sharp), turned: b.in_corner })
+        });
+    found.unwrap_or(Value::missing(Reason::NothingAhead))
+}
+
+/// `value` at each index of `order`, in parallel over spatially coherent chunks; the others have no face.
+fn scattered(
+    order: &[u32],
+    count: usize,
+    job: &Job,
+    (from, to): (f32, f32),
+    value: impl Fn(usize, &mut Scratch) -> Value + Sync,
+) -> Result<Vec<Value>, Cancelled> {
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let found: Vec<Value> = order
+        .par_chunks(CHUNK)
+        .map(|chunk| {
+            job.check()?;
+            let mut scratch = Scratch::default();
+            let values: Vec<Value> = chunk.iter().map(|&i| value(i as usize, &mut scratch)).collect();
+            let n = done.fetch_add(chunk.len(), std::sync::atomic::Ordering::Relaxed);
+            job.progress(from + (to - from) * n as f32 / order.len() as f32);
+            Ok(values)
+        })
+        .collect::<Result<Vec<_>, Cancelled>>()?
+        .concat();
+    let mut out = vec![Value::missing(Reason::NoFace); count];
+    for (&i, v) in order.iter().zip(found) {
+        out[i as usize] = v;
+    }
+    Ok(out)
+}
+
+/// Welded vertices in the order of the tree's leaves: neighbours in space are neighbours in time, and the caches stay warm.
+fn spatial_order(surface: &Surface, tree: &WideTree) -> Vec<u32> {
+    let mut seen = vec![false; surface.positions.len()];
+    let mut order = Vec::with_capacity(seen.len());
+    for &t in tree.packs().iter().flat_map(|p| &p.id) {
+        let Some(corners) = surface.triangles.get(t as usize) else { continue };
+        for &v in corners {
+            if let Some(s) = seen.get_mut(v as usize)
+                && !std::mem::replace(s, true)
+            {
+                order.push(v);
+            }
+        }
+    }
+    order
+}

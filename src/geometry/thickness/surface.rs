@@ -1,0 +1,319 @@
+//! What thickness needs to know of a mesh besides its tree: which corners are one vertex, which faces meet there, normals,
+//! sharp edges, and what is wrong with it.
+
+use glam::Vec3;
+
+use crate::TriMesh;
+
+/// Marks a triangle that is left out: degenerate, a duplicate, or with an index or a coordinate that means nothing.
+pub const DROPPED: u32 = u32::MAX;
+
+/// A welded view of a mesh. Triangle indices are the mesh's own; vertex indices are of the welded vertices.
+#[derive(Debug, Clone)]
+pub struct Surface {
+    /// Welded vertex of each of the mesh's vertices.
+    pub weld: Vec<u32>,
+    pub positions: Vec<Vec3>,
+    /// Welded corners of each triangle; `[DROPPED; 3]` where it is left out.
+    pub triangles: Vec<[u32; 3]>,
+    /// Of unit length, outward where the mesh is right; zero where the triangle is left out.
+    pub face_normals: Vec<Vec3>,
+    /// Weighted by the corner's angle (Thuermer and Wuethrich 1998); zero where faces cancel or none meet.
+    pub normals: Vec<Vec3>,
+    /// The triangles around vertex `v` are `around[starts[v]..starts[v + 1]]`.
+    pub starts: Vec<u32>,
+    pub around: Vec<u32>,
+    /// An edge at this vertex turns by more than the crease angle.
+    pub sharp: Vec<bool>,
+    pub faults: Faults,
+}
+
+/// What is wrong with a mesh, counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Faults {
+    pub broken: usize,
+    pub degenerate: usize,
+    pub duplicate: usize,
+    pub welded: usize,
+    /// Edges of one face only.
+    pub boundary_edges: usize,
+    /// Edges of more than two faces.
+    pub crowded_edges: usize,
+    /// Edges of two faces that run along them the same way: one of the two is inverted.
+    pub inverted_edges: usize,
+    pub shells: usize,
+    /// The enclosed volume is negative: the whole mesh is inside out.
+    pub inside_out: bool,
+}
+
+impl Surface {
+    /// `crease` is in radians.
+    pub fn new(mesh: &TriMesh, crease: f32) -> Surface {
+        let mut faults = Faults::default();
+        let (weld, positions) = weld(&mesh.positions);
+        faults.welded = mesh.positions.len() - positions.len();
+        let mut s = Surface {
+            weld,
+            positions,
+            triangles: Vec::with_capacity(mesh.triangles.len()),
+            face_normals: Vec::with_capacity(mesh.triangles.len()),
+            normals: Vec::new(),
+            starts: Vec::new(),
+            around: Vec::new(),
+            sharp: Vec::new(),
+            faults,
+        };
+        let mut volume = 0.0f64;
+        for t in &mesh.triangles {
+            let welded = t.map(|v| s.weld.get(v as usize).copied().unwrap_or(DROPPED));
+            let mut keep = welded;
+            let mut normal = Vec3::ZERO;
+            if welded.contains(&DROPPED) || welded.iter().any(|&v| !s.positions[v as usize].is_finite()) {
+                s.faults.broken += 1;
+                keep = [DROPPED; 3];
+            } else {
+                let [a, b, c] = welded.map(|v| s.positions[v as usize].as_dvec3());
+                let cross = (b - a).cross(c - a);
+                normal = cross.normalize_or_zero().as_vec3();
+                if normal == Vec3::ZERO {
+                    s.faults.degenerate += 1;
+                    keep = [DROPPED; 3];
+                }
+                volume += a.dot(b.cross(c));
+            }
+            s.triangles.push(keep);
+            s.face_normals.push(normal);
+        }
+        s.meet();
+        s.drop_duplicates();
+        s.find_normals();
+        s.edges(crease);
+        s.faults.inside_out = volume < 0.0 && s.faults.boundary_edges == 0;
+        s
+    }
+
+    pub fn around(&self, v: usize) -> &[u32] {
+        &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+
+    pub fn corners(&self, t: usize) -> Option<[Vec3; 3]> {
+        let corners = self.triangles[t];
+        (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
+    }
+
+    /// Fills `starts` and `around` from the triangles.
+    fn meet(&mut self) {
+        let n = self.positions.len();
+        let mut starts = vec![0u32; n + 1];
+        let kept = |t: &&[u32; 3]| t[0] != DROPPED;
+        for t in self.triangles.iter().filter(kept) {
+            t.iter().for_each(|&v| starts[v as usize + 1] += 1);
+        }
+        for v in 0..n {
+            starts[v + 1] += starts[v];
+        }
+        let mut next = starts.clone();
+        let mut around = vec![0u32; starts[n] as usize];
+        for (i, t) in self.triangles.iter().enumerate().filter(|(_, t)| t[0] != DROPPED) {
+            for &v in t {
+                around[next[v as usize] as usize] = i as u32;
+                next[v as usize] += 1;
+            }
+        }
+        (self.starts, self.around) = (starts, around);
+    }
+
+    /// Of triangles with the same three corners the first stays.
+    fn drop_duplicates(&mut self) {
+        let mut found = Vec::new();
+        for v in 0..self.positions.len() {
+            let around = self.around(v);
+            for (i, &t) in around.iter().enumerate() {
+                let mut mine = self.triangles[t as usize];
+                mine.sort_unstable();
+                // Seen from its lowest corner only, so each pair is met once.
+                if mine[0] as usize != v {
+                    continue;
+                }
+                let twin = around[..i].iter().any(|&u| {
+                    let mut other = self.triangles[u as usize];
+                    other.sort_unstable();
+                    other == mine
+                });
+                if twin {
+                    found.push(t as usize);
+                }
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        self.faults.duplicate = found.len();
+        for t in found {
+            self.triangles[t] = [DROPPED; 3];
+            self.face_normals[t] = Vec3::ZERO;
+        }
+        self.meet();
+    }
+
+    fn find_normals(&mut self) {
+        let mut normals = vec![Vec3::ZERO; self.positions.len()];
+        for (t, corners) in self.triangles.iter().enumerate().filter(|(_, t)| t[0] != DROPPED) {
+            let p = corners.map(|v| self.positions[v as usize]);
+            for c in 0..3 {
+                normals[corners[c] as usize] += self.face_normals[t] * corner_angle(p, c);
+            }
+        }
+        self.normals = normals.into_iter().map(Vec3::normalize_or_zero).collect();
+    }
+
+    /// Sharp vertices, and the edges' faults.
+    fn edges(&mut self, crease: f32) {
+        let turn = crease.cos();
+        let mut sharp = vec![false; self.positions.len()];
+        let mut shells = Shells::new(self.positions.len());
+        // The edges at `v` that lead to a higher vertex: (other end, triangle, this triangle runs v -> other).
+        let mut out: Vec<(u32, u32, bool)> = Vec::new();
+        for v in 0..self.positions.len() as u32 {
+            out.clear();
+            for &t in self.around(v as usize) {
+                let c = self.triangles[t as usize];
+                let k = c.iter().position(|&x| x == v).unwrap_or(0);
+                let (next, last) = (c[(k + 1) % 3], c[(k + 2) % 3]);
+                if next > v {
+                    out.push((next, t, true));
+                }
+                if last > v {
+                    out.push((last, t, false));
+                }
+            }
+            out.sort_unstable();
+            let mut i = 0;
+            while i < out.len() {
+                let end = out[i..].iter().position(|e| e.0 != out[i].0).map_or(out.len(), |n| i + n);
+                let other = out[i].0;
+                shells.join(v, other);
+                match &out[i..end] {
+                    [_] => self.faults.boundary_edges += 1,
+                    [(_, a, along), (_, b, against)] => {
+                        self.faults.inverted_edges += (along == against) as usize;
+                        let (a, b) = (self.face_normals[*a as usize], self.face_normals[*b as usize]);
+                        if a.dot(b) < turn {
+                            sharp[v as usize] = true;
+                            sharp[other as usize] = true;
+                        }
+                    }
+                    _ => {
+                        self.faults.crowded_edges += 1;
+                        sharp[v as usize] = true;
+                        sharp[other as usize] = true;
+                    }
+                }
+                i = end;
+            }
+        }
+        self.faults.shells = (0..self.positions.len())
+            .filter(|&v| shells.root(v as u32) == v as u32 && !self.around(v).is_empty())
+            .count();
+        self.sharp = sharp;
+    }
+
+    /// One normal a corner: the mean of the faces around the vertex that turn from this one by less than `crease`
+    /// (radians), weighted by their angles there. So a curved wall is smooth and an edge stays an edge.
+    pub fn corner_normals(&self, crease: f32) -> Vec<[Vec3; 3]> {
+        use rayon::prelude::*;
+        let turn = crease.cos();
+        let one = |t: usize| {
+            let own = self.face_normals[t];
+            if own == Vec3::ZERO {
+                return [own; 3];
+            }
+            self.triangles[t].map(|v| {
+                if !self.sharp[v as usize] {
+                    return self.normals[v as usize];
+                }
+                let mut sum = Vec3::ZERO;
+                for &u in self.around(v as usize) {
+                    let n = self.face_normals[u as usize];
+                    if n.dot(own) >= turn {
+                        let corners = self.triangles[u as usize];
+                        let k = corners.iter().position(|&x| x == v).unwrap_or(0);
+                        sum += n * corner_angle(corners.map(|x| self.positions[x as usize]), k);
+                    }
+                }
+                sum.normalize_or(own)
+            })
+        };
+        (0..self.triangles.len()).into_par_iter().map(one).collect()
+    }
+
+    /// Vertices joined to `v` by an edge, each once, rising.
+    pub fn neighbours(&self, v: usize, into: &mut Vec<u32>) {
+        into.clear();
+        for &t in self.around(v) {
+            into.extend(self.triangles[t as usize].iter().filter(|&&u| u as usize != v));
+        }
+        into.sort_unstable();
+        into.dedup();
+    }
+}
+
+/// The angle at corner `c`, radians.
+pub fn corner_angle(p: [Vec3; 3], c: usize) -> f32 {
+    let (e, f) = (p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
+    e.cross(f).length().atan2(e.dot(f))
+}
+
+/// Vertices at bit-equal positions become one (-0 counts as 0), numbered by first appearance.
+fn weld(positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
+    let size = (positions.len() * 2).next_power_of_two().max(2);
+    let shift = 64 - size.trailing_zeros();
+    let mut table = vec![u32::MAX; size];
+    let mut unique: Vec<Vec3> = Vec::with_capacity(positions.len());
+    let map = positions
+        .iter()
+        .map(|&p| {
+            let p = p + 0.0;
+            let key = p.to_array().map(f32::to_bits);
+            let bits = key.map(u64::from);
+            let mix = (bits[0] | bits[1] << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ bits[2].rotate_left(17);
+            let mut slot = (mix.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> shift) as usize;
+            loop {
+                let at = table[slot];
+                if at == u32::MAX {
+                    table[slot] = unique.len() as u32;
+                    unique.push(p);
+                    return unique.len() as u32 - 1;
+                }
+                if unique[at as usize].to_array().map(f32::to_bits) == key {
+                    return at;
+                }
+                slot = (slot + 1) & (size - 1);
+            }
+        })
+        .collect();
+    (map, unique)
+}
+
+/// Union-find over the vertices.
+struct Shells(Vec<u32>);
+
+impl Shells {
+    fn new(n: usize) -> Self {
+        Shells((0..n as u32).collect())
+    }
+
+    fn root(&mut self, mut v: u32) -> u32 {
+        while self.0[v as usize] != v {
+            self.0[v as usize] = self.0[self.0[v as usize] as usize];
+            v = self.0[v as usize];
+        }
+        v
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        // The lower index is the root, so the result does not depend on the order.
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}

@@ -1,0 +1,181 @@
+//! The generalised winding number: how often the surface goes around a point. One inside a closed solid, nothing outside,
+//! two where two shells overlap, something between near holes.
+//!
+//! Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using generalized winding numbers", 2013;
+//! summed by a hierarchy as Barill et al., "Fast winding numbers for soups and clouds", 2018: a far subtree counts as one
+//! dipole (their first order), a near one is opened, a triangle's solid angle is exact (Van Oosterom and Strackee 1983).
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::bvh::{LEAF, NO_TRIANGLE, Pack, WideTree};
+use crate::simd::wide::{self, Wide, WideWork};
+
+/// A subtree counts as one dipole from this many of its radii away. At 3, the sum over 100,000 triangles is off by less
+/// than 0.02, and only whether it is above a half matters.
+const FAR: f32 = 3.0;
+
+/// The eight children of one node as dipoles at their centres of area.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+struct Dipoles {
+    centre: [[f32; 8]; 3],
+    /// Area times normal.
+    moment: [[f32; 8]; 3],
+    /// Square of [`FAR`] radii. A child that is not there is far away, at 1e9, and has no moment.
+    far: [f32; 8],
+}
+
+/// The dipoles of a tree's nodes, by the same index.
+#[derive(Debug, Clone)]
+pub struct Winding {
+    dipoles: Vec<Dipoles>,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    moment: DVec3,
+    area: f64,
+    weighted: DVec3,
+    lo: DVec3,
+    hi: DVec3,
+}
+
+fn corners(pack: &Pack, i: usize) -> [DVec3; 3] {
+    [0, 1, 2].map(|c| DVec3::new(pack.v[c][0][i] as f64, pack.v[c][1][i] as f64, pack.v[c][2][i] as f64))
+}
+
+fn pack_sum(pack: &Pack) -> Sum {
+    let mut s = Sum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
+    for i in 0..4 {
+        if pack.id[i] == NO_TRIANGLE {
+            continue;
+        }
+        let [a, b, c] = corners(pack, i);
+        let moment = (b - a).cross(c - a) * 0.5;
+        let area = moment.length();
+        s.moment += moment;
+        s.area += area;
+        s.weighted += (a + b + c) * (area / 3.0);
+        s.lo = s.lo.min(a).min(b).min(c);
+        s.hi = s.hi.max(a).max(b).max(c);
+    }
+    s
+}
+
+impl Winding {
+    pub fn build(tree: &WideTree) -> Winding {
+        let nodes = tree.nodes();
+        let none = Dipoles { centre: [[1e9; 8]; 3], moment: [[0.0; 8]; 3], far: [-1.0; 8] };
+        let mut dipoles = vec![none; nodes.len()];
+        let mut sums = vec![Sum::default(); nodes.len()];
+        // Children come after their parent.
+        for at in (0..nodes.len()).rev() {
+            let node = &nodes[at];
+            let mut all = Sum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
+            for i in 0..8 {
+                if node.planes[0][i] == f32::INFINITY {
+                    continue;
+                }
+                let child = node.child[i];
+                let s = if child & LEAF != 0 {
+                    pack_sum(&tree.packs()[(child & !LEAF) as usize])
+                } else {
+                    sums[child as usize]
+                };
+                all.moment += s.moment;
+                all.area += s.area;
+                all.weighted += s.weighted;
+                all.lo = all.lo.min(s.lo);
+                all.hi = all.hi.max(s.hi);
+                let centre = if s.area > 0.0 { s.weighted / s.area } else { (s.lo + s.hi) * 0.5 };
+                let radius = (centre - s.lo).max(s.hi - centre).length() as f32 * FAR;
+                let d = &mut dipoles[at];
+                for axis in 0..3 {
+                    d.centre[axis][i] = centre[axis] as f32;
+                    d.moment[axis][i] = s.moment[axis] as f32;
+                }
+                d.far[i] = radius * radius;
+            }
+            sums[at] = all;
+        }
+        Winding { dipoles }
+    }
+
+    /// How often the surface of `tree`, which this was built from, goes around `p`; 0 out of range
+    /// ([`crate::bvh::REACH`]).
+    pub fn at(&self, tree: &WideTree, p: DVec3) -> f64 {
+        if self.dipoles.is_empty() || tree.out_of_range(p) {
+            return 0.0;
+        }
+        wide::dispatch(tree.scalar(), Walk { winding: self, tree, p })
+    }
+}
+
+/// The solid angle of a triangle seen from the origin, over 4 pi; positive where its front is turned away from it.
+pub fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let up = a.dot(b.cross(c));
+    let down = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    up.atan2(down) / (2.0 * PI)
+}
+
+struct Walk<'a> {
+    winding: &'a Winding,
+    tree: &'a WideTree,
+    p: DVec3,
+}
+
+impl WideWork for Walk<'_> {
+    type Out = f64;
+
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) -> f64 {
+        let Walk { winding, tree, p: exact } = self;
+        let p = exact.as_vec3().to_array();
+        let mut inline = [0u32; 128];
+        let mut heap = if tree.stack_need() > 128 { vec![0u32; tree.stack_need()] } else { Vec::new() };
+        let stack: &mut [u32] = if heap.is_empty() { &mut inline } else { &mut heap };
+        let mut top = 1;
+        let (mut far_sum, mut near_sum) = (0.0f64, 0.0f64);
+        while top > 0 {
+            top -= 1;
+            let at = stack[top] as usize;
+            let d = &winding.dipoles[at];
+            let (mut square, mut share) = ([0.0f32; 8], [0.0f32; 8]);
+            for axis in 0..3 {
+                for i in 0..8 {
+                    let r = d.centre[axis][i] - p[axis];
+                    square[i] += r * r;
+                    share[i] += r * d.moment[axis][i];
+                }
+            }
+            let mut sum = 0.0f32;
+            for i in 0..8 {
+                let v = share[i] / (square[i] * square[i].sqrt());
+                sum += if square[i] > d.far[i] { v } else { 0.0 };
+            }
+            far_sum += sum as f64;
+            let node = &tree.nodes()[at];
+            for i in 0..8 {
+                if square[i] > d.far[i] {
+                    continue;
+                }
+                let child = node.child[i];
+                if child & LEAF == 0 {
+                    stack[top] = child;
+                    top += 1;
+                    continue;
+                }
+                let pack = &tree.packs()[(child & !LEAF) as usize];
+                for lane in 0..4 {
+                    if pack.id[lane] != NO_TRIANGLE {
+                        near_sum += solid_angle(corners(pack, lane).map(|c| c - exact));
+                    }
+                }
+            }
+        }
+        far_sum / (4.0 * PI) + near_sum
+    }
+}

@@ -1,0 +1,10 @@
+//! The window: a wgpu viewer and egui panels over snapshots of the clay.
+//!
+//! Law kept here: the window sees snapshots and sends commands; it changes nothing itself, and can
+//! die without costing the sculpture anything.
+//!
+//! Read first: [`viewer`], then [`panels`].
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
+pub mod panels;
+pub mod viewer;

@@ -1,0 +1,173 @@
+//! The brush: which one, radius, strength, its own numbers.
+
+use egui::{Pos2, Sense, Stroke, vec2};
+
+use super::action::Action;
+use super::{Ask, View, theme};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Method, StampBy};
+use sculptd_engine::command::Command;
+
+/// Those that are shown first; the others stand under "more".
+const FIRST: [&str; 12] = [
+    "draw",
+    "clay",
+    "clay-strips",
+    "smooth",
+    "crease",
+    "inflate",
+    "grab",
+    "pinch",
+    "flatten",
+    "layer",
+    "mask",
+    "gaussian",
+];
+
+const METHODS: [(Method, &str); 7] = [
+    (Method::Space, "Evenly spaced"),
+    (Method::Dots, "Dots"),
+    (Method::Airbrush, "Airbrush"),
+    (Method::Anchored, "Anchored"),
+    (Method::DragDot, "Dragged dot"),
+    (Method::Line, "Line"),
+    (Method::Curve, "Curve by points"),
+];
+
+const STAMPS: [(StampBy, &str); 4] = [
+    (StampBy::Off, "None"),
+    (StampBy::Dab, "Under each dab"),
+    (StampBy::View, "Along the view"),
+    (StampBy::Stencil, "Stencil"),
+];
+
+/// One of several, in a list that unfolds.
+fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, all: &[(T, &str)]) {
+    let now = all.iter().find(|(v, _)| v == value).map_or("", |(_, name)| name);
+    egui::ComboBox::from_label(title).selected_text(now).show_ui(ui, |ui| {
+        for (v, name) in all {
+            ui.selectable_value(value, *v, *name);
+        }
+    });
+}
+
+/// What a button says: `clay-strips` becomes `Clay strips`.
+fn title(kind: BrushKind) -> String {
+    let name = kind.name().replace('-', " ");
+    let mut letters = name.chars();
+    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
+}
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
+    let mut brush: BrushSettings = view.state.brush;
+    ui.strong("Brush");
+    let first = |k: &&BrushKind| FIRST.contains(&k.name());
+    let mut palette = |ui: &mut egui::Ui, kinds: &mut dyn Iterator<Item = BrushKind>| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+            for kind in kinds {
+                let response = picture(ui, kind, brush.kind == kind);
+                if response.on_hover_text(kind.preset().about()).clicked() && brush.kind != kind {
+                    brush = brush.switched(kind);
+                }
+            }
+        });
+    };
+    let favourite = |name: &&str| BrushKind::ALL.iter().find(|k| k.name() == *name).copied();
+    palette(ui, &mut FIRST.iter().filter_map(favourite));
+    let chosen_below = !FIRST.contains(&view.state.brush.kind.name());
+    let more = egui::CollapsingHeader::new("More brushes").default_open(false);
+    more.show(ui, |ui| palette(ui, &mut BrushKind::ALL.iter().filter(|k| !first(k)).copied()));
+    if chosen_below {
+        ui.label(format!("In hand: {}", title(view.state.brush.kind)));
+    }
+    let keys = |a: Action, b: Action| {
+        let of = |a: Action| a.entry().keys.map_or(String::new(), |k| k.to_string());
+        format!("{} and {}", of(a), of(b))
+    };
+    let radius = egui::Slider::new(&mut brush.radius, 0.005..=1.0).logarithmic(true).text("Radius");
+    ui.add(radius).on_hover_text(format!(
+        "Share of the work's size ({}, or F and drag)",
+        keys(Action::Smaller, Action::Larger)
+    ));
+    let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0).text("Strength");
+    ui.add(strength).on_hover_text(format!(
+        "How much one dab does ({}, or Shift+F and drag)",
+        keys(Action::Weaker, Action::Stronger)
+    ));
+    ui.checkbox(&mut brush.negative, "Carve")
+        .on_hover_text(format!("{}; hold Ctrl for one stroke", Action::Carve.tip()));
+    egui::CollapsingHeader::new("Stroke").default_open(false).show(ui, |ui| {
+        ui.add(egui::Slider::new(&mut brush.spacing, 0.02..=1.0).text("Spacing"))
+            .on_hover_text("Distance between dabs as a share of the radius");
+        ui.add(egui::Slider::new(&mut brush.path.rope, 0.0..=0.5).text("Rope"))
+            .on_hover_text("The brush is drawn on a lazy rope: a share of the view's height");
+        ui.add(egui::Slider::new(&mut brush.path.jitter, 0.0..=2.0).text("Strewn"))
+            .on_hover_text("How far dabs are strewn about the path, in radii");
+        choice(ui, "Method", &mut brush.path.method, &METHODS);
+        choice(ui, "Stamp", &mut brush.stamp.by, &STAMPS);
+        if brush.stamp.by != StampBy::Off {
+            ui.add(
+                egui::Slider::new(&mut brush.stamp.size, 0.05..=10.0).logarithmic(true).text("Stamp's size"),
+            );
+            ui.add(egui::Slider::new(&mut brush.stamp.turn_degrees, -180.0..=180.0).text("Stamp's turn"));
+            ui.checkbox(&mut brush.stamp.repeat, "Stamp repeats");
+        }
+        ui.checkbox(&mut brush.auto.front_faces, "Front faces only");
+        ui.checkbox(&mut brush.auto.topology, "Only what hangs together");
+        for (value, extra) in brush.extra.iter_mut().zip(brush.kind.preset().extras()) {
+            ui.add(egui::Slider::new(value, extra.min..=extra.max).text(extra.name.as_str()))
+                .on_hover_text(extra.about.as_str());
+        }
+    });
+    if brush != view.state.brush {
+        out.push(Ask::World(Command::Brush(brush.clamped())));
+    }
+}
+
+/// The profile that a brush leaves on flat clay, `d` from -1 to 1 across it; drawn, not computed.
+fn profile(name: &str, d: f32) -> f32 {
+    let bell = (-d * d * 9.0).exp();
+    let step = |edge: f32| 1.0 / (1.0 + ((d.abs() - edge) * 24.0).exp());
+    match name {
+        "smooth" | "relax" | "slide-relax" => 0.25 * (-d * d * 3.0).exp() + 0.08 * (d * 22.0).sin() * d * d,
+        "clay" | "layer" => 0.6 * step(0.55),
+        "clay-strips" | "trim" => 0.7 * step(0.42),
+        "crease" => 0.35 * bell - 0.9 * (-d * d * 120.0).exp() + 0.3,
+        "inflate" | "blob" => (1.0 - d * d).max(0.0).sqrt() * 0.8,
+        "flatten" | "scrape" => (0.4 + 0.1 * (d * 9.0).sin()).min(0.36),
+        "fill" => (0.4 + 0.25 * (d * 9.0).sin()).max(0.3),
+        "pinch" => 0.9 * (-d.abs() * 7.0).exp(),
+        "grab" | "elastic" | "snake-hook" | "thumb" | "nudge" => bell * 0.9 * (1.0 + 0.8 * d),
+        "mask" | "mask-blur" | "paint" => 0.25,
+        "twist" => 0.4 + 0.35 * (d * 6.0).sin() * (1.0 - d * d),
+        "texture" => 0.3 + 0.2 * (d * 31.0).sin() * step(0.7),
+        "topological" => 0.5 * bell + 0.3 * (d * 12.0).cos().max(0.0) * step(0.6),
+        _ => bell * 0.85,
+    }
+}
+
+/// A button with the profile that the brush leaves.
+fn picture(ui: &mut egui::Ui, kind: BrushKind, chosen: bool) -> egui::Response {
+    let name = title(kind);
+    let (rect, response) = ui.allocate_exact_size(vec2(66.0, 40.0), Sense::click());
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::RadioButton, ui.is_enabled(), chosen, name.clone())
+    });
+    let style = ui.style().interact_selectable(&response, chosen);
+    let fill = if chosen { ui.visuals().selection.bg_fill } else { style.weak_bg_fill };
+    ui.painter().rect(rect, 5.0, fill, style.bg_stroke, egui::StrokeKind::Inside);
+    let line: Vec<Pos2> = (0..=40)
+        .map(|i| {
+            let x = i as f32 / 40.0;
+            let y = profile(kind.name(), (x - 0.5) * 2.0);
+            Pos2::new(rect.left() + 8.0 + x * (rect.width() - 16.0), rect.top() + 22.0 - y * 17.0)
+        })
+        .collect();
+    let text = if chosen { ui.visuals().selection.stroke.color } else { ui.visuals().text_color() };
+    let ink = if chosen { text } else { theme::accent(ui) };
+    ui.painter().add(egui::Shape::line(line, Stroke::new(1.8, ink)));
+    let font = egui::FontId::proportional(11.0);
+    let at = rect.center_bottom() - vec2(0.0, 2.0);
+    ui.painter().text(at, egui::Align2::CENTER_BOTTOM, name, font, text);
+    response
+}

@@ -1,0 +1,99 @@
+//! A curve that is laid by its points: shown over the clay with its handles, and what can be done with it. The pen or pointer
+//! itself lays, drags and adds them; see [`sculptd_engine::stroke::curve_stroke`].
+
+use egui::{Color32, Key, Pos2, Rect, Stroke};
+use glam::Vec2;
+
+use super::{Ask, Desk, View, theme};
+use sculptd_clay::brush::{Grip, Method};
+use sculptd_engine::command::Command;
+use sculptd_engine::stroke::DraftAct;
+
+/// Radius of a handle, points.
+const HANDLE: f32 = 5.0;
+
+/// A place of the view on the screen; the view is the whole window.
+pub fn place(screen: Rect, view: Vec2) -> Pos2 {
+    screen.min + screen.size() * egui::vec2(view.x, view.y)
+}
+
+/// The curve, its keys and its buttons.
+pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, free: Rect, out: &mut Vec<Ask>) {
+    let (draft, brush) = (&view.state.draft, &view.state.brush);
+    let lays = brush.kind.grip() == Grip::Surface && brush.path.method == Method::Curve;
+    if draft.is_empty() {
+        desk.handle = None;
+        if lays {
+            bar(ctx, free, |ui| {
+                ui.colored_label(
+                    theme::quiet(ui),
+                    "Draw, or set points: they stay to be changed before the brush follows.",
+                );
+            });
+        }
+        return;
+    }
+    desk.handle = draft.held().or(desk.handle).filter(|i| *i < draft.points().len());
+    let screen = ctx.content_rect();
+    let aspect = view.camera.aspect;
+    let layer = egui::LayerId::new(egui::Order::Background, egui::Id::unique("draft"));
+    let painter = ctx.layer_painter(layer).with_clip_rect(free);
+    let line: Vec<Pos2> = (0..=draft.pieces()).map(|k| place(screen, draft.at(k, aspect).view)).collect();
+    painter.add(egui::Shape::line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(110))));
+    painter.add(egui::Shape::line(line, Stroke::new(1.8, Color32::from_rgb(255, 214, 120))));
+    for (i, point) in draft.points().iter().enumerate() {
+        let fill = match desk.handle {
+            Some(h) if h == i => Color32::from_rgb(255, 150, 80),
+            _ => Color32::from_rgb(255, 236, 190),
+        };
+        painter.circle(
+            place(screen, point.view),
+            HANDLE,
+            fill,
+            Stroke::new(1.5, Color32::from_black_alpha(200)),
+        );
+    }
+    let mut act = None;
+    if !ctx.text_edit_focused() && desk.search.is_none() && desk.modal.is_none() {
+        ctx.input(|i| {
+            act = match () {
+                () if i.key_pressed(Key::Enter) => Some(DraftAct::Apply),
+                () if i.key_pressed(Key::Escape) => Some(DraftAct::Cancel),
+                () if i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace) => {
+                    desk.handle.map(DraftAct::Delete)
+                }
+                () => None,
+            }
+        });
+    }
+    bar(ctx, free, |ui| {
+        ui.label(match draft.points().len() {
+            1 => "1 point".to_owned(),
+            n => format!("{n} points"),
+        });
+        if ui.button("Draw the curve").on_hover_text("The brush follows it, as one step (Enter)").clicked() {
+            act = Some(DraftAct::Apply);
+        }
+        let gone = ui.add_enabled(desk.handle.is_some(), egui::Button::new("Remove the point"));
+        if gone.on_hover_text("Delete, or the right button upon it").clicked() {
+            act = desk.handle.map(DraftAct::Delete);
+        }
+        if ui.button("Put it away").on_hover_text("Nothing is drawn (Esc)").clicked() {
+            act = Some(DraftAct::Cancel);
+        }
+    });
+    if let Some(act) = act {
+        if matches!(act, DraftAct::Delete(_)) {
+            desk.handle = None;
+        }
+        out.push(Ask::World(Command::Draft(act)));
+    }
+}
+
+fn bar(ctx: &egui::Context, free: Rect, what: impl FnOnce(&mut egui::Ui)) {
+    let at = free.center_top() + egui::vec2(0.0, 8.0);
+    let area = egui::Area::new(egui::Id::unique("curve")).pivot(egui::Align2::CENTER_TOP).fixed_pos(at);
+    area.order(egui::Order::Middle).show(ctx, |ui| {
+        egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal(what));
+    });
+}

@@ -1,0 +1,227 @@
+//! The screen of an installation, in the place of the panels: few words, large targets, and a number that lets staff out.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use egui::{Align2, Area, Button, Id, RichText, vec2};
+
+use super::{Ask, Desk, View, theme};
+use sculptd_clay::brush::BrushKind;
+use sculptd_daemon::kiosk::keeper::Screen;
+use sculptd_daemon::kiosk::{Language, Stage};
+use sculptd_engine::command::Command;
+
+/// Smallest side of anything that is pressed, points: a fingertip on a 24-inch screen covers about half of it.
+pub const TARGET: f32 = 64.0;
+/// Digits that are taken at most.
+const DIGITS: usize = 12;
+
+/// What the person at the screen has chosen; forgotten with each visit.
+#[derive(Debug, Default)]
+pub struct Pad {
+    /// Index into the screen's languages.
+    pub language: usize,
+    /// What staff has typed so far, while the keypad is open.
+    pub typed: Option<String>,
+    visits: u64,
+}
+
+/// Everything over the clay of an installation. Call once a frame.
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, screen: &Screen, desk: &mut Desk, out: &mut Vec<Ask>) {
+    let ctx = ui.ctx().clone();
+    if desk.applied.is_none() {
+        theme::apply(&ctx, desk.prefs.light);
+        desk.applied = Some((desk.prefs.light, 100));
+    }
+    let Some(now) = screen.desk.view.lock().ok().and_then(|v| *v) else { return };
+    let pad = &mut desk.pad;
+    if pad.visits != now.visits {
+        *pad = Pad { visits: now.visits, ..Pad::default() };
+    }
+    let Some(words) = screen.words.get(pad.language).or(screen.words.first()) else { return };
+    let free = ctx.content_rect();
+    languages(&ctx, free, screen, pad);
+    if screen.staff {
+        door(&ctx, free, words, now.locked, screen, pad);
+    }
+    match now.stage {
+        Stage::Attract => {
+            said(&ctx, free, &words.welcome, 44.0);
+            #[cfg(unix)]
+            if let Some(link) = screen.desk.link.lock().ok().and_then(|l| l.clone()) {
+                kept(&ctx, free, words, &link);
+            }
+        }
+        Stage::Working => tools(&ctx, free, view, words, screen, out),
+        Stage::Countdown => {
+            let text = words.countdown.replace("{seconds}", &now.seconds_left.to_string());
+            countdown(&ctx, free, &text, words, screen);
+        }
+    }
+}
+
+fn large(text: &str, size: f32, width: f32) -> Button<'static> {
+    Button::new(RichText::new(text.to_owned()).size(size))
+        .min_size(vec2(width, TARGET + 8.0))
+        .corner_radius(10)
+}
+
+/// Puts something at an edge or in the middle of the screen.
+fn place(ctx: &egui::Context, name: &str, free: egui::Rect, align: Align2, what: impl FnOnce(&mut egui::Ui)) {
+    let inner = free.shrink(24.0);
+    let at = align.pos_in_rect(&inner);
+    let area = Area::new(Id::unique(name)).fixed_pos(at).pivot(align).constrain_to(free);
+    area.show(ctx, |ui| {
+        egui::Frame::popup(ui.style()).inner_margin(14.0).corner_radius(14).show(ui, what);
+    });
+}
+
+fn said(ctx: &egui::Context, free: egui::Rect, text: &str, size: f32) {
+    place(ctx, "said", free, Align2::CENTER_BOTTOM, |ui| {
+        ui.add(egui::Label::new(RichText::new(text).size(size)).extend());
+    });
+}
+
+/// The last visitor's work: where it is, and the code that takes it home.
+#[cfg(unix)]
+fn kept(ctx: &egui::Context, free: egui::Rect, words: &Language, link: &sculptd_daemon::kiosk::share::Link) {
+    place(ctx, "kept", free, Align2::RIGHT_CENTER, |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
+            ui.add_space(10.0);
+            // Four squares of quiet on each side, as the standard asks.
+            let squares = link.code.side + 8;
+            let square = (360.0 / squares as f32).floor().max(4.0);
+            let (rect, _) =
+                ui.allocate_exact_size(egui::Vec2::splat(square * squares as f32), egui::Sense::hover());
+            let paint = ui.painter();
+            paint.rect_filled(rect, 0.0, egui::Color32::WHITE);
+            for (i, _) in link.code.dark.iter().enumerate().filter(|(_, dark)| **dark) {
+                let (x, y) = (i % link.code.side + 4, i / link.code.side + 4);
+                let min = rect.min + vec2(x as f32, y as f32) * square;
+                let one = egui::Rect::from_min_size(min, egui::Vec2::splat(square));
+                paint.rect_filled(one, 0.0, egui::Color32::BLACK);
+            }
+            ui.add_space(10.0);
+            ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
+            ui.label(RichText::new(&link.url).size(13.0).monospace());
+        });
+    });
+}
+
+/// The languages, each by its own name.
+fn languages(ctx: &egui::Context, free: egui::Rect, screen: &Screen, pad: &mut Pad) {
+    if screen.words.len() < 2 {
+        return;
+    }
+    place(ctx, "languages", free, Align2::LEFT_TOP, |ui| {
+        ui.horizontal(|ui| {
+            for (i, l) in screen.words.iter().enumerate() {
+                if ui.add(large(&l.name, 20.0, 130.0).selected(pad.language == i)).clicked() {
+                    pad.language = i;
+                    screen.desk.touched.store(true, Relaxed);
+                }
+            }
+        });
+    });
+}
+
+/// Brushes, one step back, and the end of the visit.
+fn tools(
+    ctx: &egui::Context,
+    free: egui::Rect,
+    view: &View<'_>,
+    words: &Language,
+    screen: &Screen,
+    out: &mut Vec<Ask>,
+) {
+    let now = view.state.brush;
+    place(ctx, "tools", free, Align2::CENTER_BOTTOM, |ui| {
+        ui.horizontal(|ui| {
+            for (name, kind, negative) in [
+                (&words.draw, BrushKind::Clay, false),
+                (&words.carve, BrushKind::Clay, true),
+                (&words.smooth, BrushKind::Smooth, false),
+            ] {
+                // Whatever adds or carves is one of two to a visitor.
+                let smooths = kind == BrushKind::Smooth;
+                let alike = smooths == (now.kind == BrushKind::Smooth);
+                let chosen = alike && (smooths || now.negative == negative);
+                if ui.add(large(name, 24.0, 160.0).selected(chosen)).clicked() {
+                    let mut brush = if alike { now } else { now.switched(kind) };
+                    brush.negative = negative;
+                    out.push(Ask::World(Command::Brush(brush)));
+                    screen.desk.touched.store(true, Relaxed);
+                }
+            }
+            ui.separator();
+            let undo = ui.add_enabled(view.state.undo_steps > 0, large(&words.undo, 24.0, 150.0));
+            if undo.clicked() {
+                out.push(Ask::World(Command::Undo));
+                screen.desk.touched.store(true, Relaxed);
+            }
+            if ui.add(large(&words.finish, 24.0, 150.0)).clicked() {
+                screen.desk.finished.store(true, Relaxed);
+            }
+        });
+    });
+}
+
+fn countdown(ctx: &egui::Context, free: egui::Rect, text: &str, words: &Language, screen: &Screen) {
+    place(ctx, "countdown", free, Align2::CENTER_CENTER, |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(RichText::new(text).size(32.0)).extend());
+            ui.add_space(16.0);
+            if ui.add(large(&words.go_on, 28.0, 300.0)).clicked() {
+                screen.desk.touched.store(true, Relaxed);
+            }
+        });
+    });
+}
+
+/// A quiet word in a corner, and behind it the keypad.
+fn door(
+    ctx: &egui::Context,
+    free: egui::Rect,
+    words: &Language,
+    locked: bool,
+    screen: &Screen,
+    pad: &mut Pad,
+) {
+    place(ctx, "door", free, Align2::RIGHT_TOP, |ui| {
+        let Some(typed) = &mut pad.typed else {
+            // In a row, for in a column its word stands at the left.
+            if ui.horizontal(|ui| ui.add(large(&words.staff, 16.0, 90.0))).inner.clicked() {
+                pad.typed = Some(String::new());
+            }
+            return;
+        };
+        let mut close = false;
+        ui.vertical(|ui| {
+            // Never the number itself.
+            ui.label(RichText::new("•".repeat(typed.len().max(1))).size(28.0));
+            for row in [["1", "2", "3"], ["4", "5", "6"], ["7", "8", "9"], ["×", "0", "OK"]] {
+                ui.horizontal(|ui| {
+                    for key in row {
+                        let pressed =
+                            ui.add_enabled(key == "×" || !locked, large(key, 24.0, TARGET + 8.0)).clicked();
+                        match key {
+                            _ if !pressed => {}
+                            "×" => close = true,
+                            "OK" => {
+                                if let Ok(mut line) = screen.desk.typed.lock() {
+                                    *line = Some(std::mem::take(typed));
+                                }
+                                close = true;
+                            }
+                            digit if typed.len() < DIGITS => typed.push_str(digit),
+                            _ => {}
+                        }
+                    }
+                });
+            }
+        });
+        if close {
+            pad.typed = None;
+        }
+    });
+}

@@ -1,0 +1,241 @@
+//! Sizes of the work: measures, the shadow along a direction, the distance to another form.
+
+use egui::{Color32, Mesh, Stroke, pos2, vec2};
+use glam::{DVec2, DVec3};
+
+use super::action::Action;
+use super::{Ask, Desk, View, theme};
+use crate::viewer::look::Map;
+use sculptd_geometry::projection::Polygon;
+
+/// What was measured of one state of the work; lengths in the mesh's unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    pub revision: u64,
+    pub volume: f64,
+    pub area: f64,
+    pub dimensions: [f64; 3],
+    /// Areas of the shadows along x, y and z.
+    pub projected: [f64; 3],
+    /// What was looked along, and the shadow that way.
+    pub direction: DVec3,
+    pub shadow: f64,
+    pub outline: Vec<Polygon>,
+}
+
+/// What distances are to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Against {
+    /// The work as it was opened, or as it was when the person said so.
+    #[default]
+    Before,
+    /// The thing in the hands, where it is.
+    Thing,
+}
+
+/// What the distance map says.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Distances {
+    pub min: f32,
+    pub max: f32,
+    /// Mean of the squares' root.
+    pub rms: f32,
+    /// Vertices known, of all.
+    pub known: (usize, usize),
+}
+
+#[derive(Debug)]
+pub struct Sizes {
+    pub found: Option<Box<Measured>>,
+    pub direction: DVec3,
+    pub against: Against,
+    pub distances: Option<Distances>,
+    /// The drawing's file.
+    pub file: String,
+}
+
+impl Default for Sizes {
+    fn default() -> Self {
+        Sizes {
+            found: None,
+            direction: DVec3::NEG_Z,
+            against: Against::default(),
+            distances: None,
+            file: "outline.svg".into(),
+        }
+    }
+}
+
+/// Corners of the drawn outline at most: it is a picture as large as a thumb.
+const CORNERS: usize = 1500;
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+    measures(ui, view, &desk.sizes);
+    ui.add_space(8.0);
+    shadow(ui, view, &mut desk.sizes, out);
+    ui.add_space(8.0);
+    distance(ui, view, desk, out);
+}
+
+fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &Sizes) {
+    let quiet = theme::quiet(ui);
+    ui.strong("Measures");
+    let Some(m) = &sizes.found else {
+        ui.colored_label(quiet, "Measured when the work rests.");
+        return;
+    };
+    let row = |ui: &mut egui::Ui, name: &str, value: String| {
+        ui.colored_label(quiet, name);
+        ui.monospace(value);
+        ui.end_row();
+    };
+    egui::Grid::new("measures").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
+        row(ui, "volume", format!("{} mm³", short(m.volume)));
+        row(ui, "area", format!("{} mm²", short(m.area)));
+        for (axis, size) in ["x", "y", "z"].into_iter().zip(m.dimensions) {
+            row(ui, &format!("size {axis}"), format!("{} mm", short(size)));
+        }
+        for (axis, area) in ["x", "y", "z"].into_iter().zip(m.projected) {
+            row(ui, &format!("shadow {axis}"), format!("{} mm²", short(area)));
+        }
+    });
+    if m.revision != view.state.mesh.revision() {
+        ui.colored_label(quiet, "Of the work as it was; measured again when it rests.");
+    }
+}
+
+/// Six figures, as many before the point as there are.
+fn short(x: f64) -> String {
+    let whole = x.abs().max(1.0).log10().floor() as usize;
+    format!("{x:.*}", 5usize.saturating_sub(whole).min(4))
+}
+
+fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut Sizes, out: &mut Vec<Ask>) {
+    let quiet = theme::quiet(ui);
+    ui.strong("Shadow");
+    ui.horizontal(|ui| {
+        for (name, direction) in [("x", DVec3::NEG_X), ("y", DVec3::NEG_Y), ("z", DVec3::NEG_Z)] {
+            let button = egui::Button::selectable(sizes.direction == direction, name);
+            let button = ui.add(button).on_hover_text(format!("Looked along {name}"));
+            button.widget_info(|| {
+                egui::WidgetInfo::selected(
+                    egui::Role::RadioButton,
+                    true,
+                    sizes.direction == direction,
+                    format!("shadow along {name}"),
+                )
+            });
+            if button.clicked() {
+                sizes.direction = direction;
+            }
+        }
+        if ui.button("From here").on_hover_text("Looked along as the camera does").clicked() {
+            sizes.direction = -view.camera.backward().as_dvec3();
+        }
+    });
+    let Some(m) = &sizes.found else { return };
+    ui.monospace(format!("{} mm²", short(m.shadow)));
+    let (lo, hi) = picture(ui, m);
+    let size = (hi - lo).max(DVec2::ZERO);
+    let holes: usize = m.outline.iter().map(|p| p.holes.len()).sum();
+    ui.colored_label(quiet, format!("{} x {} mm, {holes} holes", short(size.x), short(size.y)));
+    ui.horizontal(|ui| {
+        let text = egui::TextEdit::singleline(&mut sizes.file).desired_width(126.0);
+        let field = ui.add(text).on_hover_text("The drawing's file");
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Drawing to write"));
+        let named = !sizes.file.trim().is_empty();
+        let tip = "The outline as a drawing to scale, millimetres";
+        if ui.add_enabled(named, egui::Button::new("SVG")).on_hover_text(tip).clicked() {
+            out.push(Ask::Outline(sizes.file.trim().into()));
+        }
+    });
+}
+
+/// The outline, and the box around it.
+fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
+    let (rect, response) = ui.allocate_exact_size(vec2(196.0, 120.0), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Outline of the shadow"));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+    let points = m.outline.iter().flat_map(|p| &p.outer);
+    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let (lo, hi) = points.fold(none, |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+    if !lo.cmple(hi).all() {
+        return (DVec2::ZERO, DVec2::ZERO);
+    }
+    let inner = rect.shrink(6.0);
+    let size = (hi - lo).max(DVec2::splat(1e-12));
+    let scale = (f64::from(inner.width()) / size.x).min(f64::from(inner.height()) / size.y);
+    let at = |p: &DVec2| {
+        let d = (*p - (lo + hi) * 0.5) * scale;
+        pos2(inner.center().x + d.x as f32, inner.center().y - d.y as f32)
+    };
+    let all: usize = m.outline.iter().flat_map(Polygon::rings).map(Vec::len).sum();
+    let step = all.div_ceil(CORNERS).max(1);
+    let stroke = Stroke::new(1.5, theme::accent(ui));
+    for ring in m.outline.iter().flat_map(Polygon::rings) {
+        let mut line: Vec<_> = ring.iter().step_by(step).map(at).collect();
+        line.extend(ring.last().map(at));
+        painter.add(egui::Shape::line(line, stroke));
+    }
+    (lo, hi)
+}
+
+fn distance(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+    let quiet = theme::quiet(ui);
+    ui.strong("Distance");
+    let mut on = desk.look.map == Map::Distance;
+    if ui.checkbox(&mut on, "Live distance map").on_hover_text(Action::Distance.tip()).changed() {
+        super::act(Action::Distance, &ui.ctx().clone(), view, desk, out);
+    }
+    let sizes = &mut desk.sizes;
+    let held = view.state.thing.is_some();
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut sizes.against, Against::Before, "to before")
+            .on_hover_text("To the work as it was opened");
+        ui.add_enabled_ui(held, |ui| ui.radio_value(&mut sizes.against, Against::Thing, "to the thing"));
+    });
+    if !held && sizes.against == Against::Thing {
+        sizes.against = Against::Before;
+    }
+    if ui.button("Compare with now").on_hover_text("Distances are to the work as it is now").clicked() {
+        out.push(Ask::Reference);
+    }
+    let Some(d) = sizes.distances.filter(|_| on) else {
+        ui.colored_label(quiet, "Blue lies within, red outside.");
+        return;
+    };
+    egui::Grid::new("distances").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
+        let share = d.known.0 as f64 / d.known.1.max(1) as f64 * 100.0;
+        for (name, value) in [
+            ("deepest", format!("{:+.4} mm", d.min)),
+            ("highest", format!("{:+.4} mm", d.max)),
+            ("rms", format!("{:.4} mm", d.rms)),
+            ("known", format!("{share:.0} %")),
+        ] {
+            ui.colored_label(quiet, name);
+            ui.monospace(value);
+            ui.end_row();
+        }
+    });
+}
+
+/// A scale's bar, upright, its low end below: for legends.
+pub fn bar(painter: &egui::Painter, rect: egui::Rect, colour: impl Fn(f32) -> [u8; 3]) {
+    const STEPS: u32 = 32;
+    let mut mesh = Mesh::default();
+    for i in 0..=STEPS {
+        let x = i as f32 / STEPS as f32;
+        let [r, g, b] = colour(x);
+        let y = rect.bottom() - x * rect.height();
+        for side in [rect.left(), rect.right()] {
+            mesh.colored_vertex(pos2(side, y), Color32::from_rgb(r, g, b));
+        }
+        if i > 0 {
+            let k = i * 2;
+            mesh.add_triangle(k - 2, k - 1, k);
+            mesh.add_triangle(k - 1, k, k + 1);
+        }
+    }
+    painter.add(mesh);
+}

@@ -1,0 +1,54 @@
+//! How pressure becomes strength: the curve, edited by its two ends, with the pen's live trace on it.
+
+use egui::{Pos2, Rect, Sense, Stroke, pos2, vec2};
+
+use super::devices::Trace;
+use super::{Ask, View, theme};
+use sculptd_engine::command::Command;
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>) {
+    let mut brush = view.state.brush;
+    egui::CollapsingHeader::new("Pressure").default_open(false).show(ui, |ui| {
+        let curve = &mut brush.pressure_strength;
+        let (rect, response) = ui.allocate_exact_size(vec2(196.0, 92.0), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Pressure curve"));
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
+        let at = |p: f32, f: f32| place(rect, p, f);
+        // Pressures felt lately, fading with age.
+        for (age, p) in trace.recent().enumerate() {
+            let fade = 1.0 - age as f32 / Trace::KEPT as f32;
+            let colour = theme::accent(ui).gamma_multiply(fade * 0.6);
+            painter.circle_filled(at(p, curve.factor(p)), 2.0 + 2.0 * fade, colour);
+        }
+        let line: Vec<Pos2> = (0..=48).map(|i| i as f32 / 48.0).map(|p| at(p, curve.factor(p))).collect();
+        painter.add(egui::Shape::line(line, Stroke::new(2.0, ui.visuals().text_color())));
+        if let Some(p) = trace.recent().next() {
+            painter.circle_filled(at(p, curve.factor(p)), 5.0, theme::accent(ui));
+        }
+        if let Some(to) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+            let x = ((to.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+            let y = ((rect.bottom() - to.y) / rect.height()).clamp(0.0, 1.0);
+            if x < 0.15 {
+                curve.at_zero = y;
+            } else if x < 0.95 {
+                // The exponent that leads the curve through the pointer.
+                let share = ((y - curve.at_zero) / (1.0 - curve.at_zero).max(1e-3)).clamp(0.001, 0.999);
+                curve.gamma = (share.ln() / x.ln()).clamp(0.1, 10.0);
+            }
+        }
+        response.on_hover_text("Drag the left end for the lightest touch, the middle for the bend");
+        ui.add(egui::Slider::new(&mut curve.at_zero, 0.0..=1.0).text("Lightest"));
+        ui.add(egui::Slider::new(&mut curve.gamma, 0.1..=10.0).logarithmic(true).text("Bend"));
+        ui.add(egui::Slider::new(&mut brush.pressure_radius.at_zero, 0.0..=1.0).text("Radius"))
+            .on_hover_text("Share of the radius at the lightest touch");
+    });
+    if brush != view.state.brush {
+        out.push(Ask::World(Command::Brush(brush.clamped())));
+    }
+}
+
+fn place(rect: Rect, p: f32, f: f32) -> Pos2 {
+    let inner = rect.shrink(6.0);
+    pos2(inner.left() + p * inner.width(), inner.bottom() - f * inner.height())
+}

@@ -1,0 +1,141 @@
+//! The work, a second thing beside it, and joining the two.
+
+use std::sync::Arc;
+
+use glam::{DVec3, EulerRot, Quat};
+
+use super::{Ask, Desk, View, theme};
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::Choice;
+use sculptd_geometry::{PolyMesh, shapes};
+
+type Solid = (&'static str, fn() -> PolyMesh);
+
+/// What can be taken up without a file.
+const SOLIDS: [Solid; 3] = [
+    ("Ball", || shapes::uv_sphere(1.0, 24, 48)),
+    ("Box", || shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE)),
+    ("Cylinder", || shapes::cylinder(1.0, 2.0, 48)),
+];
+
+const JOINS: [(Choice, &str, &str); 3] = [
+    (Choice::Add, "Add", "Work and thing become one"),
+    (Choice::Carve, "Cut", "The thing is taken out of the work"),
+    (Choice::Keep, "Keep", "Only what lies in both stays"),
+];
+
+/// What a join would make, shown while the thing is carried.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trial {
+    pub choice: Option<Choice>,
+    pub said: Said,
+}
+
+impl Trial {
+    /// Tries this, or no more.
+    pub fn turn(&mut self, choice: Choice) {
+        self.choice = (self.choice != Some(choice)).then_some(choice);
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Said {
+    #[default]
+    Nothing,
+    UnderWay,
+    /// Triangles that the thing has made.
+    Shown(usize),
+    Wrong(String),
+}
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+    let busy = desk.joining;
+    let quiet = theme::quiet(ui);
+    let s = view.state;
+    ui.strong("Work");
+    let (lo, hi) = s.mesh.bounds();
+    let size = (hi - lo).max(glam::Vec3::ZERO);
+    ui.colored_label(quiet, format!("{} triangles", s.mesh.triangle_count()));
+    ui.colored_label(quiet, format!("{:.2} x {:.2} x {:.2} mm", size.x, size.y, size.z));
+    ui.add_space(8.0);
+    ui.strong("Thing");
+    ui.horizontal(|ui| {
+        for (name, make) in SOLIDS {
+            if ui.button(name).on_hover_text("Appears beside the work, to be carried into it").clicked() {
+                out.push(Ask::World(Command::TakeUp(Arc::new(make().triangulate().0))));
+            }
+        }
+    });
+    let Some(thing) = &s.thing else {
+        ui.colored_label(quiet, "Take something up, put it in its place, then add, cut or keep.");
+        return;
+    };
+    let mut place = thing.place;
+    let reach = s.extent * 3.0;
+    for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let range = s.middle[i] - reach..=s.middle[i] + reach;
+        ui.add(egui::Slider::new(&mut place.shift[i], range).text(axis));
+    }
+    let (mut yaw, mut pitch, mut roll) = place.turn.to_euler(EulerRot::YXZ);
+    let before = (yaw, pitch, roll);
+    for (angle, name) in [(&mut yaw, "yaw"), (&mut pitch, "pitch"), (&mut roll, "roll")] {
+        let most = if name == "pitch" { 89.0 } else { 180.0 };
+        let mut degrees = angle.to_degrees();
+        if ui.add(egui::Slider::new(&mut degrees, -most..=most).text(name)).changed() {
+            *angle = degrees.to_radians();
+        }
+    }
+    if (yaw, pitch, roll) != before {
+        place.turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+    }
+    let sizes = s.extent * 0.02..=s.extent * 3.0;
+    ui.add(egui::Slider::new(&mut place.scale, sizes).logarithmic(true).text("size"));
+    if place != thing.place {
+        out.push(Ask::World(Command::Place(place)));
+    }
+    ui.add_space(4.0);
+    preview(ui, desk, out);
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        for (choice, name, tip) in JOINS {
+            if ui.add_enabled(!busy, egui::Button::new(name)).on_hover_text(tip).clicked() {
+                out.push(Ask::Join(choice));
+            }
+        }
+        if ui.button("Put away").clicked() {
+            out.push(Ask::World(Command::PutDown));
+        }
+    });
+    if busy {
+        ui.colored_label(quiet, "joining in the background: go on sculpting");
+    }
+}
+
+fn preview(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>) {
+    let busy = desk.joining;
+    let trial = &mut desk.trial;
+    let title = trial.choice.map_or("off", |c| JOINS.iter().find(|j| j.0 == c).map_or("", |j| j.1));
+    egui::ComboBox::from_label("Preview").selected_text(title).width(110.0).show_ui(ui, |ui| {
+        ui.selectable_value(&mut trial.choice, None, "off");
+        for (choice, name, tip) in JOINS {
+            ui.selectable_value(&mut trial.choice, Some(choice), name).on_hover_text(tip);
+        }
+    });
+    let Some(choice) = trial.choice else { return };
+    let (text, wrong) = match &trial.said {
+        Said::Nothing | Said::UnderWay => ("computing ...".to_owned(), false),
+        Said::Shown(n) => (format!("{n} triangles of the thing"), false),
+        Said::Wrong(why) => (why.clone(), true),
+    };
+    let colour = if wrong { theme::alarm(ui) } else { theme::quiet(ui) };
+    ui.colored_label(colour, text);
+    ui.horizontal(|ui| {
+        if ui.add_enabled(!busy, egui::Button::new("Apply")).on_hover_text("Make it so").clicked() {
+            out.push(Ask::Join(choice));
+            trial.choice = None;
+        }
+        if ui.button("Dismiss").on_hover_text("The work as it is; the thing stays").clicked() {
+            trial.choice = None;
+        }
+    });
+}

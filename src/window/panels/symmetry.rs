@@ -1,0 +1,22 @@
+//! Mirrors.
+
+use super::action::Action;
+use super::{Ask, View};
+use sculptd_engine::command::Command;
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
+    let mut brush = view.state.brush;
+    ui.horizontal(|ui| {
+        ui.strong("Mirror");
+        let names = [("x", Action::MirrorX), ("y", Action::MirrorY), ("z", Action::MirrorZ)];
+        for (axis, (name, action)) in brush.symmetry.iter_mut().zip(names) {
+            let button = egui::Button::selectable(*axis, name).min_size([30.0, 20.0].into());
+            if ui.add(button).on_hover_text(action.tip()).clicked() {
+                *axis = !*axis;
+            }
+        }
+    });
+    if brush != view.state.brush {
+        out.push(Ask::World(Command::Brush(brush)));
+    }
+}

@@ -1,0 +1,134 @@
+//! Trimming: a box or a line drawn over the view, and what lies in it or to its left is cut off, all the way through.
+
+use egui::{Color32, Key, Pos2, Rect, Sense, Stroke, vec2};
+
+use super::{Ask, Desk, View, theme};
+use sculptd_daemon::trim::Part;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    Box,
+    Line,
+}
+
+/// A trim that is being drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trim {
+    pub shape: Shape,
+    /// Where the pointer went down, points.
+    pub from: Option<Pos2>,
+}
+
+/// Points below which a drag was a slip of the hand.
+const SLIP: f32 = 4.0;
+
+/// The buttons.
+pub fn buttons(ui: &mut egui::Ui, desk: &mut Desk) {
+    ui.strong("Trim");
+    ui.horizontal(|ui| {
+        for (shape, name, tip) in [
+            (
+                Shape::Box,
+                "Box",
+                "Drag a box over the work: what is seen in it is cut off, all the way through",
+            ),
+            (Shape::Line, "Line", "Drag a line over the work: what is to its left is cut off"),
+        ] {
+            let on = desk.trim.is_some_and(|t| t.shape == shape);
+            if ui.add_enabled(!desk.joining, egui::Button::selectable(on, name)).on_hover_text(tip).clicked()
+            {
+                desk.trim = (!on).then_some(Trim { shape, from: None });
+            }
+        }
+    });
+    if desk.trim.is_some() {
+        ui.colored_label(theme::quiet(ui), "Drag over the work; Esc leaves it.");
+    }
+}
+
+/// The part of the view that a drag means; the view is the whole window.
+pub fn part(shape: Shape, screen: Rect, from: Pos2, to: Pos2) -> Option<Part> {
+    let share = |p: Pos2| {
+        let d = (p - screen.min) / screen.size();
+        [d.x.clamp(0.0, 1.0), d.y.clamp(0.0, 1.0)]
+    };
+    let way = to - from;
+    let enough = match shape {
+        Shape::Box => way.x.abs().min(way.y.abs()) > SLIP,
+        Shape::Line => way.length() > SLIP,
+    };
+    let ([x0, y0], [x1, y1]) = (share(from), share(to));
+    enough.then_some(match shape {
+        Shape::Box => Part::Box([x0, y0, x1, y1]),
+        Shape::Line => Part::Line([x0, y0, x1, y1]),
+    })
+}
+
+/// The drag itself: the clay does not feel it.
+pub fn ui(ctx: &egui::Context, desk: &mut Desk, free: Rect, out: &mut Vec<Ask>) {
+    let Some(mut trim) = desk.trim else { return };
+    if ctx.input(|i| i.key_pressed(Key::Escape)) {
+        desk.trim = None;
+        return;
+    }
+    let screen = ctx.content_rect();
+    let area = egui::Area::new(egui::Id::unique("trim")).fixed_pos(free.min).order(egui::Order::Middle);
+    area.show(ctx, |ui| {
+        let (_, response) = ui.allocate_exact_size(free.size(), Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Trim"));
+        if response.drag_started() {
+            trim.from = ctx.input(|i| i.pointer.press_origin());
+        }
+        let at = ctx.input(|i| i.pointer.latest_pos());
+        let painter = ui.painter().clone().with_clip_rect(free);
+        let stroke = Stroke::new(1.5, Color32::from_rgb(255, 150, 120));
+        let cut = Color32::from_rgba_unmultiplied(255, 110, 80, 40);
+        if let (Some(from), Some(to)) = (trim.from, at) {
+            match trim.shape {
+                Shape::Box => {
+                    let rect = Rect::from_two_pos(from, to);
+                    painter.rect(rect, 0.0, cut, stroke, egui::StrokeKind::Middle);
+                }
+                Shape::Line => {
+                    let along = (to - from).normalized();
+                    // y runs down: to the left as one goes.
+                    let left = vec2(along.y, -along.x) * 60.0;
+                    let (a, b) = (from - along * 9000.0, to + along * 9000.0);
+                    let side = vec![a, b, b + left, a + left];
+                    painter.add(egui::Shape::convex_polygon(side, cut, Stroke::NONE));
+                    painter.line_segment([a, b], stroke);
+                }
+            }
+            if response.drag_stopped() {
+                match part(trim.shape, screen, from, to) {
+                    Some(part) => {
+                        out.push(Ask::Trim(part));
+                        desk.trim = None;
+                        return;
+                    }
+                    None => trim.from = None,
+                }
+            }
+        }
+        desk.trim = Some(trim);
+    });
+}
+
+/// The levels of the work: coarser to shape, finer for detail.
+pub fn levels(ui: &mut egui::Ui, view: &View<'_>, desk: &Desk, out: &mut Vec<Ask>) {
+    ui.strong("Levels");
+    let (at, of) = view.state.mesh.levels().map_or((0, 1), |l| l.at());
+    let n = view.state.mesh.triangle_count();
+    ui.colored_label(theme::quiet(ui), format!("level {} of {of}, {n} triangles", at + 1));
+    ui.horizontal(|ui| {
+        let coarser = ui.add_enabled(at > 0 && !desk.joining, egui::Button::new("Coarser"));
+        if coarser.on_hover_text("Shape the whole; the detail of finer levels goes along").clicked() {
+            out.push(Ask::Level(false));
+        }
+        let finer = ui.add_enabled(!desk.joining, egui::Button::new("Finer"));
+        let tip = if at + 1 < of { "Back to the finer level" } else { "Four triangles for each" };
+        if finer.on_hover_text(tip).clicked() {
+            out.push(Ask::Level(true));
+        }
+    });
+}

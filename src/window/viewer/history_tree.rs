@@ -1,0 +1,82 @@
+//! The session's history for the panel: the tree whenever it changed, and the pictures that are on the screen, which a thread of
+//! its own reads from the file.
+
+use std::collections::BTreeSet;
+
+use crossbeam_channel as cc;
+
+use super::window::Open;
+use sculptd_daemon::session::history::Handle;
+
+/// Pictures kept, of 27 KB each.
+const KEPT: usize = 300;
+/// Pictures that may be under way.
+const ASKED: usize = 64;
+
+/// A picture, or that there is none.
+type Found = (u64, Option<egui::ColorImage>);
+
+/// What goes to and fro.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// The tree that the panel has: see [`Handle::shape`].
+    shape: Option<(u64, u64, usize)>,
+    asked: BTreeSet<u64>,
+    reader: Option<(cc::Sender<u64>, cc::Receiver<Found>)>,
+}
+
+fn decode(png: &[u8]) -> Option<egui::ColorImage> {
+    let picture = image::load_from_memory_with_format(png, image::ImageFormat::Png).ok()?.to_rgb8();
+    let size = [picture.width() as usize, picture.height() as usize];
+    Some(egui::ColorImage::from_rgb(size, picture.as_raw()))
+}
+
+/// Reads pictures until nobody asks any more.
+fn reader(history: Handle, context: egui::Context) -> Option<(cc::Sender<u64>, cc::Receiver<Found>)> {
+    let (wanted, inbox) = cc::bounded::<u64>(ASKED);
+    let (outbox, found) = cc::bounded(ASKED);
+    let read = move || {
+        for node in inbox {
+            let picture = history.sight(node).and_then(|png| decode(&png));
+            if outbox.send((node, picture)).is_err() {
+                return;
+            }
+            context.request_repaint();
+        }
+    };
+    std::thread::Builder::new().name("sculptd-sights".into()).spawn(read).ok()?;
+    Some((wanted, found))
+}
+
+impl Open {
+    /// Brings the panel up to date. Once a frame, before the panels are drawn.
+    pub(super) fn places(&mut self, history: &Handle, rate_hz: u32) {
+        let (p, shown) = (&mut self.places, &mut self.desk.places);
+        let shape = history.shape();
+        if p.shape != Some(shape) {
+            p.shape = Some(shape);
+            shown.rate_hz = rate_hz;
+            shown.set(&history.tree());
+        }
+        let context = self.egui.egui_ctx();
+        if p.reader.is_none() {
+            p.reader = reader(history.clone(), context.clone());
+        }
+        let Some((wanted, found)) = &p.reader else { return };
+        for (node, picture) in found.try_iter() {
+            if let Some(picture) = picture {
+                shown.pictures.insert(node, context.load_texture("place", picture, Default::default()));
+            }
+        }
+        if shown.pictures.len() > KEPT {
+            let visible: BTreeSet<u64> = shown.visible.iter().copied().collect();
+            shown.pictures.retain(|node, _| visible.contains(node));
+            p.asked.retain(|node| visible.contains(node));
+        }
+        for node in &shown.visible {
+            if !p.asked.contains(node) && wanted.try_send(*node).is_ok() {
+                p.asked.insert(*node);
+            }
+        }
+    }
+}

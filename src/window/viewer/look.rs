@@ -1,0 +1,159 @@
+//! How the clay is shown: materials drawn by formula, facets, cavities. Nothing here changes the world.
+
+/// A material, lit from the eye's own frame. Colours are linear, 0 to 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Material {
+    pub name: &'static str,
+    pub base: [f32; 3],
+    /// 0 none to 1.
+    pub shine: f32,
+    /// Exponent of the highlight: larger is smaller and sharper.
+    pub power: f32,
+    /// Light at grazing angles, 0 none to 1.
+    pub rim: f32,
+}
+
+const fn material(name: &'static str, base: [f32; 3], shine: f32, power: f32, rim: f32) -> Material {
+    Material { name, base, shine, power, rim }
+}
+
+pub const MATERIALS: [Material; 7] = [
+    material("clay", [0.52, 0.25, 0.165], 0.22, 40.0, 0.25),
+    material("porcelain", [0.80, 0.80, 0.78], 0.40, 80.0, 0.20),
+    material("wax", [0.60, 0.06, 0.05], 0.45, 50.0, 0.35),
+    material("stone", [0.36, 0.37, 0.38], 0.04, 8.0, 0.10),
+    material("jade", [0.13, 0.45, 0.24], 0.50, 60.0, 0.45),
+    material("bronze", [0.45, 0.25, 0.07], 0.70, 22.0, 0.20),
+    material("graphite", [0.09, 0.095, 0.11], 0.55, 28.0, 0.40),
+];
+
+/// What the clay's own colours give way to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Map {
+    #[default]
+    None,
+    /// 0 free to 1 held fast.
+    Mask,
+    /// Wall thickness in the mesh's unit.
+    Thickness,
+    /// To another form, in the mesh's unit: negative within it, positive outside.
+    Distance,
+}
+
+/// Stops of the distance's scale, sRGB: blue within, pale where both are one, red outside.
+const DISTANCE: [[u8; 3]; 5] =
+    [[24, 62, 150], [104, 160, 214], [238, 236, 228], [228, 138, 92], [158, 28, 32]];
+
+/// Stops of the mask's scale, sRGB: free is pale, held is deep blue.
+const MASK: [[u8; 3]; 2] = [[232, 226, 214], [28, 52, 110]];
+/// Entries of a scale on the card; between them colours are mixed.
+pub const SCALE: usize = 8;
+
+impl Map {
+    /// The colour of a value between the scale's ends; sRGB.
+    pub fn colour(self, value: f32, low: f32, high: f32) -> [u8; 3] {
+        match self {
+            Map::None | Map::Thickness => sculptd_geometry::thickness::colour::colour(value, low, high),
+            Map::Mask => {
+                let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
+                std::array::from_fn(|k| {
+                    let (a, b) = (f32::from(MASK[0][k]), f32::from(MASK[1][k]));
+                    (a + (b - a) * x).round() as u8
+                })
+            }
+            Map::Distance => {
+                let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
+                let at = x * (DISTANCE.len() - 1) as f32;
+                let i = (at as usize).min(DISTANCE.len() - 2);
+                std::array::from_fn(|k| {
+                    let (a, b) = (f32::from(DISTANCE[i][k]), f32::from(DISTANCE[i + 1][k]));
+                    (a + (b - a) * (at - i as f32)).round() as u8
+                })
+            }
+        }
+    }
+
+    /// The scale for the card, linear.
+    pub fn scale(self) -> [[f32; 4]; SCALE] {
+        std::array::from_fn(|i| linear(self.colour(i as f32 / (SCALE - 1) as f32, 0.0, 1.0)))
+    }
+
+    pub fn title(self) -> &'static str {
+        match self {
+            Map::None => "",
+            Map::Mask => "Mask",
+            Map::Thickness => "Thickness",
+            Map::Distance => "Distance",
+        }
+    }
+}
+
+/// From sRGB bytes to linear light.
+pub fn linear(c: [u8; 3]) -> [f32; 4] {
+    let one = |v: u8| {
+        let v = f32::from(v) / 255.0;
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    };
+    [one(c[0]), one(c[1]), one(c[2]), 1.0]
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct Look {
+    /// Index into [`MATERIALS`]; beyond them, the last.
+    pub material: usize,
+    /// One tone a triangle.
+    pub flat: bool,
+    /// How strongly hollows are darkened and ridges lightened, 0 none to 2.
+    pub cavity: f32,
+    /// How strongly forms shade their own hollows and each other, 0 none to 2.
+    pub shade: f32,
+    /// Edges of triangles over the clay.
+    pub wireframe: bool,
+    /// The floor under the work.
+    pub grid: bool,
+    pub map: Map,
+    /// A pale ground instead of a dark one.
+    pub pale: bool,
+    /// The ends of the map's scale.
+    #[serde(skip)]
+    pub scale: (f32, f32),
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Look {
+            material: 0,
+            flat: false,
+            cavity: 1.0,
+            shade: 1.0,
+            wireframe: false,
+            grid: false,
+            map: Map::None,
+            pale: false,
+            scale: (0.0, 1.0),
+        }
+    }
+}
+
+impl Look {
+    pub fn material(&self) -> &'static Material {
+        &MATERIALS[self.material.min(MATERIALS.len() - 1)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scale_runs_from_its_low_to_its_high_colour() {
+        for map in [Map::Mask, Map::Thickness, Map::Distance] {
+            assert_eq!(map.scale()[0], linear(map.colour(0.0, 0.0, 1.0)));
+            assert_eq!(map.scale()[SCALE - 1], linear(map.colour(1.0, 0.0, 1.0)));
+            assert_ne!(map.scale()[0], map.scale()[SCALE - 1]);
+        }
+        assert!((linear([188, 0, 255])[0] - 0.503).abs() < 2e-3);
+    }
+}

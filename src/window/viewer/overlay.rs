@@ -1,0 +1,170 @@
+//! Lines over the clay: the brush ring and its mirror images, ghost pens, ghost hands.
+
+use glam::{Vec2, Vec3};
+
+use super::renderer::LineEnd;
+use sculptd_clay::{Ray, Snapshot};
+use sculptd_devices::Hands;
+use sculptd_engine::camera::Camera;
+use sculptd_engine::hand::{Thing, Volume};
+
+const RING: [u8; 4] = [255, 236, 190, 255];
+const CARVING: [u8; 4] = [150, 190, 255, 255];
+const MIRRORED: [u8; 4] = [150, 205, 255, 190];
+const THING: [u8; 4] = [255, 214, 140, 110];
+const BONE: [u8; 4] = [190, 225, 255, 200];
+/// Corners of a ring: smooth to the eye at any size.
+const CORNERS: usize = 72;
+
+fn segment(out: &mut Vec<LineEnd>, a: Vec3, b: Vec3, colour: [u8; 4]) {
+    out.push(LineEnd { place: a.to_array(), colour });
+    out.push(LineEnd { place: b.to_array(), colour });
+}
+
+/// How a ring is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Ring {
+    /// Mesh units.
+    pub radius: f32,
+    /// The brush takes clay away.
+    pub carve: bool,
+    pub mirrored: bool,
+    /// The pen touches; before contact the ring is fainter.
+    pub down: bool,
+}
+
+/// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped along the normal onto
+/// the clay, and where there is none within reach it stays in the tangent plane.
+pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3, ring: &Ring) {
+    let radius = ring.radius;
+    let mut colour = match (ring.mirrored, ring.carve) {
+        (true, _) => MIRRORED,
+        (false, true) => CARVING,
+        (false, false) => RING,
+    };
+    if !ring.down {
+        colour[3] = colour[3] / 4 * 3;
+    }
+    let (u, v) = normal.any_orthonormal_pair();
+    let corner = |i: usize| {
+        let (s, c) = (i as f32 / CORNERS as f32 * std::f32::consts::TAU).sin_cos();
+        let flat = centre + (u * c + v * s) * radius;
+        let above = Ray { origin: flat + normal * radius, dir: -normal };
+        match mesh.pick(above) {
+            Some(hit) if (hit.t - radius).abs() < 0.6 * radius => hit.position + normal * (radius * 0.01),
+            _ => flat,
+        }
+    };
+    let mut last = corner(0);
+    for i in 1..=CORNERS {
+        let next = corner(i);
+        segment(out, last, next, colour);
+        last = next;
+    }
+    segment(out, centre, centre + normal * radius * 0.4, colour);
+}
+
+/// The pen itself as it leans: from its tip along its barrel. `tilt` in radians, x to the right and y towards the person.
+pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, radius: f32) {
+    let (right, up) = camera.axes();
+    let along =
+        camera.backward() + right * tilt.x.clamp(-1.4, 1.4).tan() - up * tilt.y.clamp(-1.4, 1.4).tan();
+    segment(out, tip, tip + along.normalize_or_zero() * radius * 2.0, BONE);
+}
+
+/// The floor: squares of a round number of units, ten times as far as the work is wide at most.
+pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, floor: f32, extent: f32, pale: bool) {
+    const HALF: i32 = 10;
+    let step = 10f32.powf((extent * 0.3).max(1e-30).log10().floor());
+    let step = if extent * 0.3 / step >= 5.0 {
+        step * 5.0
+    } else if extent * 0.3 / step >= 2.0 {
+        step * 2.0
+    } else {
+        step
+    };
+    let centre = (middle / step).round() * step;
+    let ink = if pale { 60 } else { 190 };
+    let reach = HALF as f32 * step;
+    for i in -HALF..=HALF {
+        let at = i as f32 * step;
+        for (from, to, axis) in [
+            (Vec3::new(at, 0.0, -reach), Vec3::new(at, 0.0, reach), centre.x + at),
+            (Vec3::new(-reach, 0.0, at), Vec3::new(reach, 0.0, at), centre.z + at),
+        ] {
+            let colour = match (axis.abs() < step * 0.01, from.x == to.x) {
+                (true, true) => [70, 110, 210, 190],
+                (true, false) => [200, 70, 70, 190],
+                _ => [ink, ink, ink, 70],
+            };
+            let base = Vec3::new(centre.x, floor, centre.z);
+            segment(out, base + from, base + to, colour);
+        }
+    }
+}
+
+/// A hand's bones, in the world.
+pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
+    for hand in hands.as_slice() {
+        let mut knuckles: Vec<Vec3> = Vec::with_capacity(5);
+        for finger in hand.fingers.iter().flatten() {
+            let joints = finger.joints.iter().flatten().copied().chain([finger.tip]);
+            let mut last: Option<Vec3> = None;
+            for mm in joints {
+                let p = volume.to_world(mm);
+                if let Some(last) = last {
+                    segment(out, last, p, BONE);
+                }
+                last = Some(p);
+            }
+            if let Some(knuckle) = finger.joints[1].or(finger.joints[2]) {
+                knuckles.push(volume.to_world(knuckle));
+            }
+            diamond(out, volume.to_world(finger.tip), 5.0 * volume.scale);
+        }
+        for pair in knuckles.windows(2) {
+            segment(out, pair[0], pair[1], BONE);
+        }
+        if let (Some(wrist), Some(first), Some(last)) = (hand.wrist, knuckles.first(), knuckles.last()) {
+            segment(out, volume.to_world(wrist), *first, BONE);
+            segment(out, volume.to_world(wrist), *last, BONE);
+        }
+    }
+}
+
+/// A thing in the hands as its edges: what it would cut shows through it.
+pub fn thing(out: &mut Vec<LineEnd>, thing: &Thing) {
+    // Of a large one, some: it is its place that counts.
+    const MOST: usize = 2600;
+    let triangles = &thing.plain.triangles;
+    let step = triangles.len().div_ceil(MOST).max(1);
+    for t in triangles.iter().step_by(step) {
+        let [a, b, c] = t.map(|v| thing.place.apply(thing.plain.positions[v as usize]));
+        for (from, to, lower) in [(a, b, t[0] < t[1]), (b, c, t[1] < t[2]), (c, a, t[2] < t[0])] {
+            if lower || step > 1 {
+                segment(out, from, to, THING);
+            }
+        }
+    }
+}
+
+fn diamond(out: &mut Vec<LineEnd>, p: Vec3, r: f32) {
+    let corners = [Vec3::X, Vec3::Y, -Vec3::X, -Vec3::Y].map(|d| p + d * r);
+    for i in 0..4 {
+        segment(out, corners[i], corners[(i + 1) % 4], BONE);
+        segment(out, corners[i], p + Vec3::Z * r, BONE);
+    }
+}
+
+/// Signs of the mirror images of a brush, itself left out.
+pub fn mirrors(symmetry: [bool; 3]) -> impl Iterator<Item = Vec3> {
+    (1..8u32).filter(move |m| (0..3).all(|axis| m >> axis & 1 == 0 || symmetry[axis])).map(|m| {
+        let sign = |axis: u32| if m >> axis & 1 == 1 { -1.0 } else { 1.0 };
+        Vec3::new(sign(0), sign(1), sign(2))
+    })
+}
+
+/// A view point from a pointer's place in a window.
+pub fn view_point(at: Vec2, size: Vec2) -> Vec2 {
+    at / size.max(Vec2::ONE)
+}

@@ -1,0 +1,153 @@
+//! What a join would make of the work, shown while the thing is still being carried: computed off to the side from a snapshot,
+//! nothing of the world knows of it.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use super::pages::Vertex;
+use sculptd_clay::{Corner, Cut, Snapshot};
+use sculptd_daemon::boolean_jobs as joiner;
+use sculptd_engine::hand::{Choice, Similarity, Thing};
+use sculptd_geometry::PolyMesh;
+use sculptd_geometry::boolean;
+use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::job::Job;
+
+/// What is asked for.
+#[derive(Debug, Clone)]
+pub struct Wanted {
+    pub mesh: Snapshot,
+    pub thing: Thing,
+    pub choice: Choice,
+}
+
+/// The clay's tone where the thing has made a surface: warm against every material.
+const TINT: [u8; 4] = [255, 196, 96, 255];
+const PLAIN: [u8; 4] = [255; 4];
+
+/// Triangles that stand in the place of pages of the work.
+#[derive(Debug, Clone)]
+pub struct Preview {
+    /// Of the work that it was computed from.
+    pub revision: u64,
+    pub pages: usize,
+    pub place: Similarity,
+    pub choice: Choice,
+    /// Pages that are not drawn, ascending; `None`: all of them.
+    pub hidden: Option<Vec<u32>>,
+    pub vertices: Vec<Vertex>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Of these, how many the thing has made.
+    pub made: usize,
+}
+
+/// Triangles with a tone each, joined where place and tone are the same, so that a cut has a sharp edge.
+#[derive(Default)]
+struct Gather {
+    names: BTreeMap<([u32; 3], bool), u32>,
+    /// Place, sum of areas, the clay's own normal where it has one.
+    places: Vec<(Vec3, Vec3, Option<Vec3>, bool)>,
+    triangles: Vec<[u32; 3]>,
+    made: usize,
+}
+
+impl Gather {
+    fn push(&mut self, corners: [(Vec3, Option<Vec3>); 3], made: bool) {
+        let [a, b, c] = corners.map(|p| p.0);
+        let across = (b - a).cross(c - a);
+        self.made += usize::from(made);
+        let t = corners.map(|(p, own)| {
+            let (names, places) = (&mut self.names, &mut self.places);
+            let i = *names.entry((p.to_array().map(f32::to_bits), made)).or_insert_with(|| {
+                places.push((p, Vec3::ZERO, own, made));
+                places.len() as u32 - 1
+            });
+            places[i as usize].1 += across;
+            i
+        });
+        self.triangles.push(t);
+    }
+
+    fn finish(self, wanted: &Wanted, hidden: Option<Vec<u32>>) -> Preview {
+        let vertex = |&(p, across, own, made): &(Vec3, Vec3, Option<Vec3>, bool)| {
+            let normal = own.unwrap_or_else(|| across.normalize_or_zero());
+            Vertex::new(p, normal, 0.0, if made { TINT } else { PLAIN })
+        };
+        Preview {
+            revision: wanted.mesh.revision(),
+            pages: wanted.mesh.page_count(),
+            place: wanted.thing.place,
+            choice: wanted.choice,
+            hidden,
+            vertices: self.places.iter().map(vertex).collect(),
+            triangles: self.triangles,
+            made: self.made,
+        }
+    }
+}
+
+/// Computes it; `None` where the choice joins nothing.
+///
+/// # Errors
+/// As a join: an open thing, or a work that cannot be cut. [`boolean::Error::Cancelled`] when a newer one is wanted.
+pub fn compute(wanted: &Wanted, job: &Job) -> Result<Option<Preview>, boolean::Error> {
+    let Some(operation) = joiner::operation(wanted.choice) else { return Ok(None) };
+    let tool = wanted.thing.placed().to_poly();
+    let options = Options::default();
+    if let Some(cut) = sculptd_clay::local_boolean::local(&wanted.mesh, &tool, operation, &options, job)? {
+        return Ok(Some(of_cut(wanted, &cut)));
+    }
+    whole(wanted, &tool, operation, job).map(Some)
+}
+
+/// The pages that lose a triangle, without it and with what comes.
+fn of_cut(wanted: &Wanted, cut: &Cut) -> Preview {
+    let mesh = &wanted.mesh;
+    let mut gone: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for &(page, t) in cut.removed() {
+        gone.entry(page).or_default().push(t);
+    }
+    let mut out = Gather::default();
+    for (&p, gone) in &mut gone {
+        gone.sort_unstable();
+        let page = mesh.page(p);
+        for t in (0..page.triangles().len()).filter(|t| gone.binary_search(&(*t as u32)).is_err()) {
+            let corner = |v: u16| (page.point(v as usize), Some(page.normal(v as usize)));
+            out.push(page.triangles()[t].map(corner), false);
+        }
+    }
+    for corners in cut.added() {
+        let made = corners.iter().all(|c| matches!(c, Corner::New(_)));
+        out.push(
+            corners.map(|c| match c {
+                Corner::Old((p, v)) => {
+                    let page = mesh.page(p);
+                    (page.point(v as usize), Some(page.normal(v as usize)))
+                }
+                Corner::New(i) => (cut.new_vertices()[i as usize].place, None),
+            }),
+            made,
+        );
+    }
+    out.finish(wanted, Some(gone.into_keys().collect()))
+}
+
+fn whole(
+    wanted: &Wanted,
+    tool: &PolyMesh,
+    operation: Operation,
+    job: &Job,
+) -> Result<Preview, boolean::Error> {
+    let work = wanted.mesh.to_tri().to_poly();
+    let (solids, _) = boolean::compute([&work, tool], &[operation], &Options::default(), job, || 0.0)?;
+    let mut out = Gather::default();
+    for solid in &solids {
+        let (plain, faces) = solid.mesh.triangulate();
+        for (i, face) in faces.iter().enumerate() {
+            let made = solid.origins.get(*face as usize).is_some_and(|o| o.operand == 1);
+            out.push(plain.corners(i).map(|p| (p, None)), made);
+        }
+    }
+    Ok(out.finish(wanted, None))
+}

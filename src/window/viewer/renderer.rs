@@ -1,0 +1,441 @@
+//! Drawing a frame: sky, clay, lines. The same for a window and for a picture.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3};
+
+use super::gpu::Gpu;
+use super::look::{Look, Map, SCALE, linear};
+use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
+use super::preview::Preview;
+use crate::viewer::overlay_mesh::{Loose, Triangles};
+use crate::viewer::ssao::Shade;
+use sculptd_clay::{Page, Snapshot};
+use sculptd_engine::camera::Camera;
+
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// An end of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LineEnd {
+    pub place: [f32; 3],
+    pub colour: [u8; 4],
+}
+
+/// Ends of lines a frame at most: a dozen rings, four hands and a thing.
+const MAX_LINE_ENDS: usize = 16_384;
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Frame {
+    view_projection: [[f32; 4]; 4],
+    right: [f32; 4],
+    up: [f32; 4],
+    back: [f32; 4],
+    brush: [f32; 4],
+    base: [f32; 4],
+    finish: [f32; 4],
+    map: [f32; 4],
+    scale: [[f32; 4]; SCALE],
+    low: [f32; 4],
+    high: [f32; 4],
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Scene<'a> {
+    pub mesh: &'a Snapshot,
+    pub camera: &'a Camera,
+    /// The brush's place and radius, for the falloff on the surface.
+    pub brush: Option<(Vec3, f32)>,
+    pub lines: &'a [LineEnd],
+    pub look: Look,
+    /// The map that `look` may ask for.
+    pub values: Option<&'a MapValues>,
+    pub beside: Beside<'a>,
+}
+
+/// What is drawn beside the clay.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside<'a> {
+    /// In the place of the pages that it hides.
+    pub preview: Option<&'a Arc<Preview>>,
+    /// Over the clay, seen through.
+    pub ghosts: Option<&'a Triangles>,
+}
+
+/// Depth, samples where there are several a pixel, pixels.
+type Targets = (wgpu::TextureView, Option<wgpu::TextureView>, (u32, u32));
+
+#[derive(Debug)]
+pub struct Renderer {
+    frame: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    sky: wgpu::RenderPipeline,
+    clay: wgpu::RenderPipeline,
+    line: wgpu::RenderPipeline,
+    edge: wgpu::RenderPipeline,
+    ghost: wgpu::RenderPipeline,
+    line_ends: wgpu::Buffer,
+    pages: Option<Pages>,
+    samples: u32,
+    format: wgpu::TextureFormat,
+    targets: Option<Targets>,
+    /// Those of another size: a window's and its small pictures' take turns.
+    others: Option<Targets>,
+    /// The preview that was sent last.
+    previewed: Option<Arc<Preview>>,
+    preview: Loose,
+    ghosts: Loose,
+    /// Whether the depth can be read here.
+    shades: bool,
+    /// Made when it is first asked for.
+    shade: Option<Shade>,
+    /// Bytes of pages sent with the last frame, and pages that still wait.
+    pub uploaded: u64,
+    pub waiting: usize,
+    /// Pages that were in view, of all.
+    pub drawn: (usize, usize),
+}
+
+impl Renderer {
+    /// `samples` a pixel: 1 or 4.
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Renderer {
+        let device = &gpu.device;
+        let shader = device.create_shader_module(wgpu::include_wgsl!("clay.wgsl"));
+        let buffer = |label, size, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let frame = buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM);
+        let line_ends =
+            buffer("lines", (MAX_LINE_ENDS * size_of::<LineEnd>()) as u64, wgpu::BufferUsages::VERTEX);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("frame"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("clay"),
+            bind_group_layouts: &[Some(&layout)],
+            ..Default::default()
+        });
+        let line_layout = wgpu::VertexBufferLayout {
+            array_stride: size_of::<LineEnd>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
+        };
+        let pipeline =
+            |name: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], lines: bool, depth: bool| {
+                let ghost = name == "ghost";
+                device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                    label: Some(name),
+                    layout: Some(&pipeline_layout),
+                    vertex: wgpu::VertexState {
+                        module: &shader,
+                        entry_point: Some(&format!("{}_vertex", if ghost { "clay" } else { name })),
+                        compilation_options: Default::default(),
+                        buffers,
+                    },
+                    primitive: wgpu::PrimitiveState {
+                        topology: if lines {
+                            wgpu::PrimitiveTopology::LineList
+                        } else {
+                            wgpu::PrimitiveTopology::TriangleList
+                        },
+                        // What is seen through shows its near side alone.
+                        cull_mode: ghost.then_some(wgpu::Face::Back),
+                        ..Default::default()
+                    },
+                    depth_stencil: Some(wgpu::DepthStencilState {
+                        format: DEPTH,
+                        depth_write_enabled: Some(depth && !lines && !ghost),
+                        depth_compare: Some(if depth {
+                            wgpu::CompareFunction::LessEqual
+                        } else {
+                            wgpu::CompareFunction::Always
+                        }),
+                        stencil: Default::default(),
+                        bias: Default::default(),
+                    }),
+                    multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+                    fragment: Some(wgpu::FragmentState {
+                        module: &shader,
+                        entry_point: Some(&format!("{name}_fragment")),
+                        compilation_options: Default::default(),
+                        targets: &[Some(wgpu::ColorTargetState {
+                            format,
+                            blend: (lines || ghost).then_some(wgpu::BlendState::ALPHA_BLENDING),
+                            write_mask: wgpu::ColorWrites::ALL,
+                        })],
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                })
+            };
+        Renderer {
+            sky: pipeline("sky", &[], false, false),
+            clay: pipeline("clay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
+            line: pipeline("line", &[Some(line_layout)], true, true),
+            edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
+            ghost: pipeline("ghost", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
+            frame,
+            group,
+            line_ends,
+            pages: None,
+            samples,
+            format,
+            targets: None,
+            others: None,
+            previewed: None,
+            preview: Loose::default(),
+            ghosts: Loose::default(),
+            // OpenGL draws nothing at all with a depth of several samples that is to be read.
+            shades: samples == 1 || gpu.adapter.get_info().backend != wgpu::Backend::Gl,
+            shade: None,
+            uploaded: 0,
+            waiting: 0,
+            drawn: (0, 0),
+        }
+    }
+
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.format
+    }
+
+    /// Depth and multisampling targets of the right size.
+    fn targets(&mut self, device: &wgpu::Device, size: (u32, u32)) {
+        if self.targets.as_ref().is_some_and(|t| t.2 == size) {
+            return;
+        }
+        std::mem::swap(&mut self.targets, &mut self.others);
+        if let Some(shade) = &mut self.shade {
+            shade.turn();
+        }
+        if self.targets.as_ref().is_some_and(|t| t.2 == size) {
+            return;
+        }
+        let view = |format, more| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("target"),
+                size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: self.samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | more,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        };
+        let none = wgpu::TextureUsages::empty();
+        let read = if self.shades { wgpu::TextureUsages::TEXTURE_BINDING } else { none };
+        if let Some(shade) = &mut self.shade {
+            shade.forget();
+        }
+        self.targets = Some((view(DEPTH, read), (self.samples > 1).then(|| view(self.format, none)), size));
+    }
+
+    /// Draws into `target`, which has `size` pixels.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+        scene: &Scene<'_>,
+    ) {
+        self.targets(&gpu.device, size);
+        if self.pages.as_ref().is_none_or(|p| !p.fits(scene.mesh)) {
+            self.pages = Some(Pages::new(&gpu.device, &gpu.queue, scene.mesh));
+        }
+        let (lo, hi) = scene.mesh.bounds();
+        let radius = if lo.cmple(hi).all() {
+            (hi - scene.camera.target).abs().max((lo - scene.camera.target).abs()).length()
+        } else {
+            1.0
+        };
+        let matrix = scene.camera.view_projection(radius);
+        let (right, up) = scene.camera.axes();
+        let m = scene.look.material();
+        let kind = match (scene.look.map, scene.values) {
+            (Map::None, _) | (_, None) if scene.look.map != Map::Mask => 0.0,
+            (Map::Mask, _) => 1.0,
+            _ => 2.0,
+        };
+        let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
+        // The ground: a quiet dusk, or paper.
+        let ground =
+            if scene.look.pale { [[196, 199, 205], [228, 230, 234]] } else { [[28, 29, 33], [63, 65, 71]] };
+        let frame = Frame {
+            view_projection: matrix.to_cols_array_2d(),
+            right: right.extend(0.0).to_array(),
+            up: up.extend(0.0).to_array(),
+            back: scene.camera.backward().extend(0.0).to_array(),
+            brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
+            base: [m.base[0], m.base[1], m.base[2], f32::from(scene.look.flat)],
+            finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
+            map: [low, 1.0 / (high - low).max(1e-12), kind, nearer(scene.camera, radius)],
+            scale: scene.look.map.scale(),
+            low: linear(ground[0]),
+            high: linear(ground[1]),
+        };
+        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];
+        gpu.queue.write_buffer(&self.line_ends, 0, bytemuck::cast_slice(lines));
+        if let Some(pages) = &mut self.pages {
+            pages.update(&gpu.queue, scene.mesh);
+            (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting());
+            if let Some(values) = scene.values.filter(|_| kind == 2.0) {
+                pages.set_map(&gpu.queue, values);
+            }
+            if scene.look.wireframe {
+                pages.need_edges(&gpu.device, &gpu.queue);
+            }
+        }
+        let preview = self.beside(gpu, scene);
+        let hidden =
+            |i: u32| preview.is_some_and(|p| p.hidden.as_ref().is_none_or(|h| h.binary_search(&i).is_ok()));
+        let shown = |i: u32, page: &Page| !hidden(i) && in_view(&matrix, page);
+        let Some((depth, smooth, _)) = &self.targets else { return };
+        let view = smooth.as_ref().unwrap_or(target);
+        let resolve = smooth.as_ref().map(|_| target);
+        // Over a map a little: its colours are to be read beside its scale.
+        let shade = scene.look.shade.clamp(0.0, 2.0) * if kind > 0.0 { 0.5 } else { 1.0 };
+        let shaded = self.shades && shade > 0.0 && lo.cmple(hi).all();
+        {
+            // What is shaded is not finished yet: lines and the mean of its samples come after.
+            let resolve = if shaded { None } else { resolve };
+            let mut pass = begin(encoder, view, resolve, depth, (true, shaded));
+            pass.set_bind_group(0, &self.group, &[]);
+            pass.set_pipeline(&self.sky);
+            pass.draw(0..3, 0..1);
+            if let Some(pages) = &self.pages {
+                pass.set_pipeline(&self.clay);
+                let drawn = pages.draw(&mut pass, shown);
+                self.drawn = (drawn, scene.mesh.page_count());
+                if preview.is_some() {
+                    self.preview.draw(&mut pass);
+                }
+                if scene.look.wireframe {
+                    pass.set_pipeline(&self.edge);
+                    pages.draw_edges(&mut pass, shown);
+                }
+            }
+            if !shaded {
+                self.over(scene, &mut pass, lines.len() as u32);
+                return;
+            }
+        }
+        let extent = (hi - lo).length() * 0.5;
+        let between = scene.camera.depth_range(radius);
+        let size_of = (view, depth, size);
+        let passes = self.shade.get_or_insert_with(|| Shade::new(gpu, self.format, self.samples));
+        passes.draw(gpu, encoder, size_of, scene.camera, between, (extent, shade));
+        if resolve.is_some() || !lines.is_empty() || scene.beside.ghosts.is_some() {
+            let mut pass = begin(encoder, view, resolve, depth, (false, false));
+            pass.set_bind_group(0, &self.group, &[]);
+            self.over(scene, &mut pass, lines.len() as u32);
+        }
+    }
+
+    /// Sends what is beside the clay and is not there yet; a preview of another work is none.
+    fn beside<'s>(&mut self, gpu: &Gpu, scene: &Scene<'s>) -> Option<&'s Arc<Preview>> {
+        if let Some(ghosts) = scene.beside.ghosts {
+            self.ghosts.keep(gpu, ghosts);
+        }
+        let preview = scene.beside.preview.filter(|p| p.pages == scene.mesh.page_count());
+        if let Some(new) = preview
+            && !self.previewed.as_ref().is_some_and(|old| Arc::ptr_eq(old, new))
+        {
+            self.preview.set(gpu, &new.vertices, &new.triangles);
+            self.previewed = Some(new.clone());
+        }
+        preview
+    }
+
+    /// What lies over the clay.
+    fn over(&self, scene: &Scene<'_>, pass: &mut wgpu::RenderPass<'_>, ends: u32) {
+        if scene.beside.ghosts.is_some() {
+            pass.set_pipeline(&self.ghost);
+            self.ghosts.draw(pass);
+        }
+        if ends > 0 {
+            pass.set_pipeline(&self.line);
+            pass.set_vertex_buffer(0, self.line_ends.slice(..));
+            pass.draw(0..ends, 0..1);
+        }
+    }
+}
+
+/// A pass over the picture and its depth; `first` clears both, `keep` leaves the depth for others to read.
+fn begin<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    view: &wgpu::TextureView,
+    resolve_target: Option<&wgpu::TextureView>,
+    depth: &wgpu::TextureView,
+    (first, keep): (bool, bool),
+) -> wgpu::RenderPass<'e> {
+    let colour = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
+    let load = if first { wgpu::LoadOp::Clear(1.0) } else { wgpu::LoadOp::Load };
+    let store = if keep { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("clay"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target,
+            ops: wgpu::Operations { load: colour, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load, store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
+
+/// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is `b` times the share.
+fn nearer(camera: &Camera, radius: f32) -> f32 {
+    if camera.orthographic {
+        return 4e-4;
+    }
+    let far = (camera.distance + radius * 2.0).max(1e-3);
+    let near = (camera.distance - radius * 2.0).max(far * 1e-4);
+    2e-3 * far * near / (far - near)
+}
+
+/// Whether a page's box may be seen: not wholly beyond one plane of the view.
+fn in_view(matrix: &Mat4, page: &Page) -> bool {
+    let (lo, hi) = page.bounds();
+    let mut beyond = [0u8; 5];
+    for corner in 0..8u32 {
+        let pick = |axis: u32, lo: f32, hi: f32| if corner >> axis & 1 == 0 { lo } else { hi };
+        let p = Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z));
+        let c = *matrix * p.extend(1.0);
+        for (n, out) in beyond.iter_mut().zip([c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0]) {
+            *n += u8::from(out);
+        }
+    }
+    beyond.iter().all(|&n| n < 8)
+}

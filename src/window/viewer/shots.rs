@@ -1,0 +1,78 @@
+//! Pictures of the clay without the panels: a screenshot, or a whole turn of it, a frame at a time so that the window
+//! stays alive.
+
+use std::path::PathBuf;
+
+use super::picture::paint;
+use super::renderer::Scene;
+use super::window::Open;
+use super::work::free_name;
+use sculptd_daemon::Published;
+use sculptd_engine::camera::Camera;
+
+#[derive(Debug)]
+pub struct Turntable {
+    folder: PathBuf,
+    frames: u32,
+    next: u32,
+    from: Camera,
+}
+
+/// Where pictures go.
+fn folder() -> PathBuf {
+    directories::UserDirs::new()
+        .and_then(|d| d.picture_dir().map(PathBuf::from))
+        .filter(|d| d.is_dir())
+        .unwrap_or_default()
+}
+
+impl Open {
+    pub(super) fn begin_turntable(&mut self) {
+        let folder = free_name(&folder(), "sculptd-turntable", "");
+        match std::fs::create_dir_all(&folder) {
+            Ok(()) => {
+                let frames = self.desk.files.frames.max(1);
+                self.turning = Some(Turntable { folder, frames, next: 0, from: self.camera });
+            }
+            Err(e) => self.desk.say(format!("{}: {e}", folder.display()), true),
+        }
+    }
+
+    /// Takes the pictures that are due: at most one a frame.
+    pub(super) fn shots(&mut self, state: &Published) {
+        if std::mem::take(&mut self.screenshot) {
+            let path = free_name(&folder(), "sculptd", ".png");
+            let camera = self.camera;
+            self.shot(state, camera, path, false);
+        }
+        let Some(t) = &mut self.turning else { return };
+        let turn = t.next as f32 / t.frames as f32 * std::f32::consts::TAU;
+        let camera = Camera { yaw: (t.from.yaw + turn).rem_euclid(std::f32::consts::TAU), ..t.from };
+        let path = t.folder.join(format!("frame-{:03}.png", t.next));
+        t.next += 1;
+        if t.next == t.frames {
+            let said = format!("Saved {} frames to {}", t.frames, t.folder.display());
+            self.turning = None;
+            self.desk.say(said, false);
+        }
+        self.shot(state, camera, path, true);
+        self.window.request_redraw();
+    }
+
+    fn shot(&mut self, state: &Published, camera: Camera, path: PathBuf, quiet: bool) {
+        let (width, height) = (self.config.width, self.config.height);
+        let scene = Scene {
+            mesh: &state.mesh,
+            camera: &camera,
+            brush: None,
+            lines: &[],
+            look: self.desk.look,
+            values: super::frame::shown(&self.desk, &self.values, &self.distances),
+            beside: Default::default(),
+        };
+        match paint(&self.gpu, &mut self.renderer, &scene, width, height) {
+            Ok(picture) => self.work.picture(path, picture, quiet),
+            Err(e) => self.desk.say(e.to_string(), true),
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Small pictures of the work after each step, by the window's own renderer, taken when the work rests. Nobody waits for them:
+//! the pixels are fetched some frames later.
+
+use std::sync::mpsc;
+
+use super::look::{Look, Map};
+use super::renderer::Scene;
+use super::window::Open;
+use crate::panels::history::{KEPT, Thumb};
+use sculptd_clay::Snapshot;
+use sculptd_daemon::Published;
+use sculptd_engine::camera::Camera;
+
+/// Pixels; a row is what copies are padded to.
+const SIZE: (u32, u32) = (128, 80);
+/// Where a processor draws, a larger work has no pictures: each costs a frame.
+const MOST_ON_A_PROCESSOR: usize = 1_500_000;
+/// The work rests once it has not changed for so long.
+const REST_US: u64 = 150_000;
+/// A pen does not stand still for so long.
+const LONG_REST_US: u64 = 2_000_000;
+
+#[derive(Debug)]
+struct Pending {
+    step: usize,
+    mark: u64,
+    bytes: wgpu::Buffer,
+    mapped: mpsc::Receiver<bool>,
+}
+
+#[derive(Debug, Default)]
+pub struct Thumbs {
+    target: Option<wgpu::Texture>,
+    pending: Option<Pending>,
+    /// The revision that was looked at last, and the steps then.
+    seen: Option<u64>,
+    steps: (usize, usize),
+}
+
+/// One number for which pages these are: an undo brings old ones back.
+fn mark(mesh: &Snapshot) -> u64 {
+    mesh.pages().fold(0xcbf2_9ce4_8422_2325u64, |h, p| {
+        (h ^ p.revision()).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29)
+    })
+}
+
+impl Open {
+    /// Takes a picture where one is due, and fetches the last. Once a frame, after it was handed to the card.
+    pub(super) fn thumb(&mut self, state: &Published, now: u64) {
+        self.fetch();
+        let revision = state.mesh.revision();
+        let resting_us = now.saturating_sub(self.rested.1);
+        let large = self.gpu.software && state.mesh.triangle_count() > MOST_ON_A_PROCESSOR;
+        let t = &mut self.thumbs;
+        let (step, ahead) = (state.undo_steps, state.redo_steps);
+        // Other clay after as many steps: a stroke that is not done yet, or another work.
+        let known = t.steps == (step, ahead) && self.desk.history.iter().any(|k| k.step == step);
+        let rests = resting_us > if known { LONG_REST_US } else { REST_US };
+        if t.pending.is_some() || t.seen == Some(revision) || !rests || large {
+            return;
+        }
+        t.seen = Some(revision);
+        let (before, before_ahead) = std::mem::replace(&mut t.steps, (step, ahead));
+        let mark = mark(&state.mesh);
+        let kept = &mut self.desk.history;
+        if kept.iter().any(|k| k.step == step && k.mark == mark) {
+            return;
+        }
+        if ahead == 0 {
+            // What was ahead is gone; of a full history the oldest steps are.
+            kept.retain(|k| k.step < step.max(before + 1));
+            if before_ahead == 0 && step <= before {
+                let gone = before + 1 - step;
+                kept.retain(|k| k.step >= gone);
+                kept.iter_mut().for_each(|k| k.step -= gone);
+            }
+        }
+        kept.retain(|k| k.step != step);
+        self.take(state, step, mark);
+    }
+
+    fn take(&mut self, state: &Published, step: usize, mark: u64) {
+        let device = &self.gpu.device;
+        let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
+        let format = self.config.format;
+        let texture = self.thumbs.target.get_or_insert_with(|| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("thumb"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        });
+        let bytes = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("thumb"),
+            size: u64::from(SIZE.0 * SIZE.1 * 4),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut camera = Camera { aspect: SIZE.0 as f32 / SIZE.1 as f32, ..self.camera };
+        let (lo, hi) = state.mesh.bounds();
+        if lo.cmple(hi).all() {
+            camera.frame(lo, hi);
+        }
+        let look = Look { map: Map::None, wireframe: false, grid: false, shade: 0.0, ..self.desk.look };
+        let scene = Scene {
+            mesh: &state.mesh,
+            camera: &camera,
+            brush: None,
+            lines: &[],
+            look,
+            values: None,
+            beside: Default::default(),
+        };
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let view = texture.create_view(&Default::default());
+        self.renderer.draw(&self.gpu, &mut encoder, &view, SIZE, &scene);
+        if self.renderer.waiting > 0 {
+            // Not all of the work is on the card yet: another time.
+            self.thumbs.seen = None;
+        }
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0 * 4), rows_per_image: None };
+        let to = wgpu::TexelCopyBufferInfo { buffer: &bytes, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), to, size);
+        self.gpu.queue.submit([encoder.finish()]);
+        let (done, mapped) = mpsc::channel();
+        bytes.slice(..).map_async(wgpu::MapMode::Read, move |r| {
+            let _ = done.send(r.is_ok());
+        });
+        self.thumbs.pending = Some(Pending { step, mark, bytes, mapped });
+    }
+
+    fn fetch(&mut self) {
+        let Some(pending) = &self.thumbs.pending else { return };
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        let well = match pending.mapped.try_recv() {
+            Ok(well) => well,
+            Err(mpsc::TryRecvError::Empty) => return,
+            Err(mpsc::TryRecvError::Disconnected) => false,
+        };
+        let Some(pending) = self.thumbs.pending.take().filter(|_| well) else { return };
+        let Ok(data) = pending.bytes.slice(..).get_mapped_range() else { return };
+        let mut pixels = data.to_vec();
+        if matches!(self.config.format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb)
+        {
+            pixels.chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
+        }
+        let image = egui::ColorImage::from_rgba_unmultiplied([SIZE.0 as usize, SIZE.1 as usize], &pixels);
+        let texture = self.egui.egui_ctx().load_texture("thumb", image, Default::default());
+        let kept = &mut self.desk.history;
+        kept.push(Thumb { step: pending.step, mark: pending.mark, texture });
+        kept.sort_by_key(|k| k.step);
+        // The farthest from here goes.
+        while kept.len() > KEPT {
+            let here = self.thumbs.steps.0;
+            let far = (0..kept.len()).max_by_key(|&i| kept[i].step.abs_diff(here)).unwrap_or(0);
+            kept.remove(far);
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! Slow work for the window, on threads of its own: reading and writing meshes, the live thickness map, file dialogs.
+//! The window never waits for it and the loop never hears of it, but for the command that a loaded mesh becomes.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use arc_swap::ArcSwap;
+use crossbeam_channel as cc;
+use glam::Vec3;
+
+use super::pages::MapValues;
+use super::preview::Preview;
+use crate::panels::analysis::{Spot, Thickness};
+use crate::panels::measure::{Distances, Measured};
+use sculptd_clay::Snapshot;
+use sculptd_clay::live_thickness::LiveMap;
+use sculptd_daemon::boolean_jobs::JoinError;
+use sculptd_daemon::trim;
+use sculptd_daemon::trim::Part;
+use sculptd_daemon::{Published, boolean_jobs as joiner, startup as rig};
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::hand::Choice;
+use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::projection;
+use sculptd_geometry::projection::Polygon;
+
+/// What slow work says when it is done.
+#[derive(Debug)]
+pub enum Done {
+    /// A line for the messages; `true`: something went wrong.
+    Said(String, bool),
+    /// A file was loaded or written: it goes to the recent ones.
+    Used(PathBuf),
+    Map(MapValues, Box<Thickness>),
+    /// A Boolean has ended, well or not.
+    Joined,
+    /// A work was opened: distances are to it from now on.
+    Opened,
+    Preview(Result<Option<Arc<Preview>>, String>),
+    Distances(MapValues, Distances),
+    Measured(Box<Measured>),
+    /// A dialog's answer.
+    Chosen(Purpose, PathBuf),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    Open,
+    Export,
+}
+
+/// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is too thin.
+#[derive(Debug, Clone)]
+struct Wanted {
+    mesh: Snapshot,
+    near: Vec3,
+    limit: f32,
+}
+
+#[derive(Debug)]
+pub struct Work {
+    say: cc::Sender<Done>,
+    pub done: cc::Receiver<Done>,
+    /// One slot: a newer wish replaces an older one.
+    thickness: Option<(cc::Sender<Wanted>, cc::Receiver<Wanted>)>,
+    dialog: Arc<AtomicBool>,
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        let (say, done) = cc::unbounded();
+        Work { say, done, thickness: None, dialog: Arc::default() }
+    }
+}
+
+fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
+    let _ = std::thread::Builder::new().name(name.into()).spawn(what);
+}
+
+impl Work {
+    /// Reads a mesh and sends it to the loop.
+    pub fn load(&self, path: PathBuf, commands: cc::Sender<Command>) {
+        let say = self.say.clone();
+        thread("sculptd-load", move || {
+            let name = path.display().to_string();
+            let said = match rig::load(Some(&path), &Job::default()) {
+                Ok(loaded) => {
+                    let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
+                    for warning in loaded.warnings.iter().take(3) {
+                        text.push_str("; ");
+                        text.push_str(warning);
+                    }
+                    let new = NewClay::new(Arc::new(loaded.plain), loaded.mesh, false);
+                    // Waits where the loop has many commands: this thread may.
+                    match commands.send(Command::Replace(new)) {
+                        Ok(()) => {
+                            let _ = say.send(Done::Opened);
+                            let _ = say.send(Done::Used(path));
+                            Done::Said(text, false)
+                        }
+                        Err(_) => Done::Said("the loop has ended".into(), true),
+                    }
+                }
+                Err(e) => Done::Said(e.to_string(), true),
+            };
+            let _ = say.send(said);
+        });
+    }
+
+    /// Writes the clay, each coordinate times `scale`.
+    pub fn export(&self, path: PathBuf, mesh: Snapshot, scale: f64, unit: &'static str) {
+        let say = self.say.clone();
+        thread("sculptd-export", move || {
+            let mut poly = mesh.to_tri().to_poly();
+            poly.positions.iter_mut().for_each(|p| *p *= scale);
+            let (lo, hi) = mesh.bounds();
+            let size = (hi - lo).as_dvec3() * scale;
+            let said = match write_mesh(&path, &poly) {
+                Ok(_) => {
+                    let text = format!(
+                        "Saved {}: {:.4} x {:.4} x {:.4} {unit}",
+                        path.display(),
+                        size.x,
+                        size.y,
+                        size.z
+                    );
+                    let _ = say.send(Done::Used(path));
+                    Done::Said(text, false)
+                }
+                Err(e) => Done::Said(e.to_string(), true),
+            };
+            let _ = say.send(said);
+        });
+    }
+
+    /// Joins the thing in the hands with the work; the result takes the work's place, and undo brings the work back.
+    pub fn join(&self, choice: Choice, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+        let say = self.say.clone();
+        thread("sculptd-boolean", move || {
+            let (text, wrong) = match joiner::at_rest(&shown, choice, &Job::default(), &commands) {
+                Ok(_) => (format!("{}: done", choice.label()), false),
+                Err(e) => (e.to_string(), true),
+            };
+            let _ = say.send(Done::Said(text, wrong));
+            let _ = say.send(Done::Joined);
+        });
+    }
+
+    /// Sends the commands of what changes the whole work, and says how it went.
+    fn change(
+        &self,
+        name: &'static str,
+        commands: cc::Sender<Command>,
+        of: impl FnOnce() -> Result<(Vec<Command>, String), JoinError> + Send + 'static,
+    ) {
+        let say = self.say.clone();
+        thread(name, move || {
+            let (text, wrong) = match of() {
+                Ok((all, text)) => {
+                    let sent = all.into_iter().all(|c| commands.send(c).is_ok());
+                    (if sent { text } else { JoinError::Ended.to_string() }, !sent)
+                }
+                Err(e) => (e.to_string(), true),
+            };
+            let _ = say.send(Done::Said(text, wrong));
+            let _ = say.send(Done::Joined);
+        });
+    }
+
+    /// Cuts off what is seen in a part of the view.
+    pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+        self.change("sculptd-trim", commands, move || Ok((trim::at_rest(&shown, &part)?, "Trimmed".into())));
+    }
+
+    /// The work one level finer or coarser.
+    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+        self.change("sculptd-level", commands, move || {
+            let (command, (at, of)) = joiner::level(&shown, finer)?;
+            Ok((vec![command], format!("Level {} of {of}", at + 1)))
+        });
+    }
+
+    /// Writes the shadow's outline.
+    pub fn outline(&self, path: PathBuf, outline: &[Polygon]) {
+        let (say, drawing) = (self.say.clone(), projection::svg(outline));
+        thread("sculptd-outline", move || {
+            let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {
+                Ok(()) => (format!("Saved {}", path.display()), false),
+                Err(e) => (format!("{}: {e}", path.display()), true),
+            };
+            let _ = say.send(Done::Said(text, wrong));
+        });
+    }
+
+    /// For threads that follow the work.
+    pub fn said(&self) -> cc::Sender<Done> {
+        self.say.clone()
+    }
+
+    /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where there is no desktop.
+    pub fn ask(&self, purpose: Purpose) {
+        if self.dialog.swap(true, Relaxed) {
+            return;
+        }
+        let (say, open) = (self.say.clone(), self.dialog.clone());
+        thread("sculptd-dialog", move || {
+            let dialog = rfd::AsyncFileDialog::new()
+                .add_filter("Meshes", &["stl", "obj", "ply", "off", "glb", "gltf", "3mf"]);
+            let chosen = match purpose {
+                Purpose::Open => pollster::block_on(dialog.pick_file()),
+                Purpose::Export => pollster::block_on(dialog.set_file_name("sculpture.stl").save_file()),
+            };
+            open.store(false, Relaxed);
+            if let Some(file) = chosen {
+                let _ = say.send(Done::Chosen(purpose, file.path().to_owned()));
+            }
+        });
+    }
+
+    /// Asks for the thickness map of this clay; the newest wish counts.
+    pub fn thickness(&mut self, mesh: &Snapshot, near: Vec3, limit: f32) {
+        let (wish, slot) = self.thickness.get_or_insert_with(|| {
+            let (wish, wishes) = cc::bounded(1);
+            let (say, mine) = (self.say.clone(), wishes.clone());
+            thread("sculptd-thickness", move || follow(&mine, &say));
+            (wish, wishes)
+        });
+        let _ = slot.try_recv();
+        let _ = wish.try_send(Wanted { mesh: mesh.clone(), near, limit });
+    }
+
+    pub fn say(&self, text: impl Into<String>, wrong: bool) {
+        let _ = self.say.send(Done::Said(text.into(), wrong));
+    }
+
+    /// Writes a picture.
+    pub fn picture(&self, path: PathBuf, picture: image::RgbaImage, quiet: bool) {
+        let say = self.say.clone();
+        thread("sculptd-picture", move || {
+            let said = super::picture::write_png(&path, &picture);
+            match said {
+                Ok(()) if quiet => {}
+                Ok(()) => drop(say.send(Done::Said(format!("Saved {}", path.display()), false))),
+                Err(e) => drop(say.send(Done::Said(format!("{}: {e}", path.display()), true))),
+            }
+        });
+    }
+}
+
+/// Vertices measured between two looks for a newer wish: some ten milliseconds.
+const BATCH: usize = 40_000;
+
+/// Keeps the map of the newest clay until nobody wishes any more.
+fn follow(wishes: &cc::Receiver<Wanted>, say: &cc::Sender<Done>) {
+    // One worker is left to the loop.
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).build() else { return };
+    let job = Job::default();
+    let mut map: Option<LiveMap> = None;
+    let mut pages: Vec<Arc<[f32]>> = Vec::new();
+    while let Ok(mut wanted) = wishes.recv() {
+        loop {
+            if map.as_mut().is_none_or(|m| pool.install(|| m.advance(&wanted.mesh)).is_err()) {
+                map = pool.install(|| LiveMap::new(&wanted.mesh, 1, &job)).ok();
+                pages.clear();
+            }
+            let Some(map) = &mut map else { return };
+            let left = pool.install(|| map.work(wanted.near, BATCH, &job)).unwrap_or(0);
+            gather(&wanted.mesh, map.values(), &mut pages);
+            let about = Box::new(about(&wanted, map, left));
+            if say.send(Done::Map(MapValues { pages: pages.clone() }, about)).is_err() {
+                return;
+            }
+            match wishes.try_recv() {
+                Ok(newer) => wanted = newer,
+                Err(_) if left > 0 => {}
+                Err(_) => break,
+            }
+        }
+    }
+}
+
+/// The values by page; a page with the same bits as before stays the same.
+fn gather(mesh: &Snapshot, values: &[f32], pages: &mut Vec<Arc<[f32]>>) {
+    pages.truncate(mesh.page_count());
+    for (i, page) in mesh.pages().enumerate() {
+        let ids = &page.topology().ids[..page.own()];
+        let value = |id: &u32| values.get(*id as usize).copied().unwrap_or(f32::NAN);
+        let same = |old: &Arc<[f32]>| {
+            old.len() == ids.len() && old.iter().zip(ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
+        };
+        if !pages.get(i).is_some_and(same) {
+            let new: Arc<[f32]> = ids.iter().map(value).collect();
+            match pages.get_mut(i) {
+                Some(slot) => *slot = new,
+                None => pages.push(new),
+            }
+        }
+    }
+}
+
+/// Spots listed.
+const SPOTS: usize = 5;
+
+fn about(wanted: &Wanted, map: &LiveMap, left: usize) -> Thickness {
+    let values = map.values();
+    let mut known: Vec<(f32, u32)> =
+        values.iter().enumerate().filter(|(_, v)| v.is_finite()).map(|(i, v)| (*v, i as u32)).collect();
+    known.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let at = |share: f64| known.get(((known.len().max(1) - 1) as f64 * share) as usize).map_or(0.0, |k| k.0);
+    let (min, max, high) = (at(0.0), at(1.0), at(0.98));
+    let mut histogram = vec![0u32; Thickness::CLASSES];
+    let span = (high - min).max(1e-12);
+    for (v, _) in &known {
+        let class = ((v - min) / span * Thickness::CLASSES as f32) as usize;
+        histogram[class.min(Thickness::CLASSES - 1)] += 1;
+    }
+    // The thinnest places, each at least a tenth of the work's size from the others.
+    let (lo, hi) = wanted.mesh.bounds();
+    let apart = (hi - lo).length() * 0.05;
+    let mut places = vec![None; values.len()];
+    let below = known.partition_point(|k| k.0 < wanted.limit);
+    let thin = &known[..below.min(20_000)];
+    for &(_, id) in thin {
+        places[id as usize] = Some(Vec3::NAN);
+    }
+    for page in wanted.mesh.pages() {
+        for (v, &id) in page.topology().ids[..page.own()].iter().enumerate() {
+            if places.get(id as usize).is_some_and(Option::is_some) {
+                places[id as usize] = Some(page.point(v));
+            }
+        }
+    }
+    let mut spots: Vec<Spot> = Vec::new();
+    for &(thickness, id) in thin {
+        let Some(place) = places[id as usize] else { continue };
+        if spots.len() < SPOTS && spots.iter().all(|s| s.place.distance(place) > apart) {
+            spots.push(Spot { place, thickness });
+        }
+    }
+    Thickness {
+        min,
+        max,
+        high,
+        median: at(0.5),
+        measured: values.len() - left,
+        vertices: values.len(),
+        below: below as f32 / known.len().max(1) as f32,
+        histogram,
+        spots,
+    }
+}
+
+/// A name that is not taken: `sculptd-1.png`, `sculptd-2.png`, ...
+pub fn free_name(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    (1..).map(|n| folder.join(format!("{stem}-{n}{ending}"))).find(|p| !p.exists()).unwrap_or_default()
+}
