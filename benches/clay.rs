@@ -2,15 +2,15 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec3;
-use sculptd_clay::brush::{Gaussian, Smooth};
-use sculptd_clay::{Mesh, Ray, Reach, Workers};
+use sculptd_clay::brush::{GaussianBrush, SmoothBrush};
+use sculptd_clay::{Clay, Ray, Reach, Workers};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
 const VERTICES: usize = 1_000_000;
 
-fn ball() -> Mesh {
-    Mesh::build(&shapes::sphere_of_about(VERTICES), &Job::default()).expect("a ball builds")
+fn ball() -> Clay {
+    Clay::build(&shapes::sphere_of_about(VERTICES), &Job::default()).expect("a ball builds")
 }
 
 /// The radius of a cap of `k` of the ball's vertices.
@@ -29,11 +29,15 @@ fn dabs(c: &mut Criterion) {
             c.bench_function(&format!("gaussian {k}, {} workers", workers.count()), |b| {
                 b.iter(|| {
                     sign = -sign;
-                    mesh.dab(&reach, &Gaussian::new(Vec3::Z, r, Vec3::Z, 0.02 * r * sign), &workers)
+                    mesh.dab(
+                        &reach,
+                        &GaussianBrush::new(Vec3::Z, r, Vec3::Z, 0.02 * r * sign),
+                        &workers,
+                    )
                 });
             });
             c.bench_function(&format!("smooth {k}, {} workers", workers.count()), |b| {
-                b.iter(|| mesh.dab(&reach, &Smooth::new(Vec3::Z, r, 0.5), &workers));
+                b.iter(|| mesh.dab(&reach, &SmoothBrush::new(Vec3::Z, r, 0.5), &workers));
             });
         }
     }
@@ -53,7 +57,11 @@ fn reads(c: &mut Criterion) {
     let workers = Workers::new(1);
     c.bench_function("dab of 10,000 and snapshot", |b| {
         b.iter(|| {
-            mesh.dab(&Reach::Sphere { centre: Vec3::Z, radius: r }, &Smooth::new(Vec3::Z, r, 0.5), &workers);
+            mesh.dab(
+                &Reach::Sphere { centre: Vec3::Z, radius: r },
+                &SmoothBrush::new(Vec3::Z, r, 0.5),
+                &workers,
+            );
             mesh.snapshot()
         });
     });

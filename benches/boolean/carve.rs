@@ -1,14 +1,16 @@
-//! A tool out of clay of several sizes, the clay's pages and trees as they stand: `cargo run --release --example carve`.
+//! A tool out of clay of several sizes, the clay's pages and trees as they stand: `cargo run
+//! --release --example carve`.
 //!
-//! Median and least wall time of a difference and a union until the clay is cut, the part of it that the tick waits for, the
-//! pages that were written and shared, and the ratio of the largest clay to the smallest. The tool has 2,000 triangles and is
-//! as large as ten of the clay's, so that the same number of them is cut in any clay. `--hold N`: only N of each out of 2
-//! million, for a profiler.
+//! Median and least wall time of a difference and a union until the clay is cut, the part of it
+//! that the tick waits for, the pages that were written and shared, and the ratio of the largest
+//! clay to the smallest. The tool has 2,000 triangles and is as large as ten of the clay's, so that
+//! the same number of them is cut in any clay. `--hold N`: only N of each out of 2 million, for a
+//! profiler.
 
 #![allow(clippy::print_stdout)] // Its table.
 
 use glam::{DMat3, DVec3};
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_clay::local_boolean::local;
 use sculptd_devices::Clock;
 use sculptd_geometry::boolean::{Operation, Options};
@@ -16,7 +18,8 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, shapes};
 
 fn placed(tool: &PolyMesh, n: u32, radius: f64) -> PolyMesh {
-    let turn = DMat3::from_rotation_z(0.3 + 0.61 * f64::from(n)) * DMat3::from_rotation_x(0.2 * f64::from(n));
+    let turn = DMat3::from_rotation_z(0.3 + 0.61 * f64::from(n))
+        * DMat3::from_rotation_x(0.2 * f64::from(n));
     let on = turn * DVec3::new(0.8, 0.6, 0.02).normalize();
     let mut out = tool.clone();
     out.positions.iter_mut().for_each(|p| *p = turn * *p * radius + on);
@@ -34,7 +37,7 @@ fn main() {
         "triangles", "", "median ms", "least ms", "tick ms", "written", "shared"
     );
     for frequency in if hold.is_some() { vec![316] } else { vec![63, 316, 632] } {
-        let mut clay = match Mesh::build(&shapes::icosphere(1.0, frequency), &job) {
+        let mut clay = match Clay::build(&shapes::icosphere(1.0, frequency), &job) {
             Ok(clay) => clay,
             Err(e) => return eprintln!("no clay: {e}"),
         };

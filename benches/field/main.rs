@@ -1,5 +1,5 @@
-//! Rates of distance queries beside parry3d's, in the same run: `cargo bench --bench field [MESH...]`.
-//! One thread unless said. A line: what, ours, the peer's, per query or whole.
+//! Rates of distance queries beside parry3d's, in the same run: `cargo bench --bench field
+//! [MESH...]`. One thread unless said. A line: what, ours, the peer's, per query or whole.
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;
@@ -52,7 +52,8 @@ fn rates(name: &str, mesh: &TriMesh) {
     let (lo, hi) = (lo.as_dvec3(), hi.as_dvec3());
     let mut seed = 1;
     let mut r = || random(&mut seed);
-    let volume: Vec<DVec3> = (0..10_000).map(|_| lo + (hi - lo) * DVec3::new(r(), r(), r())).collect();
+    let volume: Vec<DVec3> =
+        (0..10_000).map(|_| lo + (hi - lo) * DVec3::new(r(), r(), r())).collect();
     let size = (hi - lo).length();
     let near: Vec<DVec3> = (0..10_000)
         .map(|_| {
@@ -64,7 +65,9 @@ fn rates(name: &str, mesh: &TriMesh) {
     println!("{name}: {} triangles, closed {}", mesh.triangles.len(), solid.topology.closed);
     for (what, points) in [("volume", &volume), ("near", &near)] {
         let each = 1e9 / points.len() as f64;
-        let sum = |f: &dyn Fn(DVec3) -> f64| std::hint::black_box(points.iter().map(|&p| f(p)).sum::<f64>());
+        let sum = |f: &dyn Fn(DVec3) -> f64| {
+            std::hint::black_box(points.iter().map(|&p| f(p)).sum::<f64>())
+        };
         let ours = median(|| {
             sum(&|p| solid.tree.nearest(p, f64::INFINITY).unwrap().distance_squared);
         });
@@ -104,12 +107,16 @@ fn rates(name: &str, mesh: &TriMesh) {
         println!("  grid of {side} a side, signed: {:.4} s, two threads {:.4} s", one, two);
     }
     let [one, two] = [0, 1].map(|i| {
-        median(|| pools[i].install(|| drop(std::hint::black_box(solid.nearest(&volume, &job).unwrap()))))
+        median(|| {
+            pools[i].install(|| drop(std::hint::black_box(solid.nearest(&volume, &job).unwrap())))
+        })
     });
     let plane = Plane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
     let field = Grid::sample(&solid, Grid::layout((lo, hi), 128, 1), &job).unwrap();
     pools[0].install(|| {
-        for (what, plane) in [("turned", plane), ("along z", Plane::along(DVec3::NEG_Z, 0.0).unwrap())] {
+        for (what, plane) in
+            [("turned", plane), ("along z", Plane::along(DVec3::NEG_Z, 0.0).unwrap())]
+        {
             let exact = median(|| drop(std::hint::black_box(outline(&solid.topology, &plane))));
             println!("  exact silhouette, {what}: {:.3} ms", exact * 1e3);
         }

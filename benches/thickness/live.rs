@@ -1,9 +1,11 @@
-//! Ticks of a stroke with and without the live thickness map beside them, and how long after pen-up the map is right.
+//! Ticks of a stroke with and without the live thickness map beside them, and how long after pen-up
+//! the map is right.
 //!
 //!     cargo run --release --no-default-features --example live [-- SECONDS [VERTICES]]
 //!
-//! A hollow ball of VERTICES (500,000: a million triangles) is sculpted at 120 ticks a second, a dab of about 5,000 vertices
-//! each, out and in by turns. The map's thread gets each tick's snapshot, the newest wins, as in the viewer.
+//! A hollow ball of VERTICES (500,000: a million triangles) is sculpted at 120 ticks a second, a
+//! dab of about 5,000 vertices each, out and in by turns. The map's thread gets each tick's
+//! snapshot, the newest wins, as in the viewer.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -12,9 +14,9 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 use glam::Vec3;
-use sculptd_clay::brush::Gaussian;
+use sculptd_clay::brush::GaussianBrush;
 use sculptd_clay::live_thickness::LiveMap;
-use sculptd_clay::{Mesh, Reach, Snapshot, Workers};
+use sculptd_clay::{Clay, Reach, Snapshot, Workers};
 use sculptd_daemon::pacer::Pacer;
 use sculptd_devices::Clock;
 use sculptd_geometry::job::Job;
@@ -49,7 +51,9 @@ fn follow(
     let job = Job::default();
     let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
     while !stop.load(Relaxed) {
-        let Ok((mut snapshot, mut near)) = newest.recv_timeout(Duration::from_millis(20)) else { continue };
+        let Ok((mut snapshot, mut near)) = newest.recv_timeout(Duration::from_millis(20)) else {
+            continue;
+        };
         loop {
             let left = pool.install(|| {
                 map.advance(&snapshot)
@@ -70,7 +74,7 @@ fn follow(
 
 fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: bool) -> Option<Ticks> {
     let job = Job::default();
-    let mut mesh = Mesh::build(plain, &job).ok()?;
+    let mut mesh = Clay::build(plain, &job).ok()?;
     let workers = Workers::new(1);
     let (lo, hi) = mesh.bounds();
     let size = (hi - lo).max_element() * 0.5;
@@ -101,7 +105,7 @@ fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: bool) -> Option<
         let height = radius * if i % 2 == 0 { 0.02 } else { -0.02 };
         mesh.dab(
             &Reach::Sphere { centre, radius },
-            &Gaussian::new(centre, radius, towards, height),
+            &GaussianBrush::new(centre, radius, towards, height),
             &workers,
         );
         let last = i % 240 == 239;
@@ -138,7 +142,8 @@ fn main() {
     // In turns, so that a busy machine is busy for both.
     for _ in 0..3 {
         for beside in [false, true] {
-            let Some(Ticks { mut us, mut right_ms }) = stroke(&plain, seconds, &clock, beside) else {
+            let Some(Ticks { mut us, mut right_ms }) = stroke(&plain, seconds, &clock, beside)
+            else {
                 return;
             };
             us.sort_unstable();

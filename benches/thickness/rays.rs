@@ -1,9 +1,10 @@
-//! Rays a second of the tree on one thread, and a whole measure's time on all. Used by `rates.py`, which casts the same
-//! rays with Embree; useful by itself.
+//! Rays a second of the tree on one thread, and a whole measure's time on all. Used by `rates.py`,
+//! which casts the same rays with Embree; useful by itself.
 //!
 //!     cargo run --release --no-default-features --example rays -- MESH [FOLDER]
 //!
-//! MESH is a file, `tube` (a hollow cylinder of 131,580 triangles) or `blob` (a dented globe of 1,048,576).
+//! MESH is a file, `tube` (a hollow cylinder of 131,580 triangles) or `blob` (a dented globe of
+//! 1,048,576).
 
 use std::io::Write;
 use std::path::Path;
@@ -11,7 +12,7 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use sculptd_devices::Clock;
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::bvh::{Ray, Stack, WideTree};
+use sculptd_geometry::bvh::{Bvh8, Ray, Stack};
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::cone::frame;
@@ -51,8 +52,9 @@ fn load(name: &str) -> TriMesh {
         }),
         "blob" => ring(1024, 512, |u, v| {
             let (a, b) = (u * turn, v * turn);
-            let dent =
-                1.0 + 0.15 * (7.0 * a).sin() * (5.0 * b).cos() + 0.03 * (31.0 * a).cos() * (17.0 * b).sin();
+            let dent = 1.0
+                + 0.15 * (7.0 * a).sin() * (5.0 * b).cos()
+                + 0.03 * (31.0 * a).cos() * (17.0 * b).sin();
             let r = 10.0 + 4.0 * dent * b.cos();
             DVec3::new(r * a.cos(), r * a.sin(), 4.0 * dent * b.sin())
         }),
@@ -79,7 +81,7 @@ fn main() {
     let clock = Clock::monotonic();
     let mesh = load(args.get(1).map_or("tube", String::as_str));
     let start = cpu_seconds(&clock);
-    let tree = WideTree::build(&mesh, &Job::default()).unwrap_or_else(|e| panic!("{e}"));
+    let tree = Bvh8::build(&mesh, &Job::default()).unwrap_or_else(|e| panic!("{e}"));
     let build = cpu_seconds(&clock) - start;
 
     let surface = Surface::new(&mesh, 0.7);
@@ -121,7 +123,9 @@ fn main() {
     }
     let mut whole = Vec::new();
     if args.get(2).is_none() {
-        for (rays, method) in [(1, Method::Ray), (10, Method::Ray), (100, Method::Ray), (1, Method::Sphere)] {
+        for (rays, method) in
+            [(1, Method::Ray), (10, Method::Ray), (100, Method::Ray), (1, Method::Sphere)]
+        {
             let settings = Settings { rays, method, opening: 120.0, ..Settings::default() };
             let start = clock.now_us();
             let done = measure(&mesh, &settings, &Job::default());

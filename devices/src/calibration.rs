@@ -163,7 +163,8 @@ mod tests {
             twist: Some(3.0),
             ..Pen::default()
         };
-        let mut s = Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
+        let mut s =
+            Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
         c.apply(&mut s);
         let Body::Pen(pen) = s.body else { panic!() };
         pen
@@ -193,7 +194,11 @@ mod tests {
         let left = Calibration { left_handed: true, ..Calibration::default() };
         assert_eq!(at(&left, 10.0, 20.0).pos_mm, vec2(190.0, 80.0));
         let both = Calibration { quarter_turns: 3, left_handed: true, ..Calibration::default() };
-        assert_eq!(at(&both, 10.0, 20.0).pos_mm, at(&c, 10.0, 20.0).pos_mm, "three and two quarters are one");
+        assert_eq!(
+            at(&both, 10.0, 20.0).pos_mm,
+            at(&c, 10.0, 20.0).pos_mm,
+            "three and two quarters are one"
+        );
     }
 
     #[test]

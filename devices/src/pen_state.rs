@@ -85,7 +85,11 @@ impl PenState {
 
     /// When silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
-        if self.pen.in_range { self.cfg.silence_us.map(|s| self.last_us.saturating_add(s)) } else { None }
+        if self.pen.in_range {
+            self.cfg.silence_us.map(|s| self.last_us.saturating_add(s))
+        } else {
+            None
+        }
     }
 
     /// Ends the visit if the pen has been silent for too long. The sample's time is when the silence was over.
@@ -150,8 +154,8 @@ impl PenState {
         if let Some(pos) = r.pos {
             p.raw = pos;
             let axis = |i: usize| {
-                let span =
-                    (i64::from(self.cfg.scale.max[i]) - i64::from(self.cfg.scale.min[i])).max(1) as f64;
+                let span = (i64::from(self.cfg.scale.max[i]) - i64::from(self.cfg.scale.min[i]))
+                    .max(1) as f64;
                 let share = (i64::from(pos[i]) - i64::from(self.cfg.scale.min[i])) as f64 / span;
                 (share.clamp(0.0, 1.0) * f64::from(self.cfg.scale.area_mm[i])) as f32
             };
@@ -168,7 +172,8 @@ impl PenState {
 
     fn press(&mut self, r: &PenReport, entering: bool) {
         if let (Some(counts), true) = (r.pressure, self.cfg.scale.max_pressure > 0) {
-            let share = (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
+            let share =
+                (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
             if entering {
                 self.learn_offset(r, share);
             } else if share < self.offset {
@@ -203,7 +208,12 @@ impl PenState {
     }
 
     fn emit(&self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
-        emit(Sample { device: self.cfg.device, t_us, device_t_us: None, body: Body::Pen(self.pen) });
+        emit(Sample {
+            device: self.cfg.device,
+            t_us,
+            device_t_us: None,
+            body: Body::Pen(self.pen),
+        });
     }
 }
 

@@ -120,7 +120,8 @@ pub struct Count {
 impl Count {
     /// Samples in the channel or kept back by a sender.
     pub fn on_the_way(&self) -> u64 {
-        let ended = self.received + self.coalesced + self.lost_motion + self.lost_transition + self.closed;
+        let ended =
+            self.received + self.coalesced + self.lost_motion + self.lost_transition + self.closed;
         self.sent.saturating_sub(ended)
     }
 
@@ -208,7 +209,8 @@ impl Sender {
     /// Hands one sample over. Never waits for motion. For a transition it waits only when the channel *and* the list of
     /// kept samples are full, and then it is the caller, a reader thread, that waits.
     pub fn push(&mut self, mut sample: Sample) {
-        if let Some((_, calibration)) = self.calibrations.iter().find(|(d, _)| *d == sample.device) {
+        if let Some((_, calibration)) = self.calibrations.iter().find(|(d, _)| *d == sample.device)
+        {
             calibration.apply(&mut sample);
         }
         self.stats.device(sample.device).sent.fetch_add(1, Relaxed);
@@ -256,7 +258,8 @@ impl Sender {
     fn keep(&mut self, new: Kept) {
         let counters = self.stats.device(new.sample.device);
         if new.motion
-            && let Some(newest) = self.pending.iter_mut().rev().find(|k| k.sample.device == new.sample.device)
+            && let Some(newest) =
+                self.pending.iter_mut().rev().find(|k| k.sample.device == new.sample.device)
             && newest.motion
         {
             newest.sample = new.sample;

@@ -13,7 +13,9 @@ use serde::{Deserialize, Serialize};
 pub const MAX_HANDS: usize = 4;
 
 /// A device as the daemon knows it while it runs. Dense, small, reused after a replug of the *same* device.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default,
+)]
 pub struct DeviceId(pub u16);
 
 /// What a device said at one instant.
@@ -158,13 +160,17 @@ impl Sample {
         }
         match (&self.body, &older.body) {
             (Body::Pen(a), Body::Pen(b)) => {
-                a.tool == b.tool && a.in_range == b.in_range && a.tip == b.tip && a.buttons == b.buttons
+                a.tool == b.tool
+                    && a.in_range == b.in_range
+                    && a.tip == b.tip
+                    && a.buttons == b.buttons
             }
             (Body::Pad(a), Body::Pad(b)) => {
                 a.keys == b.keys && a.strips.map(|s| s.is_some()) == b.strips.map(|s| s.is_some())
             }
             (Body::Hands(a), Body::Hands(b)) => {
-                a.count == b.count && a.as_slice().iter().zip(b.as_slice()).all(|(x, y)| x.id == y.id)
+                a.count == b.count
+                    && a.as_slice().iter().zip(b.as_slice()).all(|(x, y)| x.id == y.id)
             }
             _ => false,
         }

@@ -104,9 +104,11 @@ impl<'a> StringIs<'a> {
     }
 
     pub fn matches(&self, text: &str) -> bool {
-        let (pattern, start) = self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
+        let (pattern, start) =
+            self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
         let (pattern, end) = pattern.strip_suffix('$').map_or((pattern, false), |p| (p, true));
-        let (pattern, text): (Vec<char>, Vec<char>) = (pattern.chars().collect(), text.chars().collect());
+        let (pattern, text): (Vec<char>, Vec<char>) =
+            (pattern.chars().collect(), text.chars().collect());
         let fits = |i: usize| {
             let alike = |(p, t): (&char, &char)| p == t || *p == '#' && t.is_ascii_digit();
             i + pattern.len() <= text.len()
@@ -220,7 +222,10 @@ impl Tablet {
             return Err("area: max_x and max_y must exceed min_x and min_y".to_owned());
         }
         if self.pen.max_pressure > 1 << 20 {
-            return Err(format!("pen.max_pressure = {}: more than any pen has", self.pen.max_pressure));
+            return Err(format!(
+                "pen.max_pressure = {}: more than any pen has",
+                self.pen.max_pressure
+            ));
         }
         if self.id.is_empty() {
             return Err("no [[id]]: the model could never be found".to_owned());
@@ -231,7 +236,9 @@ impl Tablet {
             }
             for hex in id.init_feature.iter().chain(&id.init_output) {
                 if hex_bytes(hex).is_none_or(|b| b.is_empty()) {
-                    return Err(format!("init report `{hex}`: expected pairs of hexadecimal digits"));
+                    return Err(format!(
+                        "init report `{hex}`: expected pairs of hexadecimal digits"
+                    ));
                 }
             }
         }
@@ -290,11 +297,14 @@ mod tests {
 
     #[test]
     fn patterns_match_as_written() {
-        let like =
-            |pattern: &str, text: &str| StringIs::parse(&format!("201={pattern}")).unwrap().matches(text);
+        let like = |pattern: &str, text: &str| {
+            StringIs::parse(&format!("201={pattern}")).unwrap().matches(text)
+        };
         assert!(like("HUION_T173_######$", "HUION_T173_190124"));
         assert!(!like("HUION_T173_######$", "HUION_T173_19012x"));
-        assert!(like("M508", "xM508y") && like("^$", "") && !like("^$", "a") && like("^420$", "420"));
+        assert!(
+            like("M508", "xM508y") && like("^$", "") && !like("^$", "a") && like("^420$", "420")
+        );
         assert!(!like("^420$", "H420") && like("", "anything"));
         assert_eq!(StringIs::parse("no index"), None);
     }

@@ -1,8 +1,10 @@
-//! The tree of boxes: eight children a node, no pointers. What it spans lies in the order of a balanced k-d tree, so eight
-//! neighbours in that order are a good node, and a refit is one pass from the leaves up.
+//! The tree of boxes: eight children a node, no pointers. What it spans lies in the order of a
+//! balanced k-d tree, so eight neighbours in that order are a good node, and a refit is one pass
+//! from the leaves up.
 //!
-//! One type serves both levels: over a page's triangles (a leaf is eight triangles) and over the clay's pages (a leaf is a page).
-//! Memory: 192 bytes for eight leaves, an eighth more for the levels above.
+//! One type serves both levels: over a page's triangles (a leaf is eight triangles) and over the
+//! clay's pages (a leaf is a page). Memory: 192 bytes for eight leaves, an eighth more for the
+//! levels above.
 
 use glam::{Vec3, Vec4};
 
@@ -85,7 +87,8 @@ impl BoxRay {
             }
             o
         };
-        // The near side moves towards the ray, the far side away: as if the origin moved the other way.
+        // The near side moves towards the ray, the far side away: as if the origin moved the other
+        // way.
         BoxRay { ready, near: shift(1.0), far: shift(-1.0) }
     }
 
@@ -160,7 +163,8 @@ impl BoxTree {
 
     /// Whether both have the same boxes.
     pub(super) fn same(&self, other: &BoxTree) -> bool {
-        self.leaves == other.leaves && self.nodes.iter().map(|n| n.0).eq(other.nodes.iter().map(|n| n.0))
+        self.leaves == other.leaves
+            && self.nodes.iter().map(|n| n.0).eq(other.nodes.iter().map(|n| n.0))
     }
 
     pub(super) fn leaves(&self) -> usize {
@@ -230,8 +234,8 @@ impl BoxTree {
         if root > 0.0 { self.nodes.iter().map(Planes::area).sum::<f32>() / root } else { 0.0 }
     }
 
-    /// The leaves' boxes from the vertices that each has, and everything above them. Of eight leaves in a row that `moved`
-    /// does not take, the boxes stay.
+    /// The leaves' boxes from the vertices that each has, and everything above them. Of eight
+    /// leaves in a row that `moved` does not take, the boxes stay.
     #[inline(always)]
     pub(super) fn refit_leaves(
         &mut self,
@@ -247,12 +251,18 @@ impl BoxTree {
         self.refit_all()
     }
 
-    /// Calls `visit` with each leaf that the ray enters, roughly nearest first, until none is nearer than the bound that
-    /// `visit` returns. `visit` gets the leaf and the bound so far.
+    /// Calls `visit` with each leaf that the ray enters, roughly nearest first, until none is
+    /// nearer than the bound that `visit` returns. `visit` gets the leaf and the bound so far.
     #[inline(always)]
-    pub(super) fn walk_ray(&self, ray: &BoxRay, mut far: f32, mut visit: impl FnMut(usize, f32) -> f32) {
+    pub(super) fn walk_ray(
+        &self,
+        ray: &BoxRay,
+        mut far: f32,
+        mut visit: impl FnMut(usize, f32) -> f32,
+    ) {
         let (starts, depth) = self.levels();
-        // A node's index within its level and the level, and where the ray enters it; leaves have level 0.
+        // A node's index within its level and the level, and where the ray enters it; leaves have
+        // level 0.
         let mut stack = [(0u32, 0u8, 0.0f32); LEVELS * 8];
         stack[0] = (0, depth as u8, 0.0);
         let mut top = 1;
@@ -286,7 +296,11 @@ impl BoxTree {
     }
 
     /// Calls `visit` with each leaf whose box `touches` takes, in ascending order.
-    pub(super) fn walk_boxes(&self, touches: impl Fn(Vec3, Vec3) -> bool, mut visit: impl FnMut(usize)) {
+    pub(super) fn walk_boxes(
+        &self,
+        touches: impl Fn(Vec3, Vec3) -> bool,
+        mut visit: impl FnMut(usize),
+    ) {
         let (starts, depth) = self.levels();
         let mut stack = [(0u32, 0u8); LEVELS * 8];
         stack[0] = (0, depth as u8);
@@ -300,7 +314,8 @@ impl BoxTree {
             }
             let p = &self.nodes[starts[level as usize - 1] + at as usize].0;
             for i in (0..8).rev() {
-                let (lo, hi) = (Vec3::new(p[0][i], p[1][i], p[2][i]), Vec3::new(p[3][i], p[4][i], p[5][i]));
+                let (lo, hi) =
+                    (Vec3::new(p[0][i], p[1][i], p[2][i]), Vec3::new(p[3][i], p[4][i], p[5][i]));
                 if lo.x <= hi.x && touches(lo, hi) {
                     stack[top] = (at * 8 + i as u32, level - 1);
                     top += 1;

@@ -21,7 +21,7 @@ use sculptd_geometry::job::Job;
 
 /// Pages, the tree over them, their history. Changed by one thread; others read [`Snapshot`]s.
 #[derive(Debug)]
-pub struct Mesh {
+pub struct Clay {
     pub(super) pages: Vec<Arc<Page>>,
     pub(super) top: BoxTree,
     pub(super) history: History,
@@ -32,7 +32,7 @@ pub struct Mesh {
     shelf: Shelf,
     pub(super) revision: u64,
     /// Which work this is, where several took each other's place.
-    pub(super) lineage: u32,
+    pub(super) object_id: u32,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     /// The numbers that the next new vertex and triangle get.
@@ -69,13 +69,14 @@ impl Memory {
     }
 }
 
-impl Mesh {
-    /// Builds clay from any triangle soup: open, non-manifold, with stray vertices. See [`Mesh::warnings`].
-    pub fn build(tri: &TriMesh, job: &Job) -> Result<Mesh, BuildError> {
-        Ok(Mesh::of(build(tri, job)?, 0))
+impl Clay {
+    /// Builds clay from any triangle soup: open, non-manifold, with stray vertices. See
+    /// [`Clay::warnings`].
+    pub fn build(tri: &TriMesh, job: &Job) -> Result<Clay, BuildError> {
+        Ok(Clay::of(build(tri, job)?, 0))
     }
 
-    pub(super) fn of(built: Built, revision: u64) -> Mesh {
+    pub(super) fn of(built: Built, revision: u64) -> Clay {
         let Built { pages, vertices, triangles, warnings, next } = built;
         let mut top = BoxTree::default();
         top.reset(pages.len());
@@ -86,7 +87,7 @@ impl Mesh {
         let rows = pages.iter().map(|p| p.points.len()).max().unwrap_or(0);
         let leaves = pages.iter().map(|p| p.tree.leaves()).max().unwrap_or(0);
         let count = pages.len();
-        Mesh {
+        Clay {
             built_cost: top.cost(),
             levels: None,
             top,
@@ -99,7 +100,7 @@ impl Mesh {
             shelf: Shelf::new(&pages),
             pages,
             revision,
-            lineage: 0,
+            object_id: 0,
             vertices,
             triangles,
             next_vertex: next[0],
@@ -138,13 +139,14 @@ impl Mesh {
         self.revision
     }
 
-    /// Which work this is, where several took each other's place: a page's number and revision name it within one of them.
-    pub fn lineage(&self) -> u32 {
-        self.lineage
+    /// Which work this is, where several took each other's place: a page's number and revision name
+    /// it within one of them.
+    pub fn object_id(&self) -> u32 {
+        self.object_id
     }
 
-    pub fn set_lineage(&mut self, lineage: u32) {
-        self.lineage = lineage;
+    pub fn set_lineage(&mut self, object_id: u32) {
+        self.object_id = object_id;
     }
 
     /// Lower and upper corner of the box around everything.
@@ -162,17 +164,22 @@ impl Mesh {
         &self.pages[index as usize]
     }
 
-    /// A page as it was when the open step began; as it is, where the step has not touched it or has changed its topology.
+    /// A page as it was when the open step began; as it is, where the step has not touched it or
+    /// has changed its topology.
     ///
     /// # Panics
     /// When there is no such page.
     pub fn before(&self, index: u32) -> &Arc<Page> {
         let now = &self.pages[index as usize];
-        self.history.before(index).filter(|b| Arc::ptr_eq(&b.topology, &now.topology)).unwrap_or(now)
+        self.history
+            .before(index)
+            .filter(|b| Arc::ptr_eq(&b.topology, &now.topology))
+            .unwrap_or(now)
     }
 
-    /// Calls `visit` with each page that the reach touches now or touched when the open step began, as it was then: those of
-    /// now in ascending order, then others in the order in which the step met them.
+    /// Calls `visit` with each page that the reach touches now or touched when the open step began,
+    /// as it was then: those of now in ascending order, then others in the order in which the step
+    /// met them.
     pub fn each_page_before(&self, reach: &Reach, mut visit: impl FnMut(u32, &Page)) {
         self.each_page(reach, |i, _| visit(i, self.before(i)));
         self.history.each_before(|i, page| {
@@ -187,7 +194,7 @@ impl Mesh {
     fn totals(&self) -> Totals {
         Totals {
             revision: self.revision,
-            lineage: self.lineage,
+            object_id: self.object_id,
             vertices: self.vertices,
             triangles: self.triangles,
             pages: self.pages.len(),
@@ -204,8 +211,8 @@ impl Mesh {
         Snapshot { spine, totals: self.totals(), levels: self.levels.clone() }
     }
 
-    /// The nearest point of the surface on the ray, seen from either side. Exact: no ray passes between two triangles that
-    /// share an edge or a vertex.
+    /// The nearest point of the surface on the ray, seen from either side. Exact: no ray passes
+    /// between two triangles that share an edge or a vertex.
     pub fn pick(&self, ray: Ray) -> Option<Hit> {
         pick::everywhere(&self.top, &self.pages, ray)
     }
@@ -215,8 +222,8 @@ impl Mesh {
         self.top.walk_boxes(|lo, hi| reach.touches(lo, hi), |p| visit(p as u32, &self.pages[p]));
     }
 
-    /// Calls `visit` with each vertex within the reach: page, local index, squared distance to the centre or the axis.
-    /// In an order that only the clay decides.
+    /// Calls `visit` with each vertex within the reach: page, local index, squared distance to the
+    /// centre or the axis. In an order that only the clay decides.
     pub fn each_vertex(&self, reach: &Reach, mut visit: impl FnMut(&Page, usize, f32)) {
         let radius2 = reach.radius() * reach.radius();
         self.each_page(reach, |_, page| {
@@ -260,7 +267,7 @@ impl Mesh {
         &mut self,
         way: impl FnOnce(&mut History, &mut dyn FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool,
     ) -> bool {
-        let Mesh { history, pages, top, stale, vertices, triangles, empty, .. } = self;
+        let Clay { history, pages, top, stale, vertices, triangles, empty, .. } = self;
         let done = way(history, &mut |i, page| {
             top.set_leaf(i as usize, page.lo, page.hi);
             stale.add(i);
@@ -325,13 +332,14 @@ impl Mesh {
         self.history.trim();
     }
 
-    /// Measures the phases of all that follows with this clock, nanoseconds. Without one nothing is measured.
+    /// Measures the phases of all that follows with this clock, nanoseconds. Without one nothing is
+    /// measured.
     pub fn set_clock(&mut self, now: fn() -> u64) {
         self.clock = Some(now);
         self.phases = PhaseTimes::default();
     }
 
-    /// Time spent since [`Mesh::set_clock`], by phase; `pick` stays 0, its caller measures it.
+    /// Time spent since [`Clay::set_clock`], by phase; `pick` stays 0, its caller measures it.
     pub fn phases(&self) -> PhaseTimes {
         self.phases
     }
@@ -351,7 +359,7 @@ impl Mesh {
         hash(&|i| &self.pages[i as usize], self.totals())
     }
 
-    /// What the pages weigh, bytes: the same in every run, unlike [`Mesh::memory`].
+    /// What the pages weigh, bytes: the same in every run, unlike [`Clay::memory`].
     pub fn weight(&self) -> usize {
         self.pages.iter().map(|p| p.weight() + p.topology.bytes()).sum()
     }

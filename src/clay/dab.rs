@@ -1,19 +1,21 @@
 //! One dab: what it costs follows the pages it reaches.
 //!
 //! 1. *query*: pages whose box the reach touches.
-//! 2. *displace*: each page is copied to a fresh one, where the kernel writes. Kernels read only the old pages.
-//! 3. *normals*, *bvh*: halos take over what moved at home; normals of moved vertices and of their neighbours; trees.
-//!    Then halos take over the turned normals.
-//! 4. *undo*: the new pages take the old ones' places; the old ones go to the open step or to the pool.
+//! 2. *displace*: each page is copied to a fresh one, where the kernel writes. Kernels read only
+//!    the old pages.
+//! 3. *normals*, *bvh*: halos take over what moved at home; normals of moved vertices and of their
+//!    neighbours; trees. Then halos take over the turned normals.
+//! 4. *undo*: the new pages take the old ones' places; the old ones go to the open step or to the
+//!    pool.
 //!
-//! Each array element is written by one task, and each task reads only what earlier phases wrote: the same bits with any
-//! number of workers. All memory is kept from dab to dab.
+//! Each array element is written by one task, and each task reads only what earlier phases wrote:
+//! the same bits with any number of workers. All memory is kept from dab to dab.
 
 use std::sync::Arc;
 
 use glam::Vec4;
 
-use super::clay::Mesh;
+use super::clay::Clay;
 use super::kernel::{Kernel, PageIn, PageOut};
 use super::normals::{MOVED, PAINTED, TURNED, around_moved};
 use super::page::{BLOCK, Page, block_of};
@@ -166,8 +168,9 @@ impl Bench {
     }
 }
 
-/// Adds the pages whose halo holds a vertex that changed in a way of `kinds` and that have no slot yet.
-fn add_neighbours(mesh: &mut Mesh, from: usize, kinds: u8) {
+/// Adds the pages whose halo holds a vertex that changed in a way of `kinds` and that have no slot
+/// yet.
+fn add_neighbours(mesh: &mut Clay, from: usize, kinds: u8) {
     for s in 0..from {
         if mesh.bench.slots[s].any & kinds == 0 {
             continue;
@@ -180,9 +183,10 @@ fn add_neighbours(mesh: &mut Mesh, from: usize, kinds: u8) {
             }
             let other = &mesh.pages[n.page as usize].topology;
             let marks = &mesh.bench.slots[s].marks;
-            let touched = other.halo_parts().find(|(page, _)| *page == home).is_some_and(|(_, part)| {
-                other.halo_sources[part].iter().any(|&l| marks[l as usize] & kinds != 0)
-            });
+            let touched =
+                other.halo_parts().find(|(page, _)| *page == home).is_some_and(|(_, part)| {
+                    other.halo_sources[part].iter().any(|&l| marks[l as usize] & kinds != 0)
+                });
             if touched {
                 let page = mesh.pool.take();
                 mesh.bench.add(n.page, page);
@@ -191,14 +195,14 @@ fn add_neighbours(mesh: &mut Mesh, from: usize, kinds: u8) {
     }
 }
 
-impl Mesh {
+impl Clay {
     /// Lets `kernel` change what `reach` touches. See the module for what happens.
     pub fn dab<K: Kernel>(&mut self, reach: &Reach, kernel: &K, workers: &Workers) -> DabReport {
         let now = self.clock.unwrap_or(|| 0);
         let t0 = now();
         let mut rows = 0;
         {
-            let Mesh { top, bench, pool, pages, .. } = self;
+            let Clay { top, bench, pool, pages, .. } = self;
             top.walk_boxes(
                 |lo, hi| reach.touches(lo, hi),
                 |p| {
@@ -211,7 +215,7 @@ impl Mesh {
         let parallel = rows > PARALLEL;
         let selected = self.bench.slots.len();
         {
-            let Mesh { bench, pages, history, .. } = self;
+            let Clay { bench, pages, history, .. } = self;
             workers.each(parallel, &mut bench.slots, &mut bench.sides, |slot, side| {
                 let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
                 dispatch(false, Displace { slot, side, old, before, kernel });
@@ -220,13 +224,20 @@ impl Mesh {
         add_neighbours(self, selected, MOVED | PAINTED);
         let t2 = now();
         {
-            let Mesh { bench, pages, .. } = self;
+            let Clay { bench, pages, .. } = self;
             let Bench { slots, sides, slot_of, .. } = bench;
             let mut indices = std::mem::take(&mut self.order);
             indices.clear();
             indices.extend(0..slots.len() as u32);
             workers.each(parallel, &mut indices, sides, |s, side| {
-                gather(slots, slot_of, *s, &pages[slots[*s as usize].index as usize], side, MOVED | PAINTED);
+                gather(
+                    slots,
+                    slot_of,
+                    *s,
+                    &pages[slots[*s as usize].index as usize],
+                    side,
+                    MOVED | PAINTED,
+                );
             });
             self.order = indices;
             let clock = now;
@@ -238,13 +249,20 @@ impl Mesh {
         let turned = self.bench.slots.len();
         add_neighbours(self, turned, TURNED | PAINTED);
         {
-            let Mesh { bench, pages, .. } = self;
+            let Clay { bench, pages, .. } = self;
             let Bench { slots, sides, slot_of, .. } = bench;
             let mut indices = std::mem::take(&mut self.order);
             indices.clear();
             indices.extend(0..slots.len() as u32);
             workers.each(parallel, &mut indices, sides, |s, side| {
-                gather(slots, slot_of, *s, &pages[slots[*s as usize].index as usize], side, TURNED | PAINTED);
+                gather(
+                    slots,
+                    slot_of,
+                    *s,
+                    &pages[slots[*s as usize].index as usize],
+                    side,
+                    TURNED | PAINTED,
+                );
             });
             self.order = indices;
             workers.each(parallel, slots, sides, |slot, side| {
@@ -272,7 +290,7 @@ impl Mesh {
     fn commit(&mut self) -> (DabReport, u64, u64) {
         let mut report = DabReport::default();
         let (mut normals_ns, mut bvh_ns) = (0, 0);
-        let Mesh { bench, pages, pool, history, top, stale, revision, .. } = self;
+        let Clay { bench, pages, pool, history, top, stale, revision, .. } = self;
         let changes = bench.slots.iter().any(|s| s.any != 0);
         *revision += u64::from(changes);
         let retired = bench.slots.len();
@@ -344,7 +362,13 @@ impl WideWork for Turn<'_> {
 
 /// Copies the points and lets the kernel write.
 #[inline(always)]
-fn displace<K: Kernel>(slot: &mut Slot, side: &mut Side, old: &Page, before: Option<&Arc<Page>>, kernel: &K) {
+fn displace<K: Kernel>(
+    slot: &mut Slot,
+    side: &mut Side,
+    old: &Page,
+    before: Option<&Arc<Page>>,
+    kernel: &K,
+) {
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
     page.points.clear();
     page.points.extend_from_slice(&old.points);
@@ -388,7 +412,8 @@ fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, 
             continue;
         }
         let from = &slots[from];
-        let marks = t.halo_sources[part.clone()].iter().fold(0, |m, &l| m | from.marks[l as usize]) & kinds;
+        let marks =
+            t.halo_sources[part.clone()].iter().fold(0, |m, &l| m | from.marks[l as usize]) & kinds;
         if marks != 0 {
             // All of the part: what did not change is the same there and here.
             let rows = if kinds & MOVED != 0 { &from.page.points } else { &from.page.normals };
@@ -417,7 +442,9 @@ fn turn<W: Wide>(w: W, slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -
         page.points[first..first + rows.len()].copy_from_slice(rows);
         slot.any |= part.marks;
         if part.marks & MOVED != 0 {
-            (first..first + rows.len()).step_by(BLOCK).for_each(|row| slot.touched |= block_of(row));
+            (first..first + rows.len())
+                .step_by(BLOCK)
+                .for_each(|row| slot.touched |= block_of(row));
             slot.touched |= block_of(first + rows.len() - 1);
         }
     }

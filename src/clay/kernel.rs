@@ -6,13 +6,15 @@ use super::normals::{MOVED, PAINTED};
 use super::page::{BLOCK, BREAK, Page, Points, Ring};
 use sculptd_geometry::simd::cotangents;
 
-/// What a brush does to one page. Called once for each page that the dab may reach, on any thread, in any order; it sees the
-/// state before the dab everywhere, also of neighbours in other pages, so that the order cannot show.
+/// What a brush does to one page. Called once for each page that the dab may reach, on any thread,
+/// in any order; it sees the state before the dab everywhere, also of neighbours in other pages, so
+/// that the order cannot show.
 pub trait Kernel: Sync {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);
 }
 
-/// A page as a kernel reads it: the state before the dab, halo included. Own vertices are `0..own()`.
+/// A page as a kernel reads it: the state before the dab, halo included. Own vertices are
+/// `0..own()`.
 #[derive(Debug, Clone, Copy)]
 pub struct PageIn<'a> {
     page: &'a Page,
@@ -27,7 +29,13 @@ pub struct PageIn<'a> {
 impl<'a> PageIn<'a> {
     /// `before`: the page when the stroke began, of the same topology.
     pub(super) fn new(number: u32, page: &'a Page, before: &'a Page) -> Self {
-        PageIn { page, before, number, positions: Points(&page.points), normals: Points(&page.normals) }
+        PageIn {
+            page,
+            before,
+            number,
+            positions: Points(&page.points),
+            normals: Points(&page.normals),
+        }
     }
 
     pub fn own(&self) -> usize {
@@ -67,8 +75,8 @@ impl<'a> PageIn<'a> {
         self.page.colour(local)
     }
 
-    /// Where the vertex was when the stroke (the open undo step) began; own or halo. With [`PageIn::normal_before`] this is
-    /// all that "displacement so far" brushes need.
+    /// Where the vertex was when the stroke (the open undo step) began; own or halo. With
+    /// [`PageIn::normal_before`] this is all that "displacement so far" brushes need.
     #[inline(always)]
     pub fn before(&self, local: usize) -> Vec3 {
         self.before.point(local)
@@ -89,7 +97,8 @@ impl<'a> PageIn<'a> {
         self.before.colour(local)
     }
 
-    /// The vertex's number in the mesh that was loaded: a seed that does not depend on the pages. Own vertices only.
+    /// The vertex's number in the mesh that was loaded: a seed that does not depend on the pages.
+    /// Own vertices only.
     #[inline(always)]
     pub fn id(&self, own: usize) -> u32 {
         self.page.topology.ids[own]
@@ -101,8 +110,8 @@ impl<'a> PageIn<'a> {
         self.page.topology.kinds[own] != Ring::Closed
     }
 
-    /// Whether an own vertex lies on the border of the surface, all its triangles in one open fan: its ring then begins and
-    /// ends on the border.
+    /// Whether an own vertex lies on the border of the surface, all its triangles in one open fan:
+    /// its ring then begins and ends on the border.
     #[inline(always)]
     pub fn is_open(&self, own: usize) -> bool {
         self.page.topology.kinds[own] == Ring::Open
@@ -114,13 +123,15 @@ impl<'a> PageIn<'a> {
         self.page.topology.kinds[own] == Ring::Closed
     }
 
-    /// Neighbours of an own vertex, counter-clockwise, as local indices. About a non-manifold vertex one may come twice.
+    /// Neighbours of an own vertex, counter-clockwise, as local indices. About a non-manifold
+    /// vertex one may come twice.
     #[inline(always)]
     pub fn ring(&self, own: usize) -> impl ExactSizeIterator<Item = u16> + 'a {
         self.page.topology.ring(own).iter().map(|k| k & !BREAK)
     }
 
-    /// Cotangent-weighted sums about an own vertex with a closed ring of six: see [`cotangents::about`].
+    /// Cotangent-weighted sums about an own vertex with a closed ring of six: see
+    /// [`cotangents::about`].
     #[inline(always)]
     pub fn cotangents(&self, own: usize) -> Option<Vec4> {
         cotangents::about(&self.page.topology.hexes, &self.page.points, own)
@@ -173,7 +184,8 @@ impl PageOut<'_> {
         self.affected += count;
     }
 
-    /// Gives own vertex `v` a new place. A place that is not finite, or the same as before, changes nothing.
+    /// Gives own vertex `v` a new place. A place that is not finite, or the same as before, changes
+    /// nothing.
     #[inline(always)]
     pub fn set(&mut self, v: usize, p: Vec3) {
         let row = &mut self.points[v];
@@ -202,13 +214,17 @@ impl PageOut<'_> {
         self.marks[v] |= PAINTED;
     }
 
-    /// Adds `offset * weights[v]` to every own vertex: the way for brushes whose offset has one direction. A sum that is not
-    /// finite changes nothing. `weights`: one an own vertex, 0 where nothing is to happen.
+    /// Adds `offset * weights[v]` to every own vertex: the way for brushes whose offset has one
+    /// direction. A sum that is not finite changes nothing. `weights`: one an own vertex, 0 where
+    /// nothing is to happen.
     #[inline(always)]
     pub fn push_all(&mut self, offset: Vec3, weights: &[f32]) {
         let offset = offset.extend(0.0);
-        let blocks =
-            self.points.chunks_mut(BLOCK).zip(self.marks.chunks_mut(BLOCK)).zip(weights.chunks(BLOCK));
+        let blocks = self
+            .points
+            .chunks_mut(BLOCK)
+            .zip(self.marks.chunks_mut(BLOCK))
+            .zip(weights.chunks(BLOCK));
         for ((rows, marks), weights) in blocks {
             if weights.iter().fold(0, |bits, w| bits | w.to_bits()) == 0 {
                 continue;

@@ -8,7 +8,7 @@
 //!
 //! Memory at rest: about 95 bytes a vertex all told, measured by a test against 120.
 //!
-//! Read first: [`page`], then [`Mesh::dab`], then [`brush`].
+//! Read first: [`page`], then [`Clay::dab`], then [`brush`].
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 mod assembly;
@@ -38,7 +38,7 @@ mod workers;
 pub use assembly::{
     BuildError, Corner, Cut, Grafted, Home, NewVertex, PAGE_VERTICES, bytes_to_build, home_of,
 };
-pub use clay::{Memory, Mesh};
+pub use clay::{Clay, Memory};
 pub use dab::{DabReport, PhaseTimes};
 pub use dyntopo::{Cuts, Detail};
 pub use kernel::{Kernel, PageIn, PageOut};
@@ -47,5 +47,5 @@ pub use page::{Page, Points};
 pub use ray::{Hit, Ray};
 pub use reach::Reach;
 pub use snapshot::{Ranks, Snapshot};
-pub use stored::{BadPage, Rest};
+pub use stored::{BadPage, ObjectState};
 pub use workers::Workers;

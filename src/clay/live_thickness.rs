@@ -1,10 +1,12 @@
-//! Thickness of clay that is being sculpted: after each change only what could have changed is measured again.
+//! Thickness of clay that is being sculpted: after each change only what could have changed is
+//! measured again.
 //!
-//! The bound: a vertex's value depends on nothing outside the box around the vertex and its rays' hits. Its own normal comes
-//! from triangles that touch it; a triangle that is hit, passed through or newly in the way meets that box, before the
-//! change or after it. So the vertices whose box meets a box of changed triangles, as they were or as they are, are
-//! measured again, and no others can differ: the map equals a full recomputation bit for bit once nothing is stale.
-//! A ray that hits nothing has no end, and its vertex is measured again after every change.
+//! The bound: a vertex's value depends on nothing outside the box around the vertex and its rays'
+//! hits. Its own normal comes from triangles that touch it; a triangle that is hit, passed through
+//! or newly in the way meets that box, before the change or after it. So the vertices whose box
+//! meets a box of changed triangles, as they were or as they are, are measured again, and no others
+//! can differ: the map equals a full recomputation bit for bit once nothing is stale. A ray that
+//! hits nothing has no end, and its vertex is measured again after every change.
 
 use std::sync::Arc;
 
@@ -13,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::{Ranks, Snapshot};
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::bvh::{Parents, WideTree};
+use sculptd_geometry::bvh::{Bvh8, Parents};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::thickness::cone::{Cone, Outliers, Weights, fold, frame};
 use sculptd_geometry::thickness::ray::{Caster, Correction, Site};
@@ -30,7 +32,7 @@ pub struct LiveMap {
     /// From the clay's numbers to the mesh's.
     ranks: Ranks,
     mesh: TriMesh,
-    tree: WideTree,
+    tree: Bvh8,
     parents: Parents,
     starts: Vec<u32>,
     around: Vec<u32>,
@@ -50,10 +52,11 @@ pub struct LiveMap {
 pub struct Rebuild;
 
 impl LiveMap {
-    /// Prepares the map of a snapshot; every vertex is stale. `rays` from 1 to 1000, corrected by the hit angle.
+    /// Prepares the map of a snapshot; every vertex is stale. `rays` from 1 to 1000, corrected by
+    /// the hit angle.
     pub fn new(snapshot: &Snapshot, rays: usize, job: &Job) -> Result<LiveMap, Cancelled> {
         let mesh = snapshot.to_tri();
-        let tree = WideTree::build(&mesh, job)?;
+        let tree = Bvh8::build(&mesh, job)?;
         let (n, triangles) = (mesh.positions.len(), mesh.triangles.len());
         let mut starts = vec![0u32; n + 1];
         mesh.triangles.iter().flatten().for_each(|&v| starts[v as usize + 1] += 1);
@@ -91,8 +94,8 @@ impl LiveMap {
         Ok(map)
     }
 
-    /// Takes a newer snapshot: the tree and the normals follow at once, values that may have changed become stale. Costs
-    /// what moved, and a look at every vertex's box.
+    /// Takes a newer snapshot: the tree and the normals follow at once, values that may have
+    /// changed become stale. Costs what moved, and a look at every vertex's box.
     pub fn advance(&mut self, newer: &Snapshot) -> Result<(), Rebuild> {
         if newer.vertex_count() != self.mesh.positions.len()
             || newer.page_count() != self.snapshot.page_count()
@@ -146,7 +149,8 @@ impl LiveMap {
         for &t in &triangles {
             self.face_normals[t as usize] = face_normal(&self.mesh, t as usize);
         }
-        let mut touched: Vec<u32> = triangles.iter().flat_map(|&t| self.mesh.triangles[t as usize]).collect();
+        let mut touched: Vec<u32> =
+            triangles.iter().flat_map(|&t| self.mesh.triangles[t as usize]).collect();
         touched.sort_unstable();
         touched.dedup();
         for &v in &touched {
@@ -154,8 +158,9 @@ impl LiveMap {
         }
         self.tree.refit(&self.mesh, &triangles, &mut self.parents);
         coarsen(&mut boxes);
-        let all =
-            boxes.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let all = boxes
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
         let (reach, is_stale) = (&self.reach, &self.is_stale);
         let mut fresh: Vec<u32> = (0..reach.len() as u32)
             .into_par_iter()
@@ -164,7 +169,8 @@ impl LiveMap {
                 !is_stale[v as usize] && meet(own, all) && boxes.iter().any(|&b| meet(own, b))
             })
             .collect();
-        // A vertex beside a changed triangle has a new normal; its box holds it, so it is among them, unless it has none.
+        // A vertex beside a changed triangle has a new normal; its box holds it, so it is among
+        // them, unless it has none.
         fresh.extend(touched.iter().filter(|&&v| !is_stale[v as usize]));
         fresh.sort_unstable();
         fresh.dedup();
@@ -175,12 +181,13 @@ impl LiveMap {
         Ok(())
     }
 
-    /// Measures at most `most` stale vertices, those nearest to `brush` first, on the current rayon pool; returns how many
-    /// are stale still. With [`Job::cancel`] nothing of this call is kept.
+    /// Measures at most `most` stale vertices, those nearest to `brush` first, on the current rayon
+    /// pool; returns how many are stale still. With [`Job::cancel`] nothing of this call is kept.
     pub fn work(&mut self, brush: Vec3, most: usize, job: &Job) -> Result<usize, Cancelled> {
         let far = |v: &u32| self.mesh.positions[*v as usize].distance_squared(brush);
         if most < self.stale.len() {
-            self.stale.select_nth_unstable_by(most, |a, b| far(a).total_cmp(&far(b)).then(a.cmp(b)));
+            self.stale
+                .select_nth_unstable_by(most, |a, b| far(a).total_cmp(&far(b)).then(a.cmp(b)));
         }
         let mut now: Vec<u32> = self.stale[..most.min(self.stale.len())].to_vec();
         // In the order of the loaded mesh: neighbours in memory, as a rule in space.
@@ -269,7 +276,8 @@ impl LiveMap {
             let c = self.mesh.triangles[t as usize];
             let k = c.iter().position(|&x| x as usize == v).unwrap_or(0);
             let p = self.mesh.corners(t as usize);
-            sum += self.face_normals[t as usize] * sculptd_geometry::thickness::surface::corner_angle(p, k);
+            sum += self.face_normals[t as usize]
+                * sculptd_geometry::thickness::surface::corner_angle(p, k);
         }
         sum.normalize_or_zero()
     }
@@ -295,13 +303,17 @@ fn coarsen(boxes: &mut Vec<(Vec3, Vec3)>) {
     if boxes.len() <= PARTS {
         return;
     }
-    let all = boxes.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let all = boxes
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
     let size = all.1 - all.0;
     let axis = size.max_position();
     boxes.sort_by(|a, b| a.0[axis].total_cmp(&b.0[axis]));
     let per = boxes.len().div_ceil(PARTS);
     *boxes = boxes
         .chunks(per)
-        .map(|c| c.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1))))
+        .map(|c| {
+            c.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)))
+        })
         .collect();
 }

@@ -1,9 +1,10 @@
-//! A tool out of clay (or onto it) at the cost of the tool's region: only triangles whose boxes meet the tool's box are cut,
-//! and what comes of it is a [`Cut`], which writes only the pages around ([`crate::Mesh::graft`]).
+//! A tool out of clay (or onto it) at the cost of the tool's region: only triangles whose boxes
+//! meet the tool's box are cut, and what comes of it is a [`Cut`], which writes only the pages
+//! around ([`crate::Clay::graft`]).
 //!
-//! The clay is not looked at as a whole, so it is trusted to be closed; what is put in has the border of what is taken out,
-//! edge by edge and in the same direction, so it is as closed after as it was before. Where that fails, nothing is given and
-//! the caller goes the long way.
+//! The clay is not looked at as a whole, so it is trusted to be closed; what is put in has the
+//! border of what is taken out, edge by edge and in the same direction, so it is as closed after as
+//! it was before. Where that fails, nothing is given and the caller goes the long way.
 
 use glam::{DVec3, Vec3};
 
@@ -15,8 +16,8 @@ use sculptd_geometry::boolean::{Error, NAMES, Operation, Options, check};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, triangulate};
 
-/// Union or difference of the clay and a tool (A and B); None where only the whole can tell: for an intersection, or where the
-/// cut does not close.
+/// Union or difference of the clay and a tool (A and B); None where only the whole can tell: for an
+/// intersection, or where the cut does not close.
 pub fn local(
     clay: &Snapshot,
     tool: &PolyMesh,
@@ -34,7 +35,8 @@ pub fn local(
         .iter()
         .fold(lo.abs().max(hi.abs()).max_element() as f64, |r, p| r.max(p.abs().max_element()));
     let floor = reach * 2f64.powi(-49);
-    let wanted = options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
+    let wanted =
+        options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
     let patch = Patch::of(clay, tool, 4.0 * wanted);
     let around = |p: DVec3| winding(clay, p);
     for factor in [1.0, 0.125, 1.0 / 64.0] {
@@ -42,7 +44,13 @@ pub fn local(
         let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(&around), job, &mut |_| ())?;
         if let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job) {
             job.check()?;
-            return Ok(Some(Cut::new(clay, patch.bounds, change.removed, change.added, change.new)));
+            return Ok(Some(Cut::new(
+                clay,
+                patch.bounds,
+                change.removed,
+                change.added,
+                change.new,
+            )));
         }
     }
     Ok(None)
@@ -74,8 +82,12 @@ impl Patch {
         let (lo, hi) = (lo - slack, hi + slack);
         let meets = |l: Vec3, h: Vec3| l.as_dvec3().cmple(hi).all() && lo.cmple(h.as_dvec3()).all();
         let outwards = (lo.as_vec3().map(f32::next_down), hi.as_vec3().map(f32::next_up));
-        let mut out =
-            Patch { bounds: outwards, mesh: PolyMesh::new(), homes: Vec::new(), triangles: Vec::new() };
+        let mut out = Patch {
+            bounds: outwards,
+            mesh: PolyMesh::new(),
+            homes: Vec::new(),
+            triangles: Vec::new(),
+        };
         let mut names: Map<Home, u32> = Map::default();
         clay.each_page_in(meets, |p, page| {
             let t = page.topology();
@@ -147,7 +159,8 @@ impl Patch {
             }
             Corner::New(*names.entry(v).or_insert_with(|| {
                 let place = a.points.at[v as usize];
-                let (colour, mask) = face.map_or(([255; 4], 0.0), |f| self.attributes(clay, f, place));
+                let (colour, mask) =
+                    face.map_or(([255; 4], 0.0), |f| self.attributes(clay, f, place));
                 new.push(NewVertex { place: place.as_vec3(), colour, mask });
                 new.len() as u32 - 1
             }))
@@ -165,10 +178,13 @@ impl Patch {
         let [a, b, c] = page.corners(i as usize).map(Vec3::as_dvec3);
         let n = (b - a).cross(c - a);
         let whole = n.length_squared().max(f64::MIN_POSITIVE);
-        let share = |x: DVec3, y: DVec3| ((y - x).cross(place - x).dot(n) / whole).clamp(0.0, 1.0) as f32;
+        let share =
+            |x: DVec3, y: DVec3| ((y - x).cross(place - x).dot(n) / whole).clamp(0.0, 1.0) as f32;
         let w = [share(b, c), share(c, a), share(a, b)];
         let sum = w.iter().sum::<f32>().max(f32::MIN_POSITIVE);
-        let mix = |f: &dyn Fn(usize) -> f32| (0..3).map(|k| w[k] * f(corners[k] as usize)).sum::<f32>() / sum;
+        let mix = |f: &dyn Fn(usize) -> f32| {
+            (0..3).map(|k| w[k] * f(corners[k] as usize)).sum::<f32>() / sum
+        };
         let colour = [0, 1, 2, 3].map(|k| mix(&|v| page.colour(v)[k] as f32).round() as u8);
         (colour, mix(&|v| page.mask(v)).clamp(0.0, 1.0))
     }

@@ -2,21 +2,23 @@
 
 use std::sync::Arc;
 
-use super::clay::Mesh;
-use super::page::Topology;
+use super::clay::Clay;
+use super::page::PageTopology;
 use super::snapshot::Snapshot;
 use crate::assembly::{BuildError, build};
 use sculptd_geometry::flat::TriMesh;
 use sculptd_geometry::job::Job;
 
-impl Mesh {
-    /// As [`Mesh::build`], with a mask for each vertex (0 free to 1 protected; one that is missing or no number is 0).
+impl Clay {
+    /// As [`Clay::build`], with a mask for each vertex (0 free to 1 protected; one that is missing
+    /// or no number is 0).
     ///
     /// # Errors
-    /// As [`Mesh::build`].
-    pub fn build_masked(tri: &TriMesh, masks: &[f32], job: &Job) -> Result<Mesh, BuildError> {
+    /// As [`Clay::build`].
+    pub fn build_masked(tri: &TriMesh, masks: &[f32], job: &Job) -> Result<Clay, BuildError> {
         let mut built = build(tri, job)?;
-        let topologies: Vec<Arc<Topology>> = built.pages.iter().map(|p| p.topology.clone()).collect();
+        let topologies: Vec<Arc<PageTopology>> =
+            built.pages.iter().map(|p| p.topology.clone()).collect();
         let of = |id: u32| masks.get(id as usize).copied().unwrap_or(0.0).max(0.0).min(1.0);
         for page in &mut built.pages {
             // Nobody else has seen it yet.
@@ -32,7 +34,7 @@ impl Mesh {
                 row.w = of(id);
             }
         }
-        Ok(Mesh::of(built, 0))
+        Ok(Clay::of(built, 0))
     }
 }
 
@@ -63,10 +65,10 @@ mod tests {
     fn masks_come_back_as_they_were_given() {
         let ball = icosphere(1.0, 20);
         let given: Vec<f32> = (0..ball.positions.len()).map(|i| (i % 7) as f32 / 6.0).collect();
-        let mut clay = Mesh::build_masked(&ball, &given, &Job::default()).expect("clay");
+        let mut clay = Clay::build_masked(&ball, &given, &Job::default()).expect("clay");
         clay.verify_invariants().expect("sound");
         assert_eq!(clay.snapshot().masks(), Some(given));
-        let mut free = Mesh::build_masked(&ball, &[0.0, f32::NAN], &Job::default()).expect("clay");
+        let mut free = Clay::build_masked(&ball, &[0.0, f32::NAN], &Job::default()).expect("clay");
         assert_eq!(free.snapshot().masks(), None);
     }
 }

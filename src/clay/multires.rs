@@ -1,17 +1,23 @@
-//! Levels of detail: each is the one below it, subdivided once (Loop 1987), plus what was sculpted on it.
+//! Levels of detail: each is the one below it, subdivided once (Loop 1987), plus what was sculpted
+//! on it.
 //!
 //! Laws, for two neighbouring levels:
-//! * Down and up again, with nothing done between, is the finer level as it was, bit for bit; so are up and down again.
-//! * A coarser level takes over what was sculpted on the finer one since it was put in place, as nearly as it can: its vertices
-//!   move so that their subdivision follows that best by least squares. What it can't follow stays as detail.
-//! * What was done on the coarser level carries the detail of the finer one along and turns it with the surface: detail is kept
-//!   in a frame of each vertex that the subdivided surface gives (its normal, and the way along its first edge). Where that
-//!   surface stands still, the finer one does, to the bit.
-//! * Mask and colours go along. A coarse vertex has those of the finer one that is at its place; a new finer vertex those of
-//!   the middle of its edge. What a finer level had is kept wherever the coarser one was not painted over meanwhile.
+//! * Down and up again, with nothing done between, is the finer level as it was, bit for bit; so
+//!   are up and down again.
+//! * A coarser level takes over what was sculpted on the finer one since it was put in place, as
+//!   nearly as it can: its vertices move so that their subdivision follows that best by least
+//!   squares. What it can't follow stays as detail.
+//! * What was done on the coarser level carries the detail of the finer one along and turns it with
+//!   the surface: detail is kept in a frame of each vertex that the subdivided surface gives (its
+//!   normal, and the way along its first edge). Where that surface stands still, the finer one
+//!   does, to the bit.
+//! * Mask and colours go along. A coarse vertex has those of the finer one that is at its place; a
+//!   new finer vertex those of the middle of its edge. What a finer level had is kept wherever the
+//!   coarser one was not painted over meanwhile.
 //!
-//! The clay itself knows one level: the one that is shown. The others travel beside it, and fit as long as no triangle of the
-//! clay was cut; going to another level puts a whole new work in place, computed by whoever asks and never in a tick.
+//! The clay itself knows one level: the one that is shown. The others travel beside it, and fit as
+//! long as no triangle of the clay was cut; going to another level puts a whole new work in place,
+//! computed by whoever asks and never in a tick.
 
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -22,7 +28,8 @@ use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// Triangles of the finest level at most.
 pub const MAX_TRIANGLES: u64 = 1 << 26;
-/// Rounds of the fit of a coarser level: a sculpted form as wide as three of its edges is followed to a hundredth.
+/// Rounds of the fit of a coarser level: a sculpted form as wide as three of its edges is followed
+/// to a hundredth.
 const ROUNDS: usize = 24;
 
 #[derive(Debug, thiserror::Error, PartialEq)]
@@ -94,9 +101,13 @@ impl Levels {
         self.shape == shape(now)
     }
 
-    /// One level finer: what was sculpted there, or as yet nothing. `levels`: those that came with `now`; a mesh without any
-    /// is its own lowest.
-    pub fn up(levels: Option<&Levels>, now: &Level, job: &Job) -> Result<(Level, Levels), LevelError> {
+    /// One level finer: what was sculpted there, or as yet nothing. `levels`: those that came with
+    /// `now`; a mesh without any is its own lowest.
+    pub fn up(
+        levels: Option<&Levels>,
+        now: &Level,
+        job: &Job,
+    ) -> Result<(Level, Levels), LevelError> {
         let triangles = now.mesh.triangles.len() as u64 * 4;
         if triangles > MAX_TRIANGLES {
             return Err(LevelError::TooMany(triangles));
@@ -181,7 +192,8 @@ impl Levels {
     }
 }
 
-/// Something painted on the vertices of a coarse level, now and as it was, and on those of the finer one, as it was.
+/// Something painted on the vertices of a coarse level, now and as it was, and on those of the
+/// finer one, as it was.
 struct Painted<'a, T> {
     now: Option<&'a [T]>,
     base: Option<&'a [T]>,
@@ -191,8 +203,15 @@ struct Painted<'a, T> {
 }
 
 impl<T: Copy + PartialEq> Painted<'_, T> {
-    /// On the finer level of `n` old vertices and one for each edge. `known`: that level was there before.
-    fn up(&self, ends: &[(u32, u32)], n: usize, known: bool, mean: impl Fn(T, T) -> T) -> Option<Vec<T>> {
+    /// On the finer level of `n` old vertices and one for each edge. `known`: that level was there
+    /// before.
+    fn up(
+        &self,
+        ends: &[(u32, u32)],
+        n: usize,
+        known: bool,
+        mean: impl Fn(T, T) -> T,
+    ) -> Option<Vec<T>> {
         if self.now.is_none() && self.kept.is_none() {
             return None;
         }
@@ -223,7 +242,8 @@ fn carried(p: Vec3, from: &Frame, to: &Frame) -> Vec3 {
     (to.0 + along * x + across * y + out * z).as_vec3()
 }
 
-/// A number that other triangles, or the same in another order, do not have: FNV's way over their corners.
+/// A number that other triangles, or the same in another order, do not have: FNV's way over their
+/// corners.
 fn shape(mesh: &TriMesh) -> u64 {
     let start = 0xcbf2_9ce4_8422_2325 ^ mesh.positions.len() as u64;
     mesh.triangles
@@ -240,8 +260,8 @@ fn plain(mesh: &PolyMesh) -> TriMesh {
     }
 }
 
-/// For each vertex of a triangle mesh its place and its frame: along its first edge, across it, outwards; orthonormal, and
-/// the axes of space where the surface has no direction.
+/// For each vertex of a triangle mesh its place and its frame: along its first edge, across it,
+/// outwards; orthonormal, and the axes of space where the surface has no direction.
 fn frames(mesh: &PolyMesh) -> Vec<Frame> {
     let mut normals = vec![DVec3::ZERO; mesh.positions.len()];
     let mut first = vec![DVec3::ZERO; mesh.positions.len()];
@@ -286,7 +306,8 @@ mod tests {
         let (mut two, levels) = up(Some(&levels), &one);
         two.mesh.positions.iter_mut().for_each(|p| *p *= 1.0 + 0.01 * (p.y * 23.0).sin());
         two.masks = Some(two.mesh.positions.iter().map(|p| (p.z * 9.0).sin().max(0.0)).collect());
-        two.mesh.colours = Some(two.mesh.positions.iter().map(|p| [(p.x * 90.0) as u8, 7, 9, 255]).collect());
+        two.mesh.colours =
+            Some(two.mesh.positions.iter().map(|p| [(p.x * 90.0) as u8, 7, 9, 255]).collect());
         (two, levels)
     }
 
@@ -314,7 +335,8 @@ mod tests {
     fn up_and_down_again_is_where_it_was_to_the_bit() {
         let mut base = Level::from(shapes::icosphere(1.0, 6));
         base.masks = Some((0..base.mesh.positions.len()).map(|v| (v % 5) as f32 / 4.0).collect());
-        base.mesh.colours = Some((0..base.mesh.positions.len()).map(|v| [v as u8, 1, 2, 3]).collect());
+        base.mesh.colours =
+            Some((0..base.mesh.positions.len()).map(|v| [v as u8, 1, 2, 3]).collect());
         let (one, levels) = up(None, &base);
         let (two, higher) = up(Some(&levels), &one);
         let (back, lower) = down(&higher, &two);
@@ -340,7 +362,10 @@ mod tests {
             let raised = top(level) - top(flat);
             assert!((raised - 0.2).abs() < 0.03, "{raised} of 0.2");
             let still = |(p, q): (&Vec3, &Vec3)| p.x > -0.5 || p == q;
-            assert!(level.mesh.positions.iter().zip(&flat.mesh.positions).all(still), "the far side stays");
+            assert!(
+                level.mesh.positions.iter().zip(&flat.mesh.positions).all(still),
+                "the far side stays"
+            );
         }
         // Its bare subdivision is nearly all that was sculpted.
         let (bare, _) = up(None, &coarse);
@@ -367,7 +392,12 @@ mod tests {
         base.mesh.positions.iter_mut().for_each(|p| *p = place(*p));
         let (again, levels) = up(Some(&lowest), &base);
         let (top, _) = up(Some(&levels), &again);
-        let off = top.mesh.positions.iter().zip(&two.mesh.positions).map(|(a, b)| (*a - place(*b)).length());
+        let off = top
+            .mesh
+            .positions
+            .iter()
+            .zip(&two.mesh.positions)
+            .map(|(a, b)| (*a - place(*b)).length());
         let worst = off.fold(0.0, f32::max);
         assert!(worst < 6e-6, "the detail is off by {worst}");
         assert!(top.masks == two.masks && top.mesh.colours == two.mesh.colours);

@@ -1,12 +1,13 @@
 //! Vertex normals: the sum of the triangles' area vectors, brought to unit length.
 //!
-//! Around a vertex with neighbours `d0, d1, ...` (relative to it) the sum is `d0 x d1 + d1 x d2 + ...`. A cross product is
-//! `yzx(a * yzx(b) - yzx(a) * b)`, so one shuffle a neighbour and one at the end suffice. The order of the sum is the
-//! ring's, which the topology fixes: the same bits whoever computes it.
+//! Around a vertex with neighbours `d0, d1, ...` (relative to it) the sum is `d0 x d1 + d1 x d2 +
+//! ...`. A cross product is `yzx(a * yzx(b) - yzx(a) * b)`, so one shuffle a neighbour and one at
+//! the end suffice. The order of the sum is the ring's, which the topology fixes: the same bits
+//! whoever computes it.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
-use super::page::{BLOCK, BREAK, Page, Ring, Topology};
+use super::page::{BLOCK, BREAK, Page, PageTopology, Ring};
 use sculptd_geometry::simd::rings;
 use sculptd_geometry::simd::rings::{LENGTHS, Rows};
 use sculptd_geometry::simd::wide::Wide;
@@ -18,9 +19,10 @@ pub(super) const TURNED: u8 = 2;
 /// A vertex whose mask or colour changed.
 pub(super) const PAINTED: u8 = 4;
 
-/// The sum of area vectors about own vertex `v` of any ring but those in [`Topology::hexes`], twice the area each.
+/// The sum of area vectors about own vertex `v` of any ring but those in [`PageTopology::hexes`],
+/// twice the area each.
 #[inline(always)]
-fn area_sum(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
+fn area_sum(t: &PageTopology, points: &[Vec4], v: usize) -> Vec4 {
     let ring = t.ring(v);
     let p = points[v];
     let mut sum = Vec4::ZERO;
@@ -28,7 +30,7 @@ fn area_sum(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
     let first = points[*first as usize] - p;
     let first_turned = first.yzxw();
     let (mut last, mut last_turned) = (first, first_turned);
-    if t.kinds[v] == Ring::Several {
+    if t.kinds[v] == Ring::Interleaved {
         for &k in rest {
             let d = points[(k & !BREAK) as usize] - p;
             let turned = d.yzxw();
@@ -51,7 +53,8 @@ fn area_sum(t: &Topology, points: &[Vec4], v: usize) -> Vec4 {
     sum.yzxw()
 }
 
-/// The unit vector along a sum of area vectors; zero for a sum of nothing. The fourth lane is nothing.
+/// The unit vector along a sum of area vectors; zero for a sum of nothing. The fourth lane is
+/// nothing.
 #[inline(always)]
 fn unit(sum: Vec4) -> Vec4 {
     let length2 = sum.x * sum.x + sum.y * sum.y + sum.z * sum.z;
@@ -70,10 +73,10 @@ fn unit_of_extremes(sum: Vec4) -> Vec4 {
     }
 }
 
-/// The unit normals of own vertices `first..first + out.len()`, at most [`BLOCK`] of them; zero where all triangles are
-/// degenerate. The fourth lanes are nothing.
+/// The unit normals of own vertices `first..first + out.len()`, at most [`BLOCK`] of them; zero
+/// where all triangles are degenerate. The fourth lanes are nothing.
 #[inline(always)]
-fn of_block(t: &Topology, points: &[Vec4], first: usize, out: &mut [Vec4]) {
+fn of_block(t: &PageTopology, points: &[Vec4], first: usize, out: &mut [Vec4]) {
     let regular = t.hexes.len().saturating_sub(first).min(out.len());
     rings::sums(&t.hexes, points, first.min(t.hexes.len()), &mut out[..regular]);
     for (i, sum) in out.iter_mut().enumerate().skip(regular) {
@@ -94,7 +97,7 @@ fn of_block(t: &Topology, points: &[Vec4], first: usize, out: &mut [Vec4]) {
 }
 
 /// The unit normal of own vertex `v`, zero where all its triangles are degenerate.
-pub(super) fn of_vertex(t: &Topology, points: &[Vec4], v: usize) -> Vec3 {
+pub(super) fn of_vertex(t: &PageTopology, points: &[Vec4], v: usize) -> Vec3 {
     let mut one = [Vec4::ZERO];
     of_block(t, points, v, &mut one);
     one[0].truncate()
@@ -113,24 +116,35 @@ pub(super) fn all(page: &mut Page) {
     }
 }
 
-/// Writes all normals of a page whose vertices in the blocks `touched` moved: the own ones that they bear on anew, all else
-/// from `old`. Marks own vertices whose normal is another now [`TURNED`].
+/// Writes all normals of a page whose vertices in the blocks `touched` moved: the own ones that
+/// they bear on anew, all else from `old`. Marks own vertices whose normal is another now
+/// [`TURNED`].
 #[inline(always)]
-pub(super) fn around_moved<W: Wide>(w: W, page: &mut Page, old: &[Vec4], marks: &mut [u8], touched: u32) {
+pub(super) fn around_moved<W: Wide>(
+    w: W,
+    page: &mut Page,
+    old: &[Vec4],
+    marks: &mut [u8],
+    touched: u32,
+) {
     let Page { topology: t, points, normals, .. } = page;
     normals.resize(old.len(), Vec4::ZERO);
     let (own, halo) = normals.split_at_mut(t.own);
     let (old, old_halo) = old.split_at(t.own);
     halo.copy_from_slice(old_halo);
-    let blocks =
-        own.chunks_mut(BLOCK).zip(old.chunks(BLOCK)).zip(marks.chunks_mut(BLOCK)).zip(&t.ring_blocks);
+    let blocks = own
+        .chunks_mut(BLOCK)
+        .zip(old.chunks(BLOCK))
+        .zip(marks.chunks_mut(BLOCK))
+        .zip(&t.ring_blocks);
     for (b, (((rows, old), marks), &near)) in blocks.enumerate() {
         if near & touched == 0 {
             rows.copy_from_slice(old);
             continue;
         }
         let first = b * BLOCK;
-        let done = w.ring_normals(&t.hexes, points, &mut Rows { first, old, rows, marks, mark: TURNED });
+        let done =
+            w.ring_normals(&t.hexes, points, &mut Rows { first, old, rows, marks, mark: TURNED });
         if done == rows.len() {
             continue;
         }
@@ -148,7 +162,7 @@ pub(super) fn around_moved<W: Wide>(w: W, page: &mut Page, old: &[Vec4], marks: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::Mesh;
+    use super::super::Clay;
     use super::*;
     use sculptd_geometry::shapes;
     use sculptd_geometry::simd::wide::{WideWork, dispatch};
@@ -179,15 +193,16 @@ mod tests {
 
     #[test]
     fn wide_and_plain_normals_are_the_same_bits() {
-        let clay = Mesh::build(&shapes::sphere_of_about(10_000), &Default::default()).unwrap();
+        let clay = Clay::build(&shapes::sphere_of_about(10_000), &Default::default()).unwrap();
         for (touched, page) in [(u32::MAX, &clay.pages[3]), (0b1011, &clay.pages[5])] {
             let (mut wide, mut plain) = (disturbed(page), disturbed(page));
             let own = page.own();
             let (mut wide_marks, mut plain_marks) = (vec![0; own], vec![0; own]);
             dispatch(false, Around(&mut wide, &page.normals, &mut wide_marks, touched));
             dispatch(true, Around(&mut plain, &page.normals, &mut plain_marks, touched));
-            let bits =
-                |page: &Page| page.normals.iter().map(|n| n.to_array().map(f32::to_bits)).collect::<Vec<_>>();
+            let bits = |page: &Page| {
+                page.normals.iter().map(|n| n.to_array().map(f32::to_bits)).collect::<Vec<_>>()
+            };
             assert_eq!(bits(&wide), bits(&plain));
             assert_eq!(wide_marks, plain_marks);
             assert!(wide_marks.contains(&TURNED));

@@ -1,11 +1,13 @@
 //! One page: some five hundred vertices, their surroundings, and the triangles between them.
 //!
 //! Laws kept here:
-//! * A page holds its **own** vertices and copies (the **halo**) of the foreign vertices that its triangles and rings need, so
-//!   every inner loop stays within the page. Local index `< own` is own, the rest is halo.
-//! * What never changes while the topology stands ([`Topology`]) is apart from what a dab changes, so that copy on write
-//!   copies only the latter.
-//! * A vertex is two 16-byte rows: position with mask, normal with colour. A ring's neighbour is one aligned load.
+//! * A page holds its **own** vertices and copies (the **halo**) of the foreign vertices that its
+//!   triangles and rings need, so every inner loop stays within the page. Local index `< own` is
+//!   own, the rest is halo.
+//! * What never changes while the topology stands ([`PageTopology`]) is apart from what a dab
+//!   changes, so that copy on write copies only the latter.
+//! * A vertex is two 16-byte rows: position with mask, normal with colour. A ring's neighbour is
+//!   one aligned load.
 
 use std::sync::Arc;
 
@@ -37,34 +39,38 @@ pub enum Ring {
     /// One open fan: the vertex lies on the border of the surface. Also a vertex without triangles.
     Open,
     /// Several fans, parted by [`BREAK`]; a closed one among them repeats its first neighbour.
-    Several,
+    Interleaved,
 }
 
 /// A page from which others are seen: its number, and where its part of the halo begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Neighbour {
     pub page: u32,
-    /// Index into [`Topology::halo_sources`]; the part ends where the next neighbour's begins.
+    /// Index into [`PageTopology::halo_sources`]; the part ends where the next neighbour's begins.
     pub first: u32,
 }
 
 /// What stands still while a mesh is only displaced.
 #[derive(Debug, Default, Clone, Serialize, Deserialize)]
-pub struct Topology {
+pub struct PageTopology {
     pub own: usize,
     /// The own vertices' numbers in the mesh that was loaded.
     pub ids: Box<[u32]>,
-    /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight make a leaf.
+    /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight
+    /// make a leaf.
     pub triangles: Box<[[u16; 3]]>,
     /// The triangles' numbers in the mesh that was loaded.
     pub triangle_ids: Box<[u32]>,
-    /// The rings of the first own vertices: they have a closed one of six each, as most vertices of most meshes have.
+    /// The rings of the first own vertices: they have a closed one of six each, as most vertices of
+    /// most meshes have.
     pub hexes: Hexes,
-    /// The rings of the others: vertex `hexes.len() + i` has `rings[ring_starts[i]..ring_starts[i + 1]]`.
+    /// The rings of the others: vertex `hexes.len() + i` has `rings[ring_starts[i]..ring_starts[i +
+    /// 1]]`.
     pub ring_starts: Box<[u16]>,
     pub rings: Box<[u16]>,
     pub kinds: Box<[Ring]>,
-    /// The vertices of each leaf of the page's tree. This and what comes after follows from the rest: [`Topology::index`].
+    /// The vertices of each leaf of the page's tree. This and what comes after follows from the
+    /// rest: [`PageTopology::index`].
     #[serde(skip)]
     pub leaves: Leaves,
     /// For each [`BLOCK`] of own vertices the blocks that they and their rings lie in.
@@ -73,7 +79,8 @@ pub struct Topology {
     /// For each eight leaves of the page's tree the blocks that their vertices lie in.
     #[serde(skip)]
     pub leaf_blocks: Box<[u32]>,
-    /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does not know them.
+    /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does
+    /// not know them.
     #[serde(skip)]
     pub loose: Box<[u16]>,
     /// Local index of each halo vertex in its home page.
@@ -82,7 +89,7 @@ pub struct Topology {
     pub neighbours: Box<[Neighbour]>,
 }
 
-impl Topology {
+impl PageTopology {
     /// The neighbours of own vertex `v`, counter-clockwise, [`BREAK`] bits included.
     #[inline(always)]
     pub fn ring(&self, v: usize) -> &[u16] {
@@ -95,8 +102,8 @@ impl Topology {
         }
     }
 
-    /// Fills in what follows from the rest: the leaves, which blocks lie where, and what the tree does not know. False where the
-    /// leaves have too many corners.
+    /// Fills in what follows from the rest: the leaves, which blocks lie where, and what the tree
+    /// does not know. False where the leaves have too many corners.
     #[must_use]
     pub(super) fn index(&mut self) -> bool {
         let each_once = |eight: &[[u16; 3]]| {
@@ -105,12 +112,16 @@ impl Topology {
             some.dedup();
             some
         };
-        let Some(leaves) = Leaves::new(self.triangles.chunks(LEAF).map(each_once)) else { return false };
+        let Some(leaves) = Leaves::new(self.triangles.chunks(LEAF).map(each_once)) else {
+            return false;
+        };
         self.leaves = leaves;
         self.ring_blocks = (0..self.own.div_ceil(BLOCK))
             .map(|b| {
                 (b * BLOCK..self.own.min((b + 1) * BLOCK)).fold(block_of(b * BLOCK), |bits, v| {
-                    self.ring(v).iter().fold(bits, |bits, &k| bits | block_of((k & !BREAK) as usize))
+                    self.ring(v)
+                        .iter()
+                        .fold(bits, |bits, &k| bits | block_of((k & !BREAK) as usize))
                 })
             })
             .collect();
@@ -129,7 +140,8 @@ impl Topology {
         true
     }
 
-    /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index there.
+    /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index
+    /// there.
     pub fn halo_home(&self, k: usize) -> (u32, u16) {
         let n = self.neighbours.partition_point(|n| n.first as usize <= k) - 1;
         (self.neighbours[n].page, self.halo_sources[k])
@@ -138,13 +150,16 @@ impl Topology {
     /// The halo's parts: home page, and which halo vertices are its.
     pub fn halo_parts(&self) -> impl Iterator<Item = (u32, std::ops::Range<usize>)> + '_ {
         self.neighbours.iter().enumerate().map(|(i, n)| {
-            let end = self.neighbours.get(i + 1).map_or(self.halo_sources.len(), |next| next.first as usize);
+            let end = self
+                .neighbours
+                .get(i + 1)
+                .map_or(self.halo_sources.len(), |next| next.first as usize);
             (n.page, n.first as usize..end)
         })
     }
 
     pub(super) fn bytes(&self) -> usize {
-        size_of::<Topology>()
+        size_of::<PageTopology>()
             + self.ids.len() * 4
             + self.triangles.len() * 10
             + self.hexes.len() * 12
@@ -181,10 +196,11 @@ impl Points<'_> {
 /// What a dab may change, and the topology it belongs to.
 #[derive(Debug, Default)]
 pub struct Page {
-    pub(super) topology: Arc<Topology>,
+    pub(super) topology: Arc<PageTopology>,
     /// Own, then halo: x, y, z, mask (0 free to 1 protected).
     pub(super) points: Vec<Vec4>,
-    /// Own, then halo: unit normal (zero where all triangles are degenerate), and RGBA as the bits of a float.
+    /// Own, then halo: unit normal (zero where all triangles are degenerate), and RGBA as the bits
+    /// of a float.
     pub(super) normals: Vec<Vec4>,
     /// Over the page's triangles, eight a leaf.
     pub(super) tree: BoxTree,
@@ -209,7 +225,7 @@ impl Page {
         }
     }
 
-    pub fn topology(&self) -> &Arc<Topology> {
+    pub fn topology(&self) -> &Arc<PageTopology> {
         &self.topology
     }
 
@@ -223,8 +239,8 @@ impl Page {
         &self.points
     }
 
-    /// Own and halo normals as rows of x, y, z and RGBA bits: ready for a GPU. Never compare or add whole rows: the
-    /// colour's bits may spell "not a number".
+    /// Own and halo normals as rows of x, y, z and RGBA bits: ready for a GPU. Never compare or add
+    /// whole rows: the colour's bits may spell "not a number".
     pub fn normal_rows(&self) -> &[Vec4] {
         &self.normals
     }
@@ -292,8 +308,8 @@ impl Page {
         (self.lo, self.hi) = (lo, hi);
     }
 
-    /// What undo counts for the page, bytes: the same however much room its vectors happen to have, for a replay must forget
-    /// the same steps.
+    /// What undo counts for the page, bytes: the same however much room its vectors happen to have,
+    /// for a replay must forget the same steps.
     pub(super) fn weight(&self) -> usize {
         // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
         size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4
@@ -301,6 +317,9 @@ impl Page {
 
     /// Heap bytes of what a copy on write copies.
     pub(super) fn bytes(&self) -> usize {
-        size_of::<Page>() + 16 + (self.points.capacity() + self.normals.capacity()) * 16 + self.tree.bytes()
+        size_of::<Page>()
+            + 16
+            + (self.points.capacity() + self.normals.capacity()) * 16
+            + self.tree.bytes()
     }
 }

@@ -1,6 +1,6 @@
-//! The nearest hit: down the clay's tree to pages, down a page's tree to eight triangles, and the watertight test of
-//! [`sculptd_geometry::simd::wide`] on those. Of two hits at the same distance the lower page and triangle wins, so the answer does not
-//! depend on the walk.
+//! The nearest hit: down the clay's tree to pages, down a page's tree to eight triangles, and the
+//! watertight test of [`sculptd_geometry::simd::wide`] on those. Of two hits at the same distance
+//! the lower page and triangle wins, so the answer does not depend on the walk.
 
 use std::sync::Arc;
 
@@ -27,7 +27,9 @@ fn search<W: Wide>(w: W, ray: &BoxRay, page: &Page, number: u32, best: &mut Opti
         let first = leaf * LEAF;
         for half in (first..(first + LEAF).min(triangles.len())).step_by(4) {
             let mut pack = Pack { v: [[[f32::NAN; 4]; 3]; 3], id: [NO_TRIANGLE; 4] };
-            for (lane, corners) in triangles[half..(half + 4).min(triangles.len())].iter().enumerate() {
+            for (lane, corners) in
+                triangles[half..(half + 4).min(triangles.len())].iter().enumerate()
+            {
                 for c in 0..3 {
                     let p = page.points[corners[c] as usize];
                     pack.v[c][0][lane] = p.x;
@@ -41,7 +43,9 @@ fn search<W: Wide>(w: W, ray: &BoxRay, page: &Page, number: u32, best: &mut Opti
                 let i = mask.trailing_zeros() as usize & 3;
                 mask &= mask - 1;
                 let (t, triangle) = (hits.t[i], (half + i) as u32);
-                if best.is_none_or(|b| t < b.t || (t == b.t && (number, triangle) < (b.page, b.triangle))) {
+                if best.is_none_or(|b| {
+                    t < b.t || (t == b.t && (number, triangle) < (b.page, b.triangle))
+                }) {
                     *best = Some(Found { t, page: number, triangle, u: hits.u[i], v: hits.v[i] });
                     far = t;
                 }

@@ -1,7 +1,8 @@
 //! Pages that were replaced wait here until nobody reads them any more, and are then written again.
 //!
-//! So a reader that drops the last snapshot with an old page frees nothing, and the tick thread neither allocates nor
-//! frees in the steady state of a stroke. What is too much goes to a thread that only drops.
+//! So a reader that drops the last snapshot with an old page frees nothing, and the tick thread
+//! neither allocates nor frees in the steady state of a stroke. What is too much goes to a thread
+//! that only drops.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
@@ -51,8 +52,12 @@ pub(super) struct Pool {
 impl Pool {
     /// `rows`, `leaves`: of the largest page. `count`: pages to have ready.
     pub(super) fn new(rows: usize, leaves: usize, count: usize) -> Self {
-        let mut pool =
-            Pool { free: Vec::with_capacity(KEPT), waiting: VecDeque::with_capacity(KEPT), rows, leaves };
+        let mut pool = Pool {
+            free: Vec::with_capacity(KEPT),
+            waiting: VecDeque::with_capacity(KEPT),
+            rows,
+            leaves,
+        };
         for _ in 0..count {
             let mut page = pool.fresh();
             if let Some(page) = Arc::get_mut(&mut page) {

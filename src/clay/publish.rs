@@ -1,5 +1,5 @@
-//! What a snapshot costs: new chunks for changed pages, one vector of chunks. Both are pooled: what readers have let go is
-//! filled again.
+//! What a snapshot costs: new chunks for changed pages, one vector of chunks. Both are pooled: what
+//! readers have let go is filled again.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -86,7 +86,11 @@ impl Shelf {
         }
     }
 
-    pub(super) fn publish(&mut self, pages: &[Arc<Page>], stale: &mut Stale) -> Arc<Vec<Arc<Chunk>>> {
+    pub(super) fn publish(
+        &mut self,
+        pages: &[Arc<Page>],
+        stale: &mut Stale,
+    ) -> Arc<Vec<Arc<Chunk>>> {
         if stale.chunks.is_empty() {
             return self.shown.clone();
         }
@@ -100,10 +104,9 @@ impl Shelf {
         for c in stale.chunks.drain(..) {
             let c = c as usize;
             stale.chunk_is[c] = false;
-            let mut chunk = self
-                .free_chunks
-                .pop()
-                .unwrap_or_else(|| Arc::new(Chunk { pages: Vec::with_capacity(CHUNK), ..Chunk::default() }));
+            let mut chunk = self.free_chunks.pop().unwrap_or_else(|| {
+                Arc::new(Chunk { pages: Vec::with_capacity(CHUNK), ..Chunk::default() })
+            });
             if let Some(chunk) = Arc::get_mut(&mut chunk) {
                 chunk.fill(&pages[c * CHUNK..((c + 1) * CHUNK).min(pages.len())]);
             }

@@ -17,7 +17,9 @@ impl Reach {
                 (centre - centre.clamp(lo, hi)).length_squared() <= radius * radius
             }
             Reach::Capsule { from, to, radius } => {
-                if !((from.min(to) - radius).cmple(hi).all() && (from.max(to) + radius).cmpge(lo).all()) {
+                if !((from.min(to) - radius).cmple(hi).all()
+                    && (from.max(to) + radius).cmpge(lo).all())
+                {
                     return false;
                 }
                 // A ball around the box against the axis: cheap, and never wrongly "no".
@@ -35,7 +37,11 @@ impl Reach {
             Reach::Capsule { from, to, .. } => {
                 let along = to - from;
                 let length2 = along.length_squared();
-                let t = if length2 > 0.0 { ((p - from).dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+                let t = if length2 > 0.0 {
+                    ((p - from).dot(along) / length2).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
                 (p - (from + along * t)).length_squared()
             }
         }

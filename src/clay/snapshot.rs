@@ -1,7 +1,8 @@
 //! The clay at one moment, immutable and shared.
 //!
-//! A snapshot is a spine of chunks of pages. Publishing makes new only the chunks with a changed page; the pages
-//! themselves are shared with the clay, which writes a page anew instead of changing it (copy on write).
+//! A snapshot is a spine of chunks of pages. Publishing makes new only the chunks with a changed
+//! page; the pages themselves are shared with the clay, which writes a page anew instead of
+//! changing it (copy on write).
 
 use std::sync::Arc;
 
@@ -36,7 +37,7 @@ impl Chunk {
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Totals {
     pub(super) revision: u64,
-    pub(super) lineage: u32,
+    pub(super) object_id: u32,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) pages: usize,
@@ -52,12 +53,13 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// As [`super::Mesh::levels`].
+    /// As [`super::Clay::levels`].
     pub fn levels(&self) -> Option<&Arc<Levels>> {
         self.levels.as_ref()
     }
 
-    /// All pages in order. A page that did not change between two snapshots is the same `Arc` in both.
+    /// All pages in order. A page that did not change between two snapshots is the same `Arc` in
+    /// both.
     pub fn pages(&self) -> impl ExactSizeIterator<Item = &Arc<Page>> + Clone {
         (0..self.totals.pages).map(|i| self.page(i as u32))
     }
@@ -72,8 +74,9 @@ impl Snapshot {
         &self.spine[index as usize / CHUNK].pages[index as usize % CHUNK]
     }
 
-    /// Calls `visit` with the number of each page that differs from `older`, at a cost of the changed pages and an eighth of a
-    /// nanosecond for each other. Snapshots of different clays differ everywhere.
+    /// Calls `visit` with the number of each page that differs from `older`, at a cost of the
+    /// changed pages and an eighth of a nanosecond for each other. Snapshots of different clays
+    /// differ everywhere.
     pub fn each_changed(&self, older: &Snapshot, mut visit: impl FnMut(u32, &Arc<Page>)) {
         for (c, chunk) in self.spine.iter().enumerate() {
             let old = older.spine.get(c);
@@ -88,8 +91,13 @@ impl Snapshot {
         }
     }
 
-    /// Calls `visit` with each page whose box, and whose chunk's box, `meets` takes, in ascending order.
-    pub fn each_page_in(&self, meets: impl Fn(Vec3, Vec3) -> bool, mut visit: impl FnMut(u32, &Arc<Page>)) {
+    /// Calls `visit` with each page whose box, and whose chunk's box, `meets` takes, in ascending
+    /// order.
+    pub fn each_page_in(
+        &self,
+        meets: impl Fn(Vec3, Vec3) -> bool,
+        mut visit: impl FnMut(u32, &Arc<Page>),
+    ) {
         for (c, chunk) in self.spine.iter().enumerate().filter(|(_, c)| meets(c.lo, c.hi)) {
             for (i, page) in chunk.pages.iter().enumerate().filter(|(_, p)| meets(p.lo, p.hi)) {
                 visit((c * CHUNK + i) as u32, page);
@@ -101,9 +109,9 @@ impl Snapshot {
         self.totals.revision
     }
 
-    /// As [`super::Mesh::lineage`].
-    pub fn lineage(&self) -> u32 {
-        self.totals.lineage
+    /// As [`super::Clay::object_id`].
+    pub fn object_id(&self) -> u32 {
+        self.totals.object_id
     }
 
     /// The numbers that the next new vertex and triangle get.
@@ -125,7 +133,8 @@ impl Snapshot {
         self.spine.iter().fold(none, |(lo, hi), c| (lo.min(c.lo), hi.max(c.hi)))
     }
 
-    /// The nearest point of the surface on the ray, seen from either side. As exact as [`super::Mesh::pick`].
+    /// The nearest point of the surface on the ray, seen from either side. As exact as
+    /// [`super::Clay::pick`].
     pub fn pick(&self, ray: Ray) -> Option<Hit> {
         let (lo, hi) = self.bounds();
         let boxes = BoxRay::new(ray.origin, ray.dir, lo.abs().max(hi.abs()).max_element());
@@ -158,7 +167,8 @@ impl Snapshot {
     }
 }
 
-/// From a vertex's number to its place in the order of numbers: the same while no vertex was added or taken away.
+/// From a vertex's number to its place in the order of numbers: the same while no vertex was added
+/// or taken away.
 #[derive(Debug)]
 pub struct Ranks(Option<Vec<u32>>);
 
@@ -191,7 +201,8 @@ pub(super) fn ranks<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> 
     Ranks(Some(ranks))
 }
 
-/// In the order of the mesh that was loaded. Triangles that were left out at load are not there: the others close up.
+/// In the order of the mesh that was loaded. Triangles that were left out at load are not there:
+/// the others close up.
 pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> TriMesh {
     let rank = ranks(page, totals);
     let mut positions = vec![Vec3::ZERO; totals.vertices];
@@ -226,7 +237,8 @@ pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) ->
     }
 }
 
-/// FNV-1a, 64 bits, a word at a time, over positions, mask, colours and triangles in the loaded order.
+/// FNV-1a, 64 bits, a word at a time, over positions, mask, colours and triangles in the loaded
+/// order.
 pub(super) fn hash<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> u64 {
     let plain = to_tri(page, totals);
     let rank = ranks(page, totals);

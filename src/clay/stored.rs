@@ -1,7 +1,8 @@
-//! Pages as bytes, and clay put together from pages that were stored: what a session file keeps of a work's history.
+//! Pages as bytes, and clay put together from pages that were stored: what a session file keeps of
+//! a work's history.
 //!
-//! A page is named by its number and the revision that wrote it: within one lineage two pages of one name are the same, to
-//! the bit. Trees are not stored, they follow from the points.
+//! A page is named by its number and the revision that wrote it: within one lineage two pages of
+//! one name are the same, to the bit. Trees are not stored, they follow from the points.
 
 use std::sync::Arc;
 
@@ -9,8 +10,8 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::LEAF;
-use super::clay::Mesh;
-use super::page::{BREAK, Page, Topology};
+use super::clay::Clay;
+use super::page::{BREAK, Page, PageTopology};
 use crate::assembly::Built;
 
 /// The bytes are not those of a page.
@@ -20,17 +21,17 @@ pub struct BadPage;
 
 /// What clay is besides its pages.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Rest {
+pub struct ObjectState {
     pub pages: u32,
     pub revision: u64,
-    pub lineage: u32,
+    pub object_id: u32,
     /// The numbers that the next new vertex and triangle get.
     pub next: [u32; 2],
     /// Pages without vertices that are used first.
     pub empty: Vec<u32>,
 }
 
-impl Topology {
+impl PageTopology {
     pub fn to_bytes(&self) -> Vec<u8> {
         // Plain data always serialises.
         postcard::to_stdvec(self).unwrap_or_default()
@@ -38,8 +39,8 @@ impl Topology {
 
     /// # Errors
     /// [`BadPage`] where anything points outside.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Topology, BadPage> {
-        let mut t: Topology = postcard::from_bytes(bytes).map_err(|_| BadPage)?;
+    pub fn from_bytes(bytes: &[u8]) -> Result<PageTopology, BadPage> {
+        let mut t: PageTopology = postcard::from_bytes(bytes).map_err(|_| BadPage)?;
         let halo = t.halo_sources.len();
         let all = t.own.checked_add(halo).filter(|n| *n < BREAK as usize).ok_or(BadPage)?;
         let ascending = |ends: &[u16]| ends.windows(2).all(|w| w[0] <= w[1]);
@@ -78,20 +79,27 @@ impl Page {
     ///
     /// # Errors
     /// [`BadPage`] where the bytes are of another page, or a place is not finite.
-    pub fn from_bytes(bytes: &[u8], topology: Arc<Topology>, revision: u64) -> Result<Page, BadPage> {
+    pub fn from_bytes(
+        bytes: &[u8],
+        topology: Arc<PageTopology>,
+        revision: u64,
+    ) -> Result<Page, BadPage> {
         let all = topology.own + topology.halo_sources.len();
         if bytes.len() != all * 32 {
             return Err(BadPage);
         }
         let row = |b: &[u8]| {
-            let x = |k: usize| f32::from_bits(u32::from_le_bytes([b[k], b[k + 1], b[k + 2], b[k + 3]]));
+            let x =
+                |k: usize| f32::from_bits(u32::from_le_bytes([b[k], b[k + 1], b[k + 2], b[k + 3]]));
             Vec4::new(x(0), x(4), x(8), x(12))
         };
         let (points, normals) = bytes.split_at(all * 16);
         let points: Vec<Vec4> = points.chunks_exact(16).map(row).collect();
         let normals: Vec<Vec4> = normals.chunks_exact(16).map(row).collect();
         // The colour's bits may spell anything.
-        if !points.iter().all(|p| p.is_finite()) || !normals.iter().all(|n| n.truncate().is_finite()) {
+        if !points.iter().all(|p| p.is_finite())
+            || !normals.iter().all(|n| n.truncate().is_finite())
+        {
             return Err(BadPage);
         }
         let leaves = topology.triangles.len().div_ceil(LEAF);
@@ -125,13 +133,13 @@ fn fit(pages: &[Arc<Page>]) -> bool {
     })
 }
 
-impl Mesh {
-    /// What [`Mesh::of_stored`] needs besides the pages.
-    pub fn rest(&self) -> Rest {
-        Rest {
+impl Clay {
+    /// What [`Clay::of_stored`] needs besides the pages.
+    pub fn rest(&self) -> ObjectState {
+        ObjectState {
             pages: self.pages.len() as u32,
             revision: self.revision,
-            lineage: self.lineage,
+            object_id: self.object_id,
             next: [self.next_vertex, self.next_triangle],
             empty: self.empty.clone(),
         }
@@ -141,28 +149,32 @@ impl Mesh {
     ///
     /// # Errors
     /// [`BadPage`] where the pages are not all there, or do not fit each other.
-    pub fn of_stored(pages: Vec<Arc<Page>>, rest: &Rest) -> Result<Mesh, BadPage> {
-        if pages.len() != rest.pages as usize || !fit(&pages) || rest.empty.iter().any(|&i| i >= rest.pages) {
+    pub fn of_stored(pages: Vec<Arc<Page>>, rest: &ObjectState) -> Result<Clay, BadPage> {
+        if pages.len() != rest.pages as usize
+            || !fit(&pages)
+            || rest.empty.iter().any(|&i| i >= rest.pages)
+        {
             return Err(BadPage);
         }
         let vertices = pages.iter().map(|p| p.own()).sum();
         let triangles = pages.iter().map(|p| p.triangles().len()).sum();
         let built = Built { pages, vertices, triangles, warnings: Vec::new(), next: rest.next };
-        let mut mesh = Mesh::of(built, rest.revision);
-        mesh.lineage = rest.lineage;
+        let mut mesh = Clay::of(built, rest.revision);
+        mesh.object_id = rest.object_id;
         mesh.empty.clone_from(&rest.empty);
         Ok(mesh)
     }
 
-    /// Which empty pages are used first, as [`Mesh::rest`] told it.
+    /// Which empty pages are used first, as [`Clay::rest`] told it.
     pub fn set_empty(&mut self, empty: Vec<u32>) {
         let count = self.pages.len() as u32;
         self.empty = empty;
         self.empty.retain(|i| *i < count);
     }
 
-    /// Stored pages take the place of those that are here: a jump within the history of this work. Nothing can be taken back
-    /// or done again after it. False, and nothing done, where the pages are not of this work.
+    /// Stored pages take the place of those that are here: a jump within the history of this work.
+    /// Nothing can be taken back or done again after it. False, and nothing done, where the pages
+    /// are not of this work.
     pub fn jump(&mut self, pages: &[(u32, Arc<Page>)]) -> bool {
         let count = pages.iter().map(|(i, _)| *i as usize + 1).max().unwrap_or(0);
         if count > self.pages.len() + pages.len() {

@@ -53,7 +53,8 @@ impl History {
         }
     }
 
-    /// Keeps the page if the open step has not touched it before; else (or without a step) hands it back.
+    /// Keeps the page if the open step has not touched it before; else (or without a step) hands it
+    /// back.
     pub(super) fn keep(&mut self, index: u32, page: Arc<Page>) -> Option<Arc<Page>> {
         let Some(step) = &mut self.open else { return Some(page) };
         let touched = &mut self.touched[index as usize];
@@ -78,8 +79,8 @@ impl History {
         self.open.iter().flatten().for_each(|(i, page)| visit(*i, page));
     }
 
-    /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to the dropping thread.
-    /// Whether there is a step more.
+    /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to
+    /// the dropping thread. Whether there is a step more.
     pub(super) fn end(&mut self) -> bool {
         let Some(step) = self.open.take() else { return false };
         if step.is_empty() {

@@ -1,15 +1,15 @@
-//! Whether everything in the clay agrees with everything else. For tests and simulation runs: costs as much as the clay is
-//! large.
+//! Whether everything in the clay agrees with everything else. For tests and simulation runs: costs
+//! as much as the clay is large.
 
 use super::boxtree::{BoxTree, LEAF};
-use super::clay::Mesh;
+use super::clay::Clay;
 use super::normals;
-use super::page::{BREAK, Topology};
+use super::page::{BREAK, PageTopology};
 use crate::assembly::PAGE_VERTICES;
 
-impl Mesh {
-    /// Every halo says what its home says, every normal is what the positions give, every tree and bound fits, every
-    /// triangle's corners exist.
+impl Clay {
+    /// Every halo says what its home says, every normal is what the positions give, every tree and
+    /// bound fits, every triangle's corners exist.
     pub fn verify_invariants(&self) -> Result<(), String> {
         for (i, page) in self.pages.iter().enumerate() {
             let t = &page.topology;
@@ -18,13 +18,16 @@ impl Mesh {
                 return Err(format!("page {i}: {} own vertices are too many", t.own));
             }
             if page.points.len() != rows || page.normals.len() != rows {
-                return Err(format!("page {i}: {rows} rows expected, it has {}", page.points.len()));
+                return Err(format!(
+                    "page {i}: {rows} rows expected, it has {}",
+                    page.points.len()
+                ));
             }
             let corners = t.triangles.iter().flatten().chain(t.rings.iter()).chain(t.hexes.flat());
             if let Some(&v) = corners.into_iter().find(|&&v| (v & !BREAK) as usize >= rows) {
                 return Err(format!("page {i}: local vertex {v} does not exist"));
             }
-            let mut indexed = Topology::clone(t);
+            let mut indexed = PageTopology::clone(t);
             if !indexed.index()
                 || (&indexed.ring_blocks, &indexed.leaf_blocks, &indexed.loose)
                     != (&t.ring_blocks, &t.leaf_blocks, &t.loose)
@@ -33,18 +36,24 @@ impl Mesh {
             }
             for k in 0..t.halo_sources.len() {
                 let (home, local) = t.halo_home(k);
-                let Some(other) = self.pages.get(home as usize).filter(|o| (local as usize) < o.own()) else {
+                let Some(other) =
+                    self.pages.get(home as usize).filter(|o| (local as usize) < o.own())
+                else {
                     return Err(format!("page {i}: halo vertex {k} has no home"));
                 };
                 let same = |a: glam::Vec4, b: glam::Vec4| {
                     a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
                 };
                 if !same(page.points[t.own + k], other.points[local as usize]) {
-                    return Err(format!("page {i}: halo vertex {k} is not where page {home} has it"));
+                    return Err(format!(
+                        "page {i}: halo vertex {k} is not where page {home} has it"
+                    ));
                 }
                 if !same(page.normals[t.own + k], other.normals[local as usize]) {
                     let (here, there) = (page.normals[t.own + k], other.normals[local as usize]);
-                    return Err(format!("page {i}: halo normal {k} is {here}, page {home} has {there}"));
+                    return Err(format!(
+                        "page {i}: halo normal {k} is {here}, page {home} has {there}"
+                    ));
                 }
             }
             for v in 0..t.own {
@@ -72,9 +81,12 @@ impl Mesh {
                 return Err(format!("page {i}: its tree is out of date"));
             }
         }
-        let sum =
-            |of: &dyn Fn(&Topology) -> usize| self.pages.iter().map(|p| of(p.topology())).sum::<usize>();
-        if (sum(&|t| t.own), sum(&|t| t.triangles.len())) != (self.vertex_count(), self.triangle_count()) {
+        let sum = |of: &dyn Fn(&PageTopology) -> usize| {
+            self.pages.iter().map(|p| of(p.topology())).sum::<usize>()
+        };
+        if (sum(&|t| t.own), sum(&|t| t.triangles.len()))
+            != (self.vertex_count(), self.triangle_count())
+        {
             return Err("the totals are out of date".into());
         }
         let mut top = BoxTree::default();

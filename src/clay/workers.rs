@@ -5,8 +5,9 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Threads that work on a dab's pages. The first thread that uses them takes part itself, so it should be the tick thread;
-/// others may use them too, but then only wait. Results do not depend on the count.
+/// Threads that work on a dab's pages. The first thread that uses them takes part itself, so it
+/// should be the tick thread; others may use them too, but then only wait. Results do not depend on
+/// the count.
 #[derive(Debug, Clone)]
 pub struct Workers {
     count: usize,
@@ -32,7 +33,9 @@ impl Workers {
             return None;
         }
         let named = || {
-            ThreadPoolBuilder::new().num_threads(self.count).thread_name(|i| format!("sculptd-worker-{i}"))
+            ThreadPoolBuilder::new()
+                .num_threads(self.count)
+                .thread_name(|i| format!("sculptd-worker-{i}"))
         };
         // A thread can belong to one pool only; if this one does, the pool works without it.
         self.pool

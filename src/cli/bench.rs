@@ -1,7 +1,7 @@
 //! `sculptd bench`: can this machine hold this mesh at this rate?
 //!
-//! First single dabs on the bare clay, each phase by itself; then a stroke through the real `World::step` with one pen
-//! sample and one published snapshot a tick, at the loop's rate.
+//! First single dabs on the bare clay, each phase by itself; then a stroke through the real
+//! `World::step` with one pen sample and one published snapshot a tick, at the loop's rate.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -10,11 +10,11 @@ use glam::{Vec2, Vec3};
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian, PressureCurve, Smooth};
-use sculptd_clay::{Mesh, PhaseTimes, Ray, Reach, Workers, bytes_to_build};
+use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush, PressureCurve, SmoothBrush};
+use sculptd_clay::{Clay, PhaseTimes, Ray, Reach, Workers, bytes_to_build};
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::pacer::Pacer;
-use sculptd_daemon::tick_statistics::{Figures, Percentiles};
+use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics};
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
@@ -129,10 +129,11 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
     let plain = input(args)?;
     let read_s = (now_ns() - begun) as f64 / 1e9;
     let begun = now_ns();
-    let mut mesh = Mesh::build(&plain, &Job::default()).map_err(|e| Fail::Input(e.to_string()))?;
+    let mut mesh = Clay::build(&plain, &Job::default()).map_err(|e| Fail::Input(e.to_string()))?;
     let load_s = (now_ns() - begun) as f64 / 1e9;
     drop(plain);
-    let workers = Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
+    let workers =
+        Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
     workers.warm();
     let bytes_per_vertex = mesh.memory().at_rest() as f64 / mesh.vertex_count() as f64;
     mesh.set_clock(now_ns);
@@ -180,7 +181,10 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         writeln!(
             out,
             "dab      {affected} vertices: {:.0} us, {:.0} at p99; {:.1} ns a vertex; the first one {:.0} us",
-            report.dab_us.p50, report.dab_us.p99, report.ns_per_affected_vertex, report.first_dab_us
+            report.dab_us.p50,
+            report.dab_us.p99,
+            report.ns_per_affected_vertex,
+            report.first_dab_us
         )?;
         let p = &report.phases_us;
         for (name, s) in [
@@ -219,7 +223,7 @@ fn input(args: &BenchArgs) -> Result<TriMesh, Fail> {
 }
 
 /// A ray at the clay's middle from the side of `towards`.
-fn ray_from(mesh: &Mesh, towards: Vec3) -> Ray {
+fn ray_from(mesh: &Clay, towards: Vec3) -> Ray {
     let (lo, hi) = mesh.bounds();
     Ray { origin: (lo + hi) * 0.5 + towards * (hi - lo).length(), dir: -towards }
 }
@@ -233,7 +237,7 @@ fn direction(i: usize) -> Vec3 {
 }
 
 /// The radius within which `affected` vertices lie, where the first dab goes.
-fn radius_for(mesh: &Mesh, affected: usize) -> f32 {
+fn radius_for(mesh: &Clay, affected: usize) -> f32 {
     let (lo, hi) = mesh.bounds();
     let (mut small, mut large) = (0.0, (hi - lo).length());
     let centre = mesh.pick(ray_from(mesh, direction(0))).map_or((lo + hi) * 0.5, |h| h.position);
@@ -257,7 +261,7 @@ struct Dabs {
 /// Dabs a stroke: one undo step.
 const STROKE: usize = 50;
 
-fn single_dabs(mesh: &mut Mesh, args: &BenchArgs, radius: f32, workers: &Workers) -> Dabs {
+fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers) -> Dabs {
     let mut out = Dabs::default();
     let mut snapshot = None;
     for i in 0..args.dabs {
@@ -270,11 +274,17 @@ fn single_dabs(mesh: &mut Mesh, args: &BenchArgs, radius: f32, workers: &Workers
         mesh.begin_step();
         let reach = Reach::Sphere { centre: hit.position, radius };
         let report = match args.brush.kind(i / STROKE) {
-            BrushKind::Smooth => mesh.dab(&reach, &Smooth::new(hit.position, radius, 0.5), workers),
+            BrushKind::Smooth => {
+                mesh.dab(&reach, &SmoothBrush::new(hit.position, radius, 0.5), workers)
+            }
             _ => {
                 // Out and in by turns, so that the form lasts however long the measurement.
                 let height = radius * if i % 2 == 0 { 0.02 } else { -0.02 };
-                mesh.dab(&reach, &Gaussian::new(hit.position, radius, hit.normal, height), workers)
+                mesh.dab(
+                    &reach,
+                    &GaussianBrush::new(hit.position, radius, hit.normal, height),
+                    workers,
+                )
             }
         };
         if i % STROKE == STROKE - 1 {
@@ -304,13 +314,13 @@ fn single_dabs(mesh: &mut Mesh, args: &BenchArgs, radius: f32, workers: &Workers
 }
 
 struct Stroke {
-    figures: Figures,
+    figures: TickStatistics,
     workers: usize,
     tree_growth: f32,
 }
 
 /// A pen that circles over the view, one dab's distance a tick, through the world.
-fn stroke(mesh: Mesh, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke {
+fn stroke(mesh: Clay, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke {
     let count = workers.count();
     let (lo, hi) = mesh.bounds();
     let extent = (hi - lo).length() * 0.5;
@@ -324,9 +334,10 @@ fn stroke(mesh: Mesh, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke
         pressure_strength: PressureCurve { at_zero: 1.0, gamma: 1.0 },
         ..BrushSettings::default()
     };
-    let options = WorldOptions { dab_budget: u64::MAX, undo_bytes: 1 << 28, hands: HandSettings::default() };
+    let options =
+        WorldOptions { dab_budget: u64::MAX, undo_bytes: 1 << 28, hands: HandSettings::default() };
     let mut world = World::new(mesh, Camera::default(), settings(0, false), workers, options);
-    let mut figures = Figures::default();
+    let mut figures = TickStatistics::default();
     let mut pacer = Pacer::new(args.rate.max(1), now_ns() / 1000);
     let sleeper = spin_sleep::SpinSleeper::default();
     let ticks = (f64::from(args.rate) * args.seconds) as u64;
@@ -338,7 +349,8 @@ fn stroke(mesh: Mesh, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke
         pacer.wait(clock(), &sleeper);
         let ring = 0.15 + 0.1 * (tick as f32 * 0.001).sin();
         angle += step / ring;
-        let at = Vec2::new(0.5, 0.5) + Vec2::new(angle.cos() / world.camera().aspect, angle.sin()) * ring;
+        let at = Vec2::new(0.5, 0.5)
+            + Vec2::new(angle.cos() / world.camera().aspect, angle.sin()) * ring;
         // The pen lifts twice a second: a stroke is an undo step.
         let half = u64::from(args.rate).div_ceil(2).max(2);
         let sample = Sample {

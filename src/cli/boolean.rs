@@ -13,7 +13,7 @@ use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{Operation, Options, Report, Solid};
 use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::{PolyMesh, check, repair as mend};
+use sculptd_geometry::{PolyMesh, check, repair};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum What {
@@ -40,13 +40,16 @@ pub enum Solve {
 #[derive(Debug, clap::Args)]
 pub struct BooleanArgs {
     pub what: What,
-    /// The operands A, B and, for a union, an intersection or a difference (A minus all others), more.
+    /// The operands A, B and, for a union, an intersection or a difference (A minus all others),
+    /// more.
     #[arg(required = true, num_args = 1..)]
     pub meshes: Vec<PathBuf>,
-    /// Where the result goes; the ending says the format. Where there are several, their names stand before the ending.
+    /// Where the result goes; the ending says the format. Where there are several, their names
+    /// stand before the ending.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
-    /// Length within which faces are in contact; 0 for what the numbers say. Otherwise taken from the operands' rounding.
+    /// Length within which faces are in contact; 0 for what the numbers say. Otherwise taken from
+    /// the operands' rounding.
     #[arg(long, value_name = "MM")]
     pub tolerance: Option<f64>,
     /// Keep faces in which the solids only touch in the intersection.
@@ -103,7 +106,8 @@ struct Made {
     genus: Option<i64>,
     closed: bool,
     manifold: bool,
-    /// With `--details`: operand (in the order of the command line, from 0) and face in it, one a face.
+    /// With `--details`: operand (in the order of the command line, from 0) and face in it, one a
+    /// face.
     #[serde(skip_serializing_if = "Option::is_none")]
     origins: Option<Vec<(usize, u32)>>,
 }
@@ -313,14 +317,16 @@ fn operand(
     let mut facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
     if !facts.closed {
         // Triangle soups (STL) say their corners anew for each triangle.
-        mend::weld(&mut mesh, 0.0);
+        repair::weld(&mut mesh, 0.0);
         facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
     }
     let crossed = facts.self_intersections.unwrap_or(0);
     phase(out, "look");
-    if args.solve.is_some() && (!facts.closed || crossed > 0 || facts.volume.is_some_and(|v| v < 0.0)) {
-        let turned = mend::orient(&mut mesh);
-        let holes = mend::fill_holes(&mut mesh, usize::MAX);
+    if args.solve.is_some()
+        && (!facts.closed || crossed > 0 || facts.volume.is_some_and(|v| v < 0.0))
+    {
+        let turned = repair::orient(&mut mesh);
+        let holes = repair::fill_holes(&mut mesh, usize::MAX);
         let was = mesh.face_count();
         mesh = boolean::solve(&mesh, job)?;
         out.warnings.push(format!(

@@ -25,14 +25,16 @@ fn load(file: Option<&PathBuf>) -> Result<Resolved, Fail> {
     Resolved::load(file.map(|f| f.as_path())).map_err(|e: ConfigError| Fail::Config(e.to_string()))
 }
 
-/// Numbers as a person would write them: a setting of 0.3 is kept in 32 bits, and is no 0.30000001192092896 to anybody.
+/// Numbers as a person would write them: a setting of 0.3 is kept in 32 bits, and is no
+/// 0.30000001192092896 to anybody.
 pub fn plain_numbers(value: &mut Value) {
     match value {
         Value::Number(n) => {
             let Some(wide) = n.as_f64().filter(|_| n.is_f64()) else { return };
             let narrow = wide as f32;
             if f64::from(narrow) == wide
-                && let Some(short) = narrow.to_string().parse().ok().and_then(serde_json::Number::from_f64)
+                && let Some(short) =
+                    narrow.to_string().parse().ok().and_then(serde_json::Number::from_f64)
             {
                 *n = short;
             }
@@ -56,22 +58,31 @@ pub fn run(command: &ConfigCommand, as_json: bool) -> Outcome {
         }
         ConfigCommand::Show { config } => {
             let resolved = load(config.as_ref())?;
-            let mut all = serde_json::to_value(&resolved.config).map_err(|e| Fail::Config(e.to_string()))?;
+            let mut all =
+                serde_json::to_value(&resolved.config).map_err(|e| Fail::Config(e.to_string()))?;
             plain_numbers(&mut all);
             let mut rows = Vec::new();
             if let Value::Object(sections) = &all {
                 for (section, keys) in sections {
                     for (key, value) in keys.as_object().into_iter().flatten() {
                         let name = format!("{section}.{key}");
-                        let origin = resolved.origins.get(&name).cloned().unwrap_or_else(|| "default".into());
+                        let origin = resolved
+                            .origins
+                            .get(&name)
+                            .cloned()
+                            .unwrap_or_else(|| "default".into());
                         rows.push((name, value.clone(), origin));
                     }
                 }
             }
-            let object: serde_json::Map<String, Value> =
-                rows.iter().map(|(n, v, o)| (n.clone(), json!({ "value": v, "origin": o }))).collect();
+            let object: serde_json::Map<String, Value> = rows
+                .iter()
+                .map(|(n, v, o)| (n.clone(), json!({ "value": v, "origin": o })))
+                .collect();
             answer(as_json, &object, |out| {
-                rows.iter().try_for_each(|(n, v, o)| writeln!(out, "{n:<28} {v:<40} {o}", v = v.to_string()))
+                rows.iter().try_for_each(|(n, v, o)| {
+                    writeln!(out, "{n:<28} {v:<40} {o}", v = v.to_string())
+                })
             });
         }
         ConfigCommand::Schema => {

@@ -8,7 +8,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::repair as mend;
+use sculptd_geometry::repair;
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct ConvertArgs {
@@ -38,13 +38,21 @@ pub(super) struct Written {
 }
 
 /// Writes `mesh` and says so: the end of every command that makes a mesh.
-pub(super) fn deliver(path: &std::path::Path, mesh: &PolyMesh, warnings: Vec<String>, json: bool) -> Outcome {
+pub(super) fn deliver(
+    path: &std::path::Path,
+    mesh: &PolyMesh,
+    warnings: Vec<String>,
+    json: bool,
+) -> Outcome {
     if mesh.positions.iter().any(|p| !p.as_vec3().is_finite()) {
-        return Err(Fail::Check("the result has coordinates beyond 3.4e38; nothing was written".into()));
+        return Err(Fail::Check(
+            "the result has coordinates beyond 3.4e38; nothing was written".into(),
+        ));
     }
     write_mesh(path, mesh)?;
     let file = path.display().to_string();
-    let written = Written { file, vertices: mesh.positions.len(), faces: mesh.face_count(), warnings };
+    let written =
+        Written { file, vertices: mesh.positions.len(), faces: mesh.face_count(), warnings };
     answer(json, &written, |out| {
         for w in &written.warnings {
             writeln!(out, "warning: {w}")?;
@@ -57,7 +65,10 @@ pub(super) fn deliver(path: &std::path::Path, mesh: &PolyMesh, warnings: Vec<Str
 pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     writable_format(&args.output)?;
     if !args.scale.is_finite() || args.scale == 0.0 {
-        return Err(Fail::Usage(format!("--scale: expected a number other than 0, found {}", args.scale)));
+        return Err(Fail::Usage(format!(
+            "--scale: expected a number other than 0, found {}",
+            args.scale
+        )));
     }
     if args.weld.is_some_and(|w| !(w.is_finite() && w >= 0.0)) {
         return Err(Fail::Usage("--weld: expected a distance of 0 or more".into()));
@@ -69,7 +80,7 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
         *p *= args.scale;
     }
     if args.scale < 0.0 {
-        mend::flip(&mut mesh);
+        repair::flip(&mut mesh);
     }
     let mut done = |n: usize, what: &str| {
         if n > 0 {
@@ -77,12 +88,12 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
         }
     };
     if let Some(distance) = args.weld {
-        done(mend::weld(&mut mesh, distance), "vertices welded to others");
+        done(repair::weld(&mut mesh, distance), "vertices welded to others");
     }
     if args.mend {
-        done(mend::remove_degenerate(&mut mesh), "faces without extent removed");
-        done(mend::orient(&mut mesh), "faces turned over");
-        let filled = mend::fill_holes(&mut mesh, usize::MAX);
+        done(repair::remove_degenerate(&mut mesh), "faces without extent removed");
+        done(repair::orient(&mut mesh), "faces turned over");
+        let filled = repair::fill_holes(&mut mesh, usize::MAX);
         done(filled.holes, "holes closed");
         done(filled.left, "open borders that are no simple loop left as they are");
     }

@@ -33,7 +33,10 @@ pub fn run(args: &DecimateArgs, json: bool) -> Outcome {
     let target = Target { triangles: args.faces, error: args.max_error.unwrap_or(f64::INFINITY) };
     let made = quadric(&loaded.mesh, target, &job).map_err(interrupted)?;
     if args.max_error.is_none() && made.face_count() > args.faces {
-        warnings.push(format!("stopped at {} triangles: more would break the surface", made.face_count()));
+        warnings.push(format!(
+            "stopped at {} triangles: more would break the surface",
+            made.face_count()
+        ));
     }
     deliver(&args.output, &made, warnings, json)
 }

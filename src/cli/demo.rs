@@ -1,5 +1,6 @@
-//! `sculptd demo`: the main job with no hardware. Simulated devices perform a journal; their bytes go through the real
-//! parsers, the real channel and the real loop. Headless, it ends by itself with a summary and an exported mesh.
+//! `sculptd demo`: the main job with no hardware. Simulated devices perform a journal; their bytes
+//! go through the real parsers, the real channel and the real loop. Headless, it ends by itself
+//! with a summary and an exported mesh.
 
 use std::path::PathBuf;
 
@@ -7,9 +8,9 @@ use super::live::{self, LiveRun};
 use super::run::{self, seconds};
 use super::{Fail, Outcome, display};
 use sculptd_daemon::config::Config;
-use sculptd_daemon::demo_devices as ghost;
+use sculptd_daemon::demo_devices;
 use sculptd_daemon::live::Journal;
-use sculptd_daemon::simulated_loop::{Pace, Stepped, SteppedOptions, summary};
+use sculptd_daemon::simulated_loop::{Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup::Begun;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::{Clock, queue};
@@ -40,7 +41,8 @@ pub struct DemoArgs {
 pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     sculptd_geometry::io::writable_format(&args.export).map_err(|e| Fail::Usage(e.to_string()))?;
     if let Some(path) = args.session.as_ref().filter(|p| p.exists()) {
-        let text = format!("{}: expected the name of a new session: the demo begins anew", path.display());
+        let text =
+            format!("{}: expected the name of a new session: the demo begins anew", path.display());
         return Err(Fail::Usage(text));
     }
     let config = Config::default();
@@ -66,9 +68,10 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     let (mut writer, thread) = begun.journal.unzip();
     let clock = Clock::manual();
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
-    let (mut feeds, adaptors) = ghost::stepped(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
+    let (mut feeds, adaptors) =
+        demo_devices::stepped(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
     let rate_hz = config.r#loop.rate_hz;
-    let options = SteppedOptions {
+    let options = SimulatedOptions {
         rate_hz,
         pace: args.pace,
         max_ticks: args.limit_s.map(|s| (s * f64::from(rate_hz)).ceil() as u64),
@@ -77,7 +80,7 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     };
     let total = options.max_ticks.unwrap_or(u64::from(rate_hz) * 20);
     let mut progress = Progress::new(total, json);
-    let stepped = Stepped {
+    let stepped = SimulatedLoop {
         world: &mut world,
         feeds: &mut feeds,
         receiver: &mut receiver,
@@ -102,7 +105,11 @@ struct Progress {
 
 impl Progress {
     fn new(total: u64, json: bool) -> Self {
-        let bar = if json { indicatif::ProgressBar::hidden() } else { indicatif::ProgressBar::new(total) };
+        let bar = if json {
+            indicatif::ProgressBar::hidden()
+        } else {
+            indicatif::ProgressBar::new(total)
+        };
         let style = indicatif::ProgressStyle::with_template("{bar:30} {pos:>5}/{len} ticks  {msg}");
         if let Ok(style) = style {
             bar.set_style(style);
@@ -114,11 +121,13 @@ impl Progress {
         if !tick.is_multiple_of(12) {
             return;
         }
-        let who: Vec<&str> =
-            [(world.pens().next().is_some(), "pen"), (world.hands().is_some_and(|h| h.count > 0), "hand")]
-                .iter()
-                .filter_map(|(on, name)| on.then_some(*name))
-                .collect();
+        let who: Vec<&str> = [
+            (world.pens().next().is_some(), "pen"),
+            (world.hands().is_some_and(|h| h.count > 0), "hand"),
+        ]
+        .iter()
+        .filter_map(|(on, name)| on.then_some(*name))
+        .collect();
         let message = format!("{}  {} steps to undo", who.join(" and "), world.mesh().undo_steps());
         self.bar.set_position(tick);
         self.bar.set_message(message.clone());

@@ -20,7 +20,8 @@ pub fn available() -> Result<(), String> {
     Ok(())
 }
 
-/// Whether to open a window: not if it is not wanted, and not where there is no screen (which is said in one line).
+/// Whether to open a window: not if it is not wanted, and not where there is no screen (which is
+/// said in one line).
 pub fn wanted(headless: bool) -> bool {
     if headless {
         return false;

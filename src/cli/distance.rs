@@ -86,7 +86,9 @@ pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fa
     let solid = Solid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
     let mut warnings = loaded.warnings;
     if !solid.topology.closed {
-        warnings.push("the surface is not closed: inside is where its winding number is above a half".into());
+        warnings.push(
+            "the surface is not closed: inside is where its winding number is above a half".into(),
+        );
     }
     Ok((mesh, solid, warnings))
 }
@@ -114,7 +116,9 @@ fn read_points(path: &Path) -> Result<Vec<DVec3>, Fail> {
         if line.is_empty() {
             continue;
         }
-        let words = line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
+        let words = line
+            .split(|c: char| c == ',' || c == ';' || c.is_whitespace())
+            .filter(|w| !w.is_empty());
         let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
         match numbers.as_deref() {
             Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
@@ -163,16 +167,21 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     } else {
         let (lo, hi) = solid.tree.bounds();
         let side = args.grid.unwrap_or(30) as usize;
-        let layout =
-            Grid::layout((lo.as_dvec3(), hi.as_dvec3()), side, args.margin.min((side / 2).saturating_sub(1)));
+        let layout = Grid::layout(
+            (lo.as_dvec3(), hi.as_dvec3()),
+            side,
+            args.margin.min((side / 2).saturating_sub(1)),
+        );
         let (grid, seconds) = timed(|| Grid::sample(&solid, layout, &job));
         let grid = grid.map_err(cancelled)?;
         if let Some(file) = &args.out {
             write_beside(file, |w| grid.write_npy(w)).map_err(|e| Fail::io(file, &e))?;
         }
         (out.count, out.seconds) = (grid.values.len(), seconds);
-        let (min, max) =
-            grid.values.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
+        let (min, max) = grid
+            .values
+            .iter()
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
         out.grid = Some(GridFacts {
             size: grid.size,
             origin: grid.origin.to_array(),

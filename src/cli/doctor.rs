@@ -25,7 +25,9 @@ struct Answer {
 
 pub fn run(args: &DoctorArgs, json: bool) -> Outcome {
     let (settings, first) = match Resolved::load(args.config.as_deref()) {
-        Ok(resolved) => (resolved.config, Check::pass("settings", "every file and key is understood")),
+        Ok(resolved) => {
+            (resolved.config, Check::pass("settings", "every file and key is understood"))
+        }
         Err(e) => {
             let repair = "mend the line named, then: sculptd config check";
             (Config::default(), Check::fail("settings", e.to_string(), repair))
@@ -42,7 +44,11 @@ pub fn run(args: &DoctorArgs, json: bool) -> Outcome {
     let mut checks = vec![first];
     checks.push(match display::available() {
         Ok(()) => Check::pass("display", "a window can be opened"),
-        Err(why) => Check::warn("display", why, "log in to a desktop, or go on with: sculptd run --headless"),
+        Err(why) => Check::warn(
+            "display",
+            why,
+            "log in to a desktop, or go on with: sculptd run --headless",
+        ),
     });
     checks.extend(doctor::all(&settings, &places));
     let failed = checks.iter().filter(|c| c.verdict == Verdict::Fail).count();
@@ -55,7 +61,12 @@ pub fn run(args: &DoctorArgs, json: bool) -> Outcome {
                 Verdict::Fail => "FAIL",
                 Verdict::Skip => "skip",
             };
-            writeln!(out, "{word}  {:<16} {}", c.name, c.cause.trim_end().replace('\n', "\n      "))?;
+            writeln!(
+                out,
+                "{word}  {:<16} {}",
+                c.name,
+                c.cause.trim_end().replace('\n', "\n      ")
+            )?;
             if let Some(repair) = &c.repair {
                 writeln!(out, "      {:<16} {repair}", "repair:")?;
             }

@@ -46,7 +46,12 @@ pub fn run(args: &InfoArgs, json: bool) -> Outcome {
         let loaded = read_mesh(path, &job)?;
         let report = report(&loaded.mesh, !args.quick, &job).map_err(interrupted)?;
         let file = path.display().to_string();
-        meshes.push(Facts { file, format: loaded.format.name(), report, warnings: loaded.warnings });
+        meshes.push(Facts {
+            file,
+            format: loaded.format.name(),
+            report,
+            warnings: loaded.warnings,
+        });
     }
     if meshes.len() == 1 {
         answer(json, &meshes[0], |out| text(out, &meshes[0]));
@@ -60,7 +65,8 @@ pub fn run(args: &InfoArgs, json: bool) -> Outcome {
 fn text(out: &mut dyn Write, facts: &Facts) -> std::io::Result<()> {
     let r = &facts.report;
     let yes = |b: bool| if b { "yes" } else { "no" };
-    let size: Vec<String> = (0..3).map(|i| format!("{}", r.bounds.max[i] - r.bounds.min[i])).collect();
+    let size: Vec<String> =
+        (0..3).map(|i| format!("{}", r.bounds.max[i] - r.bounds.min[i])).collect();
     writeln!(out, "{}: {}", facts.file, facts.format)?;
     writeln!(
         out,

@@ -1,4 +1,5 @@
-//! One live run, with or without a window: the wall's clock, real devices, ghosts or recordings beside them.
+//! One live run, with or without a window: the wall's clock, real devices, ghosts or recordings
+//! beside them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,7 +16,7 @@ use sculptd_daemon::session::history::Handle;
 use sculptd_daemon::session::writer::WriterThread;
 use sculptd_daemon::simulated_loop::{Feed, summary};
 use sculptd_daemon::startup::{Area, Begun, RecordingFeed};
-use sculptd_daemon::{Summary, adaptors, demo_devices as ghost};
+use sculptd_daemon::{Summary, adaptors, demo_devices};
 use sculptd_devices::Clock;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue;
@@ -47,7 +48,12 @@ pub struct LiveRun {
 /// How often a run without a window looks whether it should end.
 const LOOK: Duration = Duration::from_millis(20);
 
-pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) -> Result<Summary, Fail> {
+pub fn run(
+    run: LiveRun,
+    config: &Config,
+    begun: Begun,
+    catalogue: Catalogue,
+) -> Result<Summary, Fail> {
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(config.channel.capacity);
     let mut settings = config.devices.clone();
@@ -76,17 +82,27 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
     #[cfg(unix)]
     let _service = service(&run, &live, health, config)?;
     let ghosts = match run.ghosts {
-        true => Some(ghost::playing(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?),
+        true => {
+            Some(demo_devices::playing(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?)
+        }
         false => None,
     };
     let _players = play(run.players, &clock, &factory, &stop);
     let keeper = match run.kiosk.zip(start) {
         None => None,
         Some((kiosk, start)) => {
-            let (words, staff) = (kiosk.every_language().map_err(Fail::Config)?, !kiosk.staff_pin.is_empty());
+            let (words, staff) =
+                (kiosk.every_language().map_err(Fail::Config)?, !kiosk.staff_pin.is_empty());
             let (published, commands) = (live.published.clone(), live.commands.clone());
-            let keeper =
-                keeper::start(kiosk, start, published, commands, &factory, clock.clone(), stop.clone());
+            let keeper = keeper::start(
+                kiosk,
+                start,
+                published,
+                commands,
+                &factory,
+                clock.clone(),
+                stop.clone(),
+            );
             let keeper = keeper.map_err(Fail::Config)?;
             Some(keeper::Screen { desk: keeper.desk, words, staff })
         }
@@ -114,7 +130,8 @@ pub fn run(run: LiveRun, config: &Config, begun: Begun, catalogue: Catalogue) ->
         }
         eprintln!("sculptd: sculpting; end with Ctrl-C");
     }
-    // Without a window, or after one that could not open: until a signal. A closed window has raised `stop`.
+    // Without a window, or after one that could not open: until a signal. A closed window has
+    // raised `stop`.
     let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
     while live.is_running() && !stop.load(Relaxed) {
         let _ = quiet.recv_timeout(LOOK);
@@ -155,10 +172,13 @@ fn service(
             Some(page)
         }
     };
-    let reload =
-        service::Reload { extra: run.settings.clone(), now: config.clone(), commands: live.commands.clone() };
-    let service =
-        service::Service::start(watched, reload).map_err(|e| Fail::Permission(format!("SIGHUP: {e}")))?;
+    let reload = service::Reload {
+        extra: run.settings.clone(),
+        now: config.clone(),
+        commands: live.commands.clone(),
+    };
+    let service = service::Service::start(watched, reload)
+        .map_err(|e| Fail::Permission(format!("SIGHUP: {e}")))?;
     Ok((service, metrics))
 }
 
@@ -192,7 +212,12 @@ fn control(
 }
 
 #[cfg(not(unix))]
-fn control(_: &Live, _: Option<Health>, _: Option<Handle>, _: &Arc<AtomicBool>) -> Result<Option<()>, Fail> {
+fn control(
+    _: &Live,
+    _: Option<Health>,
+    _: Option<Handle>,
+    _: &Arc<AtomicBool>,
+) -> Result<Option<()>, Fail> {
     Ok(None)
 }
 

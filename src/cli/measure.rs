@@ -1,4 +1,5 @@
-//! `sculptd measure`: volume, area, dimensions, projected areas and thickness, as a cost estimate needs them.
+//! `sculptd measure`: volume, area, dimensions, projected areas and thickness, as a cost estimate
+//! needs them.
 
 use std::path::PathBuf;
 
@@ -78,11 +79,13 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let (part, notes) = load(&args.mesh, &args.how, &job)?;
     let clock = Clock::monotonic();
     let file = args.mesh.display().to_string();
-    let checked =
-        check(&file, &part, &args.how.settings(), Limits::default(), &job, || clock.now_us() as f64 * 1e-6)
-            .map_err(|e| Fail::Usage(e.to_string()))?;
+    let checked = check(&file, &part, &args.how.settings(), Limits::default(), &job, || {
+        clock.now_us() as f64 * 1e-6
+    })
+    .map_err(|e| Fail::Usage(e.to_string()))?;
     let m = measures(&part.mesh);
-    let along = |d: Vec3| projected_area(&part.mesh, d, &job).map_err(|e| Fail::Input(e.to_string()));
+    let along =
+        |d: Vec3| projected_area(&part.mesh, d, &job).map_err(|e| Fail::Input(e.to_string()));
     let s = checked.answer.summary;
     let mut warnings = notes;
     warnings.extend(checked.answer.warnings);

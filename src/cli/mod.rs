@@ -1,5 +1,6 @@
-//! The command line: one file a subcommand. A subcommand reads its arguments, calls the library and prints; it decides
-//! nothing. Standard output carries the answer (with `--json` exactly one object), standard error everything else.
+//! The command line: one file a subcommand. A subcommand reads its arguments, calls the library and
+//! prints; it decides nothing. Standard output carries the answer (with `--json` exactly one
+//! object), standard error everything else.
 
 use std::io::Write;
 use std::path::Path;
@@ -115,13 +116,15 @@ pub enum Command {
     Completions { shell: clap_complete::Shell },
     /// Print the manual page, or write those of all subcommands.
     Man {
-        /// Write sculptd.1, sculptd-run.1 and all the others into this folder, e.g. ~/.local/share/man/man1.
+        /// Write sculptd.1, sculptd-run.1 and all the others into this folder, e.g.
+        /// ~/.local/share/man/man1.
         #[arg(long, value_name = "FOLDER")]
         all: Option<std::path::PathBuf>,
     },
 }
 
-/// Why a command ended badly. The variant is the exit code; the text says what was expected and where.
+/// Why a command ended badly. The variant is the exit code; the text says what was expected and
+/// where.
 #[derive(Debug, thiserror::Error)]
 pub enum Fail {
     /// 1: a check found something.
@@ -232,7 +235,8 @@ pub fn run() -> u8 {
     }
 }
 
-/// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's choice, not an error.
+/// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's
+/// choice, not an error.
 pub fn answer<T: serde::Serialize>(
     json: bool,
     value: &T,
@@ -240,7 +244,9 @@ pub fn answer<T: serde::Serialize>(
 ) {
     let mut out = std::io::stdout().lock();
     let _ = if json {
-        serde_json::to_writer(&mut out, value).map_err(std::io::Error::from).and_then(|()| writeln!(out))
+        serde_json::to_writer(&mut out, value)
+            .map_err(std::io::Error::from)
+            .and_then(|()| writeln!(out))
     } else {
         text(&mut out)
     };

@@ -26,7 +26,8 @@ pub struct ProjectArgs {
     /// Turns the drawing about the direction.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
     pub turn: f64,
-    /// `exact`: from the silhouette's edges; `sample`: random points and rays; `march`: the same through a sampled distance.
+    /// `exact`: from the silhouette's edges; `sample`: random points and rays; `march`: the same
+    /// through a sampled distance.
     #[arg(long, value_enum, default_value = "exact")]
     pub method: MethodArg,
     /// Random points, for `sample` and `march`.
@@ -34,7 +35,8 @@ pub struct ProjectArgs {
     pub samples: u64,
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Largest circle of the alpha shape, for `sample` and `march`; 2.5 times the points' spacing unless said.
+    /// Largest circle of the alpha shape, for `sample` and `march`; 2.5 times the points' spacing
+    /// unless said.
     #[arg(long, value_name = "MM")]
     pub alpha: Option<f64>,
     /// Samples along the longest side of the grid, for `march`.
@@ -138,9 +140,11 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
             Some(g) => By::Marching(g, args.epsilon.unwrap_or_else(|| default_epsilon(g))),
             None => By::Rays,
         };
-        let (samples, seconds) = timed(|| sample(&solid, &plane, args.samples as usize, args.seed, by, &job));
+        let (samples, seconds) =
+            timed(|| sample(&solid, &plane, args.samples as usize, args.seed, by, &job));
         let samples = samples.map_err(cancelled)?;
-        (out.area, out.standard_error, out.seconds) = (samples.area, samples.standard_error, seconds);
+        (out.area, out.standard_error, out.seconds) =
+            (samples.area, samples.standard_error, seconds);
         out.points = Some(Points { inside: samples.inside.len(), total: args.samples as usize });
         let (polygons, alpha_area) = samples.shape(args.alpha.unwrap_or(samples.alpha));
         out.alpha_area = Some(alpha_area);
@@ -153,16 +157,20 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         let areas = shadow_areas(&solid, &directions, &job).map_err(cancelled)?;
         let at = |i: usize| Orientation { direction: directions[i].to_array(), area: areas[i] };
         let by = |a: &usize, b: &usize| areas[*a].total_cmp(&areas[*b]);
-        if let (Some(least), Some(most)) = ((0..areas.len()).min_by(by), (0..areas.len()).max_by(by)) {
+        if let (Some(least), Some(most)) =
+            ((0..areas.len()).min_by(by), (0..areas.len()).max_by(by))
+        {
             let (smallest, largest) = (at(least), at(most));
             out.orientations = Some(Orientations { smallest, largest, directions: areas.len() });
         }
     }
     if let Some(file) = &args.svg {
-        write_beside(file, |w| w.write_all(svg(&polygons).as_bytes())).map_err(|e| Fail::io(file, &e))?;
+        write_beside(file, |w| w.write_all(svg(&polygons).as_bytes()))
+            .map_err(|e| Fail::io(file, &e))?;
     }
     if let Some(file) = &args.png {
-        let bytes = png(&polygons, 1200).map_err(|e| Fail::Input(format!("{}: {e}", file.display())))?;
+        let bytes =
+            png(&polygons, 1200).map_err(|e| Fail::Input(format!("{}: {e}", file.display())))?;
         write_beside(file, |w| w.write_all(&bytes)).map_err(|e| Fail::io(file, &e))?;
     }
     warn(&args.mesh, &out.warnings);

@@ -55,7 +55,13 @@ impl From<RemeshError> for Fail {
 }
 
 /// Writes the mesh and prints what it is.
-pub fn finish(out: &Path, mesh: &TriMesh, seconds: f64, warnings: Vec<String>, json: bool) -> Outcome {
+pub fn finish(
+    out: &Path,
+    mesh: &TriMesh,
+    seconds: f64,
+    warnings: Vec<String>,
+    json: bool,
+) -> Outcome {
     write_mesh(out, &mesh.to_poly())?;
     let m = sculptd_geometry::measure::measures(mesh);
     let made = Made {

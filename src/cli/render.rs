@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{Fail, Outcome, answer};
 use sculptd_daemon::config::CameraConfig;
-use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup;
 use sculptd_engine::camera::Camera;
 use sculptd_geometry::job::Job;
 use sculptd_window::viewer::look::{Look, MATERIALS};
@@ -95,7 +95,8 @@ fn numbered(path: &Path, frame: u32) -> PathBuf {
 }
 
 pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
-    let mut loaded = rig::load(Some(&args.mesh), &Job::default()).map_err(super::run::rig_fail)?;
+    let mut loaded =
+        startup::load(Some(&args.mesh), &Job::default()).map_err(super::run::rig_fail)?;
     let (width, height) = args.size;
     let (yaw, pitch) = args.view.angles();
     let mut camera = CameraConfig {
@@ -124,7 +125,11 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
     for frame in 0..frames {
         let turn = frame as f32 / frames as f32 * std::f32::consts::TAU;
         let camera = Camera { yaw: camera.yaw + turn, ..camera };
-        let path = if args.turntable.is_some() { numbered(&args.output, frame) } else { args.output.clone() };
+        let path = if args.turntable.is_some() {
+            numbered(&args.output, frame)
+        } else {
+            args.output.clone()
+        };
         let scene = Scene {
             mesh: &snapshot,
             camera: &camera,

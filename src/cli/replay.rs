@@ -1,4 +1,5 @@
-//! `sculptd replay`: a session's input once more, from its start or from a checkpoint; prints the clay's hash.
+//! `sculptd replay`: a session's input once more, from its start or from a checkpoint; prints the
+//! clay's hash.
 
 use std::path::PathBuf;
 
@@ -26,14 +27,15 @@ pub struct ReplayArgs {
     /// Stop after this tick.
     #[arg(long, value_name = "TICK")]
     pub until: Option<u64>,
-    /// Begin at the nearest checkpoint before that, as opening the session does: the same clay, sooner. From the start where none
-    /// serves.
+    /// Begin at the nearest checkpoint before that, as opening the session does: the same clay,
+    /// sooner. From the start where none serves.
     #[arg(long, conflicts_with = "frames")]
     pub from_checkpoint: bool,
     /// Write the mesh as it then is.
     #[arg(long, value_name = "FILE")]
     pub export: Option<PathBuf>,
-    /// Write a picture of the work every --every seconds of the session, as frame-00000.png and on, into this folder.
+    /// Write a picture of the work every --every seconds of the session, as frame-00000.png and on,
+    /// into this folder.
     #[arg(long, value_name = "FOLDER")]
     pub frames: Option<PathBuf>,
     /// Seconds of the session between two pictures.
@@ -52,7 +54,8 @@ struct Answer {
     export: Option<String>,
     /// The tick of the checkpoint that it began at; absent: the start.
     checkpoint: Option<u64>,
-    /// Jumps within the history that could not be made again: what they name is no longer in the file.
+    /// Jumps within the history that could not be made again: what they name is no longer in the
+    /// file.
     jumps_missed: u64,
     /// Pictures written.
     frames: u32,
@@ -67,7 +70,7 @@ enum Camera {
     None,
     Plain(Film),
     #[cfg(feature = "viewer")]
-    Gpu(Box<sculptd_window::viewer::timelapse::Lapse>),
+    Gpu(Box<sculptd_window::viewer::timelapse::Timelapse>),
 }
 
 impl Camera {
@@ -75,7 +78,7 @@ impl Camera {
         let Some(folder) = &args.frames else { return Ok(Camera::None) };
         let every = (args.every * f64::from(rate_hz)).round() as u64;
         #[cfg(feature = "viewer")]
-        match sculptd_window::viewer::timelapse::Lapse::new(folder, every, PICTURE) {
+        match sculptd_window::viewer::timelapse::Timelapse::new(folder, every, PICTURE) {
             Ok(lapse) => return Ok(Camera::Gpu(Box::new(lapse))),
             Err(e) => eprintln!("sculptd: warning: pictures are drawn on the CPU: {e}"),
         }
@@ -109,8 +112,8 @@ fn replay(args: &ReplayArgs, opened: &Opened, workers: Workers) -> Done {
             failed = camera.see(tick, world).err();
         }
     };
-    let replayed =
-        replay_seen(opened, args.until, workers, &Job::default(), &mut see).map_err(|e| cannot(args, &e))?;
+    let replayed = replay_seen(opened, args.until, workers, &Job::default(), &mut see)
+        .map_err(|e| cannot(args, &e))?;
     match failed {
         Some(e) => Err(Fail::Input(e)),
         None => Ok((replayed, camera.frames())),
@@ -129,7 +132,8 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
     if let Some(loss) = &opened.loss {
         eprintln!("sculptd: warning: {}: {loss}", args.session.display());
     }
-    let workers = Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
+    let workers =
+        Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
     let near = args.from_checkpoint.then(|| {
         let count = workers.count();
         reopen(&args.session, &opened, args.until, count, &Job::default())

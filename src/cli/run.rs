@@ -1,5 +1,5 @@
-//! `sculptd run`: the daemon. With a display a window, without one headless; with recordings to play and nothing else, a
-//! stepped run that gives the same bits every time.
+//! `sculptd run`: the daemon. With a display a window, without one headless; with recordings to
+//! play and nothing else, a stepped run that gives the same bits every time.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,9 +12,9 @@ use sculptd_daemon::Summary;
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live::Journal;
-use sculptd_daemon::simulated_loop::{Feed, Pace, Stepped, SteppedOptions, summary};
-use sculptd_daemon::startup as rig;
-use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, RigError};
+use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
+use sculptd_daemon::startup;
+use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, StartupError};
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
@@ -48,10 +48,12 @@ pub struct RunArgs {
     /// End after this many seconds of the loop's time.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
-    /// Play a recording (hid-recorder text, Leap frames, or our own) as if its device were here. May be repeated.
+    /// Play a recording (hid-recorder text, Leap frames, or our own) as if its device were here.
+    /// May be repeated.
     #[arg(long, value_name = "RECORDING")]
     pub play_device: Vec<PathBuf>,
-    /// Which part of the tablet a played recording covers the view with: the part that it uses, or all of it.
+    /// Which part of the tablet a played recording covers the view with: the part that it uses, or
+    /// all of it.
     #[arg(long, value_enum, default_value_t)]
     pub play_area: PlayArea,
     /// Write the mesh here at the end; the name's ending says the format.
@@ -60,10 +62,12 @@ pub struct RunArgs {
     /// Write the summary here at the end, as JSON.
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
-    /// How fast recordings are played. Headless, the default is as fast as the machine can; in a window, as it was.
+    /// How fast recordings are played. Headless, the default is as fast as the machine can; in a
+    /// window, as it was.
     #[arg(long, value_enum)]
     pub pace: Option<Pace>,
-    /// Serve figures for Prometheus here, at /metrics; a port alone is on the loopback. No page does without.
+    /// Serve figures for Prometheus here, at /metrics; a port alone is on the loopback. No page
+    /// does without.
     #[cfg(unix)]
     #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = sculptd_daemon::metrics::address)]
     pub metrics: Option<std::net::SocketAddr>,
@@ -95,7 +99,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         sculptd_geometry::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }
     if args.mesh.is_some() && args.session.as_ref().is_some_and(|s| s.exists()) {
-        let text = "a session that exists brings its own mesh: leave out --mesh, or name another session";
+        let text =
+            "a session that exists brings its own mesh: leave out --mesh, or name another session";
         return Err(Fail::Usage(text.into()));
     }
     let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
@@ -108,7 +113,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
     let begun = begin(args.mesh.as_deref(), args.session.as_deref(), &config)?;
-    if let Some(kiosk) = kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles) {
+    if let Some(kiosk) =
+        kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
+    {
         let words = kiosk.words().map_err(Fail::Config)?;
         let (most, found) = (kiosk.max_triangles, begun.world.mesh().triangle_count());
         return Err(Fail::Input(format!(
@@ -139,7 +146,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     report(&summary, args.stats.as_deref(), json)
 }
 
-/// The installation's settings, if it is one; what cannot be shown to visitors is said before any come.
+/// The installation's settings, if it is one; what cannot be shown to visitors is said before any
+/// come.
 fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
     if !args.kiosk {
         return Ok(None);
@@ -164,15 +172,15 @@ pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
     }
 }
 
-pub fn rig_fail(e: RigError) -> Fail {
+pub fn rig_fail(e: StartupError) -> Fail {
     match e {
-        RigError::Read(e) => Fail::from(e),
-        RigError::Build { .. } => Fail::Input(e.to_string()),
+        StartupError::Read(e) => Fail::from(e),
+        StartupError::Build { .. } => Fail::Input(e.to_string()),
     }
 }
 
 pub fn begin(mesh: Option<&Path>, session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
-    let begun = rig::begin(mesh, session, config, &Job::default());
+    let begun = startup::begin(mesh, session, config, &Job::default());
     let begun = begun.map_err(|e| match e {
         BeginError::Rig(e) => rig_fail(e),
         e => Fail::Input(e.to_string()),
@@ -200,7 +208,7 @@ fn open_players(
         .map(|(i, path)| {
             let area = match args.play_area {
                 PlayArea::Full => None,
-                PlayArea::Used => rig::used_area(open(i, path)?, config.camera.aspect),
+                PlayArea::Used => startup::used_area(open(i, path)?, config.camera.aspect),
             };
             Ok((open(i, path)?, area))
         })
@@ -221,14 +229,14 @@ fn run_stepped(
     let clock = Clock::manual();
     let mut world = begun.world;
     let (mut writer, thread) = begun.journal.unzip();
-    let options = SteppedOptions {
+    let options = SimulatedOptions {
         rate_hz: config.r#loop.rate_hz,
         pace: args.pace.unwrap_or(Pace::Fast),
         max_ticks: args.limit_s.map(|s| (s * f64::from(config.r#loop.rate_hz)).ceil() as u64),
         drain_per_tick: config.channel.drain_per_tick,
         verify: false,
     };
-    let stepped = Stepped {
+    let stepped = SimulatedLoop {
         world: &mut world,
         feeds: &mut feeds,
         receiver: &mut receiver,

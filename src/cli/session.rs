@@ -7,7 +7,7 @@ use serde_json::json;
 use super::{Fail, Outcome, answer};
 use sculptd_daemon::config::state_dir;
 
-use sculptd_daemon::session::catalog as shelf;
+use sculptd_daemon::session::catalog;
 use sculptd_daemon::session::catalog::Entry;
 use sculptd_daemon::session::history::retention::Freed;
 use sculptd_daemon::session::history::{Store, StoreError, listing};
@@ -23,20 +23,23 @@ pub enum SessionCommand {
     },
     /// What a session holds, and how whole it is. Ends with 1 if it is damaged.
     Show { session: PathBuf },
-    /// Every place that the work was at, branches too; `sculptd ctl jump` goes to one of a running daemon's.
+    /// Every place that the work was at, branches too; `sculptd ctl jump` goes to one of a running
+    /// daemon's.
     History {
         session: PathBuf,
         /// Write the small picture of each place into this folder, as place-00000.png and on.
         #[arg(long, value_name = "FOLDER")]
         pictures: Option<PathBuf>,
     },
-    /// Remove the oldest sessions, or shorten the histories of those that stay; says which, and does it only with --yes.
+    /// Remove the oldest sessions, or shorten the histories of those that stay; says which, and
+    /// does it only with --yes.
     Prune {
         folder: Option<PathBuf>,
         /// How many of the newest stay.
         #[arg(long, value_name = "N", default_value_t = 20)]
         keep: usize,
-        /// Let the oldest places of each session that stays go, until its history takes so many MiB.
+        /// Let the oldest places of each session that stays go, until its history takes so many
+        /// MiB.
         #[arg(long, value_name = "MIB")]
         history: Option<u64>,
         #[arg(long)]
@@ -47,7 +50,7 @@ pub enum SessionCommand {
 }
 
 fn list(folder: &Path) -> Result<Vec<Entry>, Fail> {
-    shelf::list(folder).map_err(|e| Fail::io(folder, &e))
+    catalog::list(folder).map_err(|e| Fail::io(folder, &e))
 }
 
 fn line(out: &mut dyn std::io::Write, e: &Entry) -> std::io::Result<()> {
@@ -107,24 +110,26 @@ struct Shorter {
 
 fn prune(folder: &Path, keep: usize, history_mib: Option<u64>, yes: bool, json: bool) -> Outcome {
     let all = if folder.exists() { list(folder)? } else { vec![] };
-    let spare = shelf::spare(all.clone(), keep);
+    let spare = catalog::spare(all.clone(), keep);
     let mut shorter = Vec::new();
     if let Some(mib) = history_mib {
         let most = mib.saturating_mul(1 << 20);
-        for e in all.iter().filter(|e| e.damage.is_none() && !spare.iter().any(|s| s.path == e.path)) {
+        for e in
+            all.iter().filter(|e| e.damage.is_none() && !spare.iter().any(|s| s.path == e.path))
+        {
             let bytes = e.history.as_ref().map_or(0, |h| h.total_bytes);
-            if bytes <= most || shelf::in_use(&e.path) {
+            if bytes <= most || catalog::in_use(&e.path) {
                 continue;
             }
             let fail = |why: StoreError| Fail::Input(format!("{}: {why}", e.path.display()));
-            let freed = if yes { shelf::shorten(&e.path, most).map_err(fail)? } else { None };
+            let freed = if yes { catalog::shorten(&e.path, most).map_err(fail)? } else { None };
             shorter.push(Shorter { path: e.path.clone(), bytes, freed });
         }
     }
     let freed: u64 = spare.iter().map(|e| e.bytes).sum();
     if yes {
         for e in &spare {
-            shelf::remove(&e.path).map_err(|why| Fail::io(&e.path, &why))?;
+            catalog::remove(&e.path).map_err(|why| Fail::io(&e.path, &why))?;
         }
     }
     let paths: Vec<&PathBuf> = spare.iter().map(|e| &e.path).collect();
@@ -168,7 +173,7 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
             });
         }
         SessionCommand::Show { session } => {
-            let entry = shelf::look(session).map_err(|e| Fail::io(session, &e))?;
+            let entry = catalog::look(session).map_err(|e| Fail::io(session, &e))?;
             answer(json, &entry, |out| {
                 line(out, &entry)?;
                 let Some(f) = &entry.facts else { return Ok(()) };
@@ -177,7 +182,11 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 writeln!(out, "ticks           {:>12}   that had input", f.ticks)?;
                 writeln!(out, "commands        {:>12}", f.commands)?;
                 let Some(h) = &entry.history else { return Ok(()) };
-                writeln!(out, "history         {:>12} places, {} on branches", h.places, h.branches)?;
+                writeln!(
+                    out,
+                    "history         {:>12} places, {} on branches",
+                    h.places, h.branches
+                )?;
                 writeln!(
                     out,
                     "                {:>12} checkpoints, {} KiB, of which {} KiB of pages",
@@ -187,19 +196,27 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 )?;
                 match h.dropped {
                     0 => Ok(()),
-                    n => writeln!(out, "                {n:>12} older places let go (undo.history_bytes)"),
+                    n => writeln!(
+                        out,
+                        "                {n:>12} older places let go (undo.history_bytes)"
+                    ),
                 }
             });
             match entry {
                 Entry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
                 Entry { damage: Some(_), .. } => {
-                    let text = format!("damaged; mend it with: sculptd session save '{}'", session.display());
+                    let text = format!(
+                        "damaged; mend it with: sculptd session save '{}'",
+                        session.display()
+                    );
                     return Err(Fail::Check(text));
                 }
                 _ => {}
             }
         }
-        SessionCommand::History { session, pictures } => history(session, pictures.as_deref(), json)?,
+        SessionCommand::History { session, pictures } => {
+            history(session, pictures.as_deref(), json)?
+        }
         SessionCommand::Prune { folder, keep, history, yes } => {
             prune(folder.clone().unwrap_or_else(state_dir).as_path(), *keep, *history, *yes, json)?;
         }

@@ -8,8 +8,8 @@ use sculptd_devices::queue::SenderFactory;
 use sculptd_devices::tablet::TabletError;
 use sculptd_devices::{Clock, DeviceId, leap, serial};
 
-/// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial ports from 100, the
-/// tracker 200, recordings from 300, the window's own pointer 400.
+/// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial
+/// ports from 100, the tracker 200, recordings from 300, the window's own pointer 400.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
 pub const RECORDING_IDS: u16 = 300;
@@ -24,7 +24,8 @@ pub struct Adaptors {
     failed: Vec<String>,
 }
 
-/// Starts the adaptors. One that cannot be started does not hold up the others: it is told by [`Adaptors::describe`].
+/// Starts the adaptors. One that cannot be started does not hold up the others: it is told by
+/// [`Adaptors::describe`].
 pub fn start(
     config: &DevicesConfig,
     catalogue: Catalogue,
@@ -58,7 +59,8 @@ pub fn start(
         }
     }
     if !config.leap.is_empty() {
-        let settings = leap::Config { url: config.leap.clone(), device: TRACKER_ID, ..Default::default() };
+        let settings =
+            leap::Config { url: config.leap.clone(), device: TRACKER_ID, ..Default::default() };
         match leap::start(settings, clock.clone(), factory.sender()) {
             Ok(handle) => all.leap = Some(handle),
             Err(e) => all.failed.push(format!("hand tracking at {}: {e}", config.leap)),
@@ -79,7 +81,11 @@ impl Adaptors {
         let tablets = self.hid.as_ref().map_or_else(Vec::new, HidHandle::status);
         for t in tablets.iter().filter(|t| t.usable || t.model.is_some()) {
             let name = t.model.as_ref().unwrap_or(&t.name);
-            let state = t.reason.as_deref().unwrap_or(if t.usable { "connected" } else { "looking for it" });
+            let state = t.reason.as_deref().unwrap_or(if t.usable {
+                "connected"
+            } else {
+                "looking for it"
+            });
             lines.push(format!("{name} on {}: {state}", t.path));
         }
         for (port, handle) in &self.serial {

@@ -1,8 +1,9 @@
 //! The thing in the hands and the work made one, on a thread of its own.
 //!
-//! A choice from the hands' menu (or a call on the control socket) asks; the joiner takes the newest snapshot, computes the
-//! Boolean and sends what came of it as commands. The loop never waits for it. Where the work was changed meanwhile elsewhere,
-//! a cut is made all the same; where it was changed there, it is computed again: nothing that was sculpted is lost.
+//! A choice from the hands' menu (or a call on the control socket) asks; the joiner takes the
+//! newest snapshot, computes the Boolean and sends what came of it as commands. The loop never
+//! waits for it. Where the work was changed meanwhile elsewhere, a cut is made all the same; where
+//! it was changed there, it is computed again: nothing that was sculpted is lost.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,9 +13,9 @@ use crossbeam_channel as cc;
 use serde::Serialize;
 
 use super::published::Published;
-use sculptd_clay::{Grafted, Level, LevelError, Levels, Mesh, PAGE_VERTICES, Snapshot};
+use sculptd_clay::{Clay, Grafted, Level, LevelError, Levels, PAGE_VERTICES, Snapshot};
 use sculptd_engine::command::{Carving, Command, NewClay};
-use sculptd_engine::hand::Choice;
+use sculptd_engine::hand::MenuItem;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{Operation, Options};
 use sculptd_geometry::job::Job;
@@ -48,17 +49,18 @@ pub enum JoinError {
 }
 
 /// What a choice from the menu means for the work and the thing.
-pub fn operation(choice: Choice) -> Option<Operation> {
+pub fn operation(choice: MenuItem) -> Option<Operation> {
     match choice {
-        Choice::Add => Some(Operation::Union),
-        Choice::Carve => Some(Operation::Difference),
-        Choice::Keep => Some(Operation::Intersection),
+        MenuItem::Add => Some(Operation::Union),
+        MenuItem::Carve => Some(Operation::Difference),
+        MenuItem::Keep => Some(Operation::Intersection),
         _ => None,
     }
 }
 
-/// The work and a tool made one: the commands that put the result in place. Where the tool reaches little of the work, only that
-/// is computed and written; every other page stays as it is. `held`: the tool is the thing in the hands.
+/// The work and a tool made one: the commands that put the result in place. Where the tool reaches
+/// little of the work, only that is computed and written; every other page stays as it is. `held`:
+/// the tool is the thing in the hands.
 pub fn join(
     work: &Snapshot,
     tool: &PolyMesh,
@@ -71,7 +73,11 @@ pub fn join(
         && cut.page_count() <= MOST_PAGES
         && cut.can_be_made(work)
     {
-        return Ok(vec![Command::Cut(Carving { cut: Arc::new(cut), put_down: held, answer: None })]);
+        return Ok(vec![Command::Cut(Carving {
+            cut: Arc::new(cut),
+            put_down: held,
+            answer: None,
+        })]);
     }
     let masks = work.masks();
     let work = work.to_tri().to_poly();
@@ -83,21 +89,26 @@ pub fn join(
     }
     let plain: TriMesh = solid.mesh.triangulate().0;
     let masks = masks.map(|m| boolean::mixed(&solid, &work, &m));
-    let built = Mesh::build_masked(&plain, masks.as_deref().unwrap_or(&[]), job);
+    let built = Clay::build_masked(&plain, masks.as_deref().unwrap_or(&[]), job);
     let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
     let new = NewClay::new(Arc::new(plain), built, true);
     let mut out = vec![match masks {
-        Some(masks) => Command::Remake(new, Arc::new(masks)),
+        Some(masks) => Command::ReplaceMasked(new, Arc::new(masks)),
         None => Command::Replace(new),
     }];
     out.extend(held.then_some(Command::PutDown));
     Ok(out)
 }
 
-/// The work one level finer or coarser: the command that puts it in place, and which level of how many it is.
-pub fn level(shown: &ArcSwap<Published>, finer: bool) -> Result<(Command, (usize, usize)), JoinError> {
+/// The work one level finer or coarser: the command that puts it in place, and which level of how
+/// many it is.
+pub fn level(
+    shown: &ArcSwap<Published>,
+    finer: bool,
+) -> Result<(Command, (usize, usize)), JoinError> {
     settled(shown, |now| {
-        let (work, job) = (Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() }, Job::default());
+        let (work, job) =
+            (Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() }, Job::default());
         let levels = now.mesh.levels().map(|l| &**l);
         let (level, levels) = match (finer, levels) {
             // Where triangles were cut the levels end: what is there now is the lowest of new ones.
@@ -105,13 +116,13 @@ pub fn level(shown: &ArcSwap<Published>, finer: bool) -> Result<(Command, (usize
             (false, Some(levels)) => levels.down(&work, &job)?,
             (false, None) => return Err(LevelError::Lowest.into()),
         };
-        let built = Mesh::build_masked(&level.mesh, level.masks.as_deref().unwrap_or(&[]), &job);
+        let built = Clay::build_masked(&level.mesh, level.masks.as_deref().unwrap_or(&[]), &job);
         let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
         let at = levels.at();
         let mut clay = NewClay::new(Arc::new(level.mesh), built, true);
         clay.levels = Some(Arc::new(levels));
         let command = match level.masks {
-            Some(masks) => Command::Remake(clay, Arc::new(masks)),
+            Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
             None => Command::Replace(clay),
         };
         Ok((command, at))
@@ -120,15 +131,18 @@ pub fn level(shown: &ArcSwap<Published>, finer: bool) -> Result<(Command, (usize
 
 /// A running joiner; it ends when this is dropped and what it computes is done.
 #[derive(Debug)]
-pub struct Joiner {
-    asked: cc::Sender<Choice>,
+pub struct BooleanJobs {
+    asked: cc::Sender<MenuItem>,
 }
 
-impl Joiner {
+impl BooleanJobs {
     /// # Errors
     /// If no thread can be started.
-    pub fn start(shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) -> std::io::Result<Self> {
-        let (asked, todo) = cc::bounded::<Choice>(1);
+    pub fn start(
+        shown: Arc<ArcSwap<Published>>,
+        commands: cc::Sender<Command>,
+    ) -> std::io::Result<Self> {
+        let (asked, todo) = cc::bounded::<MenuItem>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
             for choice in todo {
                 match at_rest(&shown, choice, &Job::default(), &commands) {
@@ -138,11 +152,11 @@ impl Joiner {
                 }
             }
         })?;
-        Ok(Joiner { asked })
+        Ok(BooleanJobs { asked })
     }
 
     /// Asks for a join. One at a time: a second wish while one is under way is not taken.
-    pub fn ask(&self, choice: Choice) -> bool {
+    pub fn ask(&self, choice: MenuItem) -> bool {
         self.asked.try_send(choice).is_ok()
     }
 }
@@ -162,12 +176,13 @@ pub struct Joined {
 /// Joins the work as it is now with the thing in the hands.
 pub fn at_rest(
     shown: &ArcSwap<Published>,
-    choice: Choice,
+    choice: MenuItem,
     job: &Job,
     commands: &cc::Sender<Command>,
 ) -> Result<Joined, JoinError> {
     let operation = operation(choice).ok_or(JoinError::Empty)?;
-    let held = |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
+    let held =
+        |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
     carry_out(shown, held, true, operation, job, commands)
 }
 
@@ -206,7 +221,12 @@ pub fn carry_out(
             done.into_iter().try_for_each(send)?;
             match made.recv_timeout(PATIENCE) {
                 Ok(Some(Grafted { written, shared })) => {
-                    return Ok(Joined { local: true, pages_written: written, pages_shared: shared, tries });
+                    return Ok(Joined {
+                        local: true,
+                        pages_written: written,
+                        pages_shared: shared,
+                        tries,
+                    });
                 }
                 Ok(None) => continue,
                 Err(_) => return Err(JoinError::Ended),
@@ -214,13 +234,18 @@ pub fn carry_out(
         }
         if shown.load().mesh.revision() == before.mesh.revision() {
             let pages = done.iter().find_map(|c| match c {
-                Command::Replace(new) | Command::Remake(new, _) => {
+                Command::Replace(new) | Command::ReplaceMasked(new, _) => {
                     Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
                 }
                 _ => None,
             });
             done.into_iter().try_for_each(send)?;
-            return Ok(Joined { local: false, pages_written: pages.unwrap_or(0), pages_shared: 0, tries });
+            return Ok(Joined {
+                local: false,
+                pages_written: pages.unwrap_or(0),
+                pages_shared: 0,
+                tries,
+            });
         }
     }
     Err(JoinError::Restless)

@@ -1,8 +1,8 @@
 //! What was written -> what it means, resolved once, with the origin of every value.
 //!
-//! Layers, weakest first: the embedded defaults, the system's file, the user's file, `--config`, the command line. A layer is
-//! checked alone and strictly (an unknown key, a value out of range and a wrong type each name file and line) before it
-//! is laid over the others.
+//! Layers, weakest first: the embedded defaults, the system's file, the user's file, `--config`,
+//! the command line. A layer is checked alone and strictly (an unknown key, a value out of range
+//! and a wrong type each name file and line) before it is laid over the others.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -186,7 +186,8 @@ impl Resolved {
 pub fn usual_files() -> Vec<PathBuf> {
     let mut files = vec![PathBuf::from("/etc/sculptd/sculptd.toml")];
     files.extend(
-        directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("sculptd.toml")),
+        directories::ProjectDirs::from("", "", "sculptd")
+            .map(|d| d.config_dir().join("sculptd.toml")),
     );
     files
 }
@@ -208,7 +209,8 @@ struct Resolver {
 impl Resolver {
     fn new() -> Self {
         let mut resolver = Resolver { table: toml::Table::new(), origins: BTreeMap::new() };
-        // The embedded file is checked by a test; a build with a broken one falls back to the same values in code.
+        // The embedded file is checked by a test; a build with a broken one falls back to the same
+        // values in code.
         if let Ok(table) = DEFAULTS.parse() {
             resolver.lay(table, "default");
         }
@@ -233,7 +235,8 @@ impl Resolver {
     fn lay(&mut self, over: toml::Table, origin: &str) {
         for (section, value) in over {
             let toml::Value::Table(keys) = value else { continue };
-            let under = self.table.entry(section.clone()).or_insert_with(|| toml::Table::new().into());
+            let under =
+                self.table.entry(section.clone()).or_insert_with(|| toml::Table::new().into());
             for (key, value) in keys {
                 self.origins.insert(format!("{section}.{key}"), origin.into());
                 if let toml::Value::Table(under) = under {
@@ -249,7 +252,8 @@ impl Resolver {
         let Some(kind) = kind.and_then(|k| k.parse::<BrushKind>().ok()) else { return };
         let Some(toml::Value::Table(brush)) = self.table.get_mut("brush") else { return };
         for (key, value) in kind.preset().table() {
-            let origin = self.origins.entry(format!("brush.{key}")).or_insert_with(|| "default".into());
+            let origin =
+                self.origins.entry(format!("brush.{key}")).or_insert_with(|| "default".into());
             if origin == "default" {
                 *origin = format!("brush {kind}");
                 brush.insert(key.clone(), value.clone());
@@ -341,7 +345,9 @@ mod tests {
             let table = v.as_table().expect("a table");
             table
                 .iter()
-                .flat_map(|(s, t)| t.as_table().expect("sections").keys().map(move |k| format!("{s}.{k}")))
+                .flat_map(|(s, t)| {
+                    t.as_table().expect("sections").keys().map(move |k| format!("{s}.{k}"))
+                })
                 .collect()
         };
         let in_code = toml::Value::try_from(Config::default()).expect("serialises");
@@ -351,8 +357,10 @@ mod tests {
     #[test]
     fn an_unknown_key_names_its_line_and_a_value_out_of_range_its_range() {
         let mut resolver = Resolver::new();
-        let e =
-            resolver.text("[loop]\nrate_hz = 60\nrate = 3\n", "mine.toml").expect_err("unknown").to_string();
+        let e = resolver
+            .text("[loop]\nrate_hz = 60\nrate = 3\n", "mine.toml")
+            .expect_err("unknown")
+            .to_string();
         assert!(e.contains("mine.toml") && e.contains("line 3") && e.contains("`rate`"), "{e}");
         let e = resolver.text("[loop]\nrate_hz = 7\n", "mine.toml").expect_err("range").to_string();
         assert!(e.contains("loop.rate_hz = 7") && e.contains("30 to 1000"), "{e}");
@@ -364,7 +372,10 @@ mod tests {
         resolver.text("[loop]\nrate_hz = 60\n", "system").expect("fine");
         resolver.text("[loop]\nworkers = 2\n[brush]\nstrength = 0.5\n", "user").expect("fine");
         let r = resolver.finish();
-        assert_eq!((r.config.r#loop.rate_hz, r.config.r#loop.workers, r.config.brush.strength), (60, 2, 0.5));
+        assert_eq!(
+            (r.config.r#loop.rate_hz, r.config.r#loop.workers, r.config.brush.strength),
+            (60, 2, 0.5)
+        );
         assert_eq!(r.origins["loop.rate_hz"], "system");
         assert_eq!(r.origins["brush.strength"], "user");
         assert_eq!(r.origins["camera.aspect"], "default");

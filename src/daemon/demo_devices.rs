@@ -1,5 +1,6 @@
-//! Ghosts: simulated devices that perform the demo's journal. They speak bytes (HID reports, packets on a pseudo-terminal,
-//! frames on a loopback WebSocket), and the same adaptors read them that read real devices.
+//! Ghosts: simulated devices that perform the demo's journal. They speak bytes (HID reports,
+//! packets on a pseudo-terminal, frames on a loopback WebSocket), and the same adaptors read them
+//! that read real devices.
 
 use std::time::Duration;
 
@@ -22,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const AFTER_US: u64 = 200_000;
 
 #[derive(Debug, thiserror::Error)]
-pub enum GhostError {
+pub enum DemoError {
     #[error("a simulated {device} could not be started: {source}")]
     Start { device: &'static str, source: std::io::Error },
     #[error("the adaptor did not find the simulated {0}")]
@@ -33,7 +34,7 @@ pub enum GhostError {
 
 /// The ghosts and the adaptors that read them, connected.
 #[derive(Debug)]
-struct Ghosts {
+struct DemoDevices {
     tablet: sim::Tablet,
     serial: sim::SerialPen,
     tracker: sim::Tracker,
@@ -57,17 +58,23 @@ fn model(catalogue: &Catalogue) -> Option<Found> {
     }
 }
 
-fn summon(clock: &Clock, factory: &SenderFactory) -> Result<Ghosts, GhostError> {
+fn summon(clock: &Clock, factory: &SenderFactory) -> Result<DemoDevices, DemoError> {
     let journal = sim::journal();
-    let start = |device| move |source| GhostError::Start { device, source };
-    let catalogue = Catalogue::builtin().map_err(|_| GhostError::NoTablet)?;
-    let found = model(&catalogue).ok_or(GhostError::NoTablet)?;
+    let start = |device| move |source| DemoError::Start { device, source };
+    let catalogue = Catalogue::builtin().map_err(|_| DemoError::NoTablet)?;
+    let found = model(&catalogue).ok_or(DemoError::NoTablet)?;
 
     let (tablet, end) = sim::Tablet::new(&found, journal.pen, sim::TabletConfig::default());
     let descriptor = sim::tablet::descriptor(&found);
-    let _tablet =
-        hid::reader::start(Box::new(end), &found, descriptor, TABLET, clock.clone(), factory.sender())
-            .map_err(start("tablet"))?;
+    let _tablet = hid::reader::start(
+        Box::new(end),
+        &found,
+        descriptor,
+        TABLET,
+        clock.clone(),
+        factory.sender(),
+    )
+    .map_err(start("tablet"))?;
 
     let config = sim::SerialPenConfig::new(serial::Protocol::Isdv4, journal.area_mm);
     let pen = sim::SerialPen::new(journal.serial_pen, config).map_err(start("serial pen"))?;
@@ -77,21 +84,28 @@ fn summon(clock: &Clock, factory: &SenderFactory) -> Result<Ghosts, GhostError> 
         device: SERIAL,
         ..Default::default()
     };
-    let _serial = serial::start(config, clock.clone(), factory.sender()).map_err(start("serial pen"))?;
+    let _serial =
+        serial::start(config, clock.clone(), factory.sender()).map_err(start("serial pen"))?;
 
-    let tracker =
-        sim::Tracker::new(journal.hands, sim::TrackerConfig::default()).map_err(start("tracker"))?;
+    let tracker = sim::Tracker::new(journal.hands, sim::TrackerConfig::default())
+        .map_err(start("tracker"))?;
     let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
     let _leap = leap::start(config, clock.clone(), factory.sender()).map_err(start("tracker"))?;
 
     if !pen.wait_for_reader(PATIENCE) {
-        return Err(GhostError::NotFound("serial pen"));
+        return Err(DemoError::NotFound("serial pen"));
     }
     if !tracker.wait_for_client(PATIENCE) {
-        return Err(GhostError::NotFound("tracker"));
+        return Err(DemoError::NotFound("tracker"));
     }
     let adaptors = Adaptors { _tablet, _serial, _leap };
-    Ok(Ghosts { tablet, serial: pen, tracker, adaptors, end_us: journal.duration_us + AFTER_US })
+    Ok(DemoDevices {
+        tablet,
+        serial: pen,
+        tracker,
+        adaptors,
+        end_us: journal.duration_us + AFTER_US,
+    })
 }
 
 /// A simulated device stepped tick by tick.
@@ -122,7 +136,10 @@ impl<S> Feed for SimFeed<S> {
 }
 
 /// The ghosts for a stepped run.
-pub fn stepped(clock: &Clock, factory: &SenderFactory) -> Result<(Vec<Box<dyn Feed>>, Adaptors), GhostError> {
+pub fn stepped(
+    clock: &Clock,
+    factory: &SenderFactory,
+) -> Result<(Vec<Box<dyn Feed>>, Adaptors), DemoError> {
     let g = summon(clock, factory)?;
     let feeds: Vec<Box<dyn Feed>> = vec![
         Box::new(SimFeed::new(g.tablet, sim::Tablet::advance, g.end_us)),
@@ -132,20 +149,21 @@ pub fn stepped(clock: &Clock, factory: &SenderFactory) -> Result<(Vec<Box<dyn Fe
     Ok((feeds, g.adaptors))
 }
 
-/// A tracker alone, stepped, and the adaptor that reads it: for lessons and tests with a hand of one's own making.
+/// A tracker alone, stepped, and the adaptor that reads it: for lessons and tests with a hand of
+/// one's own making.
 pub fn tracker(
     script: sim::HandScript,
     config: sim::TrackerConfig,
     clock: &Clock,
     factory: &SenderFactory,
-) -> Result<(Box<dyn Feed>, leap::Handle), GhostError> {
-    let start = |source| GhostError::Start { device: "tracker", source };
+) -> Result<(Box<dyn Feed>, leap::Handle), DemoError> {
+    let start = |source| DemoError::Start { device: "tracker", source };
     let end_us = script.end_us() + AFTER_US;
     let tracker = sim::Tracker::new(script, config).map_err(start)?;
     let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
     let handle = leap::start(config, clock.clone(), factory.sender()).map_err(start)?;
     if !tracker.wait_for_client(PATIENCE) {
-        return Err(GhostError::NotFound("tracker"));
+        return Err(DemoError::NotFound("tracker"));
     }
     Ok((Box::new(SimFeed::new(tracker, sim::Tracker::advance, end_us)), handle))
 }
@@ -162,9 +180,9 @@ pub struct Playing {
 }
 
 /// The ghosts for a live loop, from now on.
-pub fn playing(clock: &Clock, factory: &SenderFactory) -> Result<Playing, GhostError> {
+pub fn playing(clock: &Clock, factory: &SenderFactory) -> Result<Playing, DemoError> {
     let g = summon(clock, factory)?;
-    let start = |device| move |source| GhostError::Start { device, source };
+    let start = |device| move |source| DemoError::Start { device, source };
     Ok(Playing {
         ends_us: clock.now_us() + g.end_us,
         _tablet: g.tablet.play(clock.clone()).map_err(start("tablet"))?,

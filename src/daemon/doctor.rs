@@ -1,7 +1,7 @@
 //! What stands in the way of sculpting on this machine, and the line that mends it.
 //!
-//! Every check says what it looked at, what it found, and, unless all is well, the exact repair. A check never changes
-//! anything that outlives it.
+//! Every check says what it looked at, what it found, and, unless all is well, the exact repair. A
+//! check never changes anything that outlives it.
 
 use std::net::{TcpStream, ToSocketAddrs};
 use std::path::{Path, PathBuf};
@@ -12,13 +12,14 @@ use serde::Serialize;
 
 use super::live::raise_priority;
 use crate::config::{Config, LoopConfig};
-use sculptd_clay::{Mesh, Workers};
+use sculptd_clay::{Clay, Workers};
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
-/// Free space that an evening's session needs, bytes: a pen at 250 Hz writes 55 MB an hour, a start mesh 100 MB at most.
+/// Free space that an evening's session needs, bytes: a pen at 250 Hz writes 55 MB an hour, a start
+/// mesh 100 MB at most.
 pub const ROOM: u64 = 1 << 30;
 /// With less than this the journal stops within minutes.
 pub const ROOM_LEAST: u64 = 64 << 20;
@@ -92,27 +93,38 @@ pub fn all(config: &Config, places: &Places) -> Vec<Check> {
     checks
 }
 
-/// Every `hidraw` node that belongs to a tablet must open for reading; one that does not belong to one need not.
+/// Every `hidraw` node that belongs to a tablet must open for reading; one that does not belong to
+/// one need not.
 fn tablets(config: &Config, dev: &Path) -> Check {
     const NAME: &str = "pen tablets";
     if !config.devices.hid {
         return Check::skip(NAME, "devices.hid is off");
     }
     let entries = std::fs::read_dir(dev).into_iter().flatten().flatten();
-    let mut nodes: Vec<PathBuf> =
-        entries.filter(|e| e.file_name().to_string_lossy().starts_with("hidraw")).map(|e| e.path()).collect();
+    let mut nodes: Vec<PathBuf> = entries
+        .filter(|e| e.file_name().to_string_lossy().starts_with("hidraw"))
+        .map(|e| e.path())
+        .collect();
     nodes.sort();
     if nodes.is_empty() {
-        return Check::skip(NAME, format!("no {}: nothing is plugged in", dev.join("hidraw*").display()));
+        return Check::skip(
+            NAME,
+            format!("no {}: nothing is plugged in", dev.join("hidraw*").display()),
+        );
     }
     let closed: Vec<String> = nodes
         .iter()
-        .filter(|p| std::fs::File::open(p).is_err_and(|e| e.kind() == std::io::ErrorKind::PermissionDenied))
+        .filter(|p| {
+            std::fs::File::open(p).is_err_and(|e| e.kind() == std::io::ErrorKind::PermissionDenied)
+        })
         .map(|p| p.display().to_string())
         .collect();
     if closed.len() < nodes.len() {
         let all = nodes.len();
-        return Check::pass(NAME, format!("{} of {all} HID devices can be read", all - closed.len()));
+        return Check::pass(
+            NAME,
+            format!("{} of {all} HID devices can be read", all - closed.len()),
+        );
     }
     Check::fail(
         NAME,
@@ -163,7 +175,8 @@ fn tracker(url: &str) -> Check {
         return Check::skip(NAME, "devices.leap is empty: no tracker is configured");
     }
     let repair = "start the tracker's service, or set devices.leap = \"\"";
-    let Some(host) = url.strip_prefix("ws://").and_then(|r| r.split('/').next()).filter(|h| !h.is_empty())
+    let Some(host) =
+        url.strip_prefix("ws://").and_then(|r| r.split('/').next()).filter(|h| !h.is_empty())
     else {
         return Check::fail(
             NAME,
@@ -192,20 +205,24 @@ fn socket(path: &Path) -> Check {
     let dir = path.parent().unwrap_or(Path::new("/"));
     let user = super::control::user_id();
     match std::fs::metadata(dir) {
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => match dir.parent().filter(|p| p.is_dir()) {
-            Some(_) => Check::pass(NAME, format!("{} will be made", dir.display())),
-            None => Check::fail(
-                NAME,
-                format!("{}: {e}", dir.display()),
-                format!(
-                    "mkdir -p -m 700 '{d}' or export XDG_RUNTIME_DIR=/run/user/{user}",
-                    d = dir.display()
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            match dir.parent().filter(|p| p.is_dir()) {
+                Some(_) => Check::pass(NAME, format!("{} will be made", dir.display())),
+                None => Check::fail(
+                    NAME,
+                    format!("{}: {e}", dir.display()),
+                    format!(
+                        "mkdir -p -m 700 '{d}' or export XDG_RUNTIME_DIR=/run/user/{user}",
+                        d = dir.display()
+                    ),
                 ),
-            ),
-        },
-        Err(e) => {
-            Check::fail(NAME, format!("{}: {e}", dir.display()), "export XDG_RUNTIME_DIR=/run/user/$(id -u)")
+            }
         }
+        Err(e) => Check::fail(
+            NAME,
+            format!("{}: {e}", dir.display()),
+            "export XDG_RUNTIME_DIR=/run/user/$(id -u)",
+        ),
         Ok(m) if !m.is_dir() => Check::fail(
             NAME,
             format!("{} is not a folder", dir.display()),
@@ -218,7 +235,11 @@ fn socket(path: &Path) -> Check {
         ),
         Ok(m) if m.permissions().mode() & 0o022 != 0 => Check::warn(
             NAME,
-            format!("{} can be written by others (mode {:o})", dir.display(), m.permissions().mode() & 0o777),
+            format!(
+                "{} can be written by others (mode {:o})",
+                dir.display(),
+                m.permissions().mode() & 0o777
+            ),
             format!("chmod 700 '{}'", dir.display()),
         ),
         Ok(_) if std::os::unix::net::UnixStream::connect(path).is_ok() => {
@@ -263,12 +284,16 @@ fn room(state: &Path, history: u64) -> Check {
         free >> 20,
         state.display()
     );
-    let repair = format!("sculptd session prune '{}'   # shows what would go; add --yes", state.display());
+    let repair =
+        format!("sculptd session prune '{}'   # shows what would go; add --yes", state.display());
     match free {
         f if f < ROOM_LEAST => Check::fail(NAME, cause, repair),
         f if f < ROOM => Check::warn(NAME, cause, repair),
         f if f < history => {
-            let repair = format!("set undo.history_bytes = {}, or make room: {repair}", (f / 2).max(1 << 20));
+            let repair = format!(
+                "set undo.history_bytes = {}, or make room: {repair}",
+                (f / 2).max(1 << 20)
+            );
             Check::warn(NAME, cause, repair)
         }
         _ => Check::pass(NAME, cause),
@@ -314,9 +339,10 @@ fn rate(config: &LoopConfig) -> Check {
 
 /// Milliseconds of each tick of a stroke round the middle of the view; at least 30.
 fn probe(config: &LoopConfig) -> Option<Vec<f64>> {
-    let mesh = Mesh::build(&shapes::sphere_of_about(PROBE_VERTICES), &Job::default()).ok()?;
+    let mesh = Clay::build(&shapes::sphere_of_about(PROBE_VERTICES), &Job::default()).ok()?;
     let settings = Config::default();
-    let options = WorldOptions { dab_budget: config.dab_budget, undo_bytes: 64 << 20, hands: settings.hand };
+    let options =
+        WorldOptions { dab_budget: config.dab_budget, undo_bytes: 64 << 20, hands: settings.hand };
     let workers = Workers::new(config.worker_count());
     let mut world = World::new(mesh, settings.camera.camera(), settings.brush, workers, options);
     let (clock, area) = (Clock::monotonic(), Vec2::new(160.0, 100.0));

@@ -29,4 +29,4 @@ pub mod tick_statistics;
 pub mod trim;
 
 pub use published::{Published, Publisher};
-pub use tick_statistics::{Figures, Summary};
+pub use tick_statistics::{Summary, TickStatistics};

@@ -1,6 +1,8 @@
-//! The loop on the wall's clock: a thread of its own, fed by the adaptors' threads, read by the viewer.
+//! The loop on the wall's clock: a thread of its own, fed by the adaptors' threads, read by the
+//! viewer.
 //!
-//! Law kept here: the tick thread never waits for anybody. It takes what the channel holds, steps, publishes, sleeps.
+//! Law kept here: the tick thread never waits for anybody. It takes what the channel holds, steps,
+//! publishes, sleeps.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -11,11 +13,11 @@ use crossbeam_channel as cc;
 
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
-use crate::boolean_jobs::Joiner;
+use crate::boolean_jobs::BooleanJobs;
 use crate::config::LoopConfig;
 use crate::simulated_loop::{in_order_of_time, published_figures};
-use crate::tick_statistics::Figures;
-use sculptd_clay::Mesh;
+use crate::tick_statistics::TickStatistics;
+use sculptd_clay::Clay;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
@@ -45,7 +47,7 @@ pub struct Live {
 #[derive(Debug)]
 pub struct Ended {
     pub world: World,
-    pub figures: Figures,
+    pub figures: TickStatistics,
     pub receiver: Receiver,
 }
 
@@ -82,7 +84,7 @@ impl Live {
             drain_per_tick,
             journal,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
-            joiner: Joiner::start(published.clone(), commands.clone()).ok(),
+            joiner: BooleanJobs::start(published.clone(), commands.clone()).ok(),
         };
         let thread = std::thread::Builder::new()
             .name("sculptd-tick".into())
@@ -112,19 +114,20 @@ struct Ticking {
     rate_hz: u32,
     drain_per_tick: usize,
     journal: Option<Box<dyn Journal>>,
-    joiner: Option<Joiner>,
+    joiner: Option<BooleanJobs>,
 }
 
 impl Ticking {
     fn run(mut self) -> Ended {
         raise_priority();
         // Replaced works are dropped here, off the tick thread.
-        let (garbage, dump) = cc::bounded::<Mesh>(8);
-        let _ =
-            std::thread::Builder::new().name("sculptd-drop".into()).spawn(move || dump.iter().for_each(drop));
+        let (garbage, dump) = cc::bounded::<Clay>(8);
+        let _ = std::thread::Builder::new()
+            .name("sculptd-drop".into())
+            .spawn(move || dump.iter().for_each(drop));
         let mut pacer = Pacer::new(self.rate_hz, self.clock.now_us());
         let sleeper = spin_sleep::SpinSleeper::default();
-        let mut figures = Figures::default();
+        let mut figures = TickStatistics::default();
         let mut samples: Vec<Sample> = Vec::with_capacity(self.drain_per_tick);
         let mut commands: Vec<Command> = Vec::with_capacity(COMMANDS_PER_TICK);
         let mut tick = self.world.tick();
@@ -166,12 +169,14 @@ impl Ticking {
     }
 }
 
-/// Real-time scheduling where it is allowed, else a nicer place in the queue, else as it is: `sculptd doctor` says which.
+/// Real-time scheduling where it is allowed, else a nicer place in the queue, else as it is:
+/// `sculptd doctor` says which.
 pub fn raise_priority() -> &'static str {
     raise(20)
 }
 
-/// The same for what serves the loop, one step below it: a journal that waits for its turn loses what a kill finds unwritten.
+/// The same for what serves the loop, one step below it: a journal that waits for its turn loses
+/// what a kill finds unwritten.
 pub fn raise_priority_below() -> &'static str {
     raise(10)
 }
@@ -188,5 +193,9 @@ fn raise(level: u8) -> &'static str {
             return "real-time (SCHED_FIFO)";
         }
     }
-    if tp::set_current_thread_priority(tp::ThreadPriority::Max).is_ok() { "raised" } else { "normal" }
+    if tp::set_current_thread_priority(tp::ThreadPriority::Max).is_ok() {
+        "raised"
+    } else {
+        "normal"
+    }
 }

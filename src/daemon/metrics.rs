@@ -1,7 +1,9 @@
-//! The daemon's figures for Prometheus (text format 0.0.4) over the least HTTP there is, off unless asked for.
+//! The daemon's figures for Prometheus (text format 0.0.4) over the least HTTP there is, off unless
+//! asked for.
 //!
-//! A web page must not read them: a request with an `Origin`, or with a `Host` that is a name other than `localhost` (a page
-//! that had its own name pointed here), is refused. What is asked for in `Host` must be an address, with our port.
+//! A web page must not read them: a request with an `Origin`, or with a `Host` that is a name other
+//! than `localhost` (a page that had its own name pointed here), is refused. What is asked for in
+//! `Host` must be an address, with our port.
 
 use std::fmt::Write as _;
 use std::io::{Read, Write};
@@ -33,9 +35,24 @@ pub fn page(p: &Published, journal: Option<&super::session::Health>) -> String {
     put("overruns_total", "counter", "Ticks that came late.", f.overruns as f64);
     put("samples_total", "counter", "Samples of pens and hands.", f.samples as f64);
     put("dabs_total", "counter", "Dabs of brushes.", f.dabs as f64);
-    put("vertices_moved_total", "counter", "Vertices moved, each once a dab.", f.vertices_moved as f64);
-    put("motion_lost_total", "counter", "Motion samples lost in the channel.", f.losses.motion as f64);
-    put("transitions_lost_total", "counter", "Contact changes lost; always 0.", f.losses.transition as f64);
+    put(
+        "vertices_moved_total",
+        "counter",
+        "Vertices moved, each once a dab.",
+        f.vertices_moved as f64,
+    );
+    put(
+        "motion_lost_total",
+        "counter",
+        "Motion samples lost in the channel.",
+        f.losses.motion as f64,
+    );
+    put(
+        "transitions_lost_total",
+        "counter",
+        "Contact changes lost; always 0.",
+        f.losses.transition as f64,
+    );
     put("tick_seconds_p50", "gauge", "Median time of a tick.", f.tick_ms.p50 / 1e3);
     put("tick_seconds_p99", "gauge", "99th percentile of a tick's time.", f.tick_ms.p99 / 1e3);
     put("tick_seconds_max", "gauge", "Longest tick.", f.tick_ms.max / 1e3);
@@ -117,7 +134,8 @@ impl Drop for Metrics {
     fn drop(&mut self) {
         self.closing.store(true, Ordering::SeqCst);
         // Wakes the accepting thread. An unspecified address is reached by the loopback.
-        let ip = if self.at.ip().is_unspecified() { IpAddr::from([127, 0, 0, 1]) } else { self.at.ip() };
+        let ip =
+            if self.at.ip().is_unspecified() { IpAddr::from([127, 0, 0, 1]) } else { self.at.ip() };
         let _ = TcpStream::connect_timeout(&(ip, self.at.port()).into(), PATIENCE);
     }
 }
@@ -165,7 +183,8 @@ fn judge(head: &[u8], at: SocketAddr) -> Result<(), Refusal> {
     }
 }
 
-/// The path of a request that may have an answer: a GET of our own host, not by a web page. `name`: one more name of ours.
+/// The path of a request that may have an answer: a GET of our own host, not by a web page. `name`:
+/// one more name of ours.
 pub(super) fn request<'a>(head: &'a [u8], at: SocketAddr, name: &str) -> Result<&'a str, Refusal> {
     const BAD: Refusal = ("400 Bad Request", "not a request");
     if head.len() > MAX_HEAD {
@@ -209,7 +228,8 @@ fn named(host: &str, at: SocketAddr, name: &str) -> bool {
         })
 }
 
-/// An address that can be ours, or `localhost`, with our port: a name that somebody else gives out is not.
+/// An address that can be ours, or `localhost`, with our port: a name that somebody else gives out
+/// is not.
 fn ours(host: &str, at: SocketAddr) -> bool {
     let (name, port) = match host.rsplit_once(':') {
         Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),
@@ -233,7 +253,9 @@ mod tests {
     fn only_our_own_host_and_no_origin() {
         let at: SocketAddr = "127.0.0.1:9000".parse().expect("an address");
         let ask = |rest: &str| {
-            judge(format!("GET /metrics HTTP/1.1\r\n{rest}\r\n\r\n").as_bytes(), at).err().map(|e| &e.0[..3])
+            judge(format!("GET /metrics HTTP/1.1\r\n{rest}\r\n\r\n").as_bytes(), at)
+                .err()
+                .map(|e| &e.0[..3])
         };
         assert_eq!(ask("Host: 127.0.0.1:9000"), None);
         assert_eq!(ask("host: LOCALHOST:9000"), None);
@@ -252,7 +274,9 @@ mod tests {
         assert_eq!(ask("Host: 127.0.0.1:9000\r\nHost: evil.example"), Some("400"));
         assert_eq!(ask("Accept: */*"), Some("400"));
         assert_eq!(
-            judge(b"POST /metrics HTTP/1.1\r\nHost: localhost:9000\r\n\r\n", at).err().map(|e| &e.0[..3]),
+            judge(b"POST /metrics HTTP/1.1\r\nHost: localhost:9000\r\n\r\n", at)
+                .err()
+                .map(|e| &e.0[..3]),
             Some("405")
         );
         assert_eq!(

@@ -1,8 +1,9 @@
 //! The fixed rate: when the next tick is due, and what happens when one is late.
 //!
-//! The overrun policy: a loop never spirals. A tick that ends after the next was due is an overrun; it is counted, the missed
-//! slots are left out and the next tick starts at the next slot of the grid. The tick *number* goes on by one, so what the
-//! world computes does not depend on how loaded the machine was.
+//! The overrun policy: a loop never spirals. A tick that ends after the next was due is an overrun;
+//! it is counted, the missed slots are left out and the next tick starts at the next slot of the
+//! grid. The tick *number* goes on by one, so what the world computes does not depend on how loaded
+//! the machine was.
 
 use std::time::Duration;
 
@@ -44,7 +45,8 @@ impl Pacer {
         }
     }
 
-    /// The tick that was due is done: sets the next slot, leaving out those already missed. Returns how many were missed.
+    /// The tick that was due is done: sets the next slot, leaving out those already missed. Returns
+    /// how many were missed.
     pub fn done(&mut self, now_us: u64) -> u64 {
         self.slot += 1;
         if now_us <= self.due_us() {

@@ -1,7 +1,7 @@
 //! Door 2: what the loop shows to everybody else, once a tick.
 //!
-//! Readers never block the loop and the loop never frees for them: published states come from a small pool and go back to
-//! it; a state that a reader still holds is left to that reader.
+//! Readers never block the loop and the loop never frees for them: published states come from a
+//! small pool and go back to it; a state that a reader still holds is left to that reader.
 
 use std::sync::Arc;
 
@@ -14,8 +14,8 @@ use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
 use sculptd_engine::camera::Camera;
-use sculptd_engine::hand::{Pose, Thing, Volume};
-use sculptd_engine::stroke::{Draft, PenPoint};
+use sculptd_engine::hand::{HeldObject, Pose, Volume};
+use sculptd_engine::stroke::{CurveStroke, PenPoint};
 use sculptd_engine::world::World;
 
 /// Pens shown to a viewer.
@@ -38,14 +38,14 @@ pub struct Published {
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
     /// The curve that a pen has laid; empty: none.
-    pub draft: Draft,
+    pub draft: CurveStroke,
     pub hands: Option<Hands>,
     /// What each hand that is followed is doing.
     pub poses: [Option<Pose>; MAX_HANDS],
     /// The tracker of each.
     pub hand_devices: [Option<DeviceId>; MAX_HANDS],
     /// What the hands hold, and where.
-    pub thing: Option<Thing>,
+    pub thing: Option<HeldObject>,
     /// The ball of the hands' menu that a fingertip is in, and 0 to 1 how far its ring has closed.
     pub menu: Option<(usize, f32)>,
     /// 0 fresh to 1 spent; and whether a lower plane of work should be offered.
@@ -84,7 +84,9 @@ impl Published {
         }
         let mut poses = [None; MAX_HANDS];
         let mut hand_devices = [None; MAX_HANDS];
-        for ((pose, by), (device, _, now)) in poses.iter_mut().zip(&mut hand_devices).zip(world.poses()) {
+        for ((pose, by), (device, _, now)) in
+            poses.iter_mut().zip(&mut hand_devices).zip(world.poses())
+        {
             (*pose, *by) = (Some(now), Some(device));
         }
         let mesh = world.snapshot();
@@ -122,7 +124,8 @@ pub struct Publisher {
     pool: Vec<Arc<Published>>,
 }
 
-/// States kept for reuse: the one shown, one in a reader's hands a viewer and a worker each, and two to spare.
+/// States kept for reuse: the one shown, one in a reader's hands a viewer and a worker each, and
+/// two to spare.
 const POOL: usize = 6;
 
 impl Publisher {

@@ -1,4 +1,5 @@
-//! One thread beside the loop that answers to the service manager: the watchdog, and SIGHUP for new settings.
+//! One thread beside the loop that answers to the service manager: the watchdog, and SIGHUP for new
+//! settings.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -27,7 +28,8 @@ pub struct Reload {
 }
 
 impl Reload {
-    /// Reads the files again. What a running loop can take is taken; the rest is named. Bad files change nothing.
+    /// Reads the files again. What a running loop can take is taken; the rest is named. Bad files
+    /// change nothing.
     pub fn again(&mut self) {
         let new = match Resolved::load(self.extra.as_deref()) {
             Ok(resolved) => resolved.config,
@@ -77,9 +79,10 @@ impl Service {
         let hangup = Arc::new(AtomicBool::new(false));
         signal_hook::flag::register(signal_hook::consts::SIGHUP, hangup.clone())?;
         let (stop, stopped) = cc::bounded(0);
-        let thread = std::thread::Builder::new().name("sculptd-service".into()).spawn(move || {
-            watch(&watched, reload, &hangup, &stopped);
-        })?;
+        let thread =
+            std::thread::Builder::new().name("sculptd-service".into()).spawn(move || {
+                watch(&watched, reload, &hangup, &stopped);
+            })?;
         Ok(Service { stop: Some(stop), thread: Some(thread) })
     }
 }
@@ -107,7 +110,10 @@ fn watch(watched: &Watched, mut reload: Reload, hangup: &AtomicBool, stopped: &c
         }
         let now = watched.journal.as_ref().and_then(super::session::Health::trouble);
         if now != trouble {
-            notifier.send(&format!("STATUS={}", now.as_deref().unwrap_or("sculpting").replace('\n', " ")));
+            notifier.send(&format!(
+                "STATUS={}",
+                now.as_deref().unwrap_or("sculpting").replace('\n', " ")
+            ));
             trouble = now;
         }
     }

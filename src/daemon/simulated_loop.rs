@@ -1,16 +1,18 @@
-//! The loop on a clock that is moved by hand: recordings and simulated devices are fed tick by tick, through their real
-//! parsers and the real channel, so that two runs give the same bits however loaded the machine is.
+//! The loop on a clock that is moved by hand: recordings and simulated devices are fed tick by
+//! tick, through their real parsers and the real channel, so that two runs give the same bits
+//! however loaded the machine is.
 //!
-//! A tick here: move the clock to the tick's time, let every feed deliver what is due, wait until the channel has it, take
-//! it, step the world. In real pace the loop also sleeps until the tick is due on the wall's clock.
+//! A tick here: move the clock to the tick's time, let every feed deliver what is due, wait until
+//! the channel has it, take it, step the world. In real pace the loop also sleeps until the tick is
+//! due on the wall's clock.
 
 use std::time::Duration;
 
 use super::live::Journal;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
-use crate::boolean_jobs as joiner;
-use crate::tick_statistics::{Figures, Losses, Summary};
+use crate::boolean_jobs;
+use crate::tick_statistics::{Losses, Summary, TickStatistics};
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
@@ -19,8 +21,8 @@ use sculptd_geometry::job::Job;
 
 /// Something that delivers samples when its time has come.
 pub trait Feed {
-    /// Delivers everything due at or before `until_us`. Returns how many samples the channel will have been given by all of
-    /// this feed's deliveries since the start.
+    /// Delivers everything due at or before `until_us`. Returns how many samples the channel will
+    /// have been given by all of this feed's deliveries since the start.
     fn advance(&mut self, until_us: u64) -> u64;
     /// Nothing more will come.
     fn finished(&self) -> bool;
@@ -37,7 +39,7 @@ pub enum Pace {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub struct SteppedOptions {
+pub struct SimulatedOptions {
     pub rate_hz: u32,
     pub pace: Pace,
     /// Ends after this many ticks, if the input has not ended before.
@@ -47,10 +49,13 @@ pub struct SteppedOptions {
     pub verify: bool,
 }
 
-/// An adaptor did not hand over what its simulated device sent. Only a broken pipe between threads of this process does this.
+/// An adaptor did not hand over what its simulated device sent. Only a broken pipe between threads
+/// of this process does this.
 #[derive(Debug, thiserror::Error)]
-pub enum SteppedError {
-    #[error("the simulated devices sent {expected} samples, but only {arrived} arrived within {PATIENCE:?}")]
+pub enum SimulatedError {
+    #[error(
+        "the simulated devices sent {expected} samples, but only {arrived} arrived within {PATIENCE:?}"
+    )]
     Silent { expected: u64, arrived: u64 },
     #[error("tick {tick}: {text}")]
     Broken { tick: u64, text: String },
@@ -60,7 +65,7 @@ pub enum SteppedError {
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Everything a stepped run needs.
-pub struct Stepped<'a> {
+pub struct SimulatedLoop<'a> {
     pub world: &'a mut World,
     pub feeds: &'a mut [Box<dyn Feed>],
     pub receiver: &'a mut Receiver,
@@ -73,22 +78,23 @@ pub struct Stepped<'a> {
     pub script: &'a [(u64, Command)],
 }
 
-impl std::fmt::Debug for Stepped<'_> {
+impl std::fmt::Debug for SimulatedLoop<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Stepped").field("feeds", &self.feeds.len()).finish_non_exhaustive()
     }
 }
 
-impl Stepped<'_> {
+impl SimulatedLoop<'_> {
     /// Runs until the feeds and the script have ended and the world is at rest, or `max_ticks`.
-    pub fn run(mut self, options: &SteppedOptions) -> Result<Figures, SteppedError> {
+    pub fn run(mut self, options: &SimulatedOptions) -> Result<TickStatistics, SimulatedError> {
         let wall = Clock::monotonic();
         let sleeper = spin_sleep::SpinSleeper::default();
         let mut pacer = Pacer::new(options.rate_hz, 0);
-        let mut figures = Figures::default();
+        let mut figures = TickStatistics::default();
         let mut samples: Vec<Sample> = Vec::with_capacity(options.drain_per_tick);
         let mut commands = Vec::new();
-        // What a hand's wish to join gave: put in place at the next tick, so that a stepped run has no race in it.
+        // What a hand's wish to join gave: put in place at the next tick, so that a stepped run has
+        // no race in it.
         let mut joined: Vec<Command> = Vec::new();
         let mut script = self.script.iter().peekable();
         let first = self.world.tick();
@@ -117,16 +123,24 @@ impl Stepped<'_> {
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, self.world);
             }
-            if let Some(operation) = report.join.and_then(joiner::operation)
+            if let Some(operation) = report.join.and_then(boolean_jobs::operation)
                 && let Some(tool) = self.world.thing().map(|t| t.placed().to_poly())
             {
-                match joiner::join(&self.world.snapshot(), &tool, true, operation, &Job::default()) {
+                match boolean_jobs::join(
+                    &self.world.snapshot(),
+                    &tool,
+                    true,
+                    operation,
+                    &Job::default(),
+                ) {
                     Ok(done) => joined = done,
                     Err(e) => tracing::warn!("{}: {e}", operation.name()),
                 }
             }
             if options.verify {
-                self.world.verify_invariants().map_err(|text| SteppedError::Broken { tick, text })?;
+                self.world
+                    .verify_invariants()
+                    .map_err(|text| SimulatedError::Broken { tick, text })?;
             }
             (self.observer)(tick, &samples, self.world);
             if options.pace == Pace::Real {
@@ -139,7 +153,8 @@ impl Stepped<'_> {
             } else {
                 0
             };
-            // Two ticks of silence after the end: the last pen-up was walked, the last hand has let go.
+            // Two ticks of silence after the end: the last pen-up was walked, the last hand has let
+            // go.
             if quiet >= 2 {
                 break;
             }
@@ -148,14 +163,15 @@ impl Stepped<'_> {
     }
 }
 
-/// Takes samples until everything that was sent is here; the wait is for other threads of this process only.
+/// Takes samples until everything that was sent is here; the wait is for other threads of this
+/// process only.
 fn await_arrival(
     receiver: &mut Receiver,
     expected: u64,
     max: usize,
     samples: &mut Vec<Sample>,
     wall: &Clock,
-) -> Result<(), SteppedError> {
+) -> Result<(), SimulatedError> {
     let patience = wall.now_us() + PATIENCE.as_micros() as u64;
     loop {
         let room = max.saturating_sub(samples.len()).max(1);
@@ -165,18 +181,20 @@ fn await_arrival(
             return Ok(());
         }
         if wall.now_us() > patience {
-            return Err(SteppedError::Silent { expected, arrived: count.sent });
+            return Err(SimulatedError::Silent { expected, arrived: count.sent });
         }
         std::thread::yield_now();
     }
 }
 
-/// By time, ties by device, equal ones as they came. Samples arrive nearly sorted, so an insertion sort is the quick one, and
-/// it needs no memory.
+/// By time, ties by device, equal ones as they came. Samples arrive nearly sorted, so an insertion
+/// sort is the quick one, and it needs no memory.
 pub fn in_order_of_time(samples: &mut [Sample]) {
     for i in 1..samples.len() {
         let mut j = i;
-        while j > 0 && (samples[j - 1].t_us, samples[j - 1].device) > (samples[j].t_us, samples[j].device) {
+        while j > 0
+            && (samples[j - 1].t_us, samples[j - 1].device) > (samples[j].t_us, samples[j].device)
+        {
             samples.swap(j - 1, j);
             j -= 1;
         }
@@ -184,7 +202,12 @@ pub fn in_order_of_time(samples: &mut [Sample]) {
 }
 
 /// What a finished run says of itself.
-pub fn summary(figures: &Figures, world: &World, receiver: &Receiver, export: Option<String>) -> Summary {
+pub fn summary(
+    figures: &TickStatistics,
+    world: &World,
+    receiver: &Receiver,
+    export: Option<String>,
+) -> Summary {
     let count = receiver.stats().total();
     Summary {
         ticks: figures.ticks,
@@ -204,7 +227,11 @@ pub fn summary(figures: &Figures, world: &World, receiver: &Receiver, export: Op
 }
 
 /// The figures as a viewer sees them.
-pub fn published_figures(figures: &Figures, receiver: &Receiver, last_tick_ns: u64) -> PublishedFigures {
+pub fn published_figures(
+    figures: &TickStatistics,
+    receiver: &Receiver,
+    last_tick_ns: u64,
+) -> PublishedFigures {
     let count = receiver.stats().total();
     PublishedFigures {
         ticks: figures.ticks,

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec2;
 
 use crate::config::Config;
-use sculptd_clay::{BuildError, Mesh, Workers};
+use sculptd_clay::{BuildError, Clay, Workers};
 use sculptd_devices::Body;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::recording::Player;
@@ -22,11 +22,12 @@ use super::session::writer::{CreateError, WriterThread};
 use super::session::{self, OpenError, Opened, SessionWriter};
 use crate::simulated_loop::Feed;
 
-/// The work that one starts with: a ball of this many vertices, fine enough for detail, light on any machine.
+/// The work that one starts with: a ball of this many vertices, fine enough for detail, light on
+/// any machine.
 pub const START_VERTICES: usize = 160_000;
 
 #[derive(Debug, thiserror::Error)]
-pub enum RigError {
+pub enum StartupError {
     #[error(transparent)]
     Read(#[from] ReadError),
     #[error("{path}: {source}")]
@@ -37,12 +38,12 @@ pub enum RigError {
 #[derive(Debug)]
 pub struct Loaded {
     pub plain: TriMesh,
-    pub mesh: Mesh,
+    pub mesh: Clay,
     pub warnings: Vec<String>,
 }
 
 /// Reads a work from a file, or makes the ball that a session starts with.
-pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, RigError> {
+pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
     let (plain, mut warnings, name) = match path {
         Some(path) => {
             let loaded = read_mesh(path, job)?;
@@ -51,13 +52,14 @@ pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, RigError> {
         }
         None => (shapes::sphere_of_about(START_VERTICES), vec![], "the start ball".into()),
     };
-    let mesh = Mesh::build(&plain, job).map_err(|source| RigError::Build { path: name, source })?;
+    let mesh =
+        Clay::build(&plain, job).map_err(|source| StartupError::Build { path: name, source })?;
     warnings.extend(mesh.warnings().iter().cloned());
     Ok(Loaded { plain, mesh, warnings })
 }
 
 /// The world of a fresh session.
-pub fn world(mesh: Mesh, config: &Config) -> World {
+pub fn world(mesh: Clay, config: &Config) -> World {
     let options = WorldOptions {
         dab_budget: config.r#loop.dab_budget,
         undo_bytes: config.undo.bytes,
@@ -78,7 +80,7 @@ pub struct Begun {
 #[derive(Debug, thiserror::Error)]
 pub enum BeginError {
     #[error(transparent)]
-    Rig(#[from] RigError),
+    Rig(#[from] StartupError),
     #[error(transparent)]
     Open(#[from] OpenError),
     #[error(transparent)]
@@ -87,8 +89,9 @@ pub enum BeginError {
     Create(#[from] CreateError),
 }
 
-/// Begins with a mesh and, where `session` names a file, records into it. A session that exists is replayed to its end and
-/// goes on from there; it brings its own start, so `mesh` must not be given beside it.
+/// Begins with a mesh and, where `session` names a file, records into it. A session that exists is
+/// replayed to its end and goes on from there; it brings its own start, so `mesh` must not be given
+/// beside it.
 pub fn begin(
     mesh: Option<&Path>,
     session: Option<&Path>,
@@ -102,7 +105,8 @@ pub fn begin(
         let mut opened = session::open(&path);
         if !matches!(
             &opened,
-            Ok(Opened { loss: None, .. }) | Err(OpenError::OtherLayout { .. } | OpenError::Io { .. })
+            Ok(Opened { loss: None, .. })
+                | Err(OpenError::OtherLayout { .. } | OpenError::Io { .. })
         ) {
             // A damaged file is kept as it is; the work goes on in another, beside it.
             match session::salvage(&path) {
@@ -111,20 +115,25 @@ pub fn begin(
                     path = saved.path;
                     opened = session::open(&path);
                 }
-                Err(e) => return Err(opened.err().map_or(BeginError::Salvage(e), BeginError::Open)),
+                Err(e) => {
+                    return Err(opened.err().map_or(BeginError::Salvage(e), BeginError::Open));
+                }
             }
         }
         let opened = opened?;
         let count = config.r#loop.worker_count();
-        let (mut replayed, purge, node) = match session::history::reopen(&path, &opened, None, count, job) {
-            Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
-            None => {
-                let replayed = session::replay::replay(&opened, None, workers, job)
-                    .map_err(|source| RigError::Build { path: path.display().to_string(), source })?;
-                let ticks = replayed.ticks;
-                (replayed, ticks, None)
-            }
-        };
+        let (mut replayed, purge, node) =
+            match session::history::reopen(&path, &opened, None, count, job) {
+                Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
+                None => {
+                    let replayed =
+                        session::replay::replay(&opened, None, workers, job).map_err(|source| {
+                            StartupError::Build { path: path.display().to_string(), source }
+                        })?;
+                    let ticks = replayed.ticks;
+                    (replayed, ticks, None)
+                }
+            };
         if replayed.jumps_missed > 0 {
             warnings.push(format!(
                 "{}: {} jumps within the history could not be made again",
@@ -177,7 +186,9 @@ fn keep(
             writer.keep(keeper.handle.clone());
             thread.history = Some(keeper);
         }
-        Err(e) => warnings.push(format!("no history is kept, undo goes back as far as memory does: {e}")),
+        Err(e) => {
+            warnings.push(format!("no history is kept, undo goes back as far as memory does: {e}"))
+        }
     }
 }
 
@@ -188,9 +199,9 @@ pub struct Area {
     pub size: Vec2,
 }
 
-/// The part of the tablet that a recording mostly touches: the median of its contacts in the middle, half of them within the
-/// middle half, as wide as the view. A recording made in a corner then lies over the work and not beside it. `None` where
-/// nothing ever touches.
+/// The part of the tablet that a recording mostly touches: the median of its contacts in the
+/// middle, half of them within the middle half, as wide as the view. A recording made in a corner
+/// then lies over the work and not beside it. `None` where nothing ever touches.
 pub fn used_area(mut player: Player, aspect: f32) -> Option<Area> {
     let mut touched: Vec<Vec2> = Vec::new();
     player.advance(u64::MAX, &mut |sample| {
@@ -209,7 +220,8 @@ pub fn used_area(mut player: Player, aspect: f32) -> Option<Area> {
         all[all.len() / 2]
     };
     let middle = Vec2::new(median(&|p| p.x), median(&|p| p.y));
-    let spread = Vec2::new(median(&|p| (p.x - middle.x).abs()), median(&|p| (p.y - middle.y).abs()));
+    let spread =
+        Vec2::new(median(&|p| (p.x - middle.x).abs()), median(&|p| (p.y - middle.y).abs()));
     // At least 10 mm: a recording of one dot is a dot in the middle.
     let size = (spread * 4.0).max(Vec2::splat(10.0));
     let size = Vec2::new(size.x.max(size.y * aspect), size.y.max(size.x / aspect));

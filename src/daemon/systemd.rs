@@ -1,7 +1,8 @@
-//! Telling the service manager how we are: `READY`, `STOPPING`, and a watchdog that is fed by progress.
+//! Telling the service manager how we are: `READY`, `STOPPING`, and a watchdog that is fed by
+//! progress.
 //!
-//! systemd's protocol is one datagram a message to the socket named in `NOTIFY_SOCKET` (a path, or an abstract name behind
-//! '@'); see sd_notify(3). Without that variable nothing is sent.
+//! systemd's protocol is one datagram a message to the socket named in `NOTIFY_SOCKET` (a path, or
+//! an abstract name behind '@'); see sd_notify(3). Without that variable nothing is sent.
 
 use std::os::unix::net::{SocketAddr, UnixDatagram};
 use std::sync::Arc;
@@ -19,7 +20,8 @@ pub struct Notifier {
 
 impl Notifier {
     pub fn from_env() -> Self {
-        std::env::var("NOTIFY_SOCKET").map_or_else(|_| Notifier::default(), |name| Notifier::to(&name))
+        std::env::var("NOTIFY_SOCKET")
+            .map_or_else(|_| Notifier::default(), |name| Notifier::to(&name))
     }
 
     /// `name`: an absolute path, or an abstract socket's name behind '@'. Anything else is nobody.
@@ -41,7 +43,8 @@ impl Notifier {
         self.to.is_some()
     }
 
-    /// Sends one message, e.g. `READY=1`. Never waits; a manager that cannot take it hears the next one.
+    /// Sends one message, e.g. `READY=1`. Never waits; a manager that cannot take it hears the next
+    /// one.
     pub fn send(&self, message: &str) {
         if let Some((socket, address)) = &self.to {
             let _ = socket.send_to_addr(message.as_bytes(), address);
@@ -49,7 +52,8 @@ impl Notifier {
     }
 }
 
-/// How often the manager wants to hear from this process (`WATCHDOG_USEC`, for us if `WATCHDOG_PID` says so), microseconds.
+/// How often the manager wants to hear from this process (`WATCHDOG_USEC`, for us if `WATCHDOG_PID`
+/// says so), microseconds.
 pub fn watchdog_us() -> Option<u64> {
     let number = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<u64>().ok());
     match number("WATCHDOG_PID") {
@@ -58,8 +62,9 @@ pub fn watchdog_us() -> Option<u64> {
     }
 }
 
-/// Looks at the tick loop and the journal, and says when the manager may be told that all goes on. Not a timer: a loop that
-/// stands still, or a journal thread that hangs in its disk, is not vouched for.
+/// Looks at the tick loop and the journal, and says when the manager may be told that all goes on.
+/// Not a timer: a loop that stands still, or a journal thread that hangs in its disk, is not
+/// vouched for.
 #[derive(Debug)]
 pub struct Watchdog {
     every_us: u64,
@@ -74,8 +79,8 @@ impl Watchdog {
         Watchdog { every_us: limit_us / 4, next_us: now_us, seen: (0, 0), moved: (false, false) }
     }
 
-    /// `tick`: the loop's last; `turns`: the journal's, `None` without one. True when it is time to tell and both have moved
-    /// since they were last vouched for.
+    /// `tick`: the loop's last; `turns`: the journal's, `None` without one. True when it is time to
+    /// tell and both have moved since they were last vouched for.
     pub fn look(&mut self, now_us: u64, tick: u64, turns: Option<u64>) -> bool {
         self.moved.0 |= tick != self.seen.0;
         self.moved.1 |= turns.is_none_or(|t| t != self.seen.1);
@@ -99,7 +104,8 @@ pub struct Watched {
 impl Watched {
     /// The loop's last tick, and the journal's turns.
     pub fn progress(&self) -> (u64, Option<u64>) {
-        let turns = self.journal.as_ref().map(|h| h.turns.load(std::sync::atomic::Ordering::Relaxed));
+        let turns =
+            self.journal.as_ref().map(|h| h.turns.load(std::sync::atomic::Ordering::Relaxed));
         (self.published.load().tick, turns)
     }
 }

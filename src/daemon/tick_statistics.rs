@@ -10,7 +10,7 @@ const LONGEST_NS: u64 = 10_000_000_000;
 
 /// Figures of a loop, filled without allocating.
 #[derive(Debug)]
-pub struct Figures {
+pub struct TickStatistics {
     pub ticks: u64,
     pub samples: u64,
     pub dabs: u64,
@@ -54,7 +54,7 @@ pub struct Summary {
     pub export: Option<String>,
 }
 
-impl Default for Figures {
+impl Default for TickStatistics {
     fn default() -> Self {
         // Bounds within what the histogram allows; three digits are 0.1 %.
         let tick_ns = Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| {
@@ -62,11 +62,11 @@ impl Default for Figures {
             #[allow(clippy::unwrap_used)]
             Histogram::new(3).unwrap()
         });
-        Figures { ticks: 0, samples: 0, dabs: 0, vertices_moved: 0, overruns: 0, tick_ns }
+        TickStatistics { ticks: 0, samples: 0, dabs: 0, vertices_moved: 0, overruns: 0, tick_ns }
     }
 }
 
-impl Figures {
+impl TickStatistics {
     pub fn tick(&mut self, report: &StepReport, took_ns: u64) {
         self.ticks += 1;
         self.samples += report.samples;

@@ -1,4 +1,5 @@
-//! Trimming: what is seen within a box, or on one side of a line, is cut off the work, all the way through, by a Boolean.
+//! Trimming: what is seen within a box, or on one side of a line, is cut off the work, all the way
+//! through, by a Boolean.
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
@@ -6,7 +7,7 @@ use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::published::Published;
-use crate::boolean_jobs as joiner;
+use crate::boolean_jobs;
 use crate::boolean_jobs::{JoinError, Joined};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
@@ -29,7 +30,8 @@ impl Part {
     fn corners(&self, aspect: f32) -> Option<[Vec2; 4]> {
         match *self {
             Part::Box([x0, y0, x1, y1]) => {
-                let (lo, hi) = (Vec2::new(x0.min(x1), y0.min(y1)), Vec2::new(x0.max(x1), y0.max(y1)));
+                let (lo, hi) =
+                    (Vec2::new(x0.min(x1), y0.min(y1)), Vec2::new(x0.max(x1), y0.max(y1)));
                 let sane = lo.is_finite() && hi.is_finite() && (hi - lo).min_element() > 1e-4;
                 sane.then(|| [lo, Vec2::new(lo.x, hi.y), hi, Vec2::new(hi.x, lo.y)])
             }
@@ -37,7 +39,8 @@ impl Part {
                 let scale = Vec2::new(aspect, 1.0);
                 let (a, b) = (Vec2::new(x0, y0) * scale, Vec2::new(x1, y1) * scale);
                 let along = (b - a).try_normalize().filter(|_| (b - a).length() > 1e-4)?;
-                // y runs down: this is to the left as seen. Four views are further than any work in view.
+                // y runs down: this is to the left as seen. Four views are further than any work in
+                // view.
                 let left = Vec2::new(along.y, -along.x);
                 let (back, ahead) = (a - along * 4.0, b + along * 4.0);
                 Some([back, ahead, ahead + left * 4.0, back + left * 4.0].map(|p| p / scale))
@@ -66,8 +69,10 @@ pub fn prism(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<
     let mut out = TriMesh::default();
     out.positions.extend(corners.map(|c| at(c, near)));
     out.positions.extend(corners.map(|c| at(c, -margin)));
-    let quads = [[0, 1, 2, 3], [7, 6, 5, 4], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]];
-    out.triangles.extend(quads.iter().flat_map(|q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]));
+    let quads =
+        [[0, 1, 2, 3], [7, 6, 5, 4], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]];
+    out.triangles
+        .extend(quads.iter().flat_map(|q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]));
     let volume: f32 = (0..out.triangles.len())
         .map(|t| {
             let [a, b, c] = out.corners(t).map(|p| p - middle);
@@ -85,20 +90,34 @@ pub fn prism(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<
 
 /// Cuts the part off the work as it is seen now: the commands that put the result in place.
 pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<Command>, JoinError> {
-    joiner::settled(shown, |now| {
+    boolean_jobs::settled(shown, |now| {
         // What the hands hold stays in them.
-        joiner::join(&now.mesh, &tool(now, part)?, false, Operation::Difference, &Job::default())
+        boolean_jobs::join(
+            &now.mesh,
+            &tool(now, part)?,
+            false,
+            Operation::Difference,
+            &Job::default(),
+        )
     })
 }
 
-/// Cuts the part off the work and waits for the loop to say what came of it: again where the work was changed there meanwhile.
+/// Cuts the part off the work and waits for the loop to say what came of it: again where the work
+/// was changed there meanwhile.
 pub fn carry_out(
     shown: &ArcSwap<Published>,
     part: &Part,
     job: &Job,
     commands: &cc::Sender<Command>,
 ) -> Result<Joined, JoinError> {
-    joiner::carry_out(shown, |now| tool(now, part), false, Operation::Difference, job, commands)
+    boolean_jobs::carry_out(
+        shown,
+        |now| tool(now, part),
+        false,
+        Operation::Difference,
+        job,
+        commands,
+    )
 }
 
 /// What is cut off, as a solid around all of the work that is seen there.
@@ -126,7 +145,11 @@ mod tests {
             }
             let line = Part::Line([0.5, 1.0, 0.5, 0.0]);
             let left = prism(&camera, &line, Vec3::ZERO, 1.0).expect("a solid");
-            assert!(left.positions.iter().all(|p| camera.project(*p).expect("before the eye").x < 0.501));
+            assert!(
+                left.positions
+                    .iter()
+                    .all(|p| camera.project(*p).expect("before the eye").x < 0.501)
+            );
         }
         let none = Part::Box([0.3, 0.2, 0.3, 0.9]);
         assert!(prism(&Camera::default(), &none, Vec3::ZERO, 1.0).is_none());

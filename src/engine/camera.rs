@@ -1,6 +1,8 @@
-//! The camera that a tablet is mapped through: a point of the active area is a point of the view, and a view point is a ray.
+//! The camera that a tablet is mapped through: a point of the active area is a point of the view,
+//! and a view point is a ray.
 //!
-//! View coordinates run from (0, 0) at the top left to (1, 1) at the bottom right, whatever the window's size.
+//! View coordinates run from (0, 0) at the top left to (1, 1) at the bottom right, whatever the
+//! window's size.
 
 use glam::{Mat4, Vec2, Vec3, camera::rh};
 use serde::{Deserialize, Serialize};
@@ -154,11 +156,14 @@ impl Camera {
     pub fn depth_range(&self, radius: f32) -> (f32, f32) {
         let far = (self.distance + radius * 2.0).max(1e-3);
         // As far away as the work allows: what depth tells apart at the work goes with it.
-        let near = (self.distance - radius * 2.0).max((far * 5e-3).min(self.distance * 0.1)).max(far * 1e-5);
+        let near = (self.distance - radius * 2.0)
+            .max((far * 5e-3).min(self.distance * 0.1))
+            .max(far * 1e-5);
         if self.orthographic { (-far, far) } else { (near, far) }
     }
 
-    /// World to clip space, depth 0 to 1, near and far set about a sphere of `radius` round the target.
+    /// World to clip space, depth 0 to 1, near and far set about a sphere of `radius` round the
+    /// target.
     pub fn view_projection(&self, radius: f32) -> Mat4 {
         let eye = self.eye();
         let view = rh::view::look_at_mat4(eye, self.target, Vec3::Y);
@@ -175,7 +180,8 @@ impl Camera {
 
     /// Refuses what no view can be made of.
     pub fn is_sane(&self) -> bool {
-        let finite = self.target.is_finite() && self.yaw.is_finite() && self.pitch.abs() <= MAX_PITCH;
+        let finite =
+            self.target.is_finite() && self.yaw.is_finite() && self.pitch.abs() <= MAX_PITCH;
         finite
             && (1e-6..=1e9).contains(&self.distance)
             && (0.01..=3.0).contains(&self.fov_y)
@@ -194,7 +200,10 @@ mod tests {
             camera.frame(Vec3::splat(-1.0), Vec3::new(2.0, 1.0, 3.0));
             for p in [Vec3::ZERO, Vec3::new(1.5, 0.5, 2.0), Vec3::new(-0.9, 0.9, -0.3)] {
                 let view = camera.project(p).expect("in front of the eye");
-                assert!(view.cmpge(Vec2::ZERO).all() && view.cmple(Vec2::ONE).all(), "framed: {view}");
+                assert!(
+                    view.cmpge(Vec2::ZERO).all() && view.cmple(Vec2::ONE).all(),
+                    "framed: {view}"
+                );
                 let ray = camera.ray(view);
                 let along = (p - ray.origin).dot(ray.dir);
                 assert!((ray.origin + ray.dir * along - p).length() < 1e-3 * camera.distance);
@@ -209,7 +218,10 @@ mod tests {
         let clip = camera.view_projection(1.0) * p.extend(1.0);
         let ndc = clip / clip.w;
         let view = camera.project(p).expect("in front");
-        assert!((ndc.x - (view.x * 2.0 - 1.0)).abs() < 1e-5 && (ndc.y - (1.0 - view.y * 2.0)).abs() < 1e-5);
+        assert!(
+            (ndc.x - (view.x * 2.0 - 1.0)).abs() < 1e-5
+                && (ndc.y - (1.0 - view.y * 2.0)).abs() < 1e-5
+        );
         assert!((0.0..=1.0).contains(&ndc.z));
     }
 }

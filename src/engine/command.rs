@@ -1,5 +1,6 @@
-//! Every way to change the world that is not a [`sculptd_devices::Sample`]: a panel's click, a control-socket call, a finished
-//! Boolean, an undo. Plain data, serialisable; [`crate::world::World::step`] is the only reader.
+//! Every way to change the world that is not a [`sculptd_devices::Sample`]: a panel's click, a
+//! control-socket call, a finished Boolean, an undo. Plain data, serialisable;
+//! [`crate::world::World::step`] is the only reader.
 
 use std::sync::{Arc, Mutex};
 
@@ -7,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::hand::{ReachBox, Similarity};
-use crate::stroke::DraftAct;
+use crate::stroke::CurveAction;
 use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
-use sculptd_clay::{Cut, Grafted, Levels, Mesh, Page, Rest};
+use sculptd_clay::{Clay, Cut, Grafted, Levels, ObjectState, Page};
 use sculptd_geometry::TriMesh;
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -25,7 +26,8 @@ pub enum Command {
     Mask(MaskAction),
     /// The picture of heights that brushes with the alpha `picture` press.
     Picture(Arc<Picture>),
-    /// Another work takes the place of this one: a file was loaded, a Boolean finished, the kiosk was reset.
+    /// Another work takes the place of this one: a file was loaded, a Boolean finished, the kiosk
+    /// was reset.
     Replace(NewClay),
     /// The hands take up a thing: a primitive or a loaded mesh, to carry it to its place.
     TakeUp(Arc<TriMesh>),
@@ -35,31 +37,35 @@ pub enum Command {
     CalibrateReach,
     /// This part of the tracked space is laid over the work.
     Reach(ReachBox),
-    /// Another person's work begins: the world is made anew, and nothing of what was before it stays.
+    /// Another person's work begins: the world is made anew, and nothing of what was before it
+    /// stays.
     Begin(Box<Beginning>),
     /// The thing in the hands stands here.
     Place(Similarity),
-    /// A Boolean of a small tool: made where the work around it is as it was when the cut was computed, else not at all.
+    /// A Boolean of a small tool: made where the work around it is as it was when the cut was
+    /// computed, else not at all.
     Cut(Carving),
     /// The work becomes what it was at another place of its history, as the session file keeps it.
     Jump(Box<Jump>),
     /// The session was opened again: what could be taken back or done again is in the file alone.
     Reopened,
-    /// As [`Command::Replace`], with a mask for each vertex: what made the new work keeps what was protected so.
-    Remake(NewClay, Arc<Vec<f32>>),
+    /// As [`Command::Replace`], with a mask for each vertex: what made the new work keeps what was
+    /// protected so.
+    ReplaceMasked(NewClay, Arc<Vec<f32>>),
     /// To the curve that a pen has laid with the method `curve`: drawn, put away, a handle less.
-    Draft(DraftAct),
+    CurveStroke(CurveAction),
 }
 
-/// To another place of the history. What it needs is in the session file, under the names given here, so that a replay finds
-/// it again; whoever sends it has fetched it already.
+/// To another place of the history. What it needs is in the session file, under the names given
+/// here, so that a replay finds it again; whoever sends it has fetched it already.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Jump {
     /// The place's number.
     pub node: u64,
-    /// The lineage and the revision that it was made for: a work that has changed since takes no notice.
+    /// The lineage and the revision that it was made for: a work that has changed since takes no
+    /// notice.
     pub from: (u32, u64),
-    pub lineage: u32,
+    pub object_id: u32,
     /// Pages that differ, and their revisions; all of them for another work.
     pub pages: Vec<(u32, u64)>,
     /// Another work than the one in place.
@@ -72,7 +78,7 @@ pub struct Jump {
 /// What a work brings along besides its pages.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct OtherWork {
-    pub rest: Rest,
+    pub rest: ObjectState,
     /// Its middle and bounding radius: the measure of brushes, mirrors and hands.
     pub middle: glam::Vec3,
     pub extent: f32,
@@ -84,7 +90,7 @@ pub struct OtherWork {
 #[derive(Debug)]
 pub enum Fetched {
     Pages(Vec<(u32, Arc<Page>)>),
-    Work(Box<Mesh>),
+    Work(Box<Clay>),
 }
 
 /// A cut to be made in the work.
@@ -93,7 +99,8 @@ pub struct Carving {
     pub cut: Arc<Cut>,
     /// The thing in the hands is the tool, and gone once the cut is made.
     pub put_down: bool,
-    /// Told what came of it; `None`: the work was changed there in between. Nobody waits for who asked.
+    /// Told what came of it; `None`: the work was changed there in between. Nobody waits for who
+    /// asked.
     #[serde(skip)]
     pub answer: Option<crossbeam_channel::Sender<Option<Grafted>>>,
 }
@@ -107,8 +114,8 @@ pub struct Beginning {
     pub brush: BrushSettings,
 }
 
-/// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its own; a replay, which has
-/// only the plain triangles, builds them again.
+/// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its
+/// own; a replay, which has only the plain triangles, builds them again.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct NewClay {
     pub plain: Arc<TriMesh>,
@@ -118,16 +125,17 @@ pub struct NewClay {
     pub levels: Option<Arc<Levels>>,
     /// Taken by the first `step` that sees it.
     #[serde(skip)]
-    built: Arc<Mutex<Option<Mesh>>>,
+    built: Arc<Mutex<Option<Clay>>>,
 }
 
 impl NewClay {
-    pub fn new(plain: Arc<TriMesh>, built: Mesh, keep_camera: bool) -> Self {
+    pub fn new(plain: Arc<TriMesh>, built: Clay, keep_camera: bool) -> Self {
         NewClay { plain, keep_camera, levels: None, built: Arc::new(Mutex::new(Some(built))) }
     }
 
-    /// The pages, if they were built and not yet taken. Never waits: nobody else holds the lock once the command is sent.
-    pub fn take(&self) -> Option<Mesh> {
+    /// The pages, if they were built and not yet taken. Never waits: nobody else holds the lock
+    /// once the command is sent.
+    pub fn take(&self) -> Option<Clay> {
         self.built.try_lock().ok().and_then(|mut slot| slot.take())
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Laws kept here:
 //! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
-//! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same samples and commands, same
-//!   bits, with any number of workers.
+//! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same
+//!   samples and commands, same bits, with any number of workers.
 //! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
 
 mod saved;
@@ -14,20 +14,23 @@ use std::sync::Arc;
 use glam::{DVec3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-pub use self::saved::{BadState, Deed, Moment, Saved, Side};
-use self::stroke_context::{Clay, Stroke};
+pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, Side};
+use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
 use crate::command::{Command, NewClay};
-use crate::hand::{Act, Choice, HandSettings, HandTools, Pose, ReachBox, Similarity, Thing, Volume};
-use crate::replaced::Works;
-use crate::stroke::{Draft, DraftAct, PenPoint, PenTrack};
+use crate::hand::{
+    Act, HandSettings, HandTools, HeldObject, MenuItem, Pose, ReachBox, Similarity, Volume,
+};
+use crate::replaced::ReplacedClay;
+use crate::stroke::{CurveAction, CurveStroke, PenPoint, PenTrack};
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
-use sculptd_clay::{Kernel, Mesh, Reach, Workers};
+use sculptd_clay::{Clay, Kernel, Reach, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_geometry::{PolyMesh, TriMesh, shapes};
 
-/// Devices that may sculpt at once. A device beyond them is heard but does not sculpt; `StepReport::ignored` counts it.
+/// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
+/// `StepReport::ignored` counts it.
 pub const MAX_PENS: usize = 16;
 
 /// What one step did. Reused from step to step.
@@ -43,10 +46,12 @@ pub struct StepReport {
     pub resting: bool,
     /// Samples of devices beyond [`MAX_PENS`].
     pub ignored: u64,
-    /// A hand asked for the thing that it holds to be joined with the work: for a worker, see [`World::thing`].
-    pub join: Option<Choice>,
-    /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the history outside.
-    pub missed: Option<Deed>,
+    /// A hand asked for the thing that it holds to be joined with the work: for a worker, see
+    /// [`World::thing`].
+    pub join: Option<MenuItem>,
+    /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the
+    /// history outside.
+    pub missed: Option<HistoryEvent>,
     /// Jumps within the history that were made.
     pub jumps: u64,
 }
@@ -62,7 +67,7 @@ pub struct WorldOptions {
 
 /// One pen at work.
 #[derive(Debug, Serialize, Deserialize)]
-struct Seat {
+struct PenSlot {
     device: DeviceId,
     track: PenTrack,
     stroke: Stroke,
@@ -71,36 +76,37 @@ struct Seat {
 #[derive(Debug)]
 pub struct World {
     tick: u64,
-    mesh: Mesh,
+    mesh: Clay,
     workers: Workers,
     options: WorldOptions,
     brush: BrushSettings,
     camera: Camera,
-    /// Middle and bounding radius of the work when it was put in place: the measure of brushes, mirrors and hands.
+    /// Middle and bounding radius of the work when it was put in place: the measure of brushes,
+    /// mirrors and hands.
     middle: Vec3,
     extent: f32,
-    pens: Vec<Seat>,
+    pens: Vec<PenSlot>,
     scratch: Scratch,
     /// Strokes begun.
     strokes: u32,
     hands: HandTools,
     last_hands: Option<Hands>,
     /// What the hands hold.
-    thing: Option<Thing>,
+    thing: Option<HeldObject>,
     report: StepReport,
     /// Works before and after this one, for undo.
-    works: Works,
+    works: ReplacedClay,
     /// Works that were replaced, for somebody else to drop.
-    retired: Vec<Mesh>,
+    retired: Vec<Clay>,
     /// Works put in place so far.
     lineages: u32,
     /// What was done in this tick, for whoever keeps the history; `None`: nobody does.
-    moments: Option<Vec<Moment>>,
+    moments: Option<Vec<HistoryEntry>>,
 }
 
 impl World {
     pub fn new(
-        mut mesh: Mesh,
+        mut mesh: Clay,
         camera: Camera,
         brush: BrushSettings,
         workers: Workers,
@@ -123,7 +129,7 @@ impl World {
             last_hands: None,
             thing: None,
             report: StepReport::default(),
-            works: Works::default(),
+            works: ReplacedClay::default(),
             retired: Vec::with_capacity(16),
             lineages: 0,
             moments: None,
@@ -148,7 +154,8 @@ impl World {
         }
     }
 
-    /// One tick: commands first, in order, then samples in order of time (ties by device), then what waited from before.
+    /// One tick: commands first, in order, then samples in order of time (ties by device), then
+    /// what waited from before.
     pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
@@ -156,10 +163,10 @@ impl World {
             moments.clear();
         }
         for command in commands {
-            self.obey(command);
+            self.apply_command(command);
         }
         for sample in samples {
-            self.hear(sample);
+            self.apply_sample(sample);
         }
         self.sculpt();
         if self.report.vertices_moved > 0 {
@@ -169,23 +176,24 @@ impl World {
         &self.report
     }
 
-    fn obey(&mut self, command: &Command) {
+    fn apply_command(&mut self, command: &Command) {
         match command {
             Command::Brush(brush) => {
                 self.brush = brush.clamped();
-                let lays = self.brush.kind.grip() == Grip::Surface && self.brush.path.method == Method::Curve;
+                let lays = self.brush.kind.grip() == Grip::Surface
+                    && self.brush.path.method == Method::Curve;
                 if !lays {
                     self.put_away();
                 }
             }
             // What was laid last goes first.
             Command::Undo if self.put_away() => {}
-            Command::Draft(act) => match act {
-                DraftAct::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
-                DraftAct::Cancel => {
+            Command::CurveStroke(act) => match act {
+                CurveAction::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
+                CurveAction::Cancel => {
                     self.put_away();
                 }
-                DraftAct::Delete(handle) => {
+                CurveAction::Delete(handle) => {
                     let _ = self.pens.iter_mut().any(|s| s.track.delete(*handle));
                 }
             },
@@ -197,15 +205,15 @@ impl World {
             Command::Undo => {
                 self.lift_all();
                 match self.mesh.undo() || self.works.back(&mut self.mesh) {
-                    true => self.note(Deed::Undo),
-                    false => self.report.missed = Some(Deed::Undo),
+                    true => self.note(HistoryEvent::Undo),
+                    false => self.report.missed = Some(HistoryEvent::Undo),
                 }
             }
             Command::Redo => {
                 self.lift_all();
                 match self.mesh.redo() || self.works.forth(&mut self.mesh) {
-                    true => self.note(Deed::Redo),
-                    false => self.report.missed = Some(Deed::Redo),
+                    true => self.note(HistoryEvent::Redo),
+                    false => self.report.missed = Some(HistoryEvent::Redo),
                 }
             }
             Command::LiftAll => self.lift_all(),
@@ -221,7 +229,8 @@ impl World {
             Command::Begin(new) => {
                 self.lift_all();
                 let clay = &new.clay;
-                let built = clay.take().or_else(|| Mesh::build(&clay.plain, &Default::default()).ok());
+                let built =
+                    clay.take().or_else(|| Clay::build(&clay.plain, &Default::default()).ok());
                 if let (Some(mesh), true) = (built, new.camera.is_sane()) {
                     let workers = std::mem::replace(&mut self.workers, Workers::new(1));
                     let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
@@ -235,7 +244,7 @@ impl World {
                     let retired = &mut self.retired;
                     old.works.forget(|m| retired.push(m));
                     self.retired.push(old.mesh);
-                    self.note(Deed::Begin);
+                    self.note(HistoryEvent::Begin);
                 }
             }
             Command::Mask(action) => {
@@ -267,7 +276,7 @@ impl World {
                 }
             }
             Command::Replace(new) => self.replace(new, &[]),
-            Command::Remake(new, masks) => self.replace(new, masks),
+            Command::ReplaceMasked(new, masks) => self.replace(new, masks),
             Command::Jump(jump) => self.jump(jump),
             Command::Reopened => {
                 self.lift_all();
@@ -283,7 +292,7 @@ impl World {
 
     fn replace(&mut self, new: &NewClay, masks: &[f32]) {
         self.lift_all();
-        let build = || Mesh::build_masked(&new.plain, masks, &Default::default()).ok();
+        let build = || Clay::build_masked(&new.plain, masks, &Default::default()).ok();
         let Some(mut mesh) = new.take().or_else(build) else { return };
         mesh.set_undo_bytes(self.options.undo_bytes);
         mesh.set_levels(new.levels.clone());
@@ -298,23 +307,24 @@ impl World {
             self.measure();
             self.frame();
         }
-        self.note(Deed::Replace);
+        self.note(HistoryEvent::Replace);
     }
 
-    /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must see the strokes ended.
+    /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must
+    /// see the strokes ended.
     fn lift_all(&mut self) {
         for seat in &mut self.pens {
             seat.track.lift(&self.brush.path);
         }
         self.hands.lift();
-        self.walk(u64::MAX);
+        self.advance_strokes(u64::MAX);
         self.close();
     }
 
     /// Closes the open step.
     fn close(&mut self) {
         if self.mesh.end_step() {
-            self.note(Deed::Step);
+            self.note(HistoryEvent::Step);
         }
     }
 
@@ -330,7 +340,7 @@ impl World {
         let at = self.middle + turn * Vec3::new(self.extent * 1.2, self.extent * 0.4, 0.0);
         let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
         if place.is_sane() {
-            self.thing = Some(Thing { plain, place });
+            self.thing = Some(HeldObject { plain, place });
             self.hands.carrying = true;
         }
     }
@@ -347,32 +357,33 @@ impl World {
         }
     }
 
-    fn choose(&mut self, choice: Choice) {
+    fn choose(&mut self, choice: MenuItem) {
         let primitive = |solid: PolyMesh| Arc::new(solid.triangulate().0);
         match choice {
-            Choice::Undo => self.obey(&Command::Undo),
-            Choice::Redo => self.obey(&Command::Redo),
-            Choice::PutAway => self.put_down(),
-            Choice::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
-            Choice::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
-            Choice::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
-            Choice::Add | Choice::Carve | Choice::Keep => self.report.join = Some(choice),
+            MenuItem::Undo => self.apply_command(&Command::Undo),
+            MenuItem::Redo => self.apply_command(&Command::Redo),
+            MenuItem::PutAway => self.put_down(),
+            MenuItem::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
+            MenuItem::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
+            MenuItem::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
+            MenuItem::Add | MenuItem::Carve | MenuItem::Keep => self.report.join = Some(choice),
         }
     }
 
-    fn hear(&mut self, sample: &Sample) {
+    fn apply_sample(&mut self, sample: &Sample) {
         match &sample.body {
             Body::Pen(pen) => {
-                let index = self.pens.iter().position(|s| s.device == sample.device).or_else(|| {
-                    (self.pens.len() < MAX_PENS).then(|| {
-                        self.pens.push(Seat {
-                            device: sample.device,
-                            track: PenTrack::default(),
-                            stroke: Stroke::default(),
-                        });
-                        self.pens.len() - 1
-                    })
-                });
+                let index =
+                    self.pens.iter().position(|s| s.device == sample.device).or_else(|| {
+                        (self.pens.len() < MAX_PENS).then(|| {
+                            self.pens.push(PenSlot {
+                                device: sample.device,
+                                track: PenTrack::default(),
+                                stroke: Stroke::default(),
+                            });
+                            self.pens.len() - 1
+                        })
+                    });
                 match index {
                     Some(i) => self.pens[i].track.take(pen, &self.brush.path, self.camera.aspect),
                     None => self.report.ignored += 1,
@@ -395,19 +406,19 @@ impl World {
     }
 
     fn sculpt(&mut self) {
-        self.walk(self.options.dab_budget);
-        let active =
-            self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle()) || self.hands.is_touching();
+        self.advance_strokes(self.options.dab_budget);
+        let active = self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle())
+            || self.hands.is_touching();
         if !active {
             self.close();
         }
     }
 
     /// Walks what waits on every pen in turn, then the hands, until `budget` vertices were visited.
-    fn walk(&mut self, budget: u64) {
+    fn advance_strokes(&mut self, budget: u64) {
         let goes_on = self.goes_on_by_time();
         let every = self.brush.path.every_ticks as u32;
-        let mut clay = Clay {
+        let mut clay = StrokeContext {
             mesh: &mut self.mesh,
             workers: &self.workers,
             scratch: &mut self.scratch,
@@ -511,7 +522,7 @@ impl World {
         self.tick
     }
 
-    pub fn mesh(&self) -> &Mesh {
+    pub fn mesh(&self) -> &Clay {
         &self.mesh
     }
 
@@ -562,12 +573,12 @@ impl World {
     }
 
     /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
-    pub fn draft(&self) -> Option<&Draft> {
+    pub fn draft(&self) -> Option<&CurveStroke> {
         self.pens.iter().map(|s| s.track.draft()).find(|d| !d.is_empty())
     }
 
     /// What the hands hold, and where.
-    pub fn thing(&self) -> Option<&Thing> {
+    pub fn thing(&self) -> Option<&HeldObject> {
         self.thing.as_ref()
     }
 
@@ -580,7 +591,7 @@ impl World {
     }
 
     /// Works that were replaced since the last call, for another thread to drop.
-    pub fn take_retired(&mut self) -> Option<Mesh> {
+    pub fn take_retired(&mut self) -> Option<Clay> {
         self.retired.pop()
     }
 

@@ -1,16 +1,17 @@
-//! The alpha shape of points in a plane: the triangles of their Delaunay triangulation whose circumcircle has a radius of at
-//! most alpha (Edelsbrunner, Kirkpatrick and Seidel 1983).
+//! The alpha shape of points in a plane: the triangles of their Delaunay triangulation whose
+//! circumcircle has a radius of at most alpha (Edelsbrunner, Kirkpatrick and Seidel 1983).
 
 use glam::DVec2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use super::silhouette::{Chain, Polygon};
 
-/// Polygons and area of the shape of `points`, which are finite. Of random points the area is low by about the perimeter
-/// times half their spacing: they rarely lie on the border.
+/// Polygons and area of the shape of `points`, which are finite. Of random points the area is low
+/// by about the perimeter times half their spacing: they rarely lie on the border.
 pub fn alpha_shape(points: &[DVec2], alpha: f64) -> (Vec<Polygon>, f64) {
-    let (lo, hi) =
-        points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let (lo, hi) = points
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let inputs: Vec<Point2<f64>> = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
     let Ok(delaunay) = DelaunayTriangulation::<Point2<f64>>::bulk_load(inputs) else {
         return (Vec::new(), 0.0);

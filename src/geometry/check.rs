@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::PolyMesh;
 use super::edges::{Edges, Sets};
 use crate::job::{Cancelled, Job};
-use crate::self_intersection as crossing;
+use crate::self_intersection;
 
 /// The facts of a mesh, as `sculptd info --json` prints them. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,7 +33,8 @@ pub struct Report {
     /// Of a closed mesh; negative if it is inside out.
     pub volume: Option<f64>,
     pub area: f64,
-    /// Pairs of triangles that cross, beyond the vertices and edges that they share. `None` if not asked for.
+    /// Pairs of triangles that cross, beyond the vertices and edges that they share. `None` if not
+    /// asked for.
     pub self_intersections: Option<usize>,
     /// Triangles that have a part in such a pair.
     pub crossed_triangles: Option<usize>,
@@ -133,7 +134,11 @@ pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<Report, Can
     let manifold = nonmanifold == 0 && fans.count() == in_use;
     let euler = in_use as i64 - count + faces as i64;
     let components = together.count() - (mesh.positions.len() - in_use);
-    let crossed = if crossings { Some(crossing::count(&mesh.positions, &triangles, job)?) } else { None };
+    let crossed = if crossings {
+        Some(self_intersection::count(&mesh.positions, &triangles, job)?)
+    } else {
+        None
+    };
     Ok(Report {
         vertices: mesh.positions.len(),
         faces,

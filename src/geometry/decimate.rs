@@ -1,8 +1,10 @@
-//! Fewer triangles: edges are collapsed in the order of the error that it makes (Garland and Heckbert 1997).
+//! Fewer triangles: edges are collapsed in the order of the error that it makes (Garland and
+//! Heckbert 1997).
 //!
-//! A collapse is refused if it would break the surface (link condition: the edge's ends share exactly the vertices opposite the
-//! edge), turn a triangle by more than about 75 degrees or make a needle of it, or move the surface by more than the bound. Borders
-//! hold by planes set upright on them. What was closed and manifold stays so.
+//! A collapse is refused if it would break the surface (link condition: the edge's ends share
+//! exactly the vertices opposite the edge), turn a triangle by more than about 75 degrees or make a
+//! needle of it, or move the surface by more than the bound. Borders hold by planes set upright on
+//! them. What was closed and manifold stays so.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -18,8 +20,8 @@ use crate::job::{Cancelled, Job};
 pub struct Target {
     /// Stop at this many triangles.
     pub triangles: usize,
-    /// And before the mean square distance to the planes that a vertex stands for exceeds this one squared, in the mesh's unit;
-    /// infinity for no bound.
+    /// And before the mean square distance to the planes that a vertex stands for exceeds this one
+    /// squared, in the mesh's unit; infinity for no bound.
     pub error: f64,
 }
 
@@ -38,7 +40,8 @@ impl Quadric {
         let d = -normal.dot(through);
         let n = normal;
         Quadric {
-            a: [n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z].map(|v| v * weight),
+            a: [n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z]
+                .map(|v| v * weight),
             b: n * (d * weight),
             c: d * d * weight,
             weight,
@@ -88,14 +91,16 @@ struct Surface {
 /// Errors as bits: those of non-negative numbers sort as the numbers do.
 type Entry = Reverse<(u64, u32, u32, u32, u32)>;
 
-/// Collapses edges of the mesh's triangles (polygons are cut first) until `target` is reached or nothing more may go.
+/// Collapses edges of the mesh's triangles (polygons are cut first) until `target` is reached or
+/// nothing more may go.
 pub fn quadric(mesh: &PolyMesh, target: Target, job: &Job) -> Result<PolyMesh, Cancelled> {
     let (triangles, _) = mesh.triangles();
     let middle = mesh
         .positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
-    let middle = if mesh.positions.is_empty() { DVec3::ZERO } else { middle.0 / 2.0 + middle.1 / 2.0 };
+    let middle =
+        if mesh.positions.is_empty() { DVec3::ZERO } else { middle.0 / 2.0 + middle.1 / 2.0 };
     let mut s = Surface::of(mesh, triangles, middle);
     let mut heap: BinaryHeap<Entry> = BinaryHeap::new();
     let mut pairs: Vec<(u32, u32)> = s
@@ -127,8 +132,11 @@ pub fn quadric(mesh: &PolyMesh, target: Target, job: &Job) -> Result<PolyMesh, C
             continue;
         }
         left -= s.collapse(a, b, to);
-        let mut near: Vec<u32> =
-            s.around[a as usize].iter().flat_map(|&t| s.triangles[t as usize]).filter(|&v| v != a).collect();
+        let mut near: Vec<u32> = s.around[a as usize]
+            .iter()
+            .flat_map(|&t| s.triangles[t as usize])
+            .filter(|&v| v != a)
+            .collect();
         near.sort_unstable();
         near.dedup();
         for v in near {
@@ -174,7 +182,8 @@ impl Surface {
             let (u, v) = sides[0].ends;
             match sides {
                 [one] => {
-                    let [a, b, c] = s.triangles[one.corner as usize / 3].map(|v| s.positions[v as usize]);
+                    let [a, b, c] =
+                        s.triangles[one.corner as usize / 3].map(|v| s.positions[v as usize]);
                     let (from, to) = (s.positions[u as usize], s.positions[v as usize]);
                     let upright = (to - from).cross((b - a).cross(c - a)).normalize_or_zero();
                     let form = Quadric::plane(upright, from, (to - from).length_squared());
@@ -209,7 +218,8 @@ impl Surface {
             let t = self.triangles[seen[at] as usize];
             at += 1;
             for &u in around {
-                let shares = self.triangles[u as usize].iter().filter(|w| **w != v && t.contains(w)).count();
+                let shares =
+                    self.triangles[u as usize].iter().filter(|w| **w != v && t.contains(w)).count();
                 if shares > 0 && !seen.contains(&u) {
                     seen.push(u);
                 }
@@ -223,7 +233,8 @@ impl Surface {
         form.add(&self.forms[b as usize]);
         let (pa, pb) = (self.positions[a as usize], self.positions[b as usize]);
         let length = pa.distance(pb);
-        let least = form.least().filter(|p| p.is_finite() && p.distance((pa + pb) / 2.0) <= 2.0 * length);
+        let least =
+            form.least().filter(|p| p.is_finite() && p.distance((pa + pb) / 2.0) <= 2.0 * length);
         let [first, .., last] = [pa, (pa + pb) / 2.0, pb];
         let mut best = (form.at(first), first);
         for p in [Some((pa + pb) / 2.0), Some(last), least].into_iter().flatten() {
@@ -287,7 +298,8 @@ impl Surface {
                 let new = corners.map(|w| if w == v { to } else { self.positions[w as usize] });
                 let normal = |p: [DVec3; 3]| (p[1] - p[0]).cross(p[2] - p[0]);
                 let (was, is) = (normal(old), normal(new));
-                let longest = (0..3).map(|i| new[i].distance_squared(new[(i + 1) % 3])).fold(0.0, f64::max);
+                let longest =
+                    (0..3).map(|i| new[i].distance_squared(new[(i + 1) % 3])).fold(0.0, f64::max);
                 // Upright enough, and no needle unless it was one.
                 was.dot(is) >= 0.25 * was.length() * is.length()
                     && (is.length() > 0.02 * longest || is.length() >= was.length() * 0.9)
@@ -344,12 +356,18 @@ mod tests {
         let job = Job::default();
         let ball = icosphere(1.0, 30).to_poly();
         let few = report(&down(&ball, 600, f64::INFINITY), true, &job).unwrap();
-        assert!(few.closed && few.manifold && few.genus == Some(0) && few.triangles <= 600, "{few:?}");
+        assert!(
+            few.closed && few.manifold && few.genus == Some(0) && few.triangles <= 600,
+            "{few:?}"
+        );
         assert_eq!(few.self_intersections, Some(0));
         let sphere = 4.0 / 3.0 * std::f64::consts::PI;
         assert!((few.volume.unwrap() - sphere).abs() < 0.02 * sphere, "{few:?}");
         let ring = report(&down(&torus(3., 1., 80, 40), 300, f64::INFINITY), true, &job).unwrap();
-        assert!(ring.closed && ring.manifold && ring.genus == Some(1) && ring.triangles <= 300, "{ring:?}");
+        assert!(
+            ring.closed && ring.manifold && ring.genus == Some(1) && ring.triangles <= 300,
+            "{ring:?}"
+        );
     }
 
     #[test]

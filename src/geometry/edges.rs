@@ -1,4 +1,5 @@
-//! The edges of a flat polygon mesh, found by sorting: what checking, mending and subdividing share.
+//! The edges of a flat polygon mesh, found by sorting: what checking, mending and subdividing
+//! share.
 
 use rayon::prelude::*;
 
@@ -52,7 +53,8 @@ impl Edges {
     }
 }
 
-/// Disjoint sets with path halving; the lowest member speaks for its set, so that the outcome does not depend on the order.
+/// Disjoint sets with path halving; the lowest member speaks for its set, so that the outcome does
+/// not depend on the order.
 #[derive(Debug, Clone)]
 pub struct Sets {
     parent: Vec<u32>,

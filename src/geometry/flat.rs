@@ -1,5 +1,5 @@
-//! Meshes as plain arrays: what a file holds, what a Boolean takes, what an analysis reads.
-//! The clay itself is paged ([`sculptd_clay::Mesh`]); these are the shapes in which it comes and goes.
+//! Meshes as plain arrays: what a file holds, what a Boolean takes, what an analysis reads. The
+//! clay itself is paged ([`sculptd_clay::Mesh`]); these are the shapes in which it comes and goes.
 
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PolyMesh {
     pub positions: Vec<DVec3>,
-    /// Face `f` owns `corners[face_starts[f]..face_starts[f + 1]]`; one entry more than faces, the first is 0.
+    /// Face `f` owns `corners[face_starts[f]..face_starts[f + 1]]`; one entry more than faces, the
+    /// first is 0.
     pub face_starts: Vec<u32>,
     pub corners: Vec<u32>,
     /// One RGBA a vertex, sRGB, where the file has colours.

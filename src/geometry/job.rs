@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
-/// Shared between the one who asked and the one who works. The worker looks at [`Job::cancelled`] at least every
-/// 50 ms and reports its progress; neither waits for the other.
+/// Shared between the one who asked and the one who works. The worker looks at [`Job::cancelled`]
+/// at least every 50 ms and reports its progress; neither waits for the other.
 #[derive(Debug, Default)]
 pub struct Job {
     cancelled: AtomicBool,

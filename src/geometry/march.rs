@@ -1,11 +1,12 @@
-//! Rays through a sampled distance: each step is as long as the distance allows (Hart, "Sphere tracing", 1996).
+//! Rays through a sampled distance: each step is as long as the distance allows (Hart, "Sphere
+//! tracing", 1996).
 
 use glam::DVec3;
 
 use super::grid::Grid;
 
-/// Nearer to the surface than this is a hit, where the caller does not say: a thousandth of a unit, but never more than a
-/// fiftieth of the spacing.
+/// Nearer to the surface than this is a hit, where the caller does not say: a thousandth of a unit,
+/// but never more than a fiftieth of the spacing.
 pub fn default_epsilon(grid: &Grid) -> f64 {
     (grid.spacing * 0.02).min(1e-3)
 }
@@ -13,9 +14,10 @@ pub fn default_epsilon(grid: &Grid) -> f64 {
 /// Steps before a ray that creeps along the surface counts as a miss.
 const MOST_STEPS: usize = 4096;
 
-/// Where along `dir` (of unit length) the ray from `origin` comes within `epsilon` of the solid or enters it; `None` once it
-/// has passed the grid's box. Trilinear interpolation errs by about `spacing^2` times the curvature: rays that pass the
-/// outline within a voxel may be judged otherwise than by the mesh.
+/// Where along `dir` (of unit length) the ray from `origin` comes within `epsilon` of the solid or
+/// enters it; `None` once it has passed the grid's box. Trilinear interpolation errs by about
+/// `spacing^2` times the curvature: rays that pass the outline within a voxel may be judged
+/// otherwise than by the mesh.
 pub fn march(grid: &Grid, origin: DVec3, dir: DVec3, epsilon: f64) -> Option<f64> {
     let (lo, hi) = (grid.origin, grid.end());
     let inverse = dir.recip();

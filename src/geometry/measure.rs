@@ -12,7 +12,8 @@ const STRIPS: usize = 2048;
 /// Lengths in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {
-    /// Enclosed volume; of an open mesh, what the divergence theorem says of it, which means little.
+    /// Enclosed volume; of an open mesh, what the divergence theorem says of it, which means
+    /// little.
     pub volume: f64,
     pub area: f64,
     /// Extent along x, y and z.
@@ -44,18 +45,24 @@ pub fn measures(mesh: &TriMesh) -> Measures {
     }
 }
 
-/// Area of the part's shadow along `direction` (any length but zero). The shadow is cut into strips; in the middle of each
-/// the union of all triangles is exact, so what is lost is only the curvature of the outline within a strip: about 1e-6 of
-/// the area for smooth outlines, nothing for a box along the axes.
+/// Area of the part's shadow along `direction` (any length but zero). The shadow is cut into
+/// strips; in the middle of each the union of all triangles is exact, so what is lost is only the
+/// curvature of the outline within a strip: about 1e-6 of the area for smooth outlines, nothing for
+/// a box along the axes.
 pub fn projected_area(mesh: &TriMesh, direction: Vec3, job: &Job) -> Result<f64, Cancelled> {
     let d = direction.as_dvec3().normalize_or_zero();
     if d == DVec3::ZERO || mesh.triangles.is_empty() {
         return Ok(0.0);
     }
-    // Strips run along x of the projection where the direction is an axis, so that a box's sides fall on their borders.
+    // Strips run along x of the projection where the direction is an axis, so that a box's sides
+    // fall on their borders.
     let (u, v) = d.any_orthonormal_pair();
-    let flat: Vec<DVec2> =
-        mesh.positions.iter().map(|p| p.as_dvec3()).map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
+    let flat: Vec<DVec2> = mesh
+        .positions
+        .iter()
+        .map(|p| p.as_dvec3())
+        .map(|p| DVec2::new(p.dot(u), p.dot(v)))
+        .collect();
     let used = mesh.triangles.iter().flatten().map(|&i| flat[i as usize].y);
     let (lo, hi) = used.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     let height = (hi - lo) / STRIPS as f64;
@@ -146,7 +153,9 @@ mod tests {
     #[test]
     fn a_tetrahedron_is_measured_exactly() {
         let mesh = TriMesh {
-            positions: [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0].map(|p| p + 100.0).to_vec(),
+            positions: [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0]
+                .map(|p| p + 100.0)
+                .to_vec(),
             triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
             colours: None,
         };

@@ -18,11 +18,13 @@ fn middle(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len() as f64
 }
 
-/// A vertex settles within this share of the spacing. Along a ridge the way to the wanted distance leads across it, and what
-/// went further would fold over its neighbours; left where it is, the ridge is a little blunter.
+/// A vertex settles within this share of the spacing. Along a ridge the way to the wanted distance
+/// leads across it, and what went further would fold over its neighbours; left where it is, the
+/// ridge is a little blunter.
 const ROOM: f64 = 0.25;
 
-/// Moves `p` until the surface is `distance` away (negative inside), as far as it can be in a few steps.
+/// Moves `p` until the surface is `distance` away (negative inside), as far as it can be in a few
+/// steps.
 fn settle(solid: &Solid, start: DVec3, distance: f64, h: f64) -> DVec3 {
     let mut p = start;
     for _ in 0..STEPS {
@@ -54,7 +56,8 @@ impl Made {
 
 /// The surface at `distance` from the solid's, possibly of nothing.
 fn at_distance(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<Made, RemeshError> {
-    let grid = Grid::band([solid], |[d]| d - distance, layout(solid, distance.max(0.0), side)?, job)?;
+    let grid =
+        Grid::band([solid], |[d]| d - distance, layout(solid, distance.max(0.0), side)?, job)?;
     let h = grid.spacing;
     let (from, faces) = extract(&grid, middle, job)?;
     let mut moved = even(&from, &faces, h * ROOM);
@@ -66,9 +69,15 @@ fn at_distance(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<M
     Ok(Made { points: settle_all(&from, moved, &faces, job)?, faces, spacing: h })
 }
 
-/// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold, vertices at that distance to about
-/// a ten-thousandth of the spacing except at creases. [`RemeshError::Empty`] where shrinking leaves nothing.
-pub fn offset(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<TriMesh, RemeshError> {
+/// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold, vertices
+/// at that distance to about a ten-thousandth of the spacing except at creases.
+/// [`RemeshError::Empty`] where shrinking leaves nothing.
+pub fn offset(
+    solid: &Solid,
+    distance: f64,
+    side: usize,
+    job: &Job,
+) -> Result<TriMesh, RemeshError> {
     let made = at_distance(solid, distance, side, job)?;
     if made.faces.is_empty() {
         return Err(RemeshError::Empty);
@@ -88,10 +97,11 @@ pub struct Hollow {
     pub spacing: f64,
 }
 
-/// Hollows `mesh` to a wall of `wall`: the old surface is kept, and a cavity everywhere further than `wall` inside is cut
-/// out, together with every partition within it that is thinner than the wall. So the wall is nowhere thinner than that by
-/// more than the chord of a cavity's triangle, `spacing^2 / (4 wall)`, except at the old surface's own sharp edges.
-/// [`RemeshError::Empty`] where the solid is nowhere thick enough for a cavity.
+/// Hollows `mesh` to a wall of `wall`: the old surface is kept, and a cavity everywhere further
+/// than `wall` inside is cut out, together with every partition within it that is thinner than the
+/// wall. So the wall is nowhere thinner than that by more than the chord of a cavity's triangle,
+/// `spacing^2 / (4 wall)`, except at the old surface's own sharp edges. [`RemeshError::Empty`]
+/// where the solid is nowhere thick enough for a cavity.
 pub fn hollow(
     mesh: &TriMesh,
     solid: &Solid,
@@ -125,9 +135,10 @@ pub fn hollow(
     Ok(Hollow { mesh: out, cavity: faces.len(), spacing: h })
 }
 
-/// The cavity grown by `radius` and shrunk again (Serra, "Image analysis and mathematical morphology", 1982). Where the solid
-/// is about twice the wall thick, what lies further inside than the wall falls into several rooms with partitions as thin as
-/// may be between them; this takes out every partition that a ball of `radius` does not fit into, and leaves all else.
+/// The cavity grown by `radius` and shrunk again (Serra, "Image analysis and mathematical
+/// morphology", 1982). Where the solid is about twice the wall thick, what lies further inside than
+/// the wall falls into several rooms with partitions as thin as may be between them; this takes out
+/// every partition that a ball of `radius` does not fit into, and leaves all else.
 fn closed(cavity: Made, radius: f64, job: &Job) -> Result<Made, RemeshError> {
     let h = cavity.spacing;
     let next = |made: Made, distance: f64| {
@@ -142,8 +153,9 @@ fn closed(cavity: Made, radius: f64, job: &Job) -> Result<Made, RemeshError> {
     if faces.is_empty() { Err(RemeshError::Empty) } else { Ok(Made { faces, ..back }) }
 }
 
-/// The cavities without those that are flatter than the samples can tell: where a solid is about twice the wall thick, its
-/// middle comes out as flat flakes. Leaving one out makes the part more solid there, never thinner.
+/// The cavities without those that are flatter than the samples can tell: where a solid is about
+/// twice the wall thick, its middle comes out as flat flakes. Leaving one out makes the part more
+/// solid there, never thinner.
 fn without_specks(points: &[Vec3], faces: Vec<[u32; 3]>, h: f64) -> Vec<[u32; 3]> {
     let mut parent: Vec<u32> = (0..points.len() as u32).collect();
     fn root(parent: &mut [u32], mut v: u32) -> u32 {
@@ -176,8 +188,8 @@ fn without_specks(points: &[Vec3], faces: Vec<[u32; 3]>, h: f64) -> Vec<[u32; 3]
     faces.into_iter().filter(|f| keeps(f[0])).collect()
 }
 
-/// The smaller of two distances, rounded within `k` of where they are equal (Quilez's quadratic polynomial): at most `k / 4`
-/// less. No steeper than its arguments.
+/// The smaller of two distances, rounded within `k` of where they are equal (Quilez's quadratic
+/// polynomial): at most `k / 4` less. No steeper than its arguments.
 pub fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
     if k <= 0.0 {
         return a.min(b);
@@ -186,7 +198,8 @@ pub fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
     a.min(b) - x * x * k * 0.25
 }
 
-/// Two solids as one, with a fillet of about `radius` along their seam; a radius of zero is the plain union.
+/// Two solids as one, with a fillet of about `radius` along their seam; a radius of zero is the
+/// plain union.
 pub fn smooth_union(
     a: &Solid,
     b: &Solid,
@@ -213,7 +226,8 @@ pub fn smooth_union(
         job.check()?;
         let q = p.as_dvec3();
         let e = h * 0.05;
-        let slope = DVec3::from_array(DVec3::AXES.map(|x| field(q + x * e) - field(q - x * e))) / (2.0 * e);
+        let slope =
+            DVec3::from_array(DVec3::AXES.map(|x| field(q + x * e) - field(q - x * e))) / (2.0 * e);
         let steep = slope.length_squared();
         if steep > 0.25 {
             *p = (q - (slope * (field(q) / steep)).clamp_length_max(h * 0.5)).as_vec3();

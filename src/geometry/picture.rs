@@ -1,5 +1,6 @@
-//! A picture of a mesh, drawn on the CPU: for reports, for `--png`, for machines without a GPU. The same mesh and camera
-//! give the same bytes everywhere: no threads share a pixel, no time, no library's mathematics but `sqrt`.
+//! A picture of a mesh, drawn on the CPU: for reports, for `--png`, for machines without a GPU. The
+//! same mesh and camera give the same bytes everywhere: no threads share a pixel, no time, no
+//! library's mathematics but `sqrt`.
 
 use glam::{Mat3, Vec3};
 
@@ -27,8 +28,10 @@ impl Camera {
     /// Shows the whole mesh from a side.
     pub fn from_side(mesh: &TriMesh, towards_eye: Vec3, aspect: f32) -> Camera {
         let (lo, hi) = mesh.bounds();
-        let (lo, hi) = if lo.is_finite() && hi.is_finite() { (lo, hi) } else { (Vec3::ZERO, Vec3::ONE) };
-        let mut camera = Camera { target: (lo + hi) * 0.5, towards_eye, up: Vec3::Z, half_height: 1.0 };
+        let (lo, hi) =
+            if lo.is_finite() && hi.is_finite() { (lo, hi) } else { (Vec3::ZERO, Vec3::ONE) };
+        let mut camera =
+            Camera { target: (lo + hi) * 0.5, towards_eye, up: Vec3::Z, half_height: 1.0 };
         let axes = camera.axes();
         let mut reach = 1e-12f32;
         for i in 0..8u32 {
@@ -60,8 +63,9 @@ pub struct Picture {
 /// Samples a pixel's side.
 const OVER: usize = 2;
 
-/// Draws `mesh` with one sRGB colour a vertex (grey without), lit from the eye's upper left, over white. The colours are
-/// interpolated over the triangles; both sides are drawn, so that an inverted face is not a hole.
+/// Draws `mesh` with one sRGB colour a vertex (grey without), lit from the eye's upper left, over
+/// white. The colours are interpolated over the triangles; both sides are drawn, so that an
+/// inverted face is not a hole.
 pub fn draw(
     mesh: &TriMesh,
     colours: Option<&[[u8; 3]]>,
@@ -92,7 +96,9 @@ pub fn draw(
         let normal = (pb - pa).cross(pc - pa).normalize_or_zero();
         let shade = 0.35 + 0.65 * (normal * normal.z.signum()).dot(light).max(0.0);
         let tint = t.map(|v| match colours {
-            Some(all) => all.get(v as usize).map_or(Vec3::splat(190.0), |c| Vec3::from(c.map(f32::from))),
+            Some(all) => {
+                all.get(v as usize).map_or(Vec3::splat(190.0), |c| Vec3::from(c.map(f32::from)))
+            }
             None => Vec3::splat(190.0),
         });
         fill([a, b, c], w, h, |at, z, weights| {
@@ -120,7 +126,11 @@ pub fn draw(
 /// Calls `put(pixel, depth, weights)` for each pixel whose centre is in the triangle.
 fn fill([a, b, c]: [Vec3; 3], w: usize, h: usize, mut put: impl FnMut(usize, f32, Vec3)) {
     let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-    if !(lo.is_finite() && hi.is_finite()) || hi.x < 0.0 || hi.y < 0.0 || lo.x >= w as f32 || lo.y >= h as f32
+    if !(lo.is_finite() && hi.is_finite())
+        || hi.x < 0.0
+        || hi.y < 0.0
+        || lo.x >= w as f32
+        || lo.y >= h as f32
     {
         return;
     }
@@ -147,8 +157,9 @@ fn fill([a, b, c]: [Vec3; 3], w: usize, h: usize, mut put: impl FnMut(usize, f32
 impl Picture {
     /// Where a point of the mesh is in the picture, pixels from the upper left.
     pub fn place(&self, camera: &Camera, p: Vec3) -> (f32, f32) {
-        let q =
-            camera.axes().transpose() * (p - camera.target) * (self.height as f32 * 0.5 / camera.half_height);
+        let q = camera.axes().transpose()
+            * (p - camera.target)
+            * (self.height as f32 * 0.5 / camera.half_height);
         (self.width as f32 * 0.5 + q.x, self.height as f32 * 0.5 - q.y)
     }
 
@@ -186,13 +197,19 @@ mod tests {
 
     #[test]
     fn a_square_covers_its_share_and_the_nearer_wins() {
-        let quad = |z: f32, s: f32| [[-s, -s], [s, -s], [s, s], [-s, s]].map(|[x, y]| Vec3::new(x, y, z));
+        let quad =
+            |z: f32, s: f32| [[-s, -s], [s, -s], [s, s], [-s, s]].map(|[x, y]| Vec3::new(x, y, z));
         let mut positions = quad(0.0, 0.5).to_vec();
         positions.extend(quad(1.0, 0.25));
-        let mesh =
-            TriMesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]], colours: None };
-        let colours: Vec<[u8; 3]> = (0..8).map(|v| if v < 4 { [200, 0, 0] } else { [0, 200, 0] }).collect();
-        let camera = Camera { target: Vec3::ZERO, towards_eye: Vec3::Z, up: Vec3::Y, half_height: 1.0 };
+        let mesh = TriMesh {
+            positions,
+            triangles: vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]],
+            colours: None,
+        };
+        let colours: Vec<[u8; 3]> =
+            (0..8).map(|v| if v < 4 { [200, 0, 0] } else { [0, 200, 0] }).collect();
+        let camera =
+            Camera { target: Vec3::ZERO, towards_eye: Vec3::Z, up: Vec3::Y, half_height: 1.0 };
         let p = draw(&mesh, Some(&colours), &camera, 64, 64);
         let count = |f: fn(&&[u8; 3]) -> bool| p.rgb.iter().filter(f).count();
         assert_eq!(count(|c| c[1] > 50 && c[0] == 0), 16 * 16);

@@ -15,7 +15,8 @@ pub fn flip(mesh: &mut PolyMesh) {
     }
 }
 
-/// Keeps the faces that `make` gives, with their groups; the corners it pushes are the face's new ones.
+/// Keeps the faces that `make` gives, with their groups; the corners it pushes are the face's new
+/// ones.
 fn rebuild(mesh: &mut PolyMesh, mut make: impl FnMut(&[u32], &mut Vec<u32>)) -> usize {
     let (mut starts, mut corners) = (vec![0u32], Vec::with_capacity(mesh.corners.len()));
     let mut groups = mesh.groups.as_ref().map(|_| Vec::new());
@@ -53,8 +54,9 @@ fn without_repeats(face: &[u32], out: &mut Vec<u32>) {
     }
 }
 
-/// Makes one vertex of all that are within `distance` of each other (also by way of others); the first of them stays. Vertices
-/// that no face uses any more are removed, and faces that lost their extent too. Returns how many vertices went into others.
+/// Makes one vertex of all that are within `distance` of each other (also by way of others); the
+/// first of them stays. Vertices that no face uses any more are removed, and faces that lost their
+/// extent too. Returns how many vertices went into others.
 pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     let n = mesh.positions.len();
     let p = |i: u32| mesh.positions[i as usize];
@@ -68,7 +70,11 @@ pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
         for i in 0..n as u32 {
             let home = cell(p(i));
             for d in 0..27 {
-                let step = DVec3::new((d % 3) as f64 - 1.0, (d / 3 % 3) as f64 - 1.0, (d / 9) as f64 - 1.0);
+                let step = DVec3::new(
+                    (d % 3) as f64 - 1.0,
+                    (d / 3 % 3) as f64 - 1.0,
+                    (d / 9) as f64 - 1.0,
+                );
                 let k = key(home + step);
                 let first = cells.partition_point(|c| c.0 < k);
                 for &(_, j) in cells[first..].iter().take_while(|c| c.0 == k) {
@@ -123,9 +129,10 @@ pub fn drop_unused(mesh: &mut PolyMesh) -> usize {
     before - mesh.positions.len()
 }
 
-/// Removes corners that repeat their neighbour, then faces of fewer than three corners, and pairs of faces that are each other
-/// turned over (a sheet folded onto itself). Faces without area but with three different corners stay: taking one out would
-/// open the surface. Returns how many faces went.
+/// Removes corners that repeat their neighbour, then faces of fewer than three corners, and pairs
+/// of faces that are each other turned over (a sheet folded onto itself). Faces without area but
+/// with three different corners stay: taking one out would open the surface. Returns how many faces
+/// went.
 pub fn remove_degenerate(mesh: &mut PolyMesh) -> usize {
     let gone = rebuild(mesh, without_repeats);
     // A face and its reverse have the same sorted corners.
@@ -165,13 +172,15 @@ fn reversed(a: &[u32], b: &[u32]) -> bool {
     n == b.len() && (0..n).all(|i| a[i] == b[(start + n - i) % n])
 }
 
-/// Makes neighbours agree across every edge of two faces (the first face of a patch leads), then turns closed patches so that
-/// the outermost face out and what lies inside an odd number of others (cavities) faces in. Returns how many faces were turned.
-/// A one-sided surface keeps a seam; [`super::check::report`] then still says so.
+/// Makes neighbours agree across every edge of two faces (the first face of a patch leads), then
+/// turns closed patches so that the outermost face out and what lies inside an odd number of others
+/// (cavities) faces in. Returns how many faces were turned. A one-sided surface keeps a seam;
+/// [`super::check::report`] then still says so.
 pub fn orient(mesh: &mut PolyMesh) -> usize {
     let edges = Edges::of(mesh);
     let faces = mesh.face_count();
-    // Neighbours across edges of exactly two faces, and whether they run along it in the same direction (so disagree).
+    // Neighbours across edges of exactly two faces, and whether they run along it in the same
+    // direction (so disagree).
     let mut links: Vec<(u32, u32, bool)> = Vec::new();
     let mut open = Vec::new();
     for sides in edges.each() {
@@ -248,10 +257,16 @@ fn turn_out(mesh: &PolyMesh, patch: &[u32], patches: usize, open: &[u32], turned
             }
             let q = sample[p];
             let around = (0..patches)
-                .filter(|&o| o != p && closed[o] && q.cmpgt(bounds[o].0).all() && q.cmplt(bounds[o].1).all())
+                .filter(|&o| {
+                    o != p && closed[o] && q.cmpgt(bounds[o].0).all() && q.cmplt(bounds[o].1).all()
+                })
                 .filter(|&o| {
                     let hits = lists[o].iter().filter(|&&t| {
-                        hits(q, direction, triangles[t as usize].map(|v| mesh.positions[v as usize]))
+                        hits(
+                            q,
+                            direction,
+                            triangles[t as usize].map(|v| mesh.positions[v as usize]),
+                        )
                     });
                     hits.count() % 2 == 1
                 })
@@ -288,8 +303,8 @@ pub struct Filled {
 /// Longest loop that is closed with the least area; longer ones are cut by ears.
 const LEAST_AREA: usize = 160;
 
-/// Closes every loop of open edges of at most `longest` edges with triangles: of least total area (Barequet and Sharir 1995) for
-/// loops up to 160 edges, by ears in the loop's mean plane beyond.
+/// Closes every loop of open edges of at most `longest` edges with triangles: of least total area
+/// (Barequet and Sharir 1995) for loops up to 160 edges, by ears in the loop's mean plane beyond.
 pub fn fill_holes(mesh: &mut PolyMesh, longest: usize) -> Filled {
     let edges = Edges::of(mesh);
     // Of each open edge: from, to, as the hole's face will run along it.
@@ -428,7 +443,8 @@ mod tests {
             }
             let first = mesh.positions.len() as u32;
             mesh.positions.extend(&b.positions);
-            b.faces().for_each(|f| mesh.push_face(&f.iter().map(|c| c + first).collect::<Vec<_>>()));
+            b.faces()
+                .for_each(|f| mesh.push_face(&f.iter().map(|c| c + first).collect::<Vec<_>>()));
         }
         orient(&mut mesh);
         assert!((volume(&mesh).unwrap() - (216.0 - 64.0 + 8.0)).abs() < 1e-9);
@@ -438,8 +454,12 @@ mod tests {
     fn holes_are_closed_and_folded_sheets_removed() {
         let whole = icosphere(1.0, 6).to_poly();
         let mut mesh = whole.clone();
-        let keep: Vec<Vec<u32>> =
-            whole.faces().enumerate().filter(|(f, _)| f % 90 != 7).map(|(_, f)| f.to_vec()).collect();
+        let keep: Vec<Vec<u32>> = whole
+            .faces()
+            .enumerate()
+            .filter(|(f, _)| f % 90 != 7)
+            .map(|(_, f)| f.to_vec())
+            .collect();
         let lost = whole.face_count() - keep.len();
         (mesh.face_starts, mesh.corners) = (vec![0], vec![]);
         keep.iter().for_each(|f| mesh.push_face(f));

@@ -1,10 +1,12 @@
 //! Which triangles of a mesh cross others: boxes in a tree, then exact tests.
 //!
-//! Two triangles cross if their insides have a line in common, or if they lie in one plane and overlap. A surface also crosses
-//! another exactly along edges: an edge that runs through a triangle's inside with faces on both sides of it, and two edges on
-//! one line whose faces come in turns. What both share by index and touches from outside do not count. Signs are those of exact
-//! arithmetic (Shewchuk's `orient3d`) on the coordinates as they are, so all cases of surfaces that go through each other are
-//! among these: such surfaces have a line in common, and each piece of it is inside of, or an edge of, a face of either.
+//! Two triangles cross if their insides have a line in common, or if they lie in one plane and
+//! overlap. A surface also crosses another exactly along edges: an edge that runs through a
+//! triangle's inside with faces on both sides of it, and two edges on one line whose faces come in
+//! turns. What both share by index and touches from outside do not count. Signs are those of exact
+//! arithmetic (Shewchuk's `orient3d`) on the coordinates as they are, so all cases of surfaces that
+//! go through each other are among these: such surfaces have a line in common, and each piece of it
+//! is inside of, or an edge of, a face of either.
 
 use glam::{DVec3, Vec3};
 use obvhs::aabb::Aabb;
@@ -27,7 +29,11 @@ pub struct Crossings {
 type Found = (Vec<(u32, u32)>, Vec<Touch>);
 
 /// All crossing pairs, the lower triangle first, sorted.
-pub fn pairs(positions: &[DVec3], triangles: &[[u32; 3]], job: &Job) -> Result<Vec<(u32, u32)>, Cancelled> {
+pub fn pairs(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    job: &Job,
+) -> Result<Vec<(u32, u32)>, Cancelled> {
     if triangles.len() < 2 {
         return Ok(Vec::new());
     }
@@ -52,7 +58,8 @@ pub fn pairs(positions: &[DVec3], triangles: &[[u32; 3]], job: &Job) -> Result<V
     );
     job.check()?;
     job.progress(0.6);
-    // In the tree's order neighbours in the list are neighbours in space: the walk stays in the cache.
+    // In the tree's order neighbours in the list are neighbours in space: the walk stays in the
+    // cache.
     let found: Result<Vec<Found>, Cancelled> = tree
         .primitive_indices
         .par_chunks(1024)
@@ -100,7 +107,11 @@ pub fn pairs(positions: &[DVec3], triangles: &[[u32; 3]], job: &Job) -> Result<V
 }
 
 /// Counts the pairs of [`pairs`].
-pub fn count(positions: &[DVec3], triangles: &[[u32; 3]], job: &Job) -> Result<Crossings, Cancelled> {
+pub fn count(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    job: &Job,
+) -> Result<Crossings, Cancelled> {
     let found = pairs(positions, triangles, job)?;
     let mut crossed: Vec<u32> = found.iter().flat_map(|&(a, b)| [a, b]).collect();
     crossed.sort_unstable();
@@ -119,10 +130,11 @@ enum Meet {
     No,
     /// Their insides have a line or an area in common.
     Cross,
-    /// An edge (by its number) of the second, or of the first, runs through the other's inside. A crossing, if the surface goes
-    /// on at the other side.
+    /// An edge (by its number) of the second, or of the first, runs through the other's inside. A
+    /// crossing, if the surface goes on at the other side.
     Along(Which, usize),
-    /// Edge of the first, edge of the second: parts of one line. A crossing, if the surfaces change sides there.
+    /// Edge of the first, edge of the second: parts of one line. A crossing, if the surfaces change
+    /// sides there.
     Edges(usize, usize),
 }
 
@@ -163,7 +175,9 @@ fn meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> Meet {
             .filter(|&k| runs_through(ps[k], ps[(k + 1) % 3], pt))
             .map_or(Meet::No, |k| Meet::Along(Which::First, k)),
         (false, false) => match (edge_on(&of_s), edge_on(&of_t)) {
-            (Some(i), Some(j)) if along_each_other([ps[i], ps[(i + 1) % 3]], [pt[j], pt[(j + 1) % 3]]) => {
+            (Some(i), Some(j))
+                if along_each_other([ps[i], ps[(i + 1) % 3]], [pt[j], pt[(j + 1) % 3]]) =>
+            {
                 Meet::Edges(i, j)
             }
             _ => Meet::No,
@@ -177,11 +191,12 @@ fn edge_on(d: &[f64; 3]) -> Option<usize> {
     (0..3).find(|&k| d[k] == 0.0 && d[(k + 1) % 3] == 0.0)
 }
 
-/// Whether the lines in which two triangles cut each other's plane have more than a point in common; each is astride the other's
-/// plane. After Guigue and Devillers, *Fast and robust triangle-triangle overlap test using orientation predicates* (2003).
+/// Whether the lines in which two triangles cut each other's plane have more than a point in
+/// common; each is astride the other's plane. After Guigue and Devillers, *Fast and robust
+/// triangle-triangle overlap test using orientation predicates* (2003).
 fn lines_overlap(ps: [DVec3; 3], of_s: [f64; 3], pt: [DVec3; 3], of_t: [f64; 3]) -> bool {
-    // Turned so that the first corner is alone on its side, the others on the other side or on the plane; then the second and the
-    // third change places where the other's plane looks away.
+    // Turned so that the first corner is alone on its side, the others on the other side or on the
+    // plane; then the second and the third change places where the other's plane looks away.
     let alone = |d: [f64; 3]| {
         (0..3)
             .find(|&k| {
@@ -208,7 +223,8 @@ fn runs_through(p: DVec3, q: DVec3, t: [DVec3; 3]) -> bool {
     let flat = flatten([t, t]);
     let (a, p, q) = (t.map(&flat), flat(p), flat(q));
     let turn = orient2d(a[0], a[1], a[2]);
-    let beside = |k: usize| [p, q].iter().all(|&x| orient2d(a[k], a[(k + 1) % 3], x) * turn.signum() <= 0.0);
+    let beside =
+        |k: usize| [p, q].iter().all(|&x| orient2d(a[k], a[(k + 1) % 3], x) * turn.signum() <= 0.0);
     let of = a.map(|x| orient2d(p, q, x));
     turn != 0.0 && of.iter().any(|&v| v > 0.0) && of.iter().any(|&v| v < 0.0) && !(0..3).any(beside)
 }
@@ -237,7 +253,13 @@ enum Touch {
     Edges([u32; 2], [u32; 2], u32, u32),
 }
 
-fn touch(positions: &[DVec3], triangles: &[[u32; 3]], t: u32, u: u32, found: Meet) -> Option<Touch> {
+fn touch(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    t: u32,
+    u: u32,
+    found: Meet,
+) -> Option<Touch> {
     let edge = |t: u32, k: usize| {
         let c = triangles[t as usize];
         let (a, b) = (c[k], c[(k + 1) % 3]);
@@ -253,14 +275,21 @@ fn touch(positions: &[DVec3], triangles: &[[u32; 3]], t: u32, u: u32, found: Mee
         Meet::Along(Which::Second, k) => Some(along(u, k, t)),
         Meet::Edges(i, j) => {
             let (e, f) = (edge(t, i), edge(u, j));
-            (e != f).then(|| if e < f { Touch::Edges(e, f, t, u) } else { Touch::Edges(f, e, u, t) })
+            (e != f)
+                .then(|| if e < f { Touch::Edges(e, f, t, u) } else { Touch::Edges(f, e, u, t) })
         }
         _ => None,
     }
 }
 
-/// The pairs among the touches at which a surface goes from one side of the other to the other side.
-fn through(positions: &[DVec3], triangles: &[[u32; 3]], mut touches: Vec<Touch>, out: &mut Vec<(u32, u32)>) {
+/// The pairs among the touches at which a surface goes from one side of the other to the other
+/// side.
+fn through(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    mut touches: Vec<Touch>,
+    out: &mut Vec<(u32, u32)>,
+) {
     touches.sort_unstable();
     let same = |a: &Touch, b: &Touch| match (a, b) {
         (Touch::Along(e, t, ..), Touch::Along(f, u, ..)) => (e, t) == (f, u),
@@ -271,16 +300,19 @@ fn through(positions: &[DVec3], triangles: &[[u32; 3]], mut touches: Vec<Touch>,
     for group in touches.chunk_by(same) {
         match group[0] {
             Touch::Along(_, other, ..) => {
-                let own =
-                    |g: &Touch| if let Touch::Along(_, _, t, up) = *g { (t, up) } else { (other, false) };
+                let own = |g: &Touch| {
+                    if let Touch::Along(_, _, t, up) = *g { (t, up) } else { (other, false) }
+                };
                 let above = group.iter().filter(|g| own(g).1).count();
-                // Of an even number of faces at an edge, an odd number above: one at least goes on below.
+                // Of an even number of faces at an edge, an odd number above: one at least goes on
+                // below.
                 if group.len() % 2 == 0 && above % 2 == 1 {
                     out.extend(group.iter().map(|g| ordered(own(g).0, other)));
                 }
             }
             Touch::Edges(e, f, ..) => {
-                let pair = |g: &Touch| if let Touch::Edges(_, _, t, u) = *g { (t, u) } else { (0, 0) };
+                let pair =
+                    |g: &Touch| if let Touch::Edges(_, _, t, u) = *g { (t, u) } else { (0, 0) };
                 let set = |of: fn((u32, u32)) -> u32| {
                     let mut all: Vec<u32> = group.iter().map(|g| of(pair(g))).collect();
                     all.sort_unstable();
@@ -290,7 +322,8 @@ fn through(positions: &[DVec3], triangles: &[[u32; 3]], mut touches: Vec<Touch>,
                 let (own, others) = (set(|p| p.0), set(|p| p.1));
                 let (&[a, b], &[c, d]) = (&own[..], &others[..]) else { continue };
                 let third = |t: u32, e: [u32; 2]| {
-                    let v = triangles[t as usize].into_iter().find(|v| !e.contains(v)).unwrap_or(e[0]);
+                    let v =
+                        triangles[t as usize].into_iter().find(|v| !e.contains(v)).unwrap_or(e[0]);
                     positions[v as usize]
                 };
                 let line = e.map(|v| positions[v as usize]);
@@ -302,14 +335,16 @@ fn through(positions: &[DVec3], triangles: &[[u32; 3]], mut touches: Vec<Touch>,
     }
 }
 
-/// Whether, around a line, one of the second pair's half planes is on each side of the first pair's.
+/// Whether, around a line, one of the second pair's half planes is on each side of the first
+/// pair's.
 fn alternate([p, q]: [DVec3; 2], [a, b]: [DVec3; 2], other: [DVec3; 2]) -> bool {
     let turn = |x: DVec3, y: DVec3| side(p, q, x, y);
     let flat = |x: DVec3, y: DVec3| {
         let flat = flatten([[p, q, x], [p, q, y]]);
         orient2d(flat(p), flat(q), flat(x)) * orient2d(flat(p), flat(q), flat(y)) > 0.0
     };
-    // In the wedge from a around to b, the way in which `turn` is positive; None: on one of the two.
+    // In the wedge from a around to b, the way in which `turn` is positive; None: on one of the
+    // two.
     let inside = |x: DVec3| {
         let (from, to) = (turn(a, x), turn(x, b));
         if from == 0.0 && flat(a, x) || to == 0.0 && flat(b, x) {
@@ -343,7 +378,8 @@ fn flatten([s, t]: [[DVec3; 3]; 2]) -> impl Fn(DVec3) -> Coord<f64> {
     }
 }
 
-/// Whether two triangles in one plane have an area in common: no edge's line has one on either side.
+/// Whether two triangles in one plane have an area in common: no edge's line has one on either
+/// side.
 fn overlap(ps: [DVec3; 3], pt: [DVec3; 3]) -> bool {
     let flat = flatten([ps, pt]);
     let (a, b) = (ps.map(&flat), pt.map(&flat));

@@ -1,5 +1,5 @@
-//! Crossings against an oracle in whole numbers: tetrahedra and boxes with corners in a small lattice, where nearly every case
-//! is a special one.
+//! Crossings against an oracle in whole numbers: tetrahedra and boxes with corners in a small
+//! lattice, where nearly every case is a special one.
 
 use glam::{DVec3, I64Vec3};
 
@@ -36,8 +36,10 @@ fn cuboid(a: I64Vec3, b: I64Vec3) -> Option<Flat> {
         let pick = |bit: i32, l: i64, h: i64| if k >> bit & 1 == 1 { h } else { l };
         I64Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z))
     });
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let faces = quads.iter().flat_map(|q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        quads.iter().flat_map(|q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
     (hi - lo).cmpgt(I64Vec3::ZERO).all().then(|| (at.collect(), faces))
 }
 
@@ -68,7 +70,9 @@ fn overlap_inside(a: &Flat, b: &Flat) -> bool {
     }
     ways.iter().filter(|n| **n != I64Vec3::ZERO).all(|n| {
         let range = |s: &Flat| {
-            s.0.iter().map(|p| p.dot(*n)).fold((i64::MAX, i64::MIN), |(l, h), d| (l.min(d), h.max(d)))
+            s.0.iter()
+                .map(|p| p.dot(*n))
+                .fold((i64::MAX, i64::MIN), |(l, h), d| (l.min(d), h.max(d)))
         };
         let ((al, ah), (bl, bh)) = (range(a), range(b));
         al < bh && bl < ah
@@ -109,7 +113,8 @@ fn expected(a: &Flat, b: &Flat) -> bool {
 fn counted(a: &Flat, b: &Flat) -> usize {
     let at: Vec<DVec3> = a.0.iter().chain(&b.0).map(|p| p.as_dvec3()).collect();
     let base = a.0.len() as u32;
-    let faces: Vec<[u32; 3]> = a.1.iter().copied().chain(b.1.iter().map(|f| f.map(|v| v + base))).collect();
+    let faces: Vec<[u32; 3]> =
+        a.1.iter().copied().chain(b.1.iter().map(|f| f.map(|v| v + base))).collect();
     pairs(&at, &faces, &Job::default()).expect("not cancelled").len()
 }
 
@@ -150,8 +155,8 @@ fn two_boxes_that_cross_only_along_edges_and_diagonals() {
     assert_eq!(counted(&first, &solid([4, 4, 0], [6, 6, 4])), 0);
     assert_eq!(counted(&first, &solid([4; 3], [6; 3])), 0);
     // One in the other, an edge of it on a face: touching from inside.
-    let wedge =
-        tetrahedron([[0, 1, 1], [0, 3, 3], [2, 1, 3], [2, 3, 1]].map(I64Vec3::from)).expect("a solid");
+    let wedge = tetrahedron([[0, 1, 1], [0, 3, 3], [2, 1, 3], [2, 3, 1]].map(I64Vec3::from))
+        .expect("a solid");
     assert_eq!(counted(&first, &wedge), 0);
 }
 
@@ -178,7 +183,8 @@ fn faces_around_one_line_cross_where_they_come_in_turns() {
             let (a, faces) = bend(first[0], first[1], 0., 1.);
             let (b, more) = bend(second[0], second[1], from, to);
             let at: Vec<DVec3> = a.into_iter().chain(b).collect();
-            let faces: Vec<[u32; 3]> = faces.into_iter().chain(more.map(|f| f.map(|v| v + 4))).collect();
+            let faces: Vec<[u32; 3]> =
+                faces.into_iter().chain(more.map(|f| f.map(|v| v + 4))).collect();
             let got = pairs(&at, &faces, &Job::default()).expect("not cancelled").len();
             assert_eq!(got > 0, crosses, "{first:?} {second:?} {from}..{to}: {got}");
         }

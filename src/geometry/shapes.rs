@@ -1,4 +1,5 @@
-//! Primitive solids, for the start of a session, as tools, and to measure with. All closed ones are oriented outwards.
+//! Primitive solids, for the start of a session, as tools, and to measure with. All closed ones are
+//! oriented outwards.
 
 use std::f64::consts::{PI, TAU};
 
@@ -23,7 +24,10 @@ pub fn cuboid(min: DVec3, max: DVec3) -> PolyMesh {
             DVec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
         })
         .collect();
-    poly(positions, [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+    poly(
+        positions,
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]],
+    )
 }
 
 /// A flat sheet in the plane z = 0, centred, of `nx` by `ny` quadrilaterals (at least 1); open.
@@ -38,13 +42,15 @@ pub fn grid(size_x: f64, size_y: f64, nx: u32, ny: u32) -> PolyMesh {
     }
     let at = |i, j| j * (nx + 1) + i;
     let faces = (0..ny)
-        .flat_map(|j| (0..nx).map(move |i| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .flat_map(|j| {
+            (0..nx).map(move |i| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
+        })
         .collect::<Vec<_>>();
     poly(positions, faces)
 }
 
-/// Rings of `around` vertices (at least 3), from the first to the last, closed by one polygon at either end.
-/// `rings`: (radius, z), z rising for an outside that faces out.
+/// Rings of `around` vertices (at least 3), from the first to the last, closed by one polygon at
+/// either end. `rings`: (radius, z), z rising for an outside that faces out.
 fn lathe(rings: &[(f64, f64)], around: u32) -> PolyMesh {
     let n = around.max(3);
     let mut positions = Vec::new();
@@ -93,7 +99,8 @@ pub fn cone(radius: f64, height: f64, around: u32) -> PolyMesh {
     lathe(&[(radius, 0.0), (0.0, height)], around)
 }
 
-/// By latitude and longitude, poles on the z axis: quadrilaterals, triangles at the poles. `rings` >= 2, `around` >= 3.
+/// By latitude and longitude, poles on the z axis: quadrilaterals, triangles at the poles. `rings`
+/// >= 2, `around` >= 3.
 pub fn uv_sphere(radius: f64, rings: u32, around: u32) -> PolyMesh {
     let rings = rings.max(2);
     let profile: Vec<(f64, f64)> = (0..=rings)
@@ -158,8 +165,9 @@ fn icosahedron() -> ([DVec3; 12], [[u32; 3]; 20]) {
     (p.map(DVec3::normalize), f)
 }
 
-/// A sphere of the icosahedron's 20 faces, each in `frequency` squared triangles (1 to 10,000): 10 f^2 + 2 vertices.
-/// Triangles near the middle of a face of the icosahedron are larger than those at its corners.
+/// A sphere of the icosahedron's 20 faces, each in `frequency` squared triangles (1 to 10,000): 10
+/// f^2 + 2 vertices. Triangles near the middle of a face of the icosahedron are larger than those
+/// at its corners.
 pub fn icosphere(radius: f32, frequency: u32) -> TriMesh {
     let f = frequency.clamp(1, 10_000);
     let (corners, faces) = icosahedron();
@@ -174,7 +182,9 @@ pub fn icosphere(radius: f32, frequency: u32) -> TriMesh {
             let (lo, hi) = (i.min(j) as usize, i.max(j) as usize);
             if edges[lo][hi] == u32::MAX {
                 edges[lo][hi] = positions.len() as u32;
-                positions.extend((1..f).map(|k| place(corners[lo].lerp(corners[hi], k as f64 / f as f64))));
+                positions.extend(
+                    (1..f).map(|k| place(corners[lo].lerp(corners[hi], k as f64 / f as f64))),
+                );
             }
         }
     }
@@ -220,7 +230,8 @@ pub fn icosphere(radius: f32, frequency: u32) -> TriMesh {
     TriMesh { positions, triangles, colours: None }
 }
 
-/// The [`icosphere`] of radius 1 whose vertex count is nearest to `vertices`; from 12 up to a billion.
+/// The [`icosphere`] of radius 1 whose vertex count is nearest to `vertices`; from 12 up to a
+/// billion.
 pub fn sphere_of_about(vertices: usize) -> TriMesh {
     let frequency = ((vertices.max(12) - 2) as f64 / 10.0).sqrt().round();
     icosphere(1.0, frequency as u32)

@@ -1,8 +1,10 @@
-//! The outline of a mesh seen along a direction: a chain of directed edges, and the region that it goes around.
+//! The outline of a mesh seen along a direction: a chain of directed edges, and the region that it
+//! goes around.
 //!
-//! The triangles that face the viewer cover each point of the plane as often as their common border goes around it. So the
-//! shadow is the region where the border's winding number is not zero, and only the border, the silhouette edges, needs to
-//! be resolved into polygons. Of an open mesh all triangles count, each turned to face the viewer.
+//! The triangles that face the viewer cover each point of the plane as often as their common border
+//! goes around it. So the shadow is the region where the border's winding number is not zero, and
+//! only the border, the silhouette edges, needs to be resolved into polygons. Of an open mesh all
+//! triangles count, each turned to face the viewer.
 
 use glam::{DVec2, DVec3};
 use i_overlay::core::fill_rule::FillRule;
@@ -16,7 +18,8 @@ use super::distance::topology::{NO_PARTNER, Topology};
 /// Half the extent of a chain in whole numbers: about 4e-9 of the extent is the smallest step.
 const REACH: f64 = (1 << 28) as f64;
 
-/// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit length.
+/// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit
+/// length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
     pub u: DVec3,
@@ -25,7 +28,8 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Seen along `direction`, which is not zero, turned by `turn` radians about it. Along an axis, `u` and `v` are axes.
+    /// Seen along `direction`, which is not zero, turned by `turn` radians about it. Along an axis,
+    /// `u` and `v` are axes.
     pub fn along(direction: DVec3, turn: f64) -> Option<Plane> {
         let towards = -direction.try_normalize()?;
         let up = if towards.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
@@ -94,10 +98,11 @@ impl Chain {
         }
     }
 
-    /// An edge there and back is nothing. In a view along a part's walls nearly all are of this kind, and they are what
-    /// makes the resolution slow.
+    /// An edge there and back is nothing. In a view along a part's walls nearly all are of this
+    /// kind, and they are what makes the resolution slow.
     fn cancel(&mut self) {
-        let lower_first = |e: &[[i32; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
+        let lower_first =
+            |e: &[[i32; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
         self.edges.sort_unstable_by_key(|e| lower_first(e).0);
         let mut kept = Vec::with_capacity(self.edges.len());
         for group in self.edges.chunk_by(|a, b| lower_first(a).0 == lower_first(b).0) {
@@ -109,7 +114,8 @@ impl Chain {
         self.edges = kept;
     }
 
-    /// The edges as loops. Every point has as many edges in as out, so a walk ends only where it began.
+    /// The edges as loops. Every point has as many edges in as out, so a walk ends only where it
+    /// began.
     fn loops(&mut self) -> Vec<Vec<IntPoint>> {
         self.cancel();
         self.edges.sort_unstable();
@@ -174,7 +180,8 @@ impl Chain {
     }
 }
 
-/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent. Rings repeat their first point at the end.
+/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent. Rings repeat their first
+/// point at the end.
 pub fn outline(topology: &Topology, plane: &Plane) -> Vec<Polygon> {
     let flat: Vec<DVec2> = topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).collect();
     let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);

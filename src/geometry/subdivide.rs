@@ -1,8 +1,9 @@
 //! Subdivision surfaces: one level makes every face smaller and the surface rounder.
 //!
-//! Borders are smoothed as curves of their own (a border edge's vertex at its middle, a border vertex at 1/8, 3/4, 1/8), so that two
-//! meshes that share a border still do afterwards. Vertices whose faces form no single fan stay where they are. Each new position
-//! is summed in the order of the faces: the result does not depend on anything but the mesh.
+//! Borders are smoothed as curves of their own (a border edge's vertex at its middle, a border
+//! vertex at 1/8, 3/4, 1/8), so that two meshes that share a border still do afterwards. Vertices
+//! whose faces form no single fan stay where they are. Each new position is summed in the order of
+//! the faces: the result does not depend on anything but the mesh.
 
 use glam::DVec3;
 
@@ -105,8 +106,9 @@ fn beta(k: f64) -> f64 {
     (0.625 - c * c) / k
 }
 
-/// One level of Loop's scheme as what it is, a linear map: which old vertices each new one is made of, and how much of each.
-/// The rows sum to 1; the old vertices come first, then one for each edge, as in what [`loop_`] makes of a triangle mesh.
+/// One level of Loop's scheme as what it is, a linear map: which old vertices each new one is made
+/// of, and how much of each. The rows sum to 1; the old vertices come first, then one for each
+/// edge, as in what [`loop_`] makes of a triangle mesh.
 #[derive(Debug, Clone)]
 pub struct Stencils {
     old: usize,
@@ -140,7 +142,9 @@ impl Stencils {
                     Rule::Stays => {}
                     Rule::Border if around.uses[e] != 1 => {}
                     Rule::Border => rows.push((to, from, 0.125)),
-                    Rule::Inside => rows.push((to, from, beta(f64::from(around.ring[to as usize].0)))),
+                    Rule::Inside => {
+                        rows.push((to, from, beta(f64::from(around.ring[to as usize].0))))
+                    }
                 }
             }
             let own = if around.uses[e] == 2 { 0.375 } else { 0.5 };
@@ -175,9 +179,10 @@ impl Stencils {
         self.from[range.clone()].iter().map(|&v| v as usize).zip(self.weight[range].iter().copied())
     }
 
-    /// How to move the old vertices so that the new ones come to move as near to `wanted` as least squares bring them, after
-    /// `rounds` of simultaneous iteration (each correction is shared out by the weights: Gilbert 1972). An old vertex that no
-    /// new one which is wanted to move is made of stays.
+    /// How to move the old vertices so that the new ones come to move as near to `wanted` as least
+    /// squares bring them, after `rounds` of simultaneous iteration (each correction is shared out
+    /// by the weights: Gilbert 1972). An old vertex that no new one which is wanted to move is made
+    /// of stays.
     pub fn fit(&self, wanted: &[DVec3], rounds: usize, job: &Job) -> Result<Vec<DVec3>, Cancelled> {
         let (mut shares, mut free) = (vec![0.0; self.old], vec![false; self.old]);
         for (f, goal) in wanted.iter().enumerate() {
@@ -314,7 +319,8 @@ fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
             let (k, sum) = around.ring[v];
             let k = k as f64;
             let p = mesh.positions[v];
-            // Mean of the faces' centres, twice the mean of the edges' middles, and k - 3 times the old place.
+            // Mean of the faces' centres, twice the mean of the edges' middles, and k - 3 times the
+            // old place.
             let (faces, middles) = (by_vertex[v] / k, (sum / k + p) / 2.0);
             (faces + middles * 2.0 + p * (k - 3.0)) / k
         });
@@ -366,7 +372,8 @@ mod tests {
         let cube = cuboid(DVec3::splat(-1.0), DVec3::ONE);
         let once = catmull_clark(&cube, 1, &job).unwrap();
         assert_eq!((once.positions.len(), once.face_count()), (26, 24));
-        // By hand: a corner goes to (Q + 2R + 0)/3 with Q = 1/3 of the corner, R = 2/3 of it; an edge's vertex to 3/4.
+        // By hand: a corner goes to (Q + 2R + 0)/3 with Q = 1/3 of the corner, R = 2/3 of it; an
+        // edge's vertex to 3/4.
         assert!((once.positions[7] - DVec3::splat(5.0 / 9.0)).length() < 1e-15);
         assert!(once.positions[8..20].iter().all(|p| (p.abs().max_element() - 0.75).abs() < 1e-15));
         let fine = report(&catmull_clark(&cube, 4, &job).unwrap(), false, &job).unwrap();
@@ -386,7 +393,8 @@ mod tests {
             for (f, p) in fine.positions.iter().enumerate() {
                 let q = map.row(f).fold(DVec3::ZERO, |q, (v, w)| q + mesh.positions[v] * w);
                 assert!(
-                    (q - *p).length() < 1e-14 && (map.row(f).map(|r| r.1).sum::<f64>() - 1.0).abs() < 1e-14
+                    (q - *p).length() < 1e-14
+                        && (map.row(f).map(|r| r.1).sum::<f64>() - 1.0).abs() < 1e-14
                 );
             }
             // What coarse vertices can bring about is found again.
@@ -398,7 +406,10 @@ mod tests {
             let worst = (0..map.old).map(|v| (found[v] - by(v)).length()).fold(0.0, f64::max);
             assert!(worst < 1e-4, "{worst}");
             assert!(
-                map.fit(&vec![DVec3::ZERO; wanted.len()], 3, &job).unwrap().iter().all(|b| *b == DVec3::ZERO)
+                map.fit(&vec![DVec3::ZERO; wanted.len()], 3, &job)
+                    .unwrap()
+                    .iter()
+                    .all(|b| *b == DVec3::ZERO)
             );
         }
     }
@@ -410,7 +421,8 @@ mod tests {
         for fine in [loop_(&sheet, 2, &job).unwrap(), catmull_clark(&sheet, 2, &job).unwrap()] {
             assert!(fine.positions.iter().all(|p| p.z == 0.0 && p.abs().max_element() <= 1.0));
             let edge = fine.positions.iter().filter(|p| p.x == -1.0).count();
-            // Of 13 on that side: the corner, which is rounded off, and what is within its reach are not on the line.
+            // Of 13 on that side: the corner, which is rounded off, and what is within its reach
+            // are not on the line.
             assert_eq!(edge, 7);
             let r = report(&fine, true, &job).unwrap();
             assert_eq!((r.self_intersections, r.oriented, r.manifold), (Some(0), true, true));

@@ -1,9 +1,11 @@
 //! Polygons into triangles, concave ones too.
 //!
-//! A face is seen along the axis of its normal's (Newell) largest component and cut by ears (Meisters 1975). Whether a corner
-//! is convex and whether another lies in the ear is decided exactly (Shewchuk's `orient2d`) on the coordinates as they are, so
-//! that the result depends on nothing but them. A quadrilateral is cut along the shorter of its diagonals that lie inside.
-//! A polygon that crosses itself gives triangles too, one fewer than corners less one; they overlap as it does.
+//! A face is seen along the axis of its normal's (Newell) largest component and cut by ears
+//! (Meisters 1975). Whether a corner is convex and whether another lies in the ear is decided
+//! exactly (Shewchuk's `orient2d`) on the coordinates as they are, so that the result depends on
+//! nothing but them. A quadrilateral is cut along the shorter of its diagonals that lie inside. A
+//! polygon that crosses itself gives triangles too, one fewer than corners less one; they overlap
+//! as it does.
 
 use glam::DVec3;
 use robust::{Coord, orient2d};
@@ -11,7 +13,8 @@ use robust::{Coord, orient2d};
 use super::{PolyMesh, TriMesh};
 
 impl PolyMesh {
-    /// All faces in triangles (indices into `positions`), and the face of each. A face of n corners gives n - 2.
+    /// All faces in triangles (indices into `positions`), and the face of each. A face of n corners
+    /// gives n - 2.
     pub fn triangles(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
         let count = self.faces().map(|f| f.len().saturating_sub(2)).sum();
         let (mut out, mut of) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -37,7 +40,10 @@ impl PolyMesh {
 pub fn area_vector(positions: &[DVec3], corners: &[u32]) -> DVec3 {
     let Some(&first) = corners.first() else { return DVec3::ZERO };
     let o = positions[first as usize];
-    corners.windows(2).map(|w| (positions[w[0] as usize] - o).cross(positions[w[1] as usize] - o)).sum()
+    corners
+        .windows(2)
+        .map(|w| (positions[w[0] as usize] - o).cross(positions[w[1] as usize] - o))
+        .sum()
 }
 
 /// Appends the triangles of one polygon.
@@ -72,7 +78,8 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
             (true, true) | (false, false) => length(0, 2) <= length(1, 3),
             (f, _) => f,
         };
-        let order: [[usize; 3]; 2] = if by_first { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
+        let order: [[usize; 3]; 2] =
+            if by_first { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
         out.extend(order.map(|t| t.map(|i| corners[i])));
         return;
     }
@@ -98,13 +105,17 @@ fn ears(
             && turn(q, p, r) >= 0.0
     };
     let (mut left, mut at, mut tried) = (n, 0, 0);
-    // Rounds of ever lower demands: a true ear; any convex corner; any corner. Simple polygons need the first only.
+    // Rounds of ever lower demands: a true ear; any convex corner; any corner. Simple polygons need
+    // the first only.
     let mut demand = 0;
     while left > 3 {
         let (p, q) = (prev[at], next[at]);
         let convex = turn(p, at, q) > 0.0;
         let good = match demand {
-            0 => convex && !reflex.iter().any(|&r| r != p && r != at && r != q && inside(p, at, q, r)),
+            0 => {
+                convex
+                    && !reflex.iter().any(|&r| r != p && r != at && r != q && inside(p, at, q, r))
+            }
             1 => convex,
             _ => true,
         };
@@ -166,7 +177,10 @@ mod tests {
             let m = polygon(points);
             let want = area_vector(&m.positions, m.face(0)).z / 2.0;
             let (sum, least) = area(&m);
-            assert!((sum - want).abs() < 1e-12 * want && least >= 0.0, "{points:?}: {sum} {want} {least}");
+            assert!(
+                (sum - want).abs() < 1e-12 * want && least >= 0.0,
+                "{points:?}: {sum} {want} {least}"
+            );
         }
     }
 
@@ -174,7 +188,8 @@ mod tests {
     fn a_large_star_takes_no_time_and_any_polygon_gives_two_fewer_triangles_than_corners() {
         let star: Vec<(f64, f64)> = (0..2000)
             .map(|i| {
-                let (a, r) = (i as f64 * std::f64::consts::TAU / 2000.0, if i % 2 == 0 { 1.0 } else { 0.9 });
+                let (a, r) =
+                    (i as f64 * std::f64::consts::TAU / 2000.0, if i % 2 == 0 { 1.0 } else { 0.9 });
                 (r * a.cos(), r * a.sin())
             })
             .collect();

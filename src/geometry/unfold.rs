@@ -1,13 +1,15 @@
-//! Vertices that were moved to a better place and folded faces over there go back to where they came from.
+//! Vertices that were moved to a better place and folded faces over there go back to where they
+//! came from.
 //!
-//! The dual surface before any vertex moves lies with each vertex among its own cell's crossings and folds nowhere, so going
-//! back always helps, and only what is in the way of something goes back.
+//! The dual surface before any vertex moves lies with each vertex among its own cell's crossings
+//! and folds nowhere, so going back always helps, and only what is in the way of something goes
+//! back.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::job::{Cancelled, Job};
-use crate::self_intersection as crossing;
+use crate::self_intersection;
 
 /// A face may turn by at most the angle of this cosine.
 const TURN: f64 = 0.3;
@@ -18,8 +20,8 @@ const ROUNDS: usize = 6;
 /// Steps of smoothing for vertices that could not go where they were to.
 const SMOOTHING: usize = 4;
 
-/// `moved`, but for vertices whose faces turn over or cross others: those go to the middle of their neighbours, or, where
-/// that folds too, stay at `from`.
+/// `moved`, but for vertices whose faces turn over or cross others: those go to the middle of their
+/// neighbours, or, where that folds too, stay at `from`.
 pub(super) fn settle_all(
     from: &[Vec3],
     moved: Vec<Vec3>,
@@ -35,7 +37,12 @@ pub(super) fn settle_all(
     let mut smooth = safe.clone();
     for _ in 0..SMOOTHING {
         let middles = middles(&smooth, faces);
-        smooth.iter_mut().zip(middles).zip(&back).filter(|(_, back)| **back).for_each(|((p, m), _)| *p = m);
+        smooth
+            .iter_mut()
+            .zip(middles)
+            .zip(&back)
+            .filter(|(_, back)| **back)
+            .for_each(|((p, m), _)| *p = m);
     }
     unfold(&safe, smooth, faces, job)
 }
@@ -50,13 +57,14 @@ fn middles(points: &[Vec3], faces: &[[u32; 3]]) -> Vec<Vec3> {
             *sum = (sum.0 + points[f[b] as usize].as_dvec3(), sum.1 + 1.0);
         }
     }
-    let each =
-        |(&p, (sum, count)): (&Vec3, (DVec3, f64))| if count > 0.0 { (sum / count).as_vec3() } else { p };
+    let each = |(&p, (sum, count)): (&Vec3, (DVec3, f64))| {
+        if count > 0.0 { (sum / count).as_vec3() } else { p }
+    };
     points.iter().zip(sums).map(each).collect()
 }
 
-/// Each vertex half way to the middle of its neighbours, at most `room` away (Gibson, "Constrained elastic surface nets",
-/// 1998): two vertices on either side of a cell's border come apart.
+/// Each vertex half way to the middle of its neighbours, at most `room` away (Gibson, "Constrained
+/// elastic surface nets", 1998): two vertices on either side of a cell's border come apart.
 pub(super) fn even(points: &[Vec3], faces: &[[u32; 3]], room: f64) -> Vec<Vec3> {
     let each = |(p, m): (&Vec3, Vec3)| *p + ((m - *p) * 0.5).clamp_length_max(room as f32);
     points.iter().zip(middles(points, faces)).map(each).collect()
@@ -91,9 +99,12 @@ fn unfold(
             take_back(from, &mut moved, faces, &turned);
         }
         let at: Vec<DVec3> = moved.iter().map(|p| p.as_dvec3()).collect();
-        let mut crossed: Vec<u32> =
-            crossing::pairs(&at, faces, job)?.into_iter().flat_map(|(a, b)| [a, b]).collect();
-        crossed.retain(|&f| faces[f as usize].iter().any(|&v| moved[v as usize] != from[v as usize]));
+        let mut crossed: Vec<u32> = self_intersection::pairs(&at, faces, job)?
+            .into_iter()
+            .flat_map(|(a, b)| [a, b])
+            .collect();
+        crossed
+            .retain(|&f| faces[f as usize].iter().any(|&v| moved[v as usize] != from[v as usize]));
         if crossed.is_empty() {
             break;
         }

@@ -1,19 +1,20 @@
-//! The generalised winding number: how often the surface goes around a point. One inside a closed solid, nothing outside,
-//! two where two shells overlap, something between near holes.
+//! The generalised winding number: how often the surface goes around a point. One inside a closed
+//! solid, nothing outside, two where two shells overlap, something between near holes.
 //!
-//! Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using generalized winding numbers", 2013;
-//! summed by a hierarchy as Barill et al., "Fast winding numbers for soups and clouds", 2018: a far subtree counts as one
-//! dipole (their first order), a near one is opened, a triangle's solid angle is exact (Van Oosterom and Strackee 1983).
+//! Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using generalized
+//! winding numbers", 2013; summed by a hierarchy as Barill et al., "Fast winding numbers for soups
+//! and clouds", 2018: a far subtree counts as one dipole (their first order), a near one is opened,
+//! a triangle's solid angle is exact (Van Oosterom and Strackee 1983).
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::bvh::{LEAF, NO_TRIANGLE, Pack, WideTree};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack};
 use crate::simd::wide::{self, Wide, WideWork};
 
-/// A subtree counts as one dipole from this many of its radii away. At 3, the sum over 100,000 triangles is off by less
-/// than 0.02, and only whether it is above a half matters.
+/// A subtree counts as one dipole from this many of its radii away. At 3, the sum over 100,000
+/// triangles is off by less than 0.02, and only whether it is above a half matters.
 const FAR: f32 = 3.0;
 
 /// The eight children of one node as dipoles at their centres of area.
@@ -43,7 +44,8 @@ struct Sum {
 }
 
 fn corners(pack: &Pack, i: usize) -> [DVec3; 3] {
-    [0, 1, 2].map(|c| DVec3::new(pack.v[c][0][i] as f64, pack.v[c][1][i] as f64, pack.v[c][2][i] as f64))
+    [0, 1, 2]
+        .map(|c| DVec3::new(pack.v[c][0][i] as f64, pack.v[c][1][i] as f64, pack.v[c][2][i] as f64))
 }
 
 fn pack_sum(pack: &Pack) -> Sum {
@@ -65,7 +67,7 @@ fn pack_sum(pack: &Pack) -> Sum {
 }
 
 impl Winding {
-    pub fn build(tree: &WideTree) -> Winding {
+    pub fn build(tree: &Bvh8) -> Winding {
         let nodes = tree.nodes();
         let none = Dipoles { centre: [[1e9; 8]; 3], moment: [[0.0; 8]; 3], far: [-1.0; 8] };
         let mut dipoles = vec![none; nodes.len()];
@@ -73,7 +75,8 @@ impl Winding {
         // Children come after their parent.
         for at in (0..nodes.len()).rev() {
             let node = &nodes[at];
-            let mut all = Sum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
+            let mut all =
+                Sum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
             for i in 0..8 {
                 if node.planes[0][i] == f32::INFINITY {
                     continue;
@@ -105,7 +108,7 @@ impl Winding {
 
     /// How often the surface of `tree`, which this was built from, goes around `p`; 0 out of range
     /// ([`crate::bvh::REACH`]).
-    pub fn at(&self, tree: &WideTree, p: DVec3) -> f64 {
+    pub fn at(&self, tree: &Bvh8, p: DVec3) -> f64 {
         if self.dipoles.is_empty() || tree.out_of_range(p) {
             return 0.0;
         }
@@ -113,7 +116,8 @@ impl Winding {
     }
 }
 
-/// The solid angle of a triangle seen from the origin, over 4 pi; positive where its front is turned away from it.
+/// The solid angle of a triangle seen from the origin, over 4 pi; positive where its front is
+/// turned away from it.
 pub fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let up = a.dot(b.cross(c));
@@ -123,7 +127,7 @@ pub fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
 
 struct Walk<'a> {
     winding: &'a Winding,
-    tree: &'a WideTree,
+    tree: &'a Bvh8,
     p: DVec3,
 }
 
@@ -135,7 +139,8 @@ impl WideWork for Walk<'_> {
         let Walk { winding, tree, p: exact } = self;
         let p = exact.as_vec3().to_array();
         let mut inline = [0u32; 128];
-        let mut heap = if tree.stack_need() > 128 { vec![0u32; tree.stack_need()] } else { Vec::new() };
+        let mut heap =
+            if tree.stack_need() > 128 { vec![0u32; tree.stack_need()] } else { Vec::new() };
         let stack: &mut [u32] = if heap.is_empty() { &mut inline } else { &mut heap };
         let mut top = 1;
         let (mut far_sum, mut near_sum) = (0.0f64, 0.0f64);

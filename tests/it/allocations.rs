@@ -8,8 +8,8 @@ use std::process::Command;
 use std::sync::atomic::{AtomicI64, Ordering::Relaxed};
 
 use glam::Vec3;
-use sculptd_clay::brush::{Gaussian, Smooth};
-use sculptd_clay::{Mesh, Reach, Workers};
+use sculptd_clay::brush::{GaussianBrush, SmoothBrush};
+use sculptd_clay::{Clay, Reach, Workers};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
@@ -63,8 +63,8 @@ pub(crate) fn live_bytes() -> i64 {
     LIVE.load(Relaxed)
 }
 
-/// Runs the test of this name in a process of its own, where nobody else allocates, and answers false there and true when it
-/// has passed there.
+/// Runs the test of this name in a process of its own, where nobody else allocates, and answers
+/// false there and true when it has passed there.
 pub(crate) fn passed_alone(name: &str) -> bool {
     const ALONE: &str = "SCULPTD_TEST_ALONE";
     if std::env::var_os(ALONE).is_some() {
@@ -88,13 +88,14 @@ static COUNTING: Counting = Counting;
 
 #[test]
 fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
-    let mut mesh = Mesh::build(&shapes::sphere_of_about(200_000), &Job::default()).expect("builds");
+    let mut mesh = Clay::build(&shapes::sphere_of_about(200_000), &Job::default()).expect("builds");
     let workers = Workers::new(2);
     workers.warm();
     mesh.begin_step();
     let mut shown = None;
     for round in 0..6 {
-        // The first rounds touch each page once and fill the pools; the later ones go over the same ground.
+        // The first rounds touch each page once and fill the pools; the later ones go over the same
+        // ground.
         let steady = round >= 3;
         CALLS.set(0);
         for i in 0..60 {
@@ -103,9 +104,9 @@ fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
             let reach = Reach::Sphere { centre: at, radius: 0.3 };
             COUNTED.set(true);
             if i % 2 == 0 {
-                mesh.dab(&reach, &Gaussian::new(at, 0.3, at, 1e-4), &workers);
+                mesh.dab(&reach, &GaussianBrush::new(at, 0.3, at, 1e-4), &workers);
             } else {
-                mesh.dab(&reach, &Smooth::new(at, 0.3, 0.1), &workers);
+                mesh.dab(&reach, &SmoothBrush::new(at, 0.3, 0.1), &workers);
             }
             shown.replace(mesh.snapshot());
             COUNTED.set(false);

@@ -9,7 +9,8 @@ fn sculptd(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_sculptd")).args(args).output().expect("the binary starts")
 }
 
-/// Runs with a bad file and checks the exit code, the words on standard error, and that no output came to be.
+/// Runs with a bad file and checks the exit code, the words on standard error, and that no output
+/// came to be.
 fn refused(args: &[&str], code: i32, words: &[&str], never: &Path) {
     let out = sculptd(args);
     let said = String::from_utf8_lossy(&out.stderr);
@@ -62,7 +63,12 @@ fn broken_meshes_name_the_place_and_write_nothing() {
         let export = out.to_str().expect("UTF-8");
         refused(&["info", path, "--json"], 6, words, &out);
         refused(&["convert", path, export], 6, words, &out);
-        refused(&["run", "--headless", "--for", "0.1", "--mesh", path, "--export", export], 6, words, &out);
+        refused(
+            &["run", "--headless", "--for", "0.1", "--mesh", path, "--export", export],
+            6,
+            words,
+            &out,
+        );
     }
     let missing = bench.dir.path().join("missing.obj");
     refused(&["info", missing.to_str().expect("UTF-8")], 6, &["missing.obj"], &out);

@@ -1,4 +1,5 @@
-//! Booleans: the scenes of touching and coplanar faces, as they stand and turned by an arbitrary angle.
+//! Booleans: the scenes of touching and coplanar faces, as they stand and turned by an arbitrary
+//! angle.
 
 mod live;
 mod local;
@@ -24,13 +25,20 @@ struct Scene {
     faces: Option<[usize; 4]>,
 }
 
-fn scene(name: &'static str, a: Solid, b: Solid, components: [usize; 4], faces: Option<[usize; 4]>) -> Scene {
+fn scene(
+    name: &'static str,
+    a: Solid,
+    b: Solid,
+    components: [usize; 4],
+    faces: Option<[usize; 4]>,
+) -> Scene {
     Scene { name, a, b, components, faces }
 }
 
 fn goblet() -> Solid {
     // 14 around; foot, stem and cup, each of one piece, standing on each other.
-    let foot = revolved(&[(0., 0.), (2., 0.), (2., 0.25), (0.5, 0.5), (0., 0.5)], &[&[0, 1, 2, 3, 4]], 16);
+    let foot =
+        revolved(&[(0., 0.), (2., 0.), (2., 0.25), (0.5, 0.5), (0., 0.5)], &[&[0, 1, 2, 3, 4]], 16);
     let stem = revolved(&[(0., 0.5), (0.3, 0.5), (0.3, 2.5), (0., 2.5)], &[&[0, 1, 2, 3]], 16);
     let cup = revolved(
         &[(0., 2.5), (1., 2.5), (2., 4.), (2., 6.), (1.75, 6.), (1.75, 4.), (0.75, 3.), (0., 3.)],
@@ -98,7 +106,13 @@ fn scenes() -> Vec<Scene> {
             [1, 1, 1, 1],
             None,
         ),
-        scene("a goblet on a book", goblet(), cuboid([-4., -3., -1.], [4., 3., 0.]), [3, 0, 3, 1], None),
+        scene(
+            "a goblet on a book",
+            goblet(),
+            cuboid([-4., -3., -1.], [4., 3., 0.]),
+            [3, 0, 3, 1],
+            None,
+        ),
         scene(
             "a goblet in a box on its floor",
             goblet(),
@@ -127,10 +141,28 @@ fn scenes() -> Vec<Scene> {
             [1, 1, 1, 1],
             None,
         ),
-        scene("corner in corner", cube(), cuboid([1.; 3], [3.; 3]), [1, 1, 1, 1], Some([12, 6, 9, 9])),
+        scene(
+            "corner in corner",
+            cube(),
+            cuboid([1.; 3], [3.; 3]),
+            [1, 1, 1, 1],
+            Some([12, 6, 9, 9]),
+        ),
         scene("face on face", cube(), cuboid([2., 0., 0.], [4., 2., 2.]), [1, 0, 1, 1], None),
-        scene("edge on edge", cube(), cuboid([2., 2., 0.], [4., 4., 2.]), [2, 0, 1, 1], Some([12, 0, 6, 6])),
-        scene("corner on corner", cube(), cuboid([2.; 3], [4.; 3]), [2, 0, 1, 1], Some([12, 0, 6, 6])),
+        scene(
+            "edge on edge",
+            cube(),
+            cuboid([2., 2., 0.], [4., 4., 2.]),
+            [2, 0, 1, 1],
+            Some([12, 0, 6, 6]),
+        ),
+        scene(
+            "corner on corner",
+            cube(),
+            cuboid([2.; 3], [4.; 3]),
+            [2, 0, 1, 1],
+            Some([12, 0, 6, 6]),
+        ),
         scene(
             "a bar through",
             cuboid([0.; 3], [3.; 3]),
@@ -153,7 +185,8 @@ fn turn(angle: f64) -> DMat3 {
 }
 
 fn all(a: &Solid, b: &Solid, options: &Options) -> Result<(Vec<Made>, Report), String> {
-    compute([&a.mesh, &b.mesh], &Operation::ALL, options, &Job::default(), || 0.0).map_err(|e| e.to_string())
+    compute([&a.mesh, &b.mesh], &Operation::ALL, options, &Job::default(), || 0.0)
+        .map_err(|e| e.to_string())
 }
 
 /// Everything that is wrong with a scene's results.
@@ -165,8 +198,9 @@ fn faults(s: &Scene, want: &[(f64, f64); 4], placement: &str) -> Vec<String> {
     };
     out.extend(report.warnings.iter().map(|w| format!("{} ({placement}): warning: {w}", s.name)));
     for (k, m) in made.iter().enumerate() {
-        let mut fault =
-            |what: String| out.push(format!("{} ({placement}), {}: {what}", s.name, m.operation.name()));
+        let mut fault = |what: String| {
+            out.push(format!("{} ({placement}), {}: {what}", s.name, m.operation.name()))
+        };
         let facts = check::report(&m.mesh, true, &Job::default()).expect("not cancelled");
         let (volume, area) = want[k];
         let scale = want[0].0;
@@ -182,11 +216,15 @@ fn faults(s: &Scene, want: &[(f64, f64); 4], placement: &str) -> Vec<String> {
         if facts.components != s.components[k] {
             fault(format!("{} components instead of {}", facts.components, s.components[k]));
         }
-        // Pieces of one operand that stand on each other are told as crossing, in the operand as in the result; and corners
-        // that rounding left beside a turned plane are told as crossing it. The area says that no more is there.
+        // Pieces of one operand that stand on each other are told as crossing, in the operand as in
+        // the result; and corners that rounding left beside a turned plane are told as crossing it.
+        // The area says that no more is there.
         let stacked = s.name.contains("goblet") || placement != "as it stands";
         if facts.degenerate_faces > 0 || (facts.crossed_triangles != Some(0) && !stacked) {
-            fault(format!("{} degenerate, {:?} crossed", facts.degenerate_faces, facts.crossed_triangles));
+            fault(format!(
+                "{} degenerate, {:?} crossed",
+                facts.degenerate_faces, facts.crossed_triangles
+            ));
         }
         if let Some(faces) = s.faces
             && m.mesh.face_count() != faces[k]
@@ -204,9 +242,11 @@ fn the_scenes_as_they_stand_and_turned() {
         let want = expected(&s.a, &s.b);
         wrong.extend(faults(&s, &want, "as it stands"));
         let (a, b) = (s.a.clone(), s.b.clone());
-        for (angle, shift) in
-            [(0.7, [0.1, 0.2, 0.3]), (2.1, [10.3, -7.7, 0.01]), (std::f64::consts::FRAC_PI_4, [0.; 3])]
-        {
+        for (angle, shift) in [
+            (0.7, [0.1, 0.2, 0.3]),
+            (2.1, [10.3, -7.7, 0.01]),
+            (std::f64::consts::FRAC_PI_4, [0.; 3]),
+        ] {
             s.a = a.clone().placed(turn(angle), shift.into());
             // The other is placed by way of a detour, so that it is rounded on its own.
             let off = DVec3::new(3.7, 1.9, -2.3);

@@ -13,12 +13,12 @@ mod topology;
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::BrushSettings;
-use sculptd_clay::{Mesh, Workers};
+use sculptd_clay::{Clay, Workers};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::HandSettings;
-use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::stroke::CurveAction;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
@@ -40,9 +40,12 @@ pub type Told = (u64, Vec<Sample>, Vec<Command>);
 
 impl Studio {
     pub fn new(mesh: &TriMesh, brush: BrushSettings, workers: usize) -> Studio {
-        let mesh = Mesh::build(mesh, &Job::default()).expect("builds");
-        let options =
-            WorldOptions { dab_budget: 400_000, undo_bytes: 1 << 30, hands: HandSettings::default() };
+        let mesh = Clay::build(mesh, &Job::default()).expect("builds");
+        let options = WorldOptions {
+            dab_budget: 400_000,
+            undo_bytes: 1 << 30,
+            hands: HandSettings::default(),
+        };
         // Straight from the front, so that the view's left and right are the work's.
         let camera = Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() };
         Studio {
@@ -108,7 +111,7 @@ impl Studio {
         }
         if self.world.draft().is_some() {
             // A curve that was laid is drawn at once.
-            dabs += self.step(&[], &[Command::Draft(DraftAct::Apply)]);
+            dabs += self.step(&[], &[Command::CurveStroke(CurveAction::Apply)]);
             while self.paused {
                 dabs += self.rest(1);
             }
@@ -126,7 +129,8 @@ impl Studio {
     }
 }
 
-/// A ball with a little relief, so that what evens, fills and scrapes has something to do. Symmetric about no plane.
+/// A ball with a little relief, so that what evens, fills and scrapes has something to do.
+/// Symmetric about no plane.
 pub fn form(vertices: usize) -> TriMesh {
     let mut mesh = shapes::sphere_of_about(vertices);
     for p in &mut mesh.positions {

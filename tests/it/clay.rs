@@ -1,8 +1,8 @@
 //! The clay: what a dab leaves behind must be what a mesh built from scratch would say.
 
 use glam::Vec3;
-use sculptd_clay::brush::{Gaussian, Smooth};
-use sculptd_clay::{Mesh, Ray, Reach, Workers};
+use sculptd_clay::brush::{GaussianBrush, SmoothBrush};
+use sculptd_clay::{Clay, Ray, Reach, Workers};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -11,7 +11,8 @@ pub(crate) struct Dice(pub u64);
 
 impl Dice {
     pub(crate) fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 40) as f32 / (1 << 24) as f32
     }
 
@@ -25,22 +26,22 @@ impl Dice {
     }
 }
 
-pub(crate) fn sphere(vertices: usize) -> Mesh {
-    Mesh::build(&shapes::sphere_of_about(vertices), &Job::default()).expect("a sphere builds")
+pub(crate) fn sphere(vertices: usize) -> Clay {
+    Clay::build(&shapes::sphere_of_about(vertices), &Job::default()).expect("a sphere builds")
 }
 
 /// One dab where a random ray from outside meets the clay.
-pub(crate) fn random_dab(mesh: &mut Mesh, dice: &mut Dice, workers: &Workers) -> usize {
+pub(crate) fn random_dab(mesh: &mut Clay, dice: &mut Dice, workers: &Workers) -> usize {
     let from = dice.unit();
     let radius = 0.02 + 0.2 * dice.next();
     let smooth = dice.next() < 0.4;
     let Some(hit) = mesh.pick(Ray { origin: from * 5.0, dir: -from }) else { return 0 };
     let reach = Reach::Sphere { centre: hit.position, radius };
     let report = if smooth {
-        mesh.dab(&reach, &Smooth::new(hit.position, radius, 0.5), workers)
+        mesh.dab(&reach, &SmoothBrush::new(hit.position, radius, 0.5), workers)
     } else {
         let height = radius * (dice.next() - 0.4) * 0.5;
-        mesh.dab(&reach, &Gaussian::new(hit.position, radius, hit.normal, height), workers)
+        mesh.dab(&reach, &GaussianBrush::new(hit.position, radius, hit.normal, height), workers)
     };
     report.moved
 }
@@ -48,7 +49,7 @@ pub(crate) fn random_dab(mesh: &mut Mesh, dice: &mut Dice, workers: &Workers) ->
 #[test]
 fn a_mesh_comes_out_as_it_went_in() {
     let plain = shapes::sphere_of_about(5_000);
-    let mesh = Mesh::build(&plain, &Job::default()).expect("builds");
+    let mesh = Clay::build(&plain, &Job::default()).expect("builds");
     mesh.verify_invariants().expect("sound");
     assert_eq!(mesh.to_tri(), plain);
     assert!(mesh.warnings().is_empty(), "{:?}", mesh.warnings());
@@ -69,7 +70,7 @@ fn any_soup_loads() {
     }
     // Three triangles at one edge, one turned over, one twice, one without a side.
     soup.triangles.extend([[0, 1, 2], [0, 1, 3], [1, 0, 4], [0, 1, 2], [5, 5, 6]]);
-    let mut mesh = Mesh::build(&soup, &Job::default()).expect("builds");
+    let mut mesh = Clay::build(&soup, &Job::default()).expect("builds");
     mesh.verify_invariants().expect("sound");
     let text = mesh.warnings().join("; ");
     for part in ["non-manifold", "name one vertex twice", "belong to no triangle"] {
@@ -89,9 +90,12 @@ fn any_soup_loads() {
 
 #[test]
 fn bad_input_is_refused_with_a_reason() {
-    let build = |t: &TriMesh| Mesh::build(t, &Job::default()).map(|_| ()).unwrap_err().to_string();
-    let mut tri =
-        TriMesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 7]], colours: None };
+    let build = |t: &TriMesh| Clay::build(t, &Job::default()).map(|_| ()).unwrap_err().to_string();
+    let mut tri = TriMesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        triangles: vec![[0, 1, 7]],
+        colours: None,
+    };
     assert_eq!(build(&tri), "triangle 0 names vertex 7, but there are 3");
     tri.triangles.clear();
     assert_eq!(build(&tri), "there are no triangles");
@@ -173,8 +177,9 @@ fn a_pick_is_the_nearest_hit_of_all_triangles() {
             dice.unit() * 0.9
         };
         let ray = Ray { origin, dir: (target - origin).normalize() };
-        // Single precision may place a ray on either side of an edge it nearly meets: the truth lies between the mesh with
-        // all triangles a little smaller and the mesh with all a little larger. But a gap there must not be.
+        // Single precision may place a ray on either side of an edge it nearly meets: the truth
+        // lies between the mesh with all triangles a little smaller and the mesh with all a little
+        // larger. But a gap there must not be.
         let (mut surely, mut perhaps) = (f64::INFINITY, f64::INFINITY);
         for t in 0..plain.triangles.len() {
             let [a, b, c] = plain.corners(t).map(|p| p.as_dvec3());
@@ -204,11 +209,15 @@ fn a_pick_is_the_nearest_hit_of_all_triangles() {
                     "ray {i}: {t}, not within {perhaps} to {surely}"
                 );
                 assert!((hit.normal.length() - 1.0).abs() < 1e-4);
-                // From outside a closed surface the first hit is on a front: a back well behind it means that the front
-                // leaked. (On an outline a front and a back meet at the same distance.)
+                // From outside a closed surface the first hit is on a front: a back well behind it
+                // means that the front leaked. (On an outline a front and a back meet at the same
+                // distance.)
                 let [a, b, c] = mesh.page(hit.page).corners(hit.triangle as usize);
                 let facing = (b - a).cross(c - a).normalize_or_zero().dot(ray.dir);
-                assert!(facing < 0.02 || t < perhaps + 1e-4, "ray {i} came out at a back: {facing}");
+                assert!(
+                    facing < 0.02 || t < perhaps + 1e-4,
+                    "ray {i} came out at a back: {facing}"
+                );
             }
             None => assert!(surely.is_infinite(), "ray {i} slipped through at {perhaps}"),
         }

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_daemon::config::Config;
 use sculptd_daemon::control::methods::{METHODS, call as answer};
 use sculptd_daemon::control::server::{Host, Server, permitted};
 use sculptd_daemon::control::{MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
 use sculptd_daemon::published::{Published, PublishedFigures};
-use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup;
 use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
@@ -31,8 +31,8 @@ impl Rig {
             r#loop: sculptd_daemon::config::LoopConfig { workers: 1, ..Default::default() },
             ..Default::default()
         };
-        let mesh = Mesh::build(&shapes::sphere_of_about(300), &Job::default()).expect("a ball");
-        let mut world = rig::world(mesh, &config);
+        let mesh = Clay::build(&shapes::sphere_of_about(300), &Job::default()).expect("a ball");
+        let mut world = startup::world(mesh, &config);
         let published = Published::of(&mut world, PublishedFigures::default());
         let (sender, commands) = crossbeam_channel::bounded(4096);
         let host = Host {
@@ -81,7 +81,8 @@ impl Client {
     }
 
     fn status(&mut self, params: &Value) -> Value {
-        let line = json!({ "jsonrpc": "2.0", "id": 7, "method": "status", "params": params }).to_string();
+        let line =
+            json!({ "jsonrpc": "2.0", "id": 7, "method": "status", "params": params }).to_string();
         self.ask(&line).expect("an answer")
     }
 }
@@ -100,7 +101,12 @@ fn another_user_is_refused() {
     std::fs::copy(env!("CARGO_BIN_EXE_sculptd"), &program).expect("copied");
     let ask = || {
         let mut command = std::process::Command::new(&program);
-        command.args(["ctl", "status", "--socket"]).arg(&path).current_dir("/").uid(65534).gid(65534);
+        command
+            .args(["ctl", "status", "--socket"])
+            .arg(&path)
+            .current_dir("/")
+            .uid(65534)
+            .gid(65534);
         command.output()
     };
     if std::fs::set_permissions(rig.dir.path(), std::fs::Permissions::from_mode(0o755)).is_err()
@@ -149,7 +155,10 @@ fn a_wrong_version_is_refused_with_both_numbers() {
     let refused = client.status(&json!({ "version": PROTOCOL + 1 }));
     assert_eq!(refused["error"]["code"], -32002);
     let said = refused["error"]["message"].as_str().expect("words");
-    assert!(said.contains(&PROTOCOL.to_string()) && said.contains(&(PROTOCOL + 1).to_string()), "{said}");
+    assert!(
+        said.contains(&PROTOCOL.to_string()) && said.contains(&(PROTOCOL + 1).to_string()),
+        "{said}"
+    );
     assert_eq!(client.status(&json!({ "version": PROTOCOL }))["result"]["protocol"], PROTOCOL);
 }
 
@@ -245,6 +254,7 @@ fn a_subscriber_hears_each_change_and_answers_still_come_whole() {
         answers += usize::from(line["result"]["hash"].is_string());
     }
     assert_eq!(answers, 40);
-    let wrong = Client::new(&path).ask(r#"{"jsonrpc":"2.0","id":1,"method":"subscribe","params":{"to":1}}"#);
+    let wrong = Client::new(&path)
+        .ask(r#"{"jsonrpc":"2.0","id":1,"method":"subscribe","params":{"to":1}}"#);
     assert_eq!(wrong.expect("an answer")["error"]["code"], -32602);
 }

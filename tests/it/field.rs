@@ -67,5 +67,6 @@ pub fn manifold(mesh: &TriMesh) -> bool {
     let mut edges: Vec<(u32, u32)> =
         mesh.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
     edges.sort_unstable();
-    edges.windows(2).all(|w| w[0] != w[1]) && edges.iter().all(|&(a, b)| edges.binary_search(&(b, a)).is_ok())
+    edges.windows(2).all(|w| w[0] != w[1])
+        && edges.iter().all(|&(a, b)| edges.binary_search(&(b, a)).is_ok())
 }

@@ -1,4 +1,5 @@
-//! Finished works on their way: a place that refuses for a while, restarts in between, and links that expire.
+//! Finished works on their way: a place that refuses for a while, restarts in between, and links
+//! that expire.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -82,10 +83,13 @@ fn a_work_whose_mark_a_kill_prevented_is_sent_and_no_number_is_given_twice() {
     work(2);
     assert!(spool::waiting(&here).is_empty());
     let first = Spool::start(&here, &place).expect("a place");
-    until("both are sent", || first.stand.sent.load(Relaxed) == 2 && spool::waiting(&here).is_empty());
+    until("both are sent", || {
+        first.stand.sent.load(Relaxed) == 2 && spool::waiting(&here).is_empty()
+    });
     drop(first);
     assert_eq!(spool::sent(&here), 2);
-    // What was sent is not sent again; what staff took out of the folder does not give its number back.
+    // What was sent is not sent again; what staff took out of the folder does not give its number
+    // back.
     std::fs::remove_file(here.join("work-000001.glb")).expect("removed");
     std::fs::remove_file(here.join("work-000002.glb")).expect("removed");
     assert!(work(3).ends_with("work-000003.glb"));
@@ -113,7 +117,8 @@ fn get(at: SocketAddr, path: &str, head: &str) -> (u16, Vec<u8>) {
     let mut all = Vec::new();
     stream.read_to_end(&mut all).expect("an answer");
     let end = all.windows(4).position(|w| w == b"\r\n\r\n").expect("a head") + 4;
-    let status = std::str::from_utf8(&all[9..12]).ok().and_then(|s| s.parse().ok()).expect("a status");
+    let status =
+        std::str::from_utf8(&all[9..12]).ok().and_then(|s| s.parse().ok()).expect("a status");
     (status, all[end..].to_vec())
 }
 
@@ -140,7 +145,8 @@ fn a_link_gives_one_work_to_whoever_has_it_until_it_expires() {
     for path in ["/", "/index.html", "/00000000000000000000000000000000", "/work-000001.glb"] {
         assert_eq!(get(at, path, &host).0, 404, "{path}");
     }
-    for other in ["work-000002.glb", "../work-000002.glb", "index.html", "..", "%2e%2e/index.html"] {
+    for other in ["work-000002.glb", "../work-000002.glb", "index.html", "..", "%2e%2e/index.html"]
+    {
         assert_eq!(get(at, &format!("{rest}/{other}"), &host).0, 404, "{other}");
     }
     assert_eq!(get(at, &file, "Host: evil.example").0, 403);
@@ -175,10 +181,12 @@ fn a_name_of_ours_is_answered_to() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = gallery::keep(Path::new(dir.path()), &shapes::uv_sphere(1.0, 6, 8)).expect("kept");
     let at = "127.0.0.1:0".parse().expect("an address");
-    let share = Share::start(at, "museum.local", Duration::from_secs(60), Clock::manual()).expect("listens");
+    let share = Share::start(at, "museum.local", Duration::from_secs(60), Clock::manual())
+        .expect("listens");
     let at = share.address();
     let link = share.link(&path).expect("a link");
-    let rest = link.url.strip_prefix(&format!("http://museum.local:{}", at.port())).expect("our name");
+    let rest =
+        link.url.strip_prefix(&format!("http://museum.local:{}", at.port())).expect("our name");
     assert_eq!(get(at, rest, &format!("Host: museum.local:{}", at.port())).0, 200);
     assert_eq!(get(at, rest, "Host: museum.local:1").0, 403);
 }

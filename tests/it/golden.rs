@@ -1,13 +1,14 @@
-//! Golden runs: real recordings on real meshes, and the demo's journal on the ball. The facts are readable and hold across
-//! machines within a tolerance; the hash must be the same with any number of workers.
+//! Golden runs: real recordings on real meshes, and the demo's journal on the ball. The facts are
+//! readable and hold across machines within a tolerance; the hash must be the same with any number
+//! of workers.
 //!
 //! `SCULPTD_BLESS=1` writes the facts anew: look at the difference before it is kept.
 
 use std::path::{Path, PathBuf};
 
 use sculptd_daemon::config::Config;
-use sculptd_daemon::simulated_loop::{Feed, Pace, Stepped, SteppedOptions};
-use sculptd_daemon::startup as rig;
+use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions};
+use sculptd_daemon::startup;
 use sculptd_daemon::startup::RecordingFeed;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::Player;
@@ -41,28 +42,30 @@ struct Facts {
 
 fn volume(mesh: &TriMesh) -> f64 {
     let corner = |v: u32| mesh.positions[v as usize].as_dvec3();
-    mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum::<f64>() / 6.0
+    mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum::<f64>()
+        / 6.0
 }
 
 /// Plays a recording on a mesh with so many workers.
 fn play(recording: &Path, mesh: &Path, workers: usize) -> (TriMesh, World, u64, u64) {
     let mut config = Config::default();
     config.r#loop.workers = workers;
-    let loaded = rig::load(Some(mesh), &Job::default()).expect("a mesh");
+    let loaded = startup::load(Some(mesh), &Job::default()).expect("a mesh");
     let catalogue = Catalogue::builtin().expect("the embedded tablets are valid");
     let open = || Player::open(recording, DeviceId(0), &catalogue).expect("a recording");
-    let area = rig::used_area(open(), config.camera.aspect);
+    let area = startup::used_area(open(), config.camera.aspect);
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
-    let mut feeds: Vec<Box<dyn Feed>> = vec![Box::new(RecordingFeed::new(open(), factory.sender(), area))];
-    let mut world = rig::world(loaded.mesh, &config);
-    let options = SteppedOptions {
+    let mut feeds: Vec<Box<dyn Feed>> =
+        vec![Box::new(RecordingFeed::new(open(), factory.sender(), area))];
+    let mut world = startup::world(loaded.mesh, &config);
+    let options = SimulatedOptions {
         rate_hz: config.r#loop.rate_hz,
         pace: Pace::Fast,
         max_ticks: None,
         drain_per_tick: config.channel.drain_per_tick,
         verify: false,
     };
-    let stepped = Stepped {
+    let stepped = SimulatedLoop {
         world: &mut world,
         feeds: &mut feeds,
         receiver: &mut receiver,
@@ -74,7 +77,10 @@ fn play(recording: &Path, mesh: &Path, workers: usize) -> (TriMesh, World, u64, 
     let figures = stepped.run(&options).expect("the run ends");
     world.verify_invariants().expect("all is in order");
     let count = receiver.stats().total();
-    assert_eq!(count.sent, count.received + count.coalesced + count.lost_motion + count.lost_transition);
+    assert_eq!(
+        count.sent,
+        count.received + count.coalesced + count.lost_motion + count.lost_transition
+    );
     assert_eq!(count.lost_transition, 0);
     (loaded.plain, world, figures.samples, figures.dabs)
 }
@@ -87,14 +93,17 @@ fn facts(what: &str, recording: &Path, mesh: &Path) -> Facts {
     }
     let end = world.mesh().to_tri();
     let (lo, hi) = start.bounds();
-    let share =
-        |p: glam::Vec3| ((p - lo) / (hi - lo)).to_array().map(|c| (f64::from(c) * 1000.0).round() / 10.0);
+    let share = |p: glam::Vec3| {
+        ((p - lo) / (hi - lo)).to_array().map(|c| (f64::from(c) * 1000.0).round() / 10.0)
+    };
     let moved: Vec<usize> =
         (0..start.positions.len()).filter(|&i| start.positions[i] != end.positions[i]).collect();
     let none = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
-    let (from, to) =
-        moved.iter().fold(none, |(a, b), &i| (a.min(start.positions[i]), b.max(start.positions[i])));
-    let longest = moved.iter().map(|&i| (start.positions[i] - end.positions[i]).length()).fold(0.0, f32::max);
+    let (from, to) = moved
+        .iter()
+        .fold(none, |(a, b), &i| (a.min(start.positions[i]), b.max(start.positions[i])));
+    let longest =
+        moved.iter().map(|&i| (start.positions[i] - end.positions[i]).length()).fold(0.0, f32::max);
     let percent = |v: f64| (v * 1e4).round() / 100.0;
     Facts {
         what: what.into(),
@@ -111,11 +120,17 @@ fn facts(what: &str, recording: &Path, mesh: &Path) -> Facts {
 }
 
 fn near(name: &str, a: f64, b: f64, tolerance: f64) {
-    assert!((a - b).abs() <= tolerance, "{name}: {a} now, {b} in the golden facts (within {tolerance})");
+    assert!(
+        (a - b).abs() <= tolerance,
+        "{name}: {a} now, {b} in the golden facts (within {tolerance})"
+    );
 }
 
 fn hold(name: &str, now: &Facts) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name).join("facts.toml");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/golden")
+        .join(name)
+        .join("facts.toml");
     if std::env::var_os("SCULPTD_BLESS").is_some() {
         let text = toml::to_string(now).expect("facts are plain");
         std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
@@ -128,7 +143,12 @@ fn hold(name: &str, now: &Facts) {
     println!("{name}: {}\n  hash {} now, {} when it was written", now.what, now.hash, then.hash);
     assert_eq!((now.samples, now.undo_steps), (then.samples, then.undo_steps));
     near("dabs", now.dabs as f64, then.dabs as f64, 2.0 + then.dabs as f64 * 0.02);
-    near("displaced", now.displaced as f64, then.displaced as f64, 20.0 + then.displaced as f64 * 0.02);
+    near(
+        "displaced",
+        now.displaced as f64,
+        then.displaced as f64,
+        20.0 + then.displaced as f64 * 0.02,
+    );
     near("longest", now.longest_percent, then.longest_percent, 0.5);
     near("volume", now.volume_percent, then.volume_percent, 0.2);
     for axis in 0..3 {
@@ -141,8 +161,11 @@ fn hold(name: &str, now: &Facts) {
 fn a_real_tablet_on_a_real_mesh() {
     let Some(corpus) = corpus() else { return };
     let recording = corpus.join("devices/open/hid/Wacom_Intuos4_4x6_056a_00B8.hid");
-    let now =
-        facts("a Wacom PTK-440 draws on the armadillo", &recording, &corpus.join("meshes/igl_armadillo.obj"));
+    let now = facts(
+        "a Wacom PTK-440 draws on the armadillo",
+        &recording,
+        &corpus.join("meshes/igl_armadillo.obj"),
+    );
     assert!(now.displaced > 0 && now.dabs > 0);
     hold("tablet-on-armadillo", &now);
 }
@@ -164,7 +187,8 @@ fn a_second_maker_s_tablet_on_a_scanned_part() {
 fn a_real_hand_on_a_real_mesh() {
     let Some(corpus) = corpus() else { return };
     let recording = corpus.join("devices/open/leap/pinch.jsonl.gz");
-    let now = facts("a hand pinches at the bunny", &recording, &corpus.join("meshes/mlab_bunny70k.ply"));
+    let now =
+        facts("a hand pinches at the bunny", &recording, &corpus.join("meshes/mlab_bunny70k.ply"));
     assert!(now.displaced > 0 && now.dabs > 0);
     hold("hand-on-bunny", &now);
 }

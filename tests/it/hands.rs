@@ -1,4 +1,5 @@
-//! Gestures over real recordings: which pose each one is read as, and how often a pinch or a grab is seen that was not made.
+//! Gestures over real recordings: which pose each one is read as, and how often a pinch or a grab
+//! is seen that was not made.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,8 @@ use sculptd_engine::hand::{HandSettings, HandTools, Pose};
 
 use crate::corpus;
 
-/// What is done in each recording, as its name and a look at it say: the poses that may be seen besides neutral.
+/// What is done in each recording, as its name and a look at it say: the poses that may be seen
+/// besides neutral.
 const MADE: [(&str, &[Pose], Option<Pose>); 12] = [
     ("pinch.jsonl.gz", &[Pose::Pinch, Pose::Flat, Pose::Open], Some(Pose::Pinch)),
     ("pinch-57fps.jsonl.gz", &[Pose::Pinch, Pose::Flat, Pose::Open], Some(Pose::Pinch)),
@@ -69,7 +71,9 @@ fn real_hands_are_read_as_what_they_do() {
             *seen.frames.get(&p).unwrap_or(&0) as f64 / all.max(1) as f64
         };
         let cells: String = Pose::ALL
-            .map(|p| format!("{:>5.0}%/{:<3}", share(p) * 100.0, seen.entries.get(&p).unwrap_or(&0)))
+            .map(|p| {
+                format!("{:>5.0}%/{:<3}", share(p) * 100.0, seen.entries.get(&p).unwrap_or(&0))
+            })
             .concat();
         println!("{name:<32}{:>6.1}{cells}", seen.seconds);
         seconds += seen.seconds;

@@ -1,5 +1,6 @@
-//! The history in the session file: undo beyond memory and beyond a restart, branches, jumps, checkpoints that follow what
-//! moved. Every world here is compared, to the bit, with the one that a replay from the start gives.
+//! The history in the session file: undo beyond memory and beyond a restart, branches, jumps,
+//! checkpoints that follow what moved. Every world here is compared, to the bit, with the one that
+//! a replay from the start gives.
 
 mod bound;
 
@@ -10,7 +11,7 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 use glam::Vec2;
 use sculptd_clay::brush::Measure;
-use sculptd_clay::{Mesh, Workers};
+use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::live::Journal;
 use sculptd_daemon::session;
@@ -18,7 +19,7 @@ use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::session::history::{Handle, Keeper, Want, listing, reopen};
 use sculptd_daemon::session::writer::WriterThread;
 use sculptd_daemon::session::{SessionWriter, replay};
-use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup;
 use sculptd_daemon::startup::Begun;
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
 use sculptd_engine::command::{Command, NewClay};
@@ -52,7 +53,8 @@ struct Studio {
     thread: Option<WriterThread>,
     history: Handle,
     jumps: cc::Receiver<Command>,
-    /// What it cost the tick thread to hand over each tick, ns; the most may be another's time on the processor.
+    /// What it cost the tick thread to hand over each tick, ns; the most may be another's time on
+    /// the processor.
     handed: Vec<u64>,
     clock: Clock,
 }
@@ -76,8 +78,9 @@ impl Studio {
         let start = shapes::sphere_of_about(vertices);
         let path = dir.join("s.sculpt");
         let (mut writer, mut thread) = session::create(&path, &start, &settings).expect("created");
-        let mesh = Mesh::build(&start, &Job::default()).expect("a ball");
-        let options = WorldOptions { dab_budget: settings.dab_budget, undo_bytes, hands: settings.hands };
+        let mesh = Clay::build(&start, &Job::default()).expect("a ball");
+        let options =
+            WorldOptions { dab_budget: settings.dab_budget, undo_bytes, hands: settings.hands };
         let mut world = World::new(mesh, settings.camera, settings.brush, Workers::new(1), options);
         let keeper = Keeper::start(&path, &mut world, 0, None, most).expect("a history");
         writer.keep(keeper.handle.clone());
@@ -97,7 +100,8 @@ impl Studio {
 
     /// What a restart does.
     fn reopened(path: &Path) -> Studio {
-        let begun = rig::begin(None, Some(path), &Config::default(), &Job::default()).expect("opens");
+        let begun =
+            startup::begin(None, Some(path), &Config::default(), &Job::default()).expect("opens");
         assert_eq!(begun.warnings, Vec::<String>::new());
         Studio::of(path.into(), begun)
     }
@@ -161,7 +165,8 @@ impl Studio {
 fn both_ways(path: &Path) -> (u64, u64) {
     let opened = session::open(path).expect("opens");
     assert_eq!(opened.loss, None);
-    let replayed = replay::replay(&opened, None, Workers::new(2), &Job::default()).expect("replays");
+    let replayed =
+        replay::replay(&opened, None, Workers::new(2), &Job::default()).expect("replays");
     assert_eq!(replayed.jumps_missed, 0);
     let quick = reopen(path, &opened, None, 1, &Job::default()).expect("a checkpoint");
     assert_eq!(quick.replayed.ticks, replayed.ticks);
@@ -266,7 +271,7 @@ fn cut_triangles_and_other_works_come_back_from_the_file() {
     hashes.push(s.stroke(Vec2::new(0.05, 0.05)));
     assert!(s.world.mesh().vertex_count() > before, "nothing was cut");
     let other = Arc::new(shapes::sphere_of_about(900));
-    let built = Mesh::build(&other, &Job::default()).expect("a ball");
+    let built = Clay::build(&other, &Job::default()).expect("a ball");
     s.tick(&[], &[Command::Replace(NewClay::new(other, built, true))]);
     hashes.push(s.world.hash());
     hashes.push(s.stroke(Vec2::new(0.0, 0.05)));
@@ -341,7 +346,8 @@ fn a_session_cut_off_anywhere_opens_as_its_replay() {
         }
         let _ = std::fs::remove_file(format!("{}-shm", copy.display()));
         let Ok(opened) = session::open(&copy) else { continue };
-        let whole = replay::replay(&opened, None, Workers::new(1), &Job::default()).expect("replays");
+        let whole =
+            replay::replay(&opened, None, Workers::new(1), &Job::default()).expect("replays");
         if let Some(quick) = reopen(&copy, &opened, None, 1, &Job::default()) {
             served += 1;
             assert_eq!(quick.replayed.world.hash(), whole.world.hash(), "at {k}");
@@ -427,7 +433,10 @@ fn a_session_becomes_a_film_at_even_steps_of_time() {
     let said: serde_json::Value = serde_json::from_slice(&out.stdout).expect("one object");
     // Twelve ticks a picture, the first of the beginning; after the last input nothing is replayed.
     let count = said["frames"].as_u64().expect("a number");
-    assert!(count == said["ticks"].as_u64().expect("ticks") / 12 + 1 && count >= ticks / 12, "{said}");
+    assert!(
+        count == said["ticks"].as_u64().expect("ticks") / 12 + 1 && count >= ticks / 12,
+        "{said}"
+    );
     let picture = |n: u64| {
         let bytes = std::fs::read(frames.join(format!("frame-{n:05}.png"))).expect("a frame");
         image::load_from_memory(&bytes).expect("a PNG").to_rgb8()

@@ -32,7 +32,8 @@ fn every_mesh_of_the_corpus_is_read() {
     }
 }
 
-/// The facts of INDEX.md, measured by another program: closed, "bd/nm/ori", components, self-intersections.
+/// The facts of INDEX.md, measured by another program: closed, "bd/nm/ori", components,
+/// self-intersections.
 struct Fact {
     file: String,
     faces: usize,
@@ -77,7 +78,8 @@ fn the_topology_of_every_mesh_of_the_corpus_is_what_its_index_says() {
         let edges = format!("{}/{}/{}", r.boundary_edges, r.nonmanifold_edges, r.misoriented_edges);
         // The index counts faces or triangles.
         let counted = r.faces == f.faces || r.triangles == f.faces;
-        let same = counted && (r.closed, &edges, r.components) == (f.closed, &f.edges, f.components);
+        let same =
+            counted && (r.closed, &edges, r.components) == (f.closed, &f.edges, f.components);
         if !same {
             wrong += 1;
             println!(
@@ -106,7 +108,7 @@ fn the_topology_of_every_mesh_of_the_corpus_is_what_its_index_says() {
         facts.iter().filter(|f| f.crossings.is_some()).count()
     );
     assert_eq!(wrong, 0, "of {}", facts.len());
-    // Five meshes differ from the index (they are printed); why is not established. The bound is what was seen: it holds the
-    // others, and is no statement that these five are right.
+    // Five meshes differ from the index (they are printed); why is not established. The bound is
+    // what was seen: it holds the others, and is no statement that these five are right.
     assert!(other_crossings <= 5, "{other_crossings}");
 }

@@ -1,4 +1,5 @@
-//! Our own mesh files: what they hold, what they are after a round trip, and what is said when they are broken.
+//! Our own mesh files: what they hold, what they are after a round trip, and what is said when they
+//! are broken.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -91,10 +92,16 @@ fn a_round_trip_changes_nothing_that_the_format_can_hold() {
         let back = parse("by its content", &bytes(kind, &mesh)).unwrap();
         let (was, is) = (facts(&mesh), facts(&back.mesh));
         assert!(
-            is.closed && is.genus == Some(1) && is.triangles == was.triangles && is.vertices == was.vertices,
+            is.closed
+                && is.genus == Some(1)
+                && is.triangles == was.triangles
+                && is.vertices == was.vertices,
             "{kind} {is:?}"
         );
-        assert!((is.volume.unwrap() - was.volume.unwrap()).abs() < 1e-5 * was.volume.unwrap(), "{kind}");
+        assert!(
+            (is.volume.unwrap() - was.volume.unwrap()).abs() < 1e-5 * was.volume.unwrap(),
+            "{kind}"
+        );
         assert_eq!(bytes(kind, &mesh), bytes(kind, &mesh), "{kind}");
         if kind == "glb" {
             assert!(
@@ -116,7 +123,8 @@ fn a_round_trip_changes_nothing_that_the_format_can_hold() {
     assert_eq!(parse("a.off", &bytes("off", &disc)).unwrap().mesh, disc);
     let little = bytes("ply", &mesh);
     let cut = little.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
-    let mut big = String::from_utf8(little[..cut].to_vec()).unwrap().replace("little", "big").into_bytes();
+    let mut big =
+        String::from_utf8(little[..cut].to_vec()).unwrap().replace("little", "big").into_bytes();
     let vertices = mesh.positions.len() * 28;
     for row in little[cut..cut + vertices].chunks_exact(28) {
         big.extend(row[..24].chunks_exact(8).flat_map(|v| v.iter().rev()).chain(&row[24..]));
@@ -165,7 +173,8 @@ fn what_is_wrong_is_told_with_its_place() {
     let ply = bytes("ply", &cube);
     let told = complaint("a.ply", &ply[..ply.len() - 3]);
     assert!(told.contains("expected the rest of face 5 of 6, found the end of the file"), "{told}");
-    let secret = br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"../../etc/passwd"}]}"#;
+    let secret =
+        br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"../../etc/passwd"}]}"#;
     assert!(complaint("a.gltf", secret).contains("it leads elsewhere"));
 }
 
@@ -179,15 +188,19 @@ fn a_binary_file_whose_header_says_solid_is_binary_all_the_same() {
     stl.extend(b"trailer");
     stl[..5].copy_from_slice(b"Solid");
     stl[20] = 0;
-    assert_eq!(parse("a.stl", &stl).unwrap().warnings, ["7 bytes after the last triangle left out"]);
+    assert_eq!(
+        parse("a.stl", &stl).unwrap().warnings,
+        ["7 bytes after the last triangle left out"]
+    );
 }
 
 #[test]
 fn no_cut_and_no_flipped_byte_makes_a_parser_panic() {
     let mut mesh = shapes::uv_sphere(1.0, 5, 6);
     mesh.colours = Some(vec![[1, 2, 3, 4]; mesh.positions.len()]);
-    let mut files: Vec<(String, Vec<u8>)> =
-        ["obj", "stl", "ply", "off", "glb", "3mf"].map(|k| (format!("a.{k}"), bytes(k, &mesh))).into();
+    let mut files: Vec<(String, Vec<u8>)> = ["obj", "stl", "ply", "off", "glb", "3mf"]
+        .map(|k| (format!("a.{k}"), bytes(k, &mesh)))
+        .into();
     for name in ["pyramid.obj", "wedge.off", "tetra.stl", "strip.ply", "two.gltf"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);
         files.push((name.into(), std::fs::read(path).unwrap()));
@@ -206,7 +219,9 @@ fn no_cut_and_no_flipped_byte_makes_a_parser_panic() {
                 let at = next(b.len());
                 match next(4) {
                     0 => b.truncate(at),
-                    1 => b.splice(at..at, [b'-', b'9', 0xff][..1 + next(3)].to_vec()).for_each(drop),
+                    1 => {
+                        b.splice(at..at, [b'-', b'9', 0xff][..1 + next(3)].to_vec()).for_each(drop)
+                    }
                     2 => b[at..].rotate_left(1),
                     _ if at < b.len() => b[at] = next(256) as u8,
                     _ => {}
@@ -220,7 +235,8 @@ fn no_cut_and_no_flipped_byte_makes_a_parser_panic() {
                 let m = loaded.mesh;
                 assert!(m.corners.iter().all(|&c| (c as usize) < m.positions.len()));
                 assert!(
-                    m.faces().all(|f| f.len() >= 3) && m.positions.iter().all(|p| p.as_vec3().is_finite())
+                    m.faces().all(|f| f.len() >= 3)
+                        && m.positions.iter().all(|p| p.as_vec3().is_finite())
                 );
                 assert!(m.groups.is_none_or(|g| g.len() == m.face_starts.len() - 1));
                 assert!(m.colours.is_none_or(|c| c.len() == m.positions.len()));
@@ -254,8 +270,12 @@ fn the_commands_answer_and_bad_input_leaves_nothing_behind() {
     }
     assert!(sculptd(&["subdivide", &ply, "--levels", "4", "-o", &fine]).status.success());
     assert!(sculptd(&["decimate", &fine, "--faces", "200", "-o", &few]).status.success());
-    let v: serde_json::Value = serde_json::from_slice(&sculptd(&["info", &few, "--json"]).stdout).unwrap();
-    assert!(v["faces"].as_u64() <= Some(200) && v["closed"] == true && v["self_intersections"] == 0, "{v}");
+    let v: serde_json::Value =
+        serde_json::from_slice(&sculptd(&["info", &few, "--json"]).stdout).unwrap();
+    assert!(
+        v["faces"].as_u64() <= Some(200) && v["closed"] == true && v["self_intersections"] == 0,
+        "{v}"
+    );
     let before = std::fs::read_dir(dir.path()).unwrap().count();
     for (name, text) in
         [("e.stl", &b""[..]), ("n.obj", b"v nan 0 0\n"), ("t.ply", b"hello"), ("c.stl", &[0; 90])]

@@ -1,11 +1,11 @@
 //! Thirty visitors in a row: each finds what the first found.
 
 use glam::Vec2;
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_daemon::config::{LoopConfig, Resolved};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
 use sculptd_daemon::live::Live;
-use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup;
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample, queue};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::{Beginning, Command, NewClay};
@@ -23,7 +23,11 @@ fn visit(world: &mut sculptd_engine::world::World, visitor: u64, tick: &mut u64)
     let thing = Arc::new(shapes::sphere_of_about(500));
     let camera = Camera { yaw: visitor as f32, ..*world.camera() };
     *tick += 1;
-    world.step(*tick, &[], &[Command::Brush(brush), Command::Camera(camera), Command::TakeUp(thing)]);
+    world.step(
+        *tick,
+        &[],
+        &[Command::Brush(brush), Command::Camera(camera), Command::TakeUp(thing)],
+    );
     for i in 0..60 {
         *tick += 1;
         let phase = i as f32 * 0.1 + visitor as f32;
@@ -35,8 +39,12 @@ fn visit(world: &mut sculptd_engine::world::World, visitor: u64, tick: &mut u64)
             pressure: Some(0.7),
             ..Pen::default()
         };
-        let sample =
-            Sample { device: DeviceId(0), t_us: *tick * 8333, device_t_us: None, body: Body::Pen(pen) };
+        let sample = Sample {
+            device: DeviceId(0),
+            t_us: *tick * 8333,
+            device_t_us: None,
+            body: Body::Pen(pen),
+        };
         let commands = if i == 40 { vec![Command::Undo] } else { vec![] };
         world.step(*tick, &[sample], &commands);
     }
@@ -59,15 +67,15 @@ fn after_thirty_visitors_nothing_of_them_is_left() {
     }
     let config = Resolved::defaults().config;
     let plain = Arc::new(shapes::sphere_of_about(10_000));
-    let mesh = Mesh::build(&plain, &Default::default()).expect("a ball");
-    let mut world = rig::world(mesh, &config);
+    let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
+    let mut world = startup::world(mesh, &config);
     let (hash, camera, brush) = (world.hash(), *world.camera(), *world.brush());
     let mut heap = Vec::with_capacity(30);
     let mut tick = 0;
     for visitor in 0..30 {
         visit(&mut world, visitor, &mut tick);
         assert_ne!(world.hash(), hash, "visitor {visitor} did nothing");
-        let built = Mesh::build(&plain, &Default::default()).expect("a ball");
+        let built = Clay::build(&plain, &Default::default()).expect("a ball");
         let clay = NewClay::new(plain.clone(), built, false);
         let begin = Beginning { clay, camera: config.camera.camera(), brush: config.brush };
         tick += 1;
@@ -106,14 +114,14 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let dir = tempfile::tempdir().expect("a folder");
     let config = Resolved::defaults().config;
     let plain = Arc::new(shapes::sphere_of_about(5_000));
-    let mesh = Mesh::build(&plain, &Default::default()).expect("a ball");
-    let world = rig::world(mesh, &config);
+    let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
+    let world = startup::world(mesh, &config);
     let clean = world.hash();
     let start = keeper::Start { plain, camera: config.camera.camera(), brush: config.brush };
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(4096);
-    let live =
-        Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None).expect("a loop");
+    let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None)
+        .expect("a loop");
     let kiosk = KioskConfig {
         idle_s: 1.0,
         countdown_s: 1.0,
@@ -127,8 +135,9 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     };
     let stop = Arc::new(AtomicBool::new(false));
     let (published, commands) = (live.published.clone(), live.commands.clone());
-    let keeper = keeper::start(kiosk, start, published, commands, &factory, clock.clone(), stop.clone())
-        .expect("keeps");
+    let keeper =
+        keeper::start(kiosk, start, published, commands, &factory, clock.clone(), stop.clone())
+            .expect("keeps");
     let stage = || keeper.desk.view.lock().expect("a view").map(|v| v.stage);
     let shown = || live.published.load_full();
     until("the film sculpts", || shown().figures.dabs > 20 && shown().mesh.hash() != clean);
@@ -159,7 +168,9 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     until("the visitor sculpts", || shown().figures.dabs > before && shown().mesh.hash() != clean);
     touch(60.0, false, false);
     until("a countdown", || stage() == Some(Stage::Countdown));
-    until("the visit ends", || keeper.desk.view.lock().expect("a view").is_some_and(|v| v.visits == 1));
+    until("the visit ends", || {
+        keeper.desk.view.lock().expect("a view").is_some_and(|v| v.visits == 1)
+    });
     assert_eq!(gallery::works(&dir.path().join("works")).expect("listed"), ["work-000001.glb"]);
     let audit = std::fs::read_to_string(dir.path().join("audit.jsonl")).expect("a line");
     assert!(audit.contains("\"visit\":1") && audit.contains("\"kept\":true"), "{audit}");

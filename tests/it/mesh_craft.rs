@@ -1,19 +1,20 @@
-//! Modelling with bare hands from start to exported mesh: a thing is taken up, carried to its place, and joined with the work.
-//! A simulated hand over a simulated tracker, through its WebSocket, the real client and the stepped loop.
+//! Modelling with bare hands from start to exported mesh: a thing is taken up, carried to its
+//! place, and joined with the work. A simulated hand over a simulated tracker, through its
+//! WebSocket, the real client and the stepped loop.
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3, vec3};
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_daemon::config::Config;
-use sculptd_daemon::simulated_loop::{Pace, Stepped, SteppedOptions};
-use sculptd_daemon::{demo_devices as ghost, startup as rig};
+use sculptd_daemon::simulated_loop::{Pace, SimulatedLoop, SimulatedOptions};
+use sculptd_daemon::{demo_devices, startup};
 use sculptd_devices::sim::hand::skeleton;
 use sculptd_devices::sim::{HandKey, HandScript, Performer, TrackerConfig};
 use sculptd_devices::{Clock, queue};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::menu::ball_mm;
-use sculptd_engine::hand::{Choice, Menu};
+use sculptd_engine::hand::{Menu, MenuItem};
 use sculptd_engine::world::World;
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
@@ -46,9 +47,11 @@ impl Acting {
     }
 
     /// Points into a ball of the menu until its ring has closed.
-    fn choose(&mut self, choice: Choice, holding: bool) {
+    fn choose(&mut self, choice: MenuItem, holding: bool) {
         let i = Menu::choices(holding).iter().position(|c| *c == choice).expect("on the menu");
-        let tip = skeleton(&HandKey::flat(0, Vec3::ZERO).pointing(), false).fingers[1].expect("whole").tip;
+        let tip = skeleton(&HandKey::flat(0, Vec3::ZERO).pointing(), false).fingers[1]
+            .expect("whole")
+            .tip;
         let palm = ball_mm(i) - tip;
         // Around the work, not through it.
         self.rest(0.4, vec3(0.0, 330.0, 160.0));
@@ -91,9 +94,13 @@ impl Acting {
         };
         let inner = 2.0 * half.x + tips(false) - tips(true);
         let wide = (inner * factor - (inner - 2.0 * half.x)) / (2.0 * half.x);
-        for (after, w, pinch) in
-            [(0.3, 1.0, 1.0), (0.3, 1.0, 1.0), (1.2, wide, 1.0), (0.6, wide, 1.0), (0.15, wide, 0.0)]
-        {
+        for (after, w, pinch) in [
+            (0.3, 1.0, 1.0),
+            (0.3, 1.0, 1.0),
+            (1.2, wide, 1.0),
+            (0.6, wide, 1.0),
+            (0.15, wide, 0.0),
+        ] {
             self.t += after;
             self.right.push(at(self, 1.0, w).pinched(pinch));
             self.left.push(at(self, -1.0, w).pinched(pinch));
@@ -105,7 +112,8 @@ impl Acting {
 
     fn script(mut self) -> HandScript {
         self.rest(0.5, vec3(150.0, 330.0, 60.0));
-        let performer = |left, keys: Vec<HandKey>| (!keys.is_empty()).then_some(Performer { left, keys });
+        let performer =
+            |left, keys: Vec<HandKey>| (!keys.is_empty()).then_some(Performer { left, keys });
         HandScript {
             performers: [performer(false, self.right), performer(true, self.left)]
                 .into_iter()
@@ -117,8 +125,8 @@ impl Acting {
 
 /// The world of a work, and how many mm of the hand are one unit of it.
 fn world(work: &TriMesh) -> (World, f32) {
-    let mesh = Mesh::build(work, &Job::default()).expect("a work");
-    let world = rig::world(mesh, &Config::default());
+    let mesh = Clay::build(work, &Job::default()).expect("a work");
+    let world = startup::world(mesh, &Config::default());
     let scale = world.volume().scale;
     (world, 1.0 / scale)
 }
@@ -140,11 +148,15 @@ fn perform(
 ) -> (PolyMesh, f64) {
     let clock = Clock::manual();
     let (factory, mut receiver) = queue::channel(4096);
-    let (feed, _adaptor) =
-        ghost::tracker(script, TrackerConfig { rate: 90.0, ..TrackerConfig::default() }, &clock, &factory)
-            .expect("a tracker");
+    let (feed, _adaptor) = demo_devices::tracker(
+        script,
+        TrackerConfig { rate: 90.0, ..TrackerConfig::default() },
+        &clock,
+        &factory,
+    )
+    .expect("a tracker");
     let mut feeds = vec![feed];
-    let stepped = Stepped {
+    let stepped = SimulatedLoop {
         world,
         feeds: &mut feeds,
         receiver: &mut receiver,
@@ -153,7 +165,7 @@ fn perform(
         observer: &mut |_, _, _| {},
         script: commands,
     };
-    let options = SteppedOptions {
+    let options = SimulatedOptions {
         rate_hz: RATE,
         pace: Pace::Fast,
         max_ticks: Some(20_000),
@@ -185,26 +197,31 @@ fn volume(work: &TriMesh) -> f64 {
 fn a_piggy_bank_gets_its_snout_and_its_slot() {
     let body = shapes::icosphere(1.0, 40);
     let (mut world, _) = world(&body);
-    let slot = shapes::cuboid(DVec3::new(-0.3, -0.4, -0.06), DVec3::new(0.3, 0.4, 0.06)).triangulate().0;
+    let slot =
+        shapes::cuboid(DVec3::new(-0.3, -0.4, -0.06), DVec3::new(0.3, 0.4, 0.06)).triangulate().0;
     let mut acting = Acting::new();
     // The snout: a cylinder of the menu, half sunk in at the front.
-    acting.choose(Choice::Cylinder, false);
+    acting.choose(MenuItem::Cylinder, false);
     let yaw = world.camera().yaw;
     let front = glam::Quat::from_rotation_y(yaw) * vec3(0.0, 0.0, 1.0);
     acting.carry(way(&world, front), 0.0);
-    acting.choose(Choice::Add, true);
+    acting.choose(MenuItem::Add, true);
     // The slot: a loaded mesh, sunk into the top.
     let taken = (acting.t * RATE as f32) as u64 + 20;
     acting.rest(0.5, vec3(110.0, 300.0, 80.0));
     acting.carry(way(&world, vec3(0.0, 0.97, 0.0)), 0.0);
-    acting.choose(Choice::Carve, true);
+    acting.choose(MenuItem::Carve, true);
     let commands = [(taken, Command::TakeUp(Arc::new(slot)))];
     let (pig, left) = perform(&mut world, acting.script(), &commands, "piggy bank");
     // The snout stands out in front, and there is a hole in the top.
     let out = pig.positions.iter().map(|p| p.as_vec3().dot(front)).fold(0.0, f32::max);
     assert!(out > 1.15, "the snout stands out to {out}");
-    let top =
-        pig.positions.iter().filter(|p| p.y > 0.4 && p.x.hypot(p.z) < 0.4).map(|p| p.y).fold(2.0, f64::min);
+    let top = pig
+        .positions
+        .iter()
+        .filter(|p| p.y > 0.4 && p.x.hypot(p.z) < 0.4)
+        .map(|p| p.y)
+        .fold(2.0, f64::min);
     assert!(top < 0.55, "the slot goes down to {top}");
     assert!(left > volume(&body) * 0.95, "{left}");
     assert!(world.undo_steps() >= 2);
@@ -215,12 +232,13 @@ fn a_teapot_is_opened_for_its_lid() {
     let body = shapes::icosphere(1.0, 40);
     let (mut world, _) = world(&body);
     let mut acting = Acting::new();
-    acting.choose(Choice::Ball, false);
+    acting.choose(MenuItem::Ball, false);
     acting.carry(way(&world, vec3(0.0, 1.0, 0.0)), 0.0);
-    acting.choose(Choice::Carve, true);
+    acting.choose(MenuItem::Carve, true);
     let before = volume(&body);
     let (pot, left) = perform(&mut world, acting.script(), &[], "teapot");
-    // A ball of this radius about a point of the unit sphere: the lens that both have in common, exactly.
+    // A ball of this radius about a point of the unit sphere: the lens that both have in common,
+    // exactly.
     let r = f64::from(world.extent()) / 3.0 / 3f64.sqrt();
     let lens = std::f64::consts::PI * r.powi(3) * (2.0 / 3.0 - r / 4.0);
     let carved = before - left;
@@ -236,18 +254,22 @@ fn a_teapot_is_opened_for_its_lid() {
 fn an_aeroplane_gets_its_wing() {
     let fuselage = shapes::cylinder(0.3, 3.0, 64).triangulate().0;
     let (mut world, _) = world(&fuselage);
-    let wing = shapes::cuboid(DVec3::new(-1.0, -0.05, -0.2), DVec3::new(1.0, 0.05, 0.2)).triangulate().0;
+    let wing =
+        shapes::cuboid(DVec3::new(-1.0, -0.05, -0.2), DVec3::new(1.0, 0.05, 0.2)).triangulate().0;
     let middle = world.middle();
     let mut acting = Acting::new();
     acting.rest(0.5, vec3(110.0, 300.0, 80.0));
     acting.carry(way(&world, middle), 0.0);
     acting.stretch(1.5);
-    acting.choose(Choice::Add, true);
+    acting.choose(MenuItem::Add, true);
     let before = world.mesh().bounds();
     let commands = [(30, Command::TakeUp(Arc::new(wing)))];
     let (_, whole) = perform(&mut world, acting.script(), &commands, "aeroplane");
     let after = world.mesh().bounds();
     let grown = (after.1 - after.0).max_element() / (before.1 - before.0).x;
-    println!("the span is {:.2} widths of the fuselage", (after.1 - after.0).x / (before.1 - before.0).x);
+    println!(
+        "the span is {:.2} widths of the fuselage",
+        (after.1 - after.0).x / (before.1 - before.0).x
+    );
     assert!(grown > 1.5 && whole > volume(&fuselage), "{grown}");
 }

@@ -1,5 +1,6 @@
-//! Every parser that faces the outside, fed with whole files and with seeded mutations of them: an answer or a refusal,
-//! never a panic, never unbounded memory. `tests/fuzz` holds the same targets for a coverage-guided fuzzer.
+//! Every parser that faces the outside, fed with whole files and with seeded mutations of them: an
+//! answer or a refusal, never a panic, never unbounded memory. `tests/fuzz` holds the same targets
+//! for a coverage-guided fuzzer.
 //!
 //! Some hundred cases a target by default; `SCULPTD_LONG=1` runs each for a minute and a half.
 
@@ -67,7 +68,8 @@ fn mutate(seed: &[u8], rng: &mut Rng) -> Vec<u8> {
     data
 }
 
-/// Feeds a target with each seed and with mutations of them; a panic tells the line that repeats it.
+/// Feeds a target with each seed and with mutations of them; a panic tells the line that repeats
+/// it.
 fn torment(name: &str, seeds: &[Vec<u8>], cases: u64, target: impl Fn(&[u8])) {
     let long = std::env::var_os("SCULPTD_LONG").is_some();
     let clock = Clock::monotonic();
@@ -158,8 +160,8 @@ fn config() {
 
 #[test]
 fn stored_pages() {
-    let mesh =
-        sculptd_clay::Mesh::build(&shapes::sphere_of_about(1200), &Default::default()).expect("a ball");
+    let mesh = sculptd_clay::Clay::build(&shapes::sphere_of_about(1200), &Default::default())
+        .expect("a ball");
     let seeds: Vec<Vec<u8>> = (0..mesh.page_count() as u32)
         .map(|i| {
             let (shape, points) = (mesh.page(i).topology().to_bytes(), mesh.page(i).to_bytes());
@@ -185,10 +187,11 @@ fn session_file() {
     };
     let start = shapes::sphere_of_about(60);
     let (mut writer, thread) = session::create(&path, &start, &settings).expect("created");
-    let mesh = sculptd_clay::Mesh::build(&start, &Default::default()).expect("a ball");
+    let mesh = sculptd_clay::Clay::build(&start, &Default::default()).expect("a ball");
     let mut world = sculptd_daemon::startup::world(mesh, &config);
     let mut thread = thread;
-    let keeper = session::history::Keeper::start(&path, &mut world, 0, None, 1 << 40).expect("a history");
+    let keeper =
+        session::history::Keeper::start(&path, &mut world, 0, None, 1 << 40).expect("a history");
     writer.keep(keeper.handle.clone());
     thread.history = Some(keeper);
     for tick in 1..200 {

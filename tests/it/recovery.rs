@@ -1,5 +1,5 @@
-//! kill -9 at random moments: the session reopens, what was acknowledged 250 ms before is there, and replaying it gives the
-//! clay that the daemon itself had at that tick.
+//! kill -9 at random moments: the session reopens, what was acknowledged 250 ms before is there,
+//! and replaying it gives the clay that the daemon itself had at that tick.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -42,7 +42,8 @@ fn replay(session: &Path, until: Option<u64>) -> Value {
     serde_json::from_slice(&out.stdout).expect("one JSON object")
 }
 
-/// One daemon with a simulated pen on a pseudo-terminal, killed after `ms`. Returns the ticks that it knew and lost.
+/// One daemon with a simulated pen on a pseudo-terminal, killed after `ms`. Returns the ticks that
+/// it knew and lost.
 fn one_kill(ms: u64) -> u64 {
     let dir = tempfile::tempdir().expect("a folder");
     let journal = sim::journal();
@@ -106,13 +107,20 @@ fn a_killed_daemon_loses_a_quarter_of_a_second_at_most() {
     let kills = if std::env::var_os("SCULPTD_LONG").is_some() { 200 } else { 3 };
     let mut rng = sim::faults::Rng::new(7);
     let worst = (0..kills).map(|_| one_kill(rng.below(1500))).max().unwrap_or(0);
-    println!("{kills} kills, at most {worst} ticks of 120 a second lost ({} ms)", worst * 1000 / 120);
+    println!(
+        "{kills} kills, at most {worst} ticks of 120 a second lost ({} ms)",
+        worst * 1000 / 120
+    );
 }
 
 #[test]
 fn no_daemon_is_said_clearly() {
     let dir = tempfile::tempdir().expect("a folder");
-    let out = sculptd().args(["ctl", "status"]).env("XDG_RUNTIME_DIR", dir.path()).output().expect("runs");
+    let out = sculptd()
+        .args(["ctl", "status"])
+        .env("XDG_RUNTIME_DIR", dir.path())
+        .output()
+        .expect("runs");
     assert_eq!(out.status.code(), Some(5));
     assert!(String::from_utf8_lossy(&out.stderr).contains("no daemon is running"));
 }

@@ -23,7 +23,10 @@ struct Examined {
 
 impl Examined {
     fn of(&self, name: &str) -> &Value {
-        self.checks.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("{name}: {:?}", self.checks))
+        self.checks
+            .iter()
+            .find(|c| c["name"] == name)
+            .unwrap_or_else(|| panic!("{name}: {:?}", self.checks))
     }
 }
 
@@ -36,14 +39,21 @@ fn doctor(dir: &Path, config: &Path, runtime: &Path) -> Examined {
         .output()
         .expect("runs");
     let value: Value = serde_json::from_slice(&out.stdout).expect("one JSON object");
-    Examined { code: out.status.code(), checks: value["checks"].as_array().expect("checks").clone() }
+    Examined {
+        code: out.status.code(),
+        checks: value["checks"].as_array().expect("checks").clone(),
+    }
 }
 
 #[test]
 fn the_doctor_finds_nothing_wrong_with_sound_settings() {
     let dir = tempfile::tempdir().expect("a folder");
     // A rate that a busy machine holds too: here the doctor is tested, not the machine.
-    let good = file(dir.path(), "good.toml", "[loop]\nrate_hz = 30\nworkers = 1\n[devices]\nhid = false\n");
+    let good = file(
+        dir.path(),
+        "good.toml",
+        "[loop]\nrate_hz = 30\nworkers = 1\n[devices]\nhid = false\n",
+    );
     let seen = doctor(dir.path(), &good, dir.path());
     // Only a machine with no time at all may fail, by its rate.
     let failed = seen.checks.iter().filter(|c| c["verdict"] == "fail").map(|c| c["name"].clone());
@@ -87,9 +97,12 @@ fn the_doctor_names_what_is_broken_and_the_repair() {
     let seen = doctor(dir.path(), &typo, dir.path());
     assert_eq!((seen.code, &seen.of("settings")["verdict"]), (Some(1), &Value::from("fail")));
     assert!(
-        seen.of("settings")["cause"].as_str().is_some_and(|c| c.contains("line 2") && c.contains("rate"))
+        seen.of("settings")["cause"]
+            .as_str()
+            .is_some_and(|c| c.contains("line 2") && c.contains("rate"))
     );
-    // A folder that others may write, and a state folder that cannot be made because a file stands there.
+    // A folder that others may write, and a state folder that cannot be made because a file stands
+    // there.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -101,7 +114,10 @@ fn the_doctor_names_what_is_broken_and_the_repair() {
         let seen = doctor(dir.path(), &good, &open);
         assert_eq!(seen.of("control socket")["verdict"], "warn");
         assert_eq!(seen.of("control socket")["repair"], format!("chmod 700 '{}'", open.display()));
-        assert_eq!((seen.code, &seen.of("session folder")["verdict"]), (Some(1), &Value::from("fail")));
+        assert_eq!(
+            (seen.code, &seen.of("session folder")["verdict"]),
+            (Some(1), &Value::from("fail"))
+        );
     }
 }
 
@@ -122,8 +138,8 @@ fn pause(ms: u64) {
     std::thread::sleep(std::time::Duration::from_millis(ms));
 }
 
-/// As the manager sees it: ready once, alive while it works, its figures for us alone, new settings without a restart, and
-/// a word when it stops.
+/// As the manager sees it: ready once, alive while it works, its figures for us alone, new settings
+/// without a restart, and a word when it stops.
 #[cfg(unix)]
 #[test]
 fn the_service_manager_hears_and_the_figures_are_ours_alone() {
@@ -154,13 +170,18 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("starts");
-    let mut said = BufReader::new(child.stderr.take().expect("piped")).lines().map_while(Result::ok);
+    let mut said =
+        BufReader::new(child.stderr.take().expect("piped")).lines().map_while(Result::ok);
     let daemon = Daemon(child);
     let mut until =
         |word: &str| said.find(|l| l.contains(word)).unwrap_or_else(|| panic!("never said {word}"));
     let at = until("figures at");
-    let address =
-        at.split("http://").nth(1).and_then(|a| a.split('/').next()).expect("an address").to_owned();
+    let address = at
+        .split("http://")
+        .nth(1)
+        .and_then(|a| a.split('/').next())
+        .expect("an address")
+        .to_owned();
     hear("READY=1");
     hear("WATCHDOG=1");
     hear("WATCHDOG=1");
@@ -198,7 +219,11 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
     let object: Value = serde_json::from_str(&line).expect("the log is JSON");
     assert_eq!(object["level"], "ERROR");
     assert_eq!(strength(), before);
-    file(dir.path(), "my.toml", "[devices]\nhid = false\n[brush]\nstrength = 0.5\n[loop]\nrate_hz = 60\n");
+    file(
+        dir.path(),
+        "my.toml",
+        "[devices]\nhid = false\n[brush]\nstrength = 0.5\n[loop]\nrate_hz = 60\n",
+    );
     hangup();
     let line = until("next start");
     assert!(line.contains("[loop]"), "{line}");
@@ -233,7 +258,11 @@ fn every_subcommand_has_its_manual_page_and_numbers_read_as_they_were_written() 
         assert!(page.is_ok_and(|p| p.contains(".SH NAME")), "{name}");
     }
     let config = file(dir.path(), "c.toml", "[brush]\nradius = 0.3\n");
-    let out = sculptd().args(["config", "show", "--json", "--config"]).arg(&config).output().expect("runs");
+    let out = sculptd()
+        .args(["config", "show", "--json", "--config"])
+        .arg(&config)
+        .output()
+        .expect("runs");
     let shown: Value = serde_json::from_slice(&out.stdout).expect("one JSON object");
     assert_eq!(shown["brush.radius"]["value"].to_string(), "0.3");
     assert_eq!(shown["undo.history_bytes"]["value"], 4u64 << 30);

@@ -1,4 +1,5 @@
-//! Session files that went through what really happens: torn, flipped, cut off from power, on a full disk.
+//! Session files that went through what really happens: torn, flipped, cut off from power, on a
+//! full disk.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,7 +7,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
 use glam::Vec2;
-use sculptd_clay::{Mesh, Workers};
+use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::live::Journal;
 use sculptd_daemon::session;
@@ -44,8 +45,9 @@ fn settings() -> Settings {
 
 fn fresh(start: &TriMesh) -> World {
     let s = settings();
-    let mesh = Mesh::build(start, &Job::default()).expect("a ball");
-    let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
+    let mesh = Clay::build(start, &Job::default()).expect("a ball");
+    let options =
+        WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
     World::new(mesh, s.camera, s.brush, Workers::new(1), options)
 }
 
@@ -190,7 +192,10 @@ fn a_damaged_session_is_saved_beside_the_old_one_and_the_loss_told_in_ticks() {
                 }
             },
         }
-        assert!(std::fs::read(&path).expect("still there") == damaged, "case {case}: the old file changed");
+        assert!(
+            std::fs::read(&path).expect("still there") == damaged,
+            "case {case}: the old file changed"
+        );
     }
     println!(
         "100 damaged sessions: {intact} whole in all that counts, {saved} saved, {refused} refused with a reason"
@@ -232,7 +237,10 @@ fn the_session_tools_tell_and_mend() {
     let (code, saved, said) = ask(&["save", &bad]);
     assert_eq!(code, Some(0), "{said}");
     let kept = 360 - saved["lost_ticks"].as_u64().expect("ticks");
-    assert!(shown["damage"].as_str().is_some_and(|d| d.contains(&format!("tick {kept}"))), "{shown} {saved}");
+    assert!(
+        shown["damage"].as_str().is_some_and(|d| d.contains(&format!("tick {kept}"))),
+        "{shown} {saved}"
+    );
     let (_, listed, _) = ask(&["list", &dir.path().display().to_string()]);
     assert_eq!(listed["sessions"].as_array().map(Vec::len), Some(3), "{listed}");
     // Only whole ones go, and only when told to.
@@ -246,7 +254,8 @@ fn the_session_tools_tell_and_mend() {
     assert!(Path::new(&bad).exists() && !Path::new(&good).exists());
 }
 
-/// Strokes fall elsewhere in another version: its session is neither read nor "saved", which would be another work.
+/// Strokes fall elsewhere in another version: its session is neither read nor "saved", which would
+/// be another work.
 #[test]
 fn a_session_of_another_layout_is_refused_and_left_alone() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -258,11 +267,17 @@ fn a_session_of_another_layout_is_refused_and_left_alone() {
         drop(db);
         let before = std::fs::read(&path).expect("read");
         for args in [&["replay"][..], &["run", "--headless", "--session"]] {
-            let out =
-                Command::new(env!("CARGO_BIN_EXE_sculptd")).args(args).arg(&path).output().expect("runs");
+            let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+                .args(args)
+                .arg(&path)
+                .output()
+                .expect("runs");
             let said = String::from_utf8_lossy(&out.stderr);
             assert!(!out.status.success(), "{args:?}: {said}");
-            assert!(said.contains(who) && said.contains(&format!("layout {layout}")), "{args:?}: {said}");
+            assert!(
+                said.contains(who) && said.contains(&format!("layout {layout}")),
+                "{args:?}: {said}"
+            );
         }
         assert!(std::fs::read(&path).expect("read") == before, "the file was changed");
         let files = std::fs::read_dir(dir.path()).expect("a folder").flatten();
@@ -305,7 +320,9 @@ fn a_disk_that_keeps_everybody_waiting_costs_a_kill_nothing() {
     drop(writer);
     assert_eq!(thread.finish(), None);
     assert_eq!(
-        session::shared_memory_log::of(&copy).map(session::shared_memory_log::read).map_or(0, |t| t.len()),
+        session::shared_memory_log::of(&copy)
+            .map(session::shared_memory_log::read)
+            .map_or(0, |t| t.len()),
         0,
         "let go"
     );
@@ -343,14 +360,16 @@ impl Disk {
 
 const SECTOR: usize = 512;
 
-/// What may be on the disk when the power goes between the states `a` (all of it synced) and `b` (its last writes not).
+/// What may be on the disk when the power goes between the states `a` (all of it synced) and `b`
+/// (its last writes not).
 fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
     let restarted = a.wal.len() < 32 || b.wal.len() < a.wal.len() || a.wal[..32] != b.wal[..32];
     // A log is begun again only after the database holds all of it: then the database is `b`'s.
     let mut out = if restarted { b.clone() } else { Disk { db: a.db.clone(), wal: b.wal.clone() } };
     let old = a.wal.clone();
     // Bytes before this one were written and synced long ago; no write touches them again.
-    let keep = old.iter().zip(&out.wal).position(|(x, y)| x != y).unwrap_or(old.len().min(out.wal.len()));
+    let keep =
+        old.iter().zip(&out.wal).position(|(x, y)| x != y).unwrap_or(old.len().min(out.wal.len()));
     let differs: Vec<usize> = (0..out.wal.len())
         .step_by(SECTOR)
         .filter(|&s| {
@@ -378,7 +397,8 @@ fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
             }
         }
     }
-    // A database that was being brought up to date, with the log that it is brought up to date from still there.
+    // A database that was being brought up to date, with the log that it is brought up to date from
+    // still there.
     if !restarted && a.db != b.db && rng.below(2) == 0 {
         out.wal = b.wal.clone();
         out.db = b.db.clone();
@@ -392,13 +412,16 @@ fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
     out
 }
 
-/// `cuts` power cuts of one session; answers with groups lost in full, and checkpoints that a cut fell into.
+/// `cuts` power cuts of one session; answers with groups lost in full, and checkpoints that a cut
+/// fell into.
 fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
     let dir = tempfile::tempdir().expect("a folder");
     let mut rng = Rng::new(seed);
     let mut script = Script::begin(dir.path());
     // Memory is gone with the power.
-    session::shared_memory_log::of(&script.path).into_iter().for_each(session::shared_memory_log::remove);
+    session::shared_memory_log::of(&script.path)
+        .into_iter()
+        .for_each(session::shared_memory_log::remove);
     script.group(5);
     let (mut lost, mut checkpoints) = (0, 0);
     for n in 0..cuts {
@@ -418,7 +441,11 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
             (synced..=newest).contains(&last),
             "seed {seed}, cut {n}: {last}, synced {synced}, newest {newest}"
         );
-        assert_eq!(hash_of(&opened), script.hashes[last as usize], "seed {seed}, cut {n}, tick {last}");
+        assert_eq!(
+            hash_of(&opened),
+            script.hashes[last as usize],
+            "seed {seed}, cut {n}, tick {last}"
+        );
         // And it can be gone on with.
         let (writer, thread) = session::resume(&path).expect("goes on");
         drop(writer);
@@ -431,8 +458,10 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
 
 #[test]
 fn a_hundred_power_cuts_cost_the_last_group_at_most() {
-    let runs: Vec<_> = (0..10).map(|seed| std::thread::spawn(move || power_cuts(100 + seed, 10))).collect();
-    let all: Vec<(u64, u64)> = runs.into_iter().map(|r| r.join().expect("no cut was fatal")).collect();
+    let runs: Vec<_> =
+        (0..10).map(|seed| std::thread::spawn(move || power_cuts(100 + seed, 10))).collect();
+    let all: Vec<(u64, u64)> =
+        runs.into_iter().map(|r| r.join().expect("no cut was fatal")).collect();
     let lost: u64 = all.iter().map(|a| a.0).sum();
     println!("100 power cuts: {lost} cost their last group, {} kept it", 100 - lost);
     assert!(lost > 20, "the cuts do tear: {all:?}");
@@ -457,7 +486,8 @@ struct Small(PathBuf);
 
 impl Small {
     fn mount(at: &Path) -> Option<Self> {
-        let done = Command::new("mount").args(["-t", "tmpfs", "-o", "size=1m", "tmpfs"]).arg(at).output();
+        let done =
+            Command::new("mount").args(["-t", "tmpfs", "-o", "size=1m", "tmpfs"]).arg(at).output();
         done.is_ok_and(|o| o.status.success()).then(|| Small(at.into()))
     }
 }

@@ -1,16 +1,17 @@
-//! Hours of input at full speed with faults from a seed: a pen on a wire that is unplugged and found again, packets that are
-//! torn, lost or come twice, clocks that jump, a loop that falls behind, a renderer that holds old states, a disk that fills.
-//! After every tick the world is sound; at the end the session file gives the same clay.
+//! Hours of input at full speed with faults from a seed: a pen on a wire that is unplugged and
+//! found again, packets that are torn, lost or come twice, clocks that jump, a loop that falls
+//! behind, a renderer that holds old states, a disk that fills. After every tick the world is
+//! sound; at the end the session file gives the same clay.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sculptd_clay::{Mesh, Workers};
+use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::Resolved;
 use sculptd_daemon::live::Journal;
 use sculptd_daemon::published::{Published, PublishedFigures, Publisher};
 use sculptd_daemon::session::format::Settings;
-use sculptd_daemon::{session, startup as rig};
+use sculptd_daemon::{session, startup};
 use sculptd_devices::serial::{Decoder, Protocol};
 use sculptd_devices::sim::faults::Rng;
 use sculptd_devices::{DeviceId, queue, sim};
@@ -34,7 +35,13 @@ impl Wire {
         let journal = sim::journal();
         let span = 0..journal.pen.end_us();
         let (facts, packets) = sim::serial::stream(Protocol::Isdv4, &journal.pen, span);
-        Wire { decoder: Some(Decoder::new(&facts, DeviceId(100))), packets, facts, next: 0, skew_us: 0 }
+        Wire {
+            decoder: Some(Decoder::new(&facts, DeviceId(100))),
+            packets,
+            facts,
+            next: 0,
+            skew_us: 0,
+        }
     }
 
     /// The next packet at `t_us`, with whatever befalls it.
@@ -73,9 +80,11 @@ impl Wire {
                 t_us += by;
                 decoder.feed(packet, t_us, &mut emit);
             }
-            "torn" => {
-                decoder.feed(&packet[..1 + rng.below(packet.len() as u64 - 1) as usize], t_us, &mut emit)
-            }
+            "torn" => decoder.feed(
+                &packet[..1 + rng.below(packet.len() as u64 - 1) as usize],
+                t_us,
+                &mut emit,
+            ),
             "twice" => (0..2).for_each(|_| decoder.feed(packet, t_us, &mut emit)),
             "lost" => {}
             "noise" => {
@@ -133,8 +142,8 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
     let dir = tempfile::tempdir().map_err(|e| e.to_string())?;
     let disk = Disk::new(dir.path());
     let plain = shapes::sphere_of_about(400);
-    let mesh = Mesh::build(&plain, &Job::default()).map_err(|e| e.to_string())?;
-    let mut world = rig::world(mesh, &config);
+    let mesh = Clay::build(&plain, &Job::default()).map_err(|e| e.to_string())?;
+    let mut world = startup::world(mesh, &config);
     let settings = Settings {
         rate_hz: 120,
         dab_budget: config.r#loop.dab_budget,
@@ -144,7 +153,8 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
         hands: config.hand,
     };
     let path = dir.path().join("soak.sculpt");
-    let (mut writer, thread) = session::create(&path, &plain, &settings).map_err(|e| e.to_string())?;
+    let (mut writer, thread) =
+        session::create(&path, &plain, &settings).map_err(|e| e.to_string())?;
     let (factory, mut receiver) = queue::channel(256);
     let mut sender = factory.sender();
     let mut rng = Rng::new(seed);
@@ -229,7 +239,8 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
     if let Some(fault) = thread.finish() {
         return Err(format!("the journal: {fault}"));
     }
-    // Memory after the first half is memory for good; what the journal kept of a full disk is in both.
+    // Memory after the first half is memory for good; what the journal kept of a full disk is in
+    // both.
     let mb = heap.map(|b| b as f64 / 1e6);
     if mb[1] > mb[0] * 1.05 + 4.0 {
         return Err(format!("{:.1} MB in the second half, {:.1} MB in the first", mb[1], mb[0]));
@@ -242,7 +253,10 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
     let again = session::replay::replay(&opened, Some(tick), Workers::new(1), &Job::default())
         .map_err(|e| e.to_string())?;
     if again.world.hash() != hash {
-        return Err(format!("the session gives {:016x}, the world was {hash:016x}", again.world.hash()));
+        return Err(format!(
+            "the session gives {:016x}, the world was {hash:016x}",
+            again.world.hash()
+        ));
     }
     println!(
         "{ticks} ticks, {taken} samples, {dabs} dabs; heap {:.1} then {:.1} MB; {faults:?}",
@@ -260,9 +274,11 @@ fn an_hour_of_faults() {
     let number = |key: &str| std::env::var(key).ok().and_then(|v| v.parse::<u64>().ok());
     let seed = number("SCULPTD_SEED").unwrap_or(20);
     let ticks = number("SCULPTD_TICKS").unwrap_or(if long { 432_000 } else { 6_000 });
-    let told =
-        std::panic::catch_unwind(|| soak(seed, ticks)).unwrap_or_else(|_| Err("a panic, above".into()));
+    let told = std::panic::catch_unwind(|| soak(seed, ticks))
+        .unwrap_or_else(|_| Err("a panic, above".into()));
     if let Err(e) = told {
-        panic!("{e}; again: SCULPTD_SEED={seed} SCULPTD_TICKS={ticks} cargo test --release --test it soak");
+        panic!(
+            "{e}; again: SCULPTD_SEED={seed} SCULPTD_TICKS={ticks} cargo test --release --test it soak"
+        );
     }
 }

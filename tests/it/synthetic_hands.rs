@@ -1,5 +1,6 @@
-//! A simulated hand with an anatomist's bones, seen by a tracker that trembles, loses hands, renames them and hides fingers:
-//! every gesture at every frame rate, through the wire's text and the real parser.
+//! A simulated hand with an anatomist's bones, seen by a tracker that trembles, loses hands,
+//! renames them and hides fingers: every gesture at every frame rate, through the wire's text and
+//! the real parser.
 
 use glam::{Vec3, vec3};
 use sculptd_devices::leap::parse_frame;
@@ -11,7 +12,8 @@ use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose};
 
 const RATES: [f32; 4] = [30.0, 60.0, 90.0, 120.0];
 
-/// The tracker of the measurements: 0.2 mm at rest, 1.2 mm moving, and everything that goes wrong besides.
+/// The tracker of the measurements: 0.2 mm at rest, 1.2 mm moving, and everything that goes wrong
+/// besides.
 fn tracker(seed: u64) -> Tremble {
     Tremble {
         seed,
@@ -34,8 +36,8 @@ fn frames(script: &HandScript, rate: f32, tremble: Tremble) -> Vec<(u64, Hands)>
         .map(|(i, t)| {
             let seen = trembling.apply(&script.at(t, i64::from(i)));
             let stamp = trembling.stamp(t);
-            let frame =
-                parse_frame(&frame_json(&seen, stamp, rate)).expect("the simulator speaks the protocol");
+            let frame = parse_frame(&frame_json(&seen, stamp, rate))
+                .expect("the simulator speaks the protocol");
             (stamp, frame.hands)
         })
         .collect()
@@ -117,8 +119,9 @@ fn two_hands_hold_and_zoom_at_every_frame_rate() {
         for rate in RATES {
             let (mut good, mut count) = (0usize, 0usize);
             for seed in 0..8 {
-                let script =
-                    HandScript { performers: vec![performance(false, shape), performance(true, shape)] };
+                let script = HandScript {
+                    performers: vec![performance(false, shape), performance(true, shape)],
+                };
                 let mut tools = HandTools::new(HandSettings::default());
                 for (t, hands) in frames(&script, rate, tracker(seed)) {
                     tools.take(DeviceId(0), t, &hands);
@@ -134,7 +137,10 @@ fn two_hands_hold_and_zoom_at_every_frame_rate() {
                 }
             }
             let share = good as f64 / count as f64;
-            println!("{wanted} at {rate} Hz: {:.2} % of {count} frames with both hands", share * 100.0);
+            println!(
+                "{wanted} at {rate} Hz: {:.2} % of {count} frames with both hands",
+                share * 100.0
+            );
             assert!(share >= 0.97, "{wanted} at {rate} Hz: {share}");
         }
     }
@@ -149,7 +155,10 @@ fn tip_of(tools: &HandTools, t: u64) -> Option<Vec3> {
 fn a_resting_fingertip_trembles_less_than_a_tenth_of_a_millimetre() {
     let key = HandKey::flat(0, vec3(0.0, 200.0, 0.0)).pointing();
     let script = HandScript {
-        performers: vec![Performer { left: false, keys: vec![key, HandKey { t_us: s(20.0), ..key }] }],
+        performers: vec![Performer {
+            left: false,
+            keys: vec![key, HandKey { t_us: s(20.0), ..key }],
+        }],
     };
     for rate in [60.0, 90.0, 120.0] {
         let mut tools = HandTools::new(HandSettings::default());
@@ -174,7 +183,8 @@ fn a_resting_fingertip_trembles_less_than_a_tenth_of_a_millimetre() {
 fn a_moving_fingertip_lags_less_than_thirty_milliseconds() {
     // There and back over 200 mm in 2.4 s: up to 260 mm a second, at 90 Hz.
     let key = |t: f32, x: f32| HandKey::flat(s(t), vec3(x, 200.0, 0.0)).pointing();
-    let keys = (0..10).map(|i| key(i as f32 * 1.2, if i % 2 == 0 { -100.0 } else { 100.0 })).collect();
+    let keys =
+        (0..10).map(|i| key(i as f32 * 1.2, if i % 2 == 0 { -100.0 } else { 100.0 })).collect();
     let script = HandScript { performers: vec![Performer { left: false, keys }] };
     let mut tools = HandTools::new(HandSettings::default());
     let noise = Tremble { seed: 8, rest_mm: 0.2, moving_mm: 1.2, ..Tremble::default() };
@@ -184,7 +194,9 @@ fn a_moving_fingertip_lags_less_than_thirty_milliseconds() {
         seen.extend(tip_of(&tools, t).map(|p| (t, p.x)));
     }
     let truth = |t: u64| {
-        script.performers[0].at(t).map(|(k, _)| skeleton(&k, false).fingers[1].expect("whole").tip.x)
+        script.performers[0]
+            .at(t)
+            .map(|(k, _)| skeleton(&k, false).fingers[1].expect("whole").tip.x)
     };
     // The delay at which the truth fits best.
     let misfit = |delay: u64| {
@@ -201,35 +213,42 @@ fn a_moving_fingertip_lags_less_than_thirty_milliseconds() {
 #[test]
 fn a_fingertip_at_three_metres_a_second_does_not_tunnel_through_a_thin_wall() {
     use sculptd_clay::brush::BrushSettings;
-    use sculptd_clay::{Mesh, Workers};
+    use sculptd_clay::{Clay, Workers};
     use sculptd_engine::camera::Camera;
     use sculptd_engine::world::{World, WorldOptions};
     use sculptd_geometry::job::Job;
 
     let wall = wall(2.0);
-    let mesh = Mesh::build(&wall, &Job::default()).expect("a wall");
-    let options =
-        WorldOptions { dab_budget: 10_000_000, undo_bytes: 1 << 28, hands: HandSettings::default() };
-    let mut world = World::new(mesh, Camera::default(), BrushSettings::default(), Workers::new(1), options);
+    let mesh = Clay::build(&wall, &Job::default()).expect("a wall");
+    let options = WorldOptions {
+        dab_budget: 10_000_000,
+        undo_bytes: 1 << 28,
+        hands: HandSettings::default(),
+    };
+    let mut world =
+        World::new(mesh, Camera::default(), BrushSettings::default(), Workers::new(1), options);
     let before = world.mesh().to_tri();
     // One frame well before the wall, the next well behind it: 90 Hz and 3 m/s are 33 mm a frame.
     let volume = *world.volume();
     let mm = |world: Vec3| (volume.turn.inverse() * (world - volume.origin)) / volume.scale;
     let (from, to) = (mm(vec3(0.0, 0.0, 60.0)), mm(vec3(0.0, 0.0, -60.0)));
-    let tip = skeleton(&HandKey::flat(0, Vec3::ZERO).pointing(), false).fingers[1].expect("whole").tip;
+    let tip =
+        skeleton(&HandKey::flat(0, Vec3::ZERO).pointing(), false).fingers[1].expect("whole").tip;
     let cross = f64::from((to - from).length()) / 3000.0;
     let key = |t: f64, tip_at: Vec3| HandKey::flat((t * 1e6) as u64, tip_at - tip).pointing();
     let keys = vec![key(0.0, from), key(2.0, from), key(2.0 + cross, to), key(3.0, to)];
     let script = HandScript { performers: vec![Performer { left: false, keys }] };
     let mut touched = 0;
     for (i, (t_us, hands)) in frames(&script, 90.0, Tremble::default()).into_iter().enumerate() {
-        let sample = Sample { device: DeviceId(1), t_us, device_t_us: None, body: Body::Hands(hands) };
+        let sample =
+            Sample { device: DeviceId(1), t_us, device_t_us: None, body: Body::Hands(hands) };
         touched += world.step(i as u64 + 1, &[sample], &[]).vertices_moved;
     }
     let after = world.mesh().to_tri();
     let moved = before.positions.iter().zip(&after.positions).filter(|(a, b)| a != b).count();
     // Everything that the finger's path covers has gone aside.
-    let left = after.positions.iter().filter(|p| p.x.hypot(p.y) < 0.5 * 12.0 * volume.scale).count();
+    let left =
+        after.positions.iter().filter(|p| p.x.hypot(p.y) < 0.5 * 12.0 * volume.scale).count();
     println!("{touched} moves, {moved} vertices moved, {left} left in the finger's way");
     assert!(moved > 20 && left == 0, "{moved} moved, {left} left in the way");
 }
@@ -242,14 +261,23 @@ fn wall(thick: f32) -> sculptd_geometry::TriMesh {
     for side in 0..2 {
         for y in 0..=n {
             for x in 0..=n {
-                t.positions.push(vec3(x as f32 - 50.0, y as f32 - 50.0, (0.5 - side as f32) * thick));
+                t.positions.push(vec3(
+                    x as f32 - 50.0,
+                    y as f32 - 50.0,
+                    (0.5 - side as f32) * thick,
+                ));
             }
         }
         for y in 0..n {
             for x in 0..n {
-                let [a, b, c, d] =
-                    [id(side, x, y), id(side, x + 1, y), id(side, x + 1, y + 1), id(side, x, y + 1)];
-                let (first, second) = if side == 0 { ([a, b, c], [a, c, d]) } else { ([a, c, b], [a, d, c]) };
+                let [a, b, c, d] = [
+                    id(side, x, y),
+                    id(side, x + 1, y),
+                    id(side, x + 1, y + 1),
+                    id(side, x, y + 1),
+                ];
+                let (first, second) =
+                    if side == 0 { ([a, b, c], [a, c, d]) } else { ([a, c, b], [a, d, c]) };
                 t.triangles.extend([first, second]);
             }
         }

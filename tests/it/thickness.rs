@@ -34,7 +34,8 @@ fn shapes() -> Vec<Known> {
             let r = p.truncate().length();
             (between(p.z, 2.01, 27.99) && (r > 9.99 || r < 8.01)).then_some(2.0)
         }),
-        // The way along the normal: d tan(angle) from the base, and from the slope, both at distance d from the tip.
+        // The way along the normal: d tan(angle) from the base, and from the slope, both at
+        // distance d from the tip.
         known("wedge 10 deg", wedge(10f32.to_radians(), 80), |p| {
             let d = (p.x * p.x + p.z * p.z).sqrt();
             let t = d * tan;
@@ -42,7 +43,8 @@ fn shapes() -> Vec<Known> {
             (inside && between(p.y, 2.0 * t, 40.0 - 2.0 * t)).then_some(t)
         }),
         known("rib flank", ribbed(), |p| {
-            let flank = [10.0f32, 12.0, 22.0, 24.0, 34.0, 36.0].iter().any(|x| (p.x - x).abs() < 1e-3);
+            let flank =
+                [10.0f32, 12.0, 22.0, 24.0, 34.0, 36.0].iter().any(|x| (p.x - x).abs() < 1e-3);
             (flank && between(p.z, 5.01, 12.99) && between(p.y, 2.01, 27.99)).then_some(2.0)
         }),
     ]
@@ -68,7 +70,8 @@ fn errors(shape: &Known, settings: &Settings) -> (f32, f32) {
 #[test]
 fn the_error_tables() {
     let one = Settings { rays: 1, ..Settings::default() };
-    let cone = |opening, correction| Settings { rays: 25, opening, correction, ..Settings::default() };
+    let cone =
+        |opening, correction| Settings { rays: 25, opening, correction, ..Settings::default() };
     let sphere = Settings { method: Method::Sphere, ..Settings::default() };
     let rows = [
         ("one ray", one, [0.01; 5]),
@@ -91,14 +94,16 @@ fn the_error_tables() {
         for (shape, limit) in shapes.iter().zip(limits) {
             let (mut median, mut largest) = errors(shape, &settings);
             if settings.method == Method::Sphere && shape.name.starts_with("wedge") {
-                // The ball that touches both sides of a wedge at distance d from its tip: 2 d tan(angle / 2).
+                // The ball that touches both sides of a wedge at distance d from its tip: 2 d
+                // tan(angle / 2).
                 let ball = 2.0 * 5f32.to_radians().tan() / 10f32.to_radians().tan();
                 (median, largest) = ((median / 100.0 + 1.0) / ball, (largest / 100.0 + 1.0) / ball);
                 (median, largest) = ((median - 1.0) * 100.0, (largest - 1.0) * 100.0);
             }
             print!("{:>20}", format!("{median:.4} / {largest:.3}"));
             // Ours hold at every vertex, the others' at the median.
-            let worst = if name.ends_with("plain") || name.ends_with("angle") { median } else { largest };
+            let worst =
+                if name.ends_with("plain") || name.ends_with("angle") { median } else { largest };
             if worst.abs() > limit {
                 bad.push(format!("{name} on {}: {worst} > {limit}", shape.name));
             }
@@ -115,7 +120,8 @@ fn on_a_closed_mesh_every_value_is_there() {
             for rays in [1, 25] {
                 let settings =
                     Settings { method, rays, outliers: Outliers::SigmaMean, ..Settings::default() };
-                let found = measure(&shape.mesh, &settings, &Job::default()).expect("sane settings");
+                let found =
+                    measure(&shape.mesh, &settings, &Job::default()).expect("sane settings");
                 let missing = found.values.iter().filter(|v| !v.is_finite()).count();
                 assert_eq!(missing, 0, "{} {method:?} {rays}", shape.name);
                 assert!(found.reasons.iter().all(|r| matches!(r, Reason::Measured | Reason::Edge)));

@@ -1,9 +1,9 @@
 //! The live map: after a stroke the same as a map made anew, at a cost of what changed.
 
 use glam::Vec3;
-use sculptd_clay::brush::Gaussian;
+use sculptd_clay::brush::GaussianBrush;
 use sculptd_clay::live_thickness::{LiveMap, Rebuild};
-use sculptd_clay::{Mesh, Reach, Workers};
+use sculptd_clay::{Clay, Reach, Workers};
 use sculptd_devices::Clock;
 use sculptd_geometry::job::Job;
 
@@ -15,7 +15,7 @@ fn after_a_stroke_the_map_equals_a_new_one() {
     let rings = if long { 350 } else { 60 };
     let job = Job::default();
     for rays in [1, 9] {
-        let mut mesh = Mesh::build(&shell(10.0, 8.5, rings), &job).expect("a good mesh");
+        let mut mesh = Clay::build(&shell(10.0, 8.5, rings), &job).expect("a good mesh");
         let mut map = LiveMap::new(&mesh.snapshot(), rays, &job).expect("not cancelled");
         assert_eq!(map.work(Vec3::ZERO, usize::MAX, &job), Ok(0));
         let workers = Workers::new(1);
@@ -24,7 +24,7 @@ fn after_a_stroke_the_map_equals_a_new_one() {
         for i in 0..12 {
             let centre = Vec3::new(10.0, i as f32 * 0.1, 1.0).normalize() * 10.0;
             let radius = 0.6;
-            let dab = Gaussian::new(centre, radius, centre.normalize(), 0.05);
+            let dab = GaussianBrush::new(centre, radius, centre.normalize(), 0.05);
             mesh.dab(&Reach::Sphere { centre, radius }, &dab, &workers);
         }
         mesh.end_step();
@@ -58,8 +58,8 @@ fn after_a_stroke_the_map_equals_a_new_one() {
 #[test]
 fn another_topology_asks_for_a_new_map() {
     let job = Job::default();
-    let mut a = Mesh::build(&shell(10.0, 8.5, 12), &job).expect("a good mesh");
-    let mut b = Mesh::build(&shell(10.0, 8.5, 14), &job).expect("a good mesh");
+    let mut a = Clay::build(&shell(10.0, 8.5, 12), &job).expect("a good mesh");
+    let mut b = Clay::build(&shell(10.0, 8.5, 14), &job).expect("a good mesh");
     let mut map = LiveMap::new(&a.snapshot(), 1, &job).expect("not cancelled");
     assert_eq!(map.advance(&b.snapshot()), Err(Rebuild));
 }

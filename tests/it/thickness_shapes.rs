@@ -87,7 +87,8 @@ pub(crate) fn tube(
     across: usize,
 ) -> TriMesh {
     let mut mesh = TriMesh::default();
-    // Once round the wall's section: up the outside, in over the top, down the inside, out over the bottom.
+    // Once round the wall's section: up the outside, in over the top, down the inside, out over the
+    // bottom.
     let mut section = Vec::new();
     for i in 0..rows {
         section.push((outer, length * i as f32 / rows as f32));
@@ -118,7 +119,8 @@ pub(crate) fn tube(
     mesh
 }
 
-/// The surface of the cells of a grid that are solid; `planes` are the grid's coordinates on each axis.
+/// The surface of the cells of a grid that are solid; `planes` are the grid's coordinates on each
+/// axis.
 pub(crate) fn cells(planes: [&[f32]; 3], solid: impl Fn([usize; 3]) -> bool) -> TriMesh {
     let mut mesh = TriMesh::default();
     let n = planes.map(|p| p.len());
@@ -160,7 +162,11 @@ pub(crate) fn cells(planes: [&[f32]; 3], solid: impl Fn([usize; 3]) -> bool) -> 
                         };
                         let q = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
                         let two = [[q[0], q[1], q[2]], [q[0], q[2], q[3]]];
-                        mesh.triangles.extend(if side == 1 { two } else { two.map(|t| [t[0], t[2], t[1]]) });
+                        mesh.triangles.extend(if side == 1 {
+                            two
+                        } else {
+                            two.map(|t| [t[0], t[2], t[1]])
+                        });
                     }
                 }
             }

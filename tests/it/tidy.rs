@@ -58,7 +58,11 @@ fn unsafe_lives_in_one_module() {
     for dir in ["src", "devices/src"] {
         for (path, text) in sources(dir) {
             let allowed = path.starts_with(root().join("src/geometry/simd"));
-            assert!(allowed || !text.contains("allow(unsafe_code)"), "{} allows unsafe", path.display());
+            assert!(
+                allowed || !text.contains("allow(unsafe_code)"),
+                "{} allows unsafe",
+                path.display()
+            );
         }
     }
 }
@@ -66,8 +70,9 @@ fn unsafe_lives_in_one_module() {
 #[test]
 fn nothing_is_left_undone() {
     // Spelt apart, so that this file does not find itself.
-    let marks = [["TO", "DO"], ["FIX", "ME"], ["todo", "!("], ["unimple", "mented!("], ["X", "XX "]]
-        .map(|m| m.concat());
+    let marks =
+        [["TO", "DO"], ["FIX", "ME"], ["todo", "!("], ["unimple", "mented!("], ["X", "XX "]]
+            .map(|m| m.concat());
     for dir in ["src", "devices/src", "tests"] {
         for (path, text) in sources(dir) {
             for mark in &marks {

@@ -1,8 +1,9 @@
-//! The eight-wide tree against brute force, against itself without AVX2, and against the light that must not leak.
+//! The eight-wide tree against brute force, against itself without AVX2, and against the light that
+//! must not leak.
 
 use glam::Vec3;
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::bvh::{Ray, Stack, TreeHit, WideTree};
+use sculptd_geometry::bvh::{Bvh8, Ray, Stack, TreeHit};
 use sculptd_geometry::job::{Cancelled, Job};
 
 use crate::thickness_shapes::{Random, sphere};
@@ -11,24 +12,24 @@ fn rays(random: &mut Random, n: usize) -> Vec<Ray> {
     (0..n).map(|_| Ray::new(random.direction() * 2.0 * random.unit(), random.direction())).collect()
 }
 
-fn hits(tree: &WideTree, rays: &[Ray]) -> Vec<Option<TreeHit>> {
+fn hits(tree: &Bvh8, rays: &[Ray]) -> Vec<Option<TreeHit>> {
     rays.iter().map(|&r| tree.closest_hit(r, |t| t % 7 != 3)).collect()
 }
 
 #[test]
 fn equals_brute_force_and_its_own_scalar_twin_bit_for_bit() {
     let mesh = sphere(1.0, 40, 60);
-    let tree = WideTree::build(&mesh, &Job::default()).unwrap();
+    let tree = Bvh8::build(&mesh, &Job::default()).unwrap();
     let scalar = tree.clone().without_simd();
     let mut random = Random(7);
     let rays = rays(&mut random, 4000);
     let (fast, slow) = (hits(&tree, &rays), hits(&scalar, &rays));
     assert_eq!(fast, slow);
     // Each triangle alone in a tree of its own: no walk, no culling, only the triangle test.
-    let single: Vec<WideTree> = (0..mesh.triangles.len())
+    let single: Vec<Bvh8> = (0..mesh.triangles.len())
         .map(|t| {
             let one = TriMesh { triangles: vec![mesh.triangles[t]], ..mesh.clone() };
-            WideTree::build(&one, &Job::default()).unwrap()
+            Bvh8::build(&one, &Job::default()).unwrap()
         })
         .collect();
     let mut found = 0;
@@ -45,20 +46,24 @@ fn equals_brute_force_and_its_own_scalar_twin_bit_for_bit() {
     assert!((100..400).contains(&found), "{found} of 400");
 }
 
-/// A tree that the caches hold casts rays one by one, a larger one lets them take turns: the answers are the same.
+/// A tree that the caches hold casts rays one by one, a larger one lets them take turns: the
+/// answers are the same.
 #[test]
 fn many_rays_at_once_meet_what_each_meets_alone() {
     let mut random = Random(5);
     for (across, along) in [(40, 60), (600, 360)] {
-        let tree = WideTree::build(&sphere(1.0, across, along), &Job::default()).unwrap();
+        let tree = Bvh8::build(&sphere(1.0, across, along), &Job::default()).unwrap();
         let mut stack = Stack::new();
         let mut many = Vec::new();
         for n in [0, 1, 3, 4, 5, 500, 0, 7] {
             let rays = rays(&mut random, n);
             let accept = |ray: usize, t: u32| !(t as usize + ray).is_multiple_of(5);
             tree.closest_hits(&mut stack, &rays, accept, &mut many);
-            let alone: Vec<_> =
-                rays.iter().enumerate().map(|(i, &r)| tree.closest_hit(r, |t| accept(i, t))).collect();
+            let alone: Vec<_> = rays
+                .iter()
+                .enumerate()
+                .map(|(i, &r)| tree.closest_hit(r, |t| accept(i, t)))
+                .collect();
             assert_eq!(many, alone);
             assert!(n < 500 || many.iter().flatten().count() > 100);
             tree.clone().without_simd().closest_hits(&mut stack, &rays, accept, &mut many);
@@ -70,7 +75,7 @@ fn many_rays_at_once_meet_what_each_meets_alone() {
 #[test]
 fn no_ray_leaks_out_of_a_closed_sphere() {
     let mesh = sphere(1.0, 64, 128);
-    let tree = WideTree::build(&mesh, &Job::default()).unwrap();
+    let tree = Bvh8::build(&mesh, &Job::default()).unwrap();
     let mut random = Random(11);
     let n = if std::env::var_os("SCULPTD_LONG").is_some() { 10_000_000 } else { 300_000 };
     let mut leaks = 0;
@@ -88,7 +93,7 @@ fn no_ray_leaks_out_of_a_closed_sphere() {
 
 #[test]
 fn a_line_through_a_solid_enters_as_often_as_it_leaves() {
-    let tree = WideTree::build(&sphere(1.0, 64, 128), &Job::default()).unwrap();
+    let tree = Bvh8::build(&sphere(1.0, 64, 128), &Job::default()).unwrap();
     let mut random = Random(3);
     for _ in 0..20_000 {
         let dir = random.direction();
@@ -97,7 +102,10 @@ fn a_line_through_a_solid_enters_as_often_as_it_leaves() {
         assert!(hits.len() >= 2, "{ray:?} {hits:?}");
         assert!(hits.windows(2).all(|w| w[0].t <= w[1].t));
         assert_eq!(tree.any_hit(ray, |_| true), !hits.is_empty());
-        assert_eq!(tree.closest_hit(ray, |_| true).map(|h| h.triangle), hits.first().map(|h| h.triangle));
+        assert_eq!(
+            tree.closest_hit(ray, |_| true).map(|h| h.triangle),
+            hits.first().map(|h| h.triangle)
+        );
         assert!(!tree.any_hit(Ray { t_max: hits[0].t * 0.999, ..ray }, |_| true));
     }
 }
@@ -110,12 +118,15 @@ fn broken_triangles_are_left_out_and_an_empty_mesh_has_a_tree() {
     mesh.triangles.insert(0, [0, 1, nan]);
     mesh.triangles.insert(0, [0, 1, nan + 1]);
     mesh.triangles.insert(0, [4, 4, 4]);
-    let tree = WideTree::build(&mesh, &Job::default()).unwrap();
+    let tree = Bvh8::build(&mesh, &Job::default()).unwrap();
     let hit = tree.closest_hit(Ray::new(Vec3::ZERO, Vec3::new(0.3, 0.4, 0.5)), |_| true).unwrap();
     assert!(hit.triangle >= 3);
-    let nothing = WideTree::build(&TriMesh::default(), &Job::default()).unwrap();
-    assert!(nothing.is_empty() && nothing.closest_hit(Ray::new(Vec3::ZERO, Vec3::X), |_| true).is_none());
+    let nothing = Bvh8::build(&TriMesh::default(), &Job::default()).unwrap();
+    assert!(
+        nothing.is_empty()
+            && nothing.closest_hit(Ray::new(Vec3::ZERO, Vec3::X), |_| true).is_none()
+    );
     let job = Job::default();
     job.cancel();
-    assert_eq!(WideTree::build(&mesh, &job).err(), Some(Cancelled));
+    assert_eq!(Bvh8::build(&mesh, &job).err(), Some(Cancelled));
 }

@@ -1,5 +1,5 @@
-//! The window without a window: the renderer on whatever adapter there is, the panels through AccessKit, and the law
-//! that a viewer that stalls costs the sculpture nothing.
+//! The window without a window: the renderer on whatever adapter there is, the panels through
+//! AccessKit, and the law that a viewer that stalls costs the sculpture nothing.
 
 mod beside;
 mod kiosk;
@@ -12,7 +12,7 @@ mod stall;
 mod window;
 
 use sculptd_clay::brush::BrushSettings;
-use sculptd_clay::{Mesh, Workers};
+use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::Published;
 use sculptd_daemon::published::PublishedFigures;
 use sculptd_engine::camera::Camera;
@@ -22,8 +22,10 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
 pub(crate) fn world(vertices: usize) -> World {
-    let mesh = Mesh::build(&shapes::sphere_of_about(vertices), &Job::default()).expect("a ball builds");
-    let options = WorldOptions { dab_budget: 1 << 30, undo_bytes: 1 << 30, hands: HandSettings::default() };
+    let mesh =
+        Clay::build(&shapes::sphere_of_about(vertices), &Job::default()).expect("a ball builds");
+    let options =
+        WorldOptions { dab_budget: 1 << 30, undo_bytes: 1 << 30, hands: HandSettings::default() };
     World::new(mesh, Camera::default(), BrushSettings::default(), Workers::new(1), options)
 }
 

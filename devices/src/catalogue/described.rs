@@ -52,7 +52,14 @@ fn by_params(who: &Identity, d: &Descriptor, params: Params) -> Found {
     Found { described: false, ..found(who, d, area, pen, family, "by its parameter string") }
 }
 
-fn found(who: &Identity, d: &Descriptor, area: Area, pen: PenFacts, parser: Family, note: &str) -> Found {
+fn found(
+    who: &Identity,
+    d: &Descriptor,
+    area: Area,
+    pen: PenFacts,
+    parser: Family,
+    note: &str,
+) -> Found {
     let name = if who.name.is_empty() {
         format!("digitiser {:04x}:{:04x}", who.vid, who.pid)
     } else {
@@ -71,8 +78,14 @@ fn found(who: &Identity, d: &Descriptor, area: Area, pen: PenFacts, parser: Fami
         init_strings: Vec::new(),
         quirks: Vec::new(),
     };
-    let tablet =
-        Tablet { name, source: "the device itself".to_owned(), area, pen, pad: Pad::default(), id: vec![id] };
+    let tablet = Tablet {
+        name,
+        source: "the device itself".to_owned(),
+        area,
+        pen,
+        pad: Pad::default(),
+        id: vec![id],
+    };
     Found { tablet: Arc::new(tablet), at: 0, note: Some(note.to_owned()), described: true }
 }
 
@@ -92,10 +105,13 @@ impl Scale {
             return None;
         }
         // Without a physical size, 5080 lines an inch is the commonest resolution by far.
-        let guess = |b: &Bits| ((f64::from(b.max) - f64::from(b.min)) * 25.4 / 5080.0).clamp(5.0, 5000.0);
+        let guess =
+            |b: &Bits| ((f64::from(b.max) - f64::from(b.min)) * 25.4 / 5080.0).clamp(5.0, 5000.0);
         let (width_mm, height_mm) = stated_size(x, y).unwrap_or_else(|| (guess(x), guess(y)));
-        let span = |b: &Option<Bits>| b.as_ref().map_or(0, |b| b.max.saturating_sub(b.min).max(0) as u32);
-        let area = Area { width_mm, height_mm, min_x: x.min, min_y: y.min, max_x: x.max, max_y: y.max };
+        let span =
+            |b: &Option<Bits>| b.as_ref().map_or(0, |b| b.max.saturating_sub(b.min).max(0) as u32);
+        let area =
+            Area { width_mm, height_mm, min_x: x.min, min_y: y.min, max_x: x.max, max_y: y.max };
         Some(Scale { area, max_pressure: span(&pen.pressure), max_distance: span(&pen.distance) })
     }
 }

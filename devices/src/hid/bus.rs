@@ -84,8 +84,8 @@ impl Bus for HidApiBus {
     }
 
     fn open(&mut self, node: &Node) -> io::Result<Box<dyn Transport>> {
-        let path =
-            CString::new(node.path.clone()).map_err(|_| io::Error::from(io::ErrorKind::InvalidInput))?;
+        let path = CString::new(node.path.clone())
+            .map_err(|_| io::Error::from(io::ErrorKind::InvalidInput))?;
         let device = self.api.open_path(&path).map_err(to_io)?;
         Ok(Box::new(HidApiTransport { device }))
     }

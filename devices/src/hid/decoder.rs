@@ -57,13 +57,22 @@ impl Decoder {
             let d = Descriptor::parse(descriptor).unwrap_or_default();
             // Counts are the report's own; the size is the model's, where the model is known.
             let size = Vec2::new(area.width_mm as f32, area.height_mm as f32);
-            scales = d.pens.iter().filter_map(|p| Some((p.report_id, scale_of(p, size)?))).collect();
+            scales =
+                d.pens.iter().filter_map(|p| Some((p.report_id, scale_of(p, size)?))).collect();
         } else if let Some(mut other) = by_descriptor(id.vid, id.pid, descriptor) {
             other.sized_like(found);
             plain = Some(Box::new(Decoder::new(&other, descriptor, device)));
         }
         let pad = PadState::new(device);
-        Decoder { engine, pen, pad, skip: usize::from(id.skip), scales, plain, counts: Counts::default() }
+        Decoder {
+            engine,
+            pen,
+            pad,
+            skip: usize::from(id.skip),
+            scales,
+            plain,
+            counts: Counts::default(),
+        }
     }
 
     /// One report, its id first where it has one.

@@ -180,8 +180,9 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
             return Err(DescriptorError::Bad(format!("a long item at byte {at}")));
         }
         let n = [0, 1, 2, 4][usize::from(prefix & 3)];
-        let value =
-            (0..n).fold(0u64, |v, k| v | u64::from(bytes.get(i + 1 + k).copied().unwrap_or(0)) << (8 * k));
+        let value = (0..n).fold(0u64, |v, k| {
+            v | u64::from(bytes.get(i + 1 + k).copied().unwrap_or(0)) << (8 * k)
+        });
         i = (i + 1 + n).min(bytes.len());
         let tag = prefix & 0xfc;
         match tag {
@@ -218,8 +219,8 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
                 // A collection has usages, and no bits.
                 let field = tag != 0xa0;
                 total = total.saturating_add(if field { size.saturating_mul(count) } else { 0 });
-                let wide =
-                    field && (size > 4096 * 8 || count > MAX_REPORT_BITS) || total > 8 * MAX_REPORT_BITS;
+                let wide = field && (size > 4096 * 8 || count > MAX_REPORT_BITS)
+                    || total > 8 * MAX_REPORT_BITS;
                 // A range of usages is listed one by one.
                 listed += high.saturating_sub(low);
                 if wide || listed > MAX_USAGES {
@@ -357,8 +358,8 @@ impl Bits {
     pub fn degrees(&self, v: i32, full: f64) -> f64 {
         let span = (f64::from(self.max) - f64::from(self.min)).max(1.0);
         if let Some((lo, hi)) = self.physical {
-            let p =
-                f64::from(lo) + (f64::from(v) - f64::from(self.min)) * (f64::from(hi) - f64::from(lo)) / span;
+            let p = f64::from(lo)
+                + (f64::from(v) - f64::from(self.min)) * (f64::from(hi) - f64::from(lo)) / span;
             let p = p * 10f64.powi(self.exponent);
             match self.unit & 0xff {
                 0x14 => return p,
@@ -435,14 +436,20 @@ mod tests {
     fn a_range_of_usages_without_end_is_refused_wherever_it_is_used() {
         for main in [0xa0u8, 0x80, 0x90, 0xb0] {
             let bytes = [0x1a, 0x20, 0xab, 0x2b, 0xab, 0xab, 0xab, 0xab, main];
-            assert_eq!(Descriptor::parse(&bytes).err(), Some(DescriptorError::Absurd(8)), "{main:#x}");
+            assert_eq!(
+                Descriptor::parse(&bytes).err(),
+                Some(DescriptorError::Absurd(8)),
+                "{main:#x}"
+            );
         }
         // What a collection or its end has used up counts no more.
         let whole = [0x05, 0x0d, 0x1a, 0, 0, 0x2a, 0xff, 0xff];
         let kept = [&whole[..], &[0xa1, 0x01, 0xc0]].concat().repeat(3);
         assert!(Descriptor::parse(&kept).is_ok());
         assert_eq!(
-            Descriptor::parse(&kept.repeat(2)).err().map(|e| matches!(e, DescriptorError::Absurd(_))),
+            Descriptor::parse(&kept.repeat(2))
+                .err()
+                .map(|e| matches!(e, DescriptorError::Absurd(_))),
             Some(true)
         );
     }

@@ -131,7 +131,8 @@ impl Reader {
             shared.to_channel.record(us);
         }
         let status = &mut shared.status;
-        (status.reports, status.broken, status.ignored) = (counts.reports, counts.broken, counts.ignored);
+        (status.reports, status.broken, status.ignored) =
+            (counts.reports, counts.broken, counts.ignored);
         status.samples += n;
     }
 }

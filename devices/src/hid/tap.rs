@@ -71,8 +71,11 @@ impl Transport for Tap {
         let n = self.inner.read(buf, timeout_ms)?;
         if n > 0 {
             let bytes = buf[..n.min(buf.len())].to_vec();
-            let _ =
-                self.out.try_send(Tapped::Report { number: self.number, t_us: self.clock.now_us(), bytes });
+            let _ = self.out.try_send(Tapped::Report {
+                number: self.number,
+                t_us: self.clock.now_us(),
+                bytes,
+            });
         }
         Ok(n)
     }

@@ -52,7 +52,8 @@ fn pl(b: &[u8], max_pressure: u32, memory: &mut Memory) -> Parsed {
         p = p << 1 | i32::from(b[4] >> 6 & 1);
     }
     p += (max_pressure as i32 + 1) / 2;
-    let axis = |hi: u8, mid: u8, low: u8| i32::from(hi & 3) << 14 | i32::from(mid) << 7 | i32::from(low);
+    let axis =
+        |hi: u8, mid: u8, low: u8| i32::from(hi & 3) << 14 | i32::from(mid) << 7 | i32::from(low);
     let second = tool == Tool::Pen && both;
     Parsed::Pen(PenReport {
         tool: Some(tool),

@@ -77,7 +77,9 @@ pub fn pad(b: &[u8], kind: Kind) -> Option<PadReport> {
                 strip: Some((0, place.map(|p| p.min(1.0)))),
             })
         }
-        Kind::Bluetooth => Some(PadReport { keys: Some(u32::from(b[7] & 3)), ..PadReport::default() }),
+        Kind::Bluetooth => {
+            Some(PadReport { keys: Some(u32::from(b[7] & 3)), ..PadReport::default() })
+        }
     }
 }
 

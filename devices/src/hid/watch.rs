@@ -155,7 +155,11 @@ pub fn start_on(
 ///
 /// # Errors
 /// The bus cannot be looked at.
-pub fn list(bus: &mut dyn Bus, config: &HidConfig, catalogue: &Catalogue) -> io::Result<Vec<NodeStatus>> {
+pub fn list(
+    bus: &mut dyn Bus,
+    config: &HidConfig,
+    catalogue: &Catalogue,
+) -> io::Result<Vec<NodeStatus>> {
     let nodes = bus.nodes()?;
     let one = |node: &Node| {
         let mut status = NodeStatus::of(node);
@@ -294,8 +298,9 @@ impl Watcher {
         (status.usable, status.device) = (true, Some(number.0));
         let mut sender = self.factory.sender();
         sender.calibrate(number, self.calibration(node, &found));
-        let handle = reader::start(device, &found, &who.descriptor, number, self.clock.clone(), sender)
-            .map_err(|e| Refusal::Later(e.to_string()))?;
+        let handle =
+            reader::start(device, &found, &who.descriptor, number, self.clock.clone(), sender)
+                .map_err(|e| Refusal::Later(e.to_string()))?;
         tracing::info!("{}: {}", node.path, found.in_words());
         Ok(Open { path: node.path.clone(), handle, status })
     }
@@ -352,13 +357,18 @@ fn choose(
         }
         (_, Some(name)) => match catalogue.named(name, who) {
             Some(found) => Ok((found, Vec::new())),
-            None => Err(format!("the configuration names it `{name}`, and no such model has these ids")),
+            None => {
+                Err(format!("the configuration names it `{name}`, and no such model has these ids"))
+            }
         },
         (Identification::Ambiguous(mut many), None) => {
             let mut names: Vec<String> = many.iter().map(|f| f.tablet.name.clone()).collect();
             names.sort();
             let mut found = many.swap_remove(0);
-            found.note = Some(format!("one of {} models alike: say which in the configuration", names.len()));
+            found.note = Some(format!(
+                "one of {} models alike: say which in the configuration",
+                names.len()
+            ));
             Ok((found, names))
         }
     }

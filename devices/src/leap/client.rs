@@ -261,7 +261,10 @@ impl Client {
             Ok(Message::Frame(frame)) => self.frame(&frame),
             Ok(Message::Version(version)) => {
                 if version.is_some_and(|v| v != 6 && v != 7) {
-                    return Err(format!("the server speaks version {}, not 6 or 7", version.unwrap_or(0)));
+                    return Err(format!(
+                        "the server speaks version {}, not 6 or 7",
+                        version.unwrap_or(0)
+                    ));
                 }
                 self.note(|s| s.version = version);
             }
@@ -317,7 +320,9 @@ impl Client {
     /// A frame that came twice or out of order adds nothing: each holds the whole state, and the newer one is here. A
     /// number far back is a tracker that started again.
     fn is_stale(&self, frame: &Frame) -> bool {
-        let Some(Sample { body: Body::Hands(last), device_t_us, .. }) = self.last else { return false };
+        let Some(Sample { body: Body::Hands(last), device_t_us, .. }) = self.last else {
+            return false;
+        };
         let back = last.frame.saturating_sub(frame.hands.frame);
         let older = frame.device_t_us.zip(device_t_us).is_none_or(|(new, old)| new <= old);
         (0..100).contains(&back) && frame.hands.frame != 0 && older
@@ -353,13 +358,16 @@ impl Client {
 fn waited(e: &std::io::Error) -> bool {
     matches!(
         e.kind(),
-        std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut | std::io::ErrorKind::Interrupted
+        std::io::ErrorKind::WouldBlock
+            | std::io::ErrorKind::TimedOut
+            | std::io::ErrorKind::Interrupted
     )
 }
 
 /// Connects and shakes hands, every step with a time-out.
 fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
-    let request = config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
+    let request =
+        config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
     if request.uri().scheme_str() != Some("ws") {
         return Err(format!("{}: only ws:// is spoken", config.url));
     }
@@ -371,9 +379,13 @@ fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
         .into_iter()
         .find(allowed)
         .ok_or_else(|| format!("{host} is another machine; set allow_remote to use it"))?;
-    let stream = TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
-    let prepare = |wait| stream.set_nodelay(true).and_then(|()| stream.set_read_timeout(Some(wait)));
-    prepare(PATIENCE).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).map_err(|e| e.to_string())?;
+    let stream =
+        TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
+    let prepare =
+        |wait| stream.set_nodelay(true).and_then(|()| stream.set_read_timeout(Some(wait)));
+    prepare(PATIENCE)
+        .and_then(|()| stream.set_write_timeout(Some(PATIENCE)))
+        .map_err(|e| e.to_string())?;
     let limits = WebSocketConfig::default()
         .max_message_size(Some(MAX_MESSAGE))
         .max_frame_size(Some(MAX_MESSAGE))

@@ -43,7 +43,10 @@ impl ClockMap {
     fn taken(&mut self, device: i64, read_us: u64) -> u64 {
         let apart = (read_us as i64).saturating_sub(device);
         let offset = match self.seen {
-            Some(s) if device >= s.device && apart.saturating_sub(s.offset).saturating_abs() <= JUMP_US => {
+            Some(s)
+                if device >= s.device
+                    && apart.saturating_sub(s.offset).saturating_abs() <= JUMP_US =>
+            {
                 // Saturating: a device clock may say anything.
                 let drift = device.saturating_sub(s.device) / DRIFT_PARTS;
                 s.offset.saturating_add(drift).min(apart)
@@ -73,8 +76,16 @@ mod tests {
     #[test]
     fn it_is_never_later_than_the_read_never_backwards_and_survives_any_stamp() {
         let mut map = ClockMap::default();
-        let stamps =
-            [Some(5), None, Some(u64::MAX), Some(0), Some(i64::MAX as u64), Some(7), Some(1 << 62), Some(3)];
+        let stamps = [
+            Some(5),
+            None,
+            Some(u64::MAX),
+            Some(0),
+            Some(i64::MAX as u64),
+            Some(7),
+            Some(1 << 62),
+            Some(3),
+        ];
         let mut last = 0;
         for (i, stamp) in stamps.iter().cycle().take(64).enumerate() {
             let read = 1000 * (i as u64 / 3);

@@ -138,7 +138,8 @@ pub fn parse_frame(json: &str) -> Result<Frame, FrameError> {
 pub fn parse_message(json: &str) -> Result<Message, FrameError> {
     let holds_nan = check(json)?;
     let text = if holds_nan { mend(json) } else { Cow::Borrowed(json) };
-    let mut raw: RawMessage = serde_json::from_str(&text).map_err(|e| FrameError::NotJson(e.to_string()))?;
+    let mut raw: RawMessage =
+        serde_json::from_str(&text).map_err(|e| FrameError::NotJson(e.to_string()))?;
     if let Some(hands) = raw.hands.take() {
         let mut frame = Frame {
             hands: Hands { frame: raw.id.int().unwrap_or(0), ..Hands::default() },
@@ -151,7 +152,10 @@ pub fn parse_message(json: &str) -> Result<Message, FrameError> {
         return Ok(Message::Frame(frame));
     }
     if let Some(state) = raw.event.and_then(|e| e.state) {
-        return Ok(Message::Device { attached: state.attached.bool(), streaming: state.streaming.bool() });
+        return Ok(Message::Device {
+            attached: state.attached.bool(),
+            streaming: state.streaming.bool(),
+        });
     }
     Ok(raw.version.map_or(Message::Other, |v| Message::Version(v.int())))
 }
@@ -211,13 +215,17 @@ fn mend(json: &str) -> Cow<'_, str> {
             continue;
         }
         let mut word = String::from(c);
-        while let Some(n) =
-            chars.next_if(|n| n.is_ascii_alphanumeric() || matches!(n, '.' | '+' | '-' | '(' | ')' | '_'))
-        {
+        while let Some(n) = chars.next_if(|n| {
+            n.is_ascii_alphanumeric() || matches!(n, '.' | '+' | '-' | '(' | ')' | '_')
+        }) {
             word.push(n);
         }
         let bare = word.trim_start_matches('-').to_ascii_lowercase();
-        out.push_str(if bare.starts_with("nan") || bare.starts_with("inf") { "null" } else { &word });
+        out.push_str(if bare.starts_with("nan") || bare.starts_with("inf") {
+            "null"
+        } else {
+            &word
+        });
     }
     Cow::Owned(out)
 }
@@ -279,8 +287,11 @@ fn attach_fingers(hand: &mut Hand, hand_id: i64, fingers: &[RawFinger]) {
             continue;
         }
         // Some servers leave the type out; the id then says it: ten times the hand's, plus the finger.
-        let kind = raw.kind.int().or_else(|| Some(raw.id.int()?.wrapping_sub(hand_id.wrapping_mul(10))));
-        let Some(slot) = kind.and_then(|k| hand.fingers.get_mut(usize::try_from(k).ok()?)) else { continue };
+        let kind =
+            raw.kind.int().or_else(|| Some(raw.id.int()?.wrapping_sub(hand_id.wrapping_mul(10))));
+        let Some(slot) = kind.and_then(|k| hand.fingers.get_mut(usize::try_from(k).ok()?)) else {
+            continue;
+        };
         if slot.is_none() {
             *slot = decode_finger(raw);
         }
@@ -288,7 +299,13 @@ fn attach_fingers(hand: &mut Hand, hand_id: i64, fingers: &[RawFinger]) {
 }
 
 fn decode_finger(raw: &RawFinger) -> Option<Finger> {
-    let places = [raw.carp_position, raw.mcp_position, raw.pip_position, raw.dip_position, raw.btip_position];
+    let places = [
+        raw.carp_position,
+        raw.mcp_position,
+        raw.pip_position,
+        raw.dip_position,
+        raw.btip_position,
+    ];
     let joints = places.map(Triple::vec);
     Some(Finger {
         joints,

@@ -50,7 +50,8 @@ fn without_a_switch_contact_begins_at_5_percent_and_ends_below_1() {
 
 #[test]
 fn a_switch_decides_alone() {
-    let reports = [pen(400, Some(false)), pen(0, Some(true)), pen(0, Some(true)), pen(400, Some(false))];
+    let reports =
+        [pen(400, Some(false)), pen(0, Some(true)), pen(0, Some(true)), pen(400, Some(false))];
     let got = run(CFG, &reports);
     // Pressure in the air is no click, and a pen-down report without pressure does not cut the stroke.
     assert_eq!(tips(&got), [false, true, true, false, false]);
@@ -61,7 +62,10 @@ fn buttons_are_let_go_and_the_tip_lifts_when_the_pen_leaves() {
     let held = PenReport { buttons: Some(3), ..pen(500, Some(true)) };
     let got = run(CFG, &[held, held]);
     let last = got[2];
-    assert_eq!((last.in_range, last.tip, last.buttons, last.pressure), (false, false, 0, Some(0.0)));
+    assert_eq!(
+        (last.in_range, last.tip, last.buttons, last.pressure),
+        (false, false, 0, Some(0.0))
+    );
     assert_eq!(last.raw, [10_000, 5000], "it left where it was");
 }
 
@@ -131,7 +135,11 @@ fn the_tool_is_decided_at_entry() {
         ]
     );
     let puck = PenReport { tool: Some(Tool::Mouse), ..pen(1000, Some(true)) };
-    assert_eq!(tips(&run(CFG, &[puck, puck])), [false, false, false], "a puck moves, it never presses");
+    assert_eq!(
+        tips(&run(CFG, &[puck, puck])),
+        [false, false, false],
+        "a puck moves, it never presses"
+    );
 }
 
 #[test]

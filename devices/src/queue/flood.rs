@@ -55,7 +55,9 @@ fn nothing_but_motion_is_ever_lost() {
         let config = TabletConfig { rate: RATE, keeps: 4096, ..TabletConfig::default() };
         let (tablet, end) = Tablet::new(&found, script.clone(), config);
         let id = DeviceId(i as u16);
-        readers.push(reader::start(Box::new(end), &found, &[], id, clock.clone(), factory.sender()).unwrap());
+        readers.push(
+            reader::start(Box::new(end), &found, &[], id, clock.clone(), factory.sender()).unwrap(),
+        );
         tablets.push(tablet);
     }
     let stats = rx.stats();

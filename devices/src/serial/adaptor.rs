@@ -156,8 +156,11 @@ impl Reader {
         if self.config.probe.is_empty() {
             return Vec::new();
         }
-        let mut names: Vec<String> =
-            serialport::available_ports().unwrap_or_default().into_iter().map(|p| p.port_name).collect();
+        let mut names: Vec<String> = serialport::available_ports()
+            .unwrap_or_default()
+            .into_iter()
+            .map(|p| p.port_name)
+            .collect();
         // A pseudo-terminal or a link that is named in full is no "available port", but allowed is allowed.
         names.extend(self.config.probe.iter().filter(|p| !p.ends_with('*')).cloned());
         names.sort();
@@ -167,8 +170,10 @@ impl Reader {
     }
 
     fn find(&self, name: &str, leash: &Leash) -> Result<(Box<dyn Wire>, Facts), String> {
-        let port =
-            serialport::new(name, 9600).timeout(READ_SLICE).open().map_err(|e| format!("{name}: {e}"))?;
+        let port = serialport::new(name, 9600)
+            .timeout(READ_SLICE)
+            .open()
+            .map_err(|e| format!("{name}: {e}"))?;
         let mut wire: Box<dyn Wire> = Box::new(port);
         let asked = match &self.config.protocol {
             Some(one) => std::slice::from_ref(one),
@@ -223,7 +228,8 @@ impl Reader {
         for sample in out.drain(..) {
             self.sender.push(sample);
         }
-        let (now, (from, before), packets) = (self.clock.now_us(), self.second, decoder.counts.packets);
+        let (now, (from, before), packets) =
+            (self.clock.now_us(), self.second, decoder.counts.packets);
         let rate = (now >= from + 1_000_000).then(|| {
             self.second = (now, packets);
             // A new line counts from nought again.

@@ -57,7 +57,8 @@ impl TouchQuery {
         let x = low7(b, 3) << 9 | low7(b, 4) << 2 | low7(b, 2) >> 5 & 3;
         let y = low7(b, 5) << 9 | low7(b, 6) << 2 | low7(b, 2) >> 3 & 3;
         // The first touch models state a number of bits instead.
-        let max = if x == 0 && y == 0 { [1 << low7(b, 1).min(14); 2] } else { [x as i32, y as i32] };
+        let max =
+            if x == 0 && y == 0 { [1 << low7(b, 1).min(14); 2] } else { [x as i32, y as i32] };
         Some(TouchQuery { sensor: b[2] & 7, max })
     }
 
@@ -213,7 +214,10 @@ mod tests {
         assert_eq!(Query::parse(&[0x80; 11]), None);
         let touch = [0xc0, 10, 0b0110_0101, 7, 1, 3, 2, 0, 0, 0, 0];
         assert_eq!(TouchQuery::parse(&touch), Some(TouchQuery { sensor: 5, max: [3591, 1544] }));
-        assert_eq!(TouchQuery::parse(&[0xc0, 10, 1, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap().max, [1024; 2]);
+        assert_eq!(
+            TouchQuery::parse(&[0xc0, 10, 1, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap().max,
+            [1024; 2]
+        );
         assert_eq!(TouchQuery::parse(&[0xc0, 0, 1, 7, 1, 3, 2, 0, 0, 0, 0]), None, "no touch here");
     }
 
@@ -238,7 +242,9 @@ mod tests {
     #[test]
     fn coordinates_come_from_five_bytes_and_beyond_the_maximum_are_refused() {
         let mut l = layout(None);
-        let Parsed::Pen(r) = l.parse(&[0xa1, 10, 3, 20, 5, 40, 0b0110_1001, 0, 0]) else { panic!() };
+        let Parsed::Pen(r) = l.parse(&[0xa1, 10, 3, 20, 5, 40, 0b0110_1001, 0, 0]) else {
+            panic!()
+        };
         assert_eq!(r.pos, Some([10 << 9 | 3 << 2 | 3, 20 << 9 | 5 << 2 | 1]));
         assert_eq!((r.pressure, r.tilt), (Some(1 << 7 | 40), None));
         assert_eq!(l.parse(&[0xa1, 127, 127, 20, 5, 40, 0, 0, 0]), Parsed::Broken);

@@ -104,9 +104,16 @@ mod tests {
         assert_eq!((l.length(), l.max_pressure()), (7, 255));
         let Parsed::Pen(r) = l.parse(&[0xe8, 31, 104, 0b0001100, 15, 80, 0x20]) else { panic!() };
         assert_eq!(r.pos, Some([31 << 7 | 104, 15 << 7 | 80]));
-        assert_eq!((r.tip, r.pressure, r.tool), (Some(true), Some((0x20 << 1 | 1) ^ 0x80), Some(Tool::Pen)));
+        assert_eq!(
+            (r.tip, r.pressure, r.tool),
+            (Some(true), Some((0x20 << 1 | 1) ^ 0x80), Some(Tool::Pen))
+        );
         let Parsed::Pen(r) = l.parse(&[0xe8, 1, 1, 0b0101000, 1, 1, 0x40]) else { panic!() };
-        assert_eq!((r.tool, r.buttons, r.pressure), (Some(Tool::Pen), Some(2), Some(0)), "now a button");
+        assert_eq!(
+            (r.tool, r.buttons, r.pressure),
+            (Some(Tool::Pen), Some(2), Some(0)),
+            "now a button"
+        );
         assert_eq!(l.parse(&[0xa0, 0, 0, 0, 0, 0, 0]), Parsed::Away);
         let Parsed::Pen(r) = l.parse(&[0xe8, 1, 1, 0b0100000, 1, 1, 0x40]) else { panic!() };
         assert_eq!((r.tool, r.buttons), (Some(Tool::Eraser), Some(0)));

@@ -95,10 +95,17 @@ mod tests {
         let pen = [0xe2, 20, 5, 0b0101010, 9, 0b010_1011, 77, 0x7b, 5];
         let Parsed::Pen(r) = l.parse(&pen) else { panic!() };
         assert_eq!(r.pos, Some([20 << 9 | 5 << 2 | 1, 10 << 11 | 9 << 4 | 5]));
-        assert_eq!((r.tool, r.pressure, r.buttons), (Some(Tool::Eraser), Some(3 << 7 | 77), Some(1)));
+        assert_eq!(
+            (r.tool, r.pressure, r.buttons),
+            (Some(Tool::Eraser), Some(3 << 7 | 77), Some(1))
+        );
         assert_eq!(r.tilt, Some([-5.0, 5.0]));
         l.parse(&enter(0x822, 1));
-        assert_eq!(l.parse(&[0xe1, 1, 1, 1, 1, 1, 1, 1, 1]), Parsed::Nothing, "the other channel waits");
+        assert_eq!(
+            l.parse(&[0xe1, 1, 1, 1, 1, 1, 1, 1, 1]),
+            Parsed::Nothing,
+            "the other channel waits"
+        );
         assert_eq!(l.parse(&[0x80, 0, 0, 0, 0, 0, 0, 0, 0]), Parsed::Away);
         assert!(matches!(
             l.parse(&[0xe1, 1, 1, 1, 1, 1, 1, 1, 1]),

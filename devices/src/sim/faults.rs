@@ -125,10 +125,20 @@ mod tests {
             events
         };
         assert_eq!(run(Faults::default()), (0..2000).map(Event::Whole).collect::<Vec<_>>());
-        let bad = Faults { seed: 7, drop: 0.1, duplicate: 0.1, reorder: 0.1, tear: 0.1, ..Faults::default() };
+        let bad = Faults {
+            seed: 7,
+            drop: 0.1,
+            duplicate: 0.1,
+            reorder: 0.1,
+            tear: 0.1,
+            ..Faults::default()
+        };
         assert_eq!(run(bad), run(bad));
         assert_ne!(run(bad), run(Faults { seed: 8, ..bad }));
         let torn = run(bad).iter().filter(|e| matches!(e, Event::Torn(..))).count();
-        assert!((120..280).contains(&torn), "{torn} of 2000 at a ratio of a tenth, less the dropped");
+        assert!(
+            (120..280).contains(&torn),
+            "{torn} of 2000 at a ratio of a tenth, less the dropped"
+        );
     }
 }

@@ -115,9 +115,12 @@ impl Performer {
     pub fn at(&self, t_us: u64) -> Option<(HandKey, i32)> {
         let next = self.keys.partition_point(|k| k.t_us <= t_us);
         let key = self.keys.get(next.checked_sub(1)?)?;
-        let visit = self.keys[..next].windows(2).filter(|w| !w[0].present && w[1].present).count() as i32;
+        let visit =
+            self.keys[..next].windows(2).filter(|w| !w[0].present && w[1].present).count() as i32;
         let pose = match self.keys.get(next) {
-            Some(to) => key.mix(to, smooth((t_us - key.t_us) as f32 / (to.t_us - key.t_us).max(1) as f32)),
+            Some(to) => {
+                key.mix(to, smooth((t_us - key.t_us) as f32 / (to.t_us - key.t_us).max(1) as f32))
+            }
             None => *key,
         };
         key.present.then_some((pose, visit))
@@ -157,7 +160,8 @@ impl HandScript {
 /// Every joint of a hand in this pose, in the tracker's axes.
 pub fn skeleton(pose: &HandKey, left: bool) -> Hand {
     let [yaw, pitch, roll] = pose.yaw_pitch_roll;
-    let turn = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
+    let turn =
+        Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
     let side = if left { -1.0 } else { 1.0 };
     // In the hand's own axes the fingers run along -z and the back looks along +y; a left hand is the mirror image.
     let place = |v: Vec3| pose.palm + turn * vec3(side * v.x, v.y, v.z);
@@ -202,18 +206,21 @@ fn chain(finger: usize, curl: f32, spread: f32) -> [Vec3; 5] {
     let thumb = finger == 0;
     // Spread on purpose, fingers stand two and a half times as far apart as at rest.
     let apart = (1.0 + 1.5 * spread) * (1.0 - 0.6 * curl);
-    let yaw =
-        Quat::from_rotation_y(-SPREAD[finger].to_radians() * if thumb { 1.0 - 0.6 * curl } else { apart });
+    let yaw = Quat::from_rotation_y(
+        -SPREAD[finger].to_radians() * if thumb { 1.0 - 0.6 * curl } else { apart },
+    );
     // A thumb closes across the palm, the fingers into it.
     let axis = if thumb { vec3(0.35, 0.85, 0.0).normalize() } else { Vec3::X };
     let bend = if thumb { [0.0, -0.5, -0.6, -0.7] } else { [0.0, -1.45, -1.7, -1.15] };
-    let mut at = vec3(ROOTS[finger], if thumb { -8.0 } else { 0.0 }, PALM - if thumb { 14.0 } else { 4.0 });
+    let mut at =
+        vec3(ROOTS[finger], if thumb { -8.0 } else { 0.0 }, PALM - if thumb { 14.0 } else { 4.0 });
     let mut joints = [at; 5];
     let mut turn = yaw;
     for bone in 0..4 {
         // The metacarpals spread less than the fingers do.
         let spread = if bone == 0 { Quat::IDENTITY.slerp(yaw, 0.5) } else { yaw };
-        turn = if bone == 0 { spread } else { turn * Quat::from_axis_angle(axis, bend[bone] * curl) };
+        turn =
+            if bone == 0 { spread } else { turn * Quat::from_axis_angle(axis, bend[bone] * curl) };
         if bone == 1 {
             turn = yaw * Quat::from_axis_angle(axis, bend[1] * curl);
         }
@@ -267,8 +274,10 @@ mod tests {
 
     #[test]
     fn left_mirrors_right_and_the_thumb_is_on_the_inside() {
-        let (r, l) =
-            (skeleton(&HandKey::flat(0, Vec3::ZERO), false), skeleton(&HandKey::flat(0, Vec3::ZERO), true));
+        let (r, l) = (
+            skeleton(&HandKey::flat(0, Vec3::ZERO), false),
+            skeleton(&HandKey::flat(0, Vec3::ZERO), true),
+        );
         let (rt, lt) = (r.fingers[0].unwrap().tip, l.fingers[0].unwrap().tip);
         assert!(rt.x < 0.0, "a right hand, palm down, has its thumb on the left: {rt}");
         assert!((rt * vec3(-1.0, 1.0, 1.0)).distance(lt) < 1e-3);

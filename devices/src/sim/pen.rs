@@ -132,7 +132,8 @@ impl PenScript {
         {
             return touching(s, t_us);
         }
-        let (before, after) = (next.checked_sub(1).map(|i| &self.strokes[i]), self.strokes.get(next));
+        let (before, after) =
+            (next.checked_sub(1).map(|i| &self.strokes[i]), self.strokes.get(next));
         hovering(before, after, t_us)
     }
 }
@@ -157,8 +158,9 @@ fn touching(s: &Stroke, t_us: u64) -> PenPose {
 fn hovering(before: Option<&Stroke>, after: Option<&Stroke>, t_us: u64) -> PenPose {
     let since = before.map_or(u64::MAX, |b| t_us - b.to_us);
     let until = after.map_or(u64::MAX, |a| a.from_us - t_us);
-    let one_visit =
-        before.zip(after).is_some_and(|(b, a)| a.from_us - b.to_us <= REST_US && a.eraser == b.eraser);
+    let one_visit = before
+        .zip(after)
+        .is_some_and(|(b, a)| a.from_us - b.to_us <= REST_US && a.eraser == b.eraser);
     let in_range = one_visit || since < HOVER_US || until <= HOVER_US;
     let (from, to) = (before.map(|b| b.shape.at(1.0)), after.map(|a| a.shape.at(0.0)));
     let share = if one_visit { since as f32 / (since + until) as f32 } else { 0.0 };

@@ -84,7 +84,8 @@ impl Trembling {
     fn one(&mut self, slot: usize, hand: &Hand) -> Option<Hand> {
         let f = self.figures;
         // Every draw is made whether or not it is needed, so that one ratio does not shift another's fate.
-        let [drop, renamed, occluded] = [f.dropout, f.new_id, f.occlude].map(|r| self.rng.unit() < r);
+        let [drop, renamed, occluded] =
+            [f.dropout, f.new_id, f.occlude].map(|r| self.rng.unit() < r);
         let (span, which) = (1 + self.rng.below(7) as u32, 2 + self.rng.below(3) as usize);
         let fate = &mut self.hands[slot];
         if fate.lost > 0 || drop {
@@ -95,7 +96,8 @@ impl Trembling {
         }
         let mut out = *hand;
         if f.dropout > 0.0 || f.new_id > 0.0 {
-            let known = fate.id.filter(|(script, _)| *script == hand.id && !renamed).map(|(_, id)| id);
+            let known =
+                fate.id.filter(|(script, _)| *script == hand.id && !renamed).map(|(_, id)| id);
             out.id = known.unwrap_or_else(|| {
                 self.ids += 1;
                 self.ids
@@ -149,7 +151,8 @@ mod tests {
             (0..4000).map(|_| t.apply(&hands).hands[0].palm - hand.palm).collect::<Vec<_>>()
         };
         let all = run(figures);
-        let sigma = (all.iter().map(|o| o.length_squared()).sum::<f32>() / (3.0 * all.len() as f32)).sqrt();
+        let sigma =
+            (all.iter().map(|o| o.length_squared()).sum::<f32>() / (3.0 * all.len() as f32)).sqrt();
         assert!((sigma - 0.2).abs() < 0.01, "{sigma} mm");
         assert_eq!(all, run(figures));
         assert_ne!(all, run(Tremble { seed: 4, ..figures }));
@@ -159,7 +162,8 @@ mod tests {
     fn hands_are_lost_for_a_while_and_found_under_another_number() {
         let mut hands = Hands { count: 1, ..Hands::default() };
         hands.hands[0] = skeleton(&HandKey::flat(0, Vec3::ZERO), false);
-        let mut t = Trembling::new(Tremble { seed: 1, dropout: 0.02, occlude: 0.05, ..Tremble::default() });
+        let mut t =
+            Trembling::new(Tremble { seed: 1, dropout: 0.02, occlude: 0.05, ..Tremble::default() });
         let (mut gaps, mut longest, mut gap, mut hidden) = (0, 0, 0, 0);
         let mut ids = std::collections::BTreeSet::new();
         for _ in 0..5000 {

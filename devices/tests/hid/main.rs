@@ -20,7 +20,8 @@ fn devices() -> Option<PathBuf> {
 }
 
 fn files(dir: &std::path::Path, ending: &str) -> Vec<PathBuf> {
-    let mut all: Vec<PathBuf> = std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut all: Vec<PathBuf> =
+        std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().path()).collect();
     all.retain(|p| p.to_string_lossy().ends_with(ending));
     all.sort();
     all

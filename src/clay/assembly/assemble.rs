@@ -6,7 +6,7 @@ use glam::{Vec3, Vec4};
 
 use super::super::boxtree::{BoxTree, LEAF};
 use super::super::normals;
-use super::super::page::{BREAK, Neighbour, Page, Ring, Topology};
+use super::super::page::{BREAK, Neighbour, Page, PageTopology, Ring};
 use super::{BuildError, Homes, order};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::simd::rings::Hexes;
@@ -14,7 +14,8 @@ use sculptd_geometry::simd::rings::Hexes;
 /// Opaque white.
 const WHITE: [u8; 4] = [255; 4];
 
-/// Whether `page` is home to a triangle: where two of its corners are at home, or else the first page of three.
+/// Whether `page` is home to a triangle: where two of its corners are at home, or else the first
+/// page of three.
 fn owns(homes: &Homes, corners: [u32; 3], page: u32) -> bool {
     let [a, b, c] = corners.map(|v| homes.page[v as usize]);
     let home = if b == c {
@@ -132,13 +133,14 @@ pub(crate) fn assemble(
     let points: Vec<Vec4> = everyone().map(|v| tri.positions[v as usize].extend(0.0)).collect();
     let normals: Vec<Vec4> = everyone()
         .map(|v| {
-            let colour = tri.colours.as_ref().and_then(|c| c.get(v as usize)).copied().unwrap_or(WHITE);
+            let colour =
+                tri.colours.as_ref().and_then(|c| c.get(v as usize)).copied().unwrap_or(WHITE);
             Vec3::ZERO.extend(f32::from_bits(u32::from_le_bytes(colour)))
         })
         .collect();
     let mut tree = BoxTree::default();
     tree.reset(triangles.len().div_ceil(LEAF));
-    let mut topology = Topology {
+    let mut topology = PageTopology {
         own: count,
         ids: own.into(),
         triangle_ids: mine.iter().map(|m| touching[m.1 as usize]).collect(),
@@ -149,7 +151,7 @@ pub(crate) fn assemble(
         kinds: kinds.into(),
         halo_sources: halo.iter().map(|h| h.1).collect(),
         neighbours: neighbours.into(),
-        ..Topology::default()
+        ..PageTopology::default()
     };
     if !topology.index() {
         return Err(tangled("too many corners", u16::MAX as usize));
@@ -174,7 +176,8 @@ fn fans(edges: &mut [[u16; 2]], rings: &mut Vec<u16>) -> Ring {
     let mut kind = Ring::Open;
     let mut left = edges;
     while !left.is_empty() {
-        // An edge that no other leads to begins an open fan; without one, the first begins a closed fan.
+        // An edge that no other leads to begins an open fan; without one, the first begins a closed
+        // fan.
         let start = if left.len() > 64 {
             first_start_sorted(left)
         } else {
@@ -194,7 +197,7 @@ fn fans(edges: &mut [[u16; 2]], rings: &mut Vec<u16>) -> Ring {
             rings.push(left[used - 1][1]);
         }
         kind = if !all {
-            Ring::Several
+            Ring::Interleaved
         } else if closed {
             Ring::Closed
         } else {
@@ -204,7 +207,7 @@ fn fans(edges: &mut [[u16; 2]], rings: &mut Vec<u16>) -> Ring {
         left = &mut left[used..];
     }
     if fans > 1 {
-        kind = Ring::Several;
+        kind = Ring::Interleaved;
     }
     kind
 }

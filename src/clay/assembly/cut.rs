@@ -1,10 +1,11 @@
-//! A cut in the clay as plain data: triangles out, triangles in, and what was there when it was computed. It can be sent, kept
-//! and played again; it is made only where all that it was computed from is still so.
+//! A cut in the clay as plain data: triangles out, triangles in, and what was there when it was
+//! computed. It can be sent, kept and played again; it is made only where all that it was computed
+//! from is still so.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::super::page::{Page, Topology};
+use super::super::page::{Page, PageTopology};
 use super::super::snapshot::Snapshot;
 
 /// Where a vertex is: page, and local index of one of its own.
@@ -33,7 +34,8 @@ pub struct Cut {
     /// The box that was looked at: the pages that meet it are among `seen`.
     pub lo: Vec3,
     pub hi: Vec3,
-    /// Page and stamp of each page that was looked at or will be written or is beside one, ascending.
+    /// Page and stamp of each page that was looked at or will be written or is beside one,
+    /// ascending.
     seen: Vec<(u32, u64)>,
     /// Page, index of the triangle in it.
     pub(super) removed: Vec<(u32, u32)>,
@@ -50,7 +52,7 @@ pub struct Grafted {
 }
 
 /// Home of a local vertex.
-pub fn home_of(t: &Topology, page: u32, v: u16) -> Home {
+pub fn home_of(t: &PageTopology, page: u32, v: u16) -> Home {
     match (v as usize).checked_sub(t.own) {
         None => (page, v),
         Some(k) => t.halo_home(k),
@@ -95,12 +97,14 @@ impl Cut {
         &self.new
     }
 
-    /// Whether it can be made in this clay: it fits, and the pages around can hold the result. Costs about as much as making it.
+    /// Whether it can be made in this clay: it fits, and the pages around can hold the result.
+    /// Costs about as much as making it.
     pub fn can_be_made(&self, clay: &Snapshot) -> bool {
         self.fits(clay) && super::splice::remake(clay, self).is_some()
     }
 
-    /// Whether the clay is, around the cut, as it was when it was computed. False for any cut that makes no sense.
+    /// Whether the clay is, around the cut, as it was when it was computed. False for any cut that
+    /// makes no sense.
     pub(crate) fn fits(&self, clay: &Snapshot) -> bool {
         let there = |p: u32| self.seen.binary_search_by_key(&p, |s| s.0).is_ok();
         let count = clay.page_count();
@@ -111,7 +115,8 @@ impl Cut {
             Corner::Old((p, v)) => there(p) && (v as usize) < clay.page(p).own(),
             Corner::New(i) => (i as usize) < self.new.len(),
         };
-        let known = |&(p, t): &(u32, u32)| there(p) && (t as usize) < clay.page(p).triangles().len();
+        let known =
+            |&(p, t): &(u32, u32)| there(p) && (t as usize) < clay.page(p).triangles().len();
         let sane = |v: &NewVertex| v.place.is_finite() && (0.0..=1.0).contains(&v.mask);
         as_seen
             && self.removed.iter().all(known)
@@ -150,8 +155,10 @@ pub(super) fn touched(clay: &Snapshot, cut: &Cut) -> Vec<Home> {
 pub(super) fn concerned(clay: &Snapshot, touched: &[Home]) -> (Vec<u32>, Vec<u32>) {
     let mut inner: Vec<u32> = touched.iter().map(|h| h.0).collect();
     inner.dedup();
-    let mut beside: Vec<u32> =
-        inner.iter().flat_map(|&p| clay.page(p).topology().neighbours.iter().map(|n| n.page)).collect();
+    let mut beside: Vec<u32> = inner
+        .iter()
+        .flat_map(|&p| clay.page(p).topology().neighbours.iter().map(|n| n.page))
+        .collect();
     beside.sort_unstable();
     beside.dedup();
     beside.retain(|p| inner.binary_search(p).is_err());

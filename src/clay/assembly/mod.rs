@@ -1,7 +1,8 @@
 //! From triangles to pages. Any triangle soup loads: open, non-manifold, with stray vertices.
 //!
 //! 1. Vertices into the balanced k-d order ([`order`]), cut into pages of equal size.
-//! 2. For each page the triangles that touch it; within it the vertices of regular rings first, whose loops are the fastest.
+//! 2. For each page the triangles that touch it; within it the vertices of regular rings first,
+//!    whose loops are the fastest.
 //! 3. Each page by itself ([`assemble`]): halo, triangles, rings, normals, tree.
 //!
 //! All three run on all cores; the result does not depend on how many there are.
@@ -22,8 +23,8 @@ use super::page::{Page, Ring};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
-/// Own vertices a page: small enough that a page's data stays in the first-level cache and a small dab copies little, large
-/// enough that its border is not most of it.
+/// Own vertices a page: small enough that a page's data stays in the first-level cache and a small
+/// dab copies little, large enough that its border is not most of it.
 pub const PAGE_VERTICES: usize = 512;
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -51,7 +52,8 @@ pub(super) struct Homes {
     pub(super) local: Vec<u16>,
 }
 
-/// Bytes that building clay of this size needs at its peak, the input included: about 330 a vertex with two triangles each.
+/// Bytes that building clay of this size needs at its peak, the input included: about 330 a vertex
+/// with two triangles each.
 pub fn bytes_to_build(vertices: u64, triangles: u64) -> u64 {
     // Input; the order; homes; touching triangles; the pages themselves.
     vertices * (12 + 16 + 6 + 64) + triangles * (12 + 5 + 26)
@@ -111,7 +113,8 @@ pub(super) fn build(tri: &TriMesh, job: &Job) -> Result<Built, BuildError> {
                 job.progress(0.5 + 0.4 * n as f32 / pages as f32);
             }
             let own: Vec<u32> = items[start(p)..start(p + 1)].iter().map(|i| i.1).collect();
-            let mine: Vec<u32> = touching[starts[p]..starts[p + 1]].iter().map(|t| t.load(Relaxed)).collect();
+            let mine: Vec<u32> =
+                touching[starts[p]..starts[p + 1]].iter().map(|t| t.load(Relaxed)).collect();
             assemble::assemble(tri, &homes, p as u32, own, &mine)
         })
         .collect();
@@ -151,7 +154,8 @@ fn check(tri: &TriMesh) -> Result<(), BuildError> {
     }
     let wrong = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= count);
     if let Some(triangle) = tri.triangles.par_iter().position_first(wrong) {
-        let vertex = tri.triangles[triangle].into_iter().find(|&v| v as usize >= count).unwrap_or(0);
+        let vertex =
+            tri.triangles[triangle].into_iter().find(|&v| v as usize >= count).unwrap_or(0);
         return Err(BuildError::Index { triangle, vertex, count });
     }
     match tri.positions.par_iter().position_first(|p| !p.is_finite()) {
@@ -165,7 +169,8 @@ fn degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// For each page the triangles with a corner in it, ascending; `starts` has one entry more than pages.
+/// For each page the triangles with a corner in it, ascending; `starts` has one entry more than
+/// pages.
 fn touching(tri: &TriMesh, homes: &Homes, pages: usize) -> (Vec<usize>, Vec<AtomicU32>) {
     let each = |corners: &[u32; 3], visit: &mut dyn FnMut(usize)| {
         if degenerate(*corners) {
@@ -180,7 +185,8 @@ fn touching(tri: &TriMesh, homes: &Homes, pages: usize) -> (Vec<usize>, Vec<Atom
             visit(c as usize);
         }
     };
-    // Each part counts for itself, so that each knows where to write: the order is that of one thread.
+    // Each part counts for itself, so that each knows where to write: the order is that of one
+    // thread.
     let part = tri.triangles.len().div_ceil(rayon::current_num_threads() * 2).max(65_536);
     let mut counts: Vec<Vec<u32>> = tri
         .triangles
@@ -224,7 +230,10 @@ fn halo_normals(pages: &mut [Arc<Page>]) {
             let from = |(home, part): (u32, std::ops::Range<usize>)| {
                 t.halo_sources[part].iter().map(move |&l| (home, l))
             };
-            t.halo_parts().flat_map(from).map(|(p, l)| pages[p as usize].normals[l as usize]).collect()
+            t.halo_parts()
+                .flat_map(from)
+                .map(|(p, l)| pages[p as usize].normals[l as usize])
+                .collect()
         })
         .collect();
     pages.par_iter_mut().zip(copies).for_each(|(page, halo)| {
@@ -245,7 +254,7 @@ fn warnings(tri: &TriMesh, pages: &[Arc<Page>], triangles: usize) -> Vec<String>
     for page in pages {
         let t = &page.topology;
         for v in 0..t.own {
-            several += usize::from(t.kinds[v] == Ring::Several);
+            several += usize::from(t.kinds[v] == Ring::Interleaved);
             let lonely = t.ring(v).is_empty();
             stray += usize::from(lonely);
             open += usize::from(t.kinds[v] == Ring::Open && !lonely);

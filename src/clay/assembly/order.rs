@@ -1,9 +1,9 @@
-//! The balanced k-d order: what is near in space is near in memory, and eight, sixty-four, 512 neighbours in a row are always
-//! a compact patch.
+//! The balanced k-d order: what is near in space is near in memory, and eight, sixty-four, 512
+//! neighbours in a row are always a compact patch.
 //!
-//! Each range is cut across its longest axis. The left part gets the largest power of two of cells that is less than all of
-//! them, so groups of eight cells in a row are subtrees. The cut is by (coordinate, number): a total order, so the result
-//! does not depend on how the work was shared.
+//! Each range is cut across its longest axis. The left part gets the largest power of two of cells
+//! that is less than all of them, so groups of eight cells in a row are subtrees. The cut is by
+//! (coordinate, number): a total order, so the result does not depend on how the work was shared.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -19,8 +19,9 @@ pub(crate) type Item = (Vec3, u32);
 const FORK: usize = 16_384;
 
 fn longest_axis(items: &[Item]) -> usize {
-    let (lo, hi) =
-        items.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), i| (lo.min(i.0), hi.max(i.0)));
+    let (lo, hi) = items
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), i| (lo.min(i.0), hi.max(i.0)));
     let d = hi - lo;
     if d.x >= d.y && d.x >= d.z {
         0
@@ -32,7 +33,12 @@ fn longest_axis(items: &[Item]) -> usize {
 }
 
 /// Orders `items` into cells `first..last`; cell `c` begins at item `start(c) - start(first)`.
-pub(crate) fn order(items: &mut [Item], first: usize, last: usize, start: &(impl Fn(usize) -> usize + Sync)) {
+pub(crate) fn order(
+    items: &mut [Item],
+    first: usize,
+    last: usize,
+    start: &(impl Fn(usize) -> usize + Sync),
+) {
     if last - first <= 1 || items.len() <= 1 {
         return;
     }
@@ -41,7 +47,8 @@ pub(crate) fn order(items: &mut [Item], first: usize, last: usize, start: &(impl
     let at = start(middle) - start(first);
     if at > 0 && at < items.len() {
         let axis = longest_axis(items);
-        items.select_nth_unstable_by(at, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
+        items
+            .select_nth_unstable_by(at, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
     }
     let (a, b) = items.split_at_mut(at.min(items.len()));
     if a.len() + b.len() > FORK {
@@ -59,11 +66,12 @@ pub(super) fn order_runs(items: &mut [Item], cell: usize) {
     order(items, 0, cells, &|c| (c * cell).min(n));
 }
 
-/// Brings the vertices that have a closed ring of six to the front of page `page`, the order else as it was. `touching`: the
-/// triangles with a corner in the page.
+/// Brings the vertices that have a closed ring of six to the front of page `page`, the order else
+/// as it was. `touching`: the triangles with a corner in the page.
 ///
-/// A ring is closed where each vertex on it begins as many of the edges opposite as it ends; here sums of scrambled numbers
-/// are compared. If ever two rings fooled them, the page would have its regular vertices end one earlier.
+/// A ring is closed where each vertex on it begins as many of the edges opposite as it ends; here
+/// sums of scrambled numbers are compared. If ever two rings fooled them, the page would have its
+/// regular vertices end one earlier.
 pub(super) fn regular_first(
     tri: &TriMesh,
     homes: &Homes,
@@ -87,6 +95,7 @@ pub(super) fn regular_first(
     }
     let regular = |i: usize| rings[i] == (6, 0);
     let items = own.to_vec();
-    let order = (0..items.len()).filter(|&i| regular(i)).chain((0..items.len()).filter(|&i| !regular(i)));
+    let order =
+        (0..items.len()).filter(|&i| regular(i)).chain((0..items.len()).filter(|&i| !regular(i)));
     own.iter_mut().zip(order).for_each(|(to, from)| *to = items[from]);
 }

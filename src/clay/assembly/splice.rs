@@ -1,8 +1,10 @@
-//! Clay with some triangles taken out and others put in: only the pages around them are written, all others are shared.
+//! Clay with some triangles taken out and others put in: only the pages around them are written,
+//! all others are shared.
 //!
-//! A page is written again when one of its own vertices lost or got a triangle. Its vertices that other pages know stay at
-//! their place in it, so those pages stand; the rest fills the places between, and what is left over makes new pages. A
-//! page beside only takes over the normals that turned.
+//! A page is written again when one of its own vertices lost or got a triangle. Its vertices that
+//! other pages know stay at their place in it, so those pages stand; the rest fills the places
+//! between, and what is left over makes new pages. A page beside only takes over the normals that
+//! turned.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,8 +45,8 @@ impl Region {
     }
 }
 
-/// The pages that the cut makes new, and the numbers that the next new vertex and triangle get. The cut must fit. None where
-/// the pages around cannot hold the result: then build all anew.
+/// The pages that the cut makes new, and the numbers that the next new vertex and triangle get. The
+/// cut must fit. None where the pages around cannot hold the result: then build all anew.
 pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
     let Cut { removed, added, new, .. } = cut;
     // As in a cut of the topology: numbers only run up.
@@ -84,10 +86,11 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
     for h in &dirty {
         lives[slot(h.0)?][h.1 as usize] = false;
     }
-    let kept_corners = stay.iter().flat_map(|s| s.1).chain(added.iter().flatten().filter_map(|c| match c {
-        Corner::Old(h) => Some(*h),
-        Corner::New(_) => None,
-    }));
+    let kept_corners =
+        stay.iter().flat_map(|s| s.1).chain(added.iter().flatten().filter_map(|c| match c {
+            Corner::Old(h) => Some(*h),
+            Corner::New(_) => None,
+        }));
     for h in kept_corners {
         if let Some(s) = slot(h.0) {
             lives[s][h.1 as usize] = true;
@@ -149,8 +152,13 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
             None => region.outer.get(&h).copied().unwrap_or_else(|| {
                 let page = old.page(h.0);
                 let v = h.1 as usize;
-                let made =
-                    region.push(page.point(v), page.mask(v), page.colour(v), h, page.topology().ids[v]);
+                let made = region.push(
+                    page.point(v),
+                    page.mask(v),
+                    page.colour(v),
+                    h,
+                    page.topology().ids[v],
+                );
                 region.outer.insert(h, made);
                 made
             }),
@@ -169,7 +177,8 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
             next_triangle - 1
         }));
     }
-    let mut pages: BTreeMap<u32, Arc<Page>> = write(&region, &layout, &numbers)?.into_iter().collect();
+    let mut pages: BTreeMap<u32, Arc<Page>> =
+        write(&region, &layout, &numbers)?.into_iter().collect();
     normals(old, &mut pages, &layout, &beside);
     Some(Remade { pages: pages.into_iter().collect(), next: [next_vertex, next_triangle] })
 }
@@ -224,7 +233,8 @@ fn lay_out(
             own.last().is_some_and(|&r| {
                 r != u32::MAX
                     && (r >= first_new || {
-                        let (page, local) = (region.homes.page[r as usize], region.homes.local[r as usize]);
+                        let (page, local) =
+                            (region.homes.page[r as usize], region.homes.local[r as usize]);
                         page != inner[d] || !fixed[d][local as usize]
                     })
                     && (d != s || own.len() > k + 1)
@@ -252,7 +262,11 @@ fn lay_out(
     Some(layout)
 }
 
-fn write(region: &Region, layout: &[(u32, Vec<u32>)], numbers: &[u32]) -> Option<Vec<(u32, Arc<Page>)>> {
+fn write(
+    region: &Region,
+    layout: &[(u32, Vec<u32>)],
+    numbers: &[u32],
+) -> Option<Vec<(u32, Arc<Page>)>> {
     let mut touching: BTreeMap<u32, Vec<u32>> = layout.iter().map(|l| (l.0, Vec::new())).collect();
     for (t, corners) in region.tri.triangles.iter().enumerate() {
         let mut last = [u32::MAX; 3];
@@ -274,11 +288,13 @@ fn write(region: &Region, layout: &[(u32, Vec<u32>)], numbers: &[u32]) -> Option
         .iter()
         .map(|(p, own)| {
             let mut page =
-                assemble::assemble(&region.tri, &region.homes, *p, own.clone(), &touching[p]).ok()?;
+                assemble::assemble(&region.tri, &region.homes, *p, own.clone(), &touching[p])
+                    .ok()?;
             let one = Arc::get_mut(&mut page)?;
             let topology = Arc::get_mut(&mut one.topology)?;
             topology.ids = own.iter().map(|&r| region.ids[r as usize]).collect();
-            topology.triangle_ids = topology.triangle_ids.iter().map(|&t| numbers[t as usize]).collect();
+            topology.triangle_ids =
+                topology.triangle_ids.iter().map(|&t| numbers[t as usize]).collect();
             for (v, &r) in own.iter().enumerate() {
                 one.points[v].w = region.masks[r as usize];
             }
@@ -292,7 +308,12 @@ fn write(region: &Region, layout: &[(u32, Vec<u32>)], numbers: &[u32]) -> Option
 }
 
 /// Every copy of a normal is what its home says.
-fn normals(old: &Snapshot, pages: &mut BTreeMap<u32, Arc<Page>>, layout: &[(u32, Vec<u32>)], beside: &[u32]) {
+fn normals(
+    old: &Snapshot,
+    pages: &mut BTreeMap<u32, Arc<Page>>,
+    layout: &[(u32, Vec<u32>)],
+    beside: &[u32],
+) {
     for &p in layout.iter().map(|l| &l.0).chain(beside) {
         let now = |p: u32| pages.get(&p).unwrap_or_else(|| old.page(p));
         let page = now(p);

@@ -1,6 +1,8 @@
-//! Alphas: pictures of heights, 0 to 1, that a brush presses along its stroke. Eight are made here; one is loaded.
+//! Alphas: pictures of heights, 0 to 1, that a brush presses along its stroke. Eight are made here;
+//! one is loaded.
 //!
-//! `s` runs along the stroke and repeats after 1, `t` across it from edge to edge, 0 to 1 with the axis at 1/2.
+//! `s` runs along the stroke and repeats after 1, `t` across it from edge to edge, 0 to 1 with the
+//! axis at 1/2.
 
 use std::f32::consts::{PI, TAU};
 
@@ -49,12 +51,14 @@ impl Picture {
         pixels > 0 && pixels <= MOST && self.heights.len() as u64 == pixels
     }
 
-    /// Reads PNG, TIFF or OpenEXR, 8 or 16 bits or float; colours become their brightness. The error says what is wrong.
+    /// Reads PNG, TIFF or OpenEXR, 8 or 16 bits or float; colours become their brightness. The
+    /// error says what is wrong.
     pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
         let reader = image::ImageReader::new(std::io::Cursor::new(bytes))
             .with_guessed_format()
             .map_err(|e| format!("not a picture: {e}"))?;
-        let (width, height) = reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
+        let (width, height) =
+            reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
         if u64::from(width) * u64::from(height) > MOST {
             return Err(format!("{width} x {height} pixels; at most {MOST} are taken"));
         }
@@ -76,7 +80,11 @@ impl Picture {
             f32::from(self.heights[row * w + column]) / 65535.0
         };
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        mix(mix(pixel(i, j), pixel(i + 1.0, j), fx), mix(pixel(i, j + 1.0), pixel(i + 1.0, j + 1.0), fx), fy)
+        mix(
+            mix(pixel(i, j), pixel(i + 1.0, j), fx),
+            mix(pixel(i, j + 1.0), pixel(i + 1.0, j + 1.0), fx),
+            fy,
+        )
     }
 }
 
@@ -125,7 +133,9 @@ impl Alpha {
                 let joint = |v: f32, w: f32| ((0.5 - (v - 0.5).abs()) / w).clamp(0.0, 1.0);
                 joint(x, 0.08).min(joint(y, 0.14))
             }
-            Alpha::Stone => (noise(s, t, 4, 1) * 4.0 + noise(s, t, 8, 2) * 2.0 + noise(s, t, 16, 3)) / 7.0,
+            Alpha::Stone => {
+                (noise(s, t, 4, 1) * 4.0 + noise(s, t, 8, 2) * 2.0 + noise(s, t, 16, 3)) / 7.0
+            }
             Alpha::Cracks => cracks(s, t),
             Alpha::Picture => picture.map_or(0.0, |p| p.at(s, t)),
         };
@@ -133,7 +143,8 @@ impl Alpha {
     }
 }
 
-/// The highest of the scales that lie over a point, each a leaf whose tip points back along the stroke.
+/// The highest of the scales that lie over a point, each a leaf whose tip points back along the
+/// stroke.
 fn scales(s: f32, t: f32) -> f32 {
     let mut best = 0.0f32;
     for row in 0..4 {
@@ -173,7 +184,8 @@ fn noise(s: f32, t: f32, cells: i32, seed: u32) -> f32 {
     mix(mix(at(0, 0), at(1, 0), fx), mix(at(0, 1), at(1, 1), fx), fy)
 }
 
-/// High within random cells, low on their borders: the second nearest seed's distance less the nearest one's.
+/// High within random cells, low on their borders: the second nearest seed's distance less the
+/// nearest one's.
 fn cracks(s: f32, t: f32) -> f32 {
     const CELLS: i32 = 5;
     let (x, y) = (s * CELLS as f32, t * CELLS as f32);
@@ -215,7 +227,9 @@ mod tests {
             }
             assert!(hi - lo > 0.5, "{a:?}: {lo} to {hi}");
             let seam = (0..=50).map(|j| j as f32 / 50.0);
-            let step = seam.map(|t| (a.at(0.0, t, None) - a.at(0.9999, t, None)).abs()).fold(0.0, f32::max);
+            let step = seam
+                .map(|t| (a.at(0.0, t, None) - a.at(0.9999, t, None)).abs())
+                .fold(0.0, f32::max);
             assert!(step < 0.7, "{a:?}: a step of {step} where it repeats");
         }
     }
@@ -224,8 +238,8 @@ mod tests {
     fn a_sixteen_bit_picture_keeps_its_steps() {
         let mut png = Vec::new();
         let pixels: Vec<u16> = (0..16u16).map(|i| i * 4369 / 16 + 30_000).collect();
-        let picture =
-            image::ImageBuffer::<image::Luma<u16>, _>::from_raw(4, 4, pixels.clone()).expect("fits");
+        let picture = image::ImageBuffer::<image::Luma<u16>, _>::from_raw(4, 4, pixels.clone())
+            .expect("fits");
         for format in [image::ImageFormat::Png, image::ImageFormat::Tiff] {
             png.clear();
             picture.write_to(&mut std::io::Cursor::new(&mut png), format).expect("written");

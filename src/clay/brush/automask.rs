@@ -41,7 +41,8 @@ impl Auto {
         }
     }
 
-    /// 0 left alone to 1 free. `at`: where the brush has the vertex, now or at the start of the stroke.
+    /// 0 left alone to 1 free. `at`: where the brush has the vertex, now or at the start of the
+    /// stroke.
     #[inline(always)]
     pub fn share(&self, page: &PageIn<'_>, v: usize, at: Vec3, scratch: &Scratch) -> f32 {
         if !self.on {
@@ -74,8 +75,9 @@ impl Auto {
     }
 }
 
-/// How hollow the surface is at a vertex: its mean curvature by the heights of its neighbours over the tangent plane, in one
-/// over mesh units. Above 0 in a hollow, below 0 on a ridge; -1/r on a ball of radius r.
+/// How hollow the surface is at a vertex: its mean curvature by the heights of its neighbours over
+/// the tangent plane, in one over mesh units. Above 0 in a hollow, below 0 on a ridge; -1/r on a
+/// ball of radius r.
 pub fn hollow(page: &PageIn<'_>, v: usize) -> f32 {
     let (p, n) = (page.positions.get(v), page.normals.get(v));
     let (mut sum, mut count) = (0.0, 0.0f32);

@@ -6,14 +6,14 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Blob {
+pub struct BlobBrush {
     heart: Vec3,
 }
 
-impl Brush for Blob {
+impl Brush for BlobBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
         let plane = on.plane(dab, 0.0);
-        Blob { heart: plane.point - plane.normal * (dab.radius * dab.extra(0)) }
+        BlobBrush { heart: plane.point - plane.normal * (dab.radius * dab.extra(0)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -1,16 +1,17 @@
-//! Clay: fills up to a plane a little over the surface, so that it builds in flat coats; the other way round it wears down.
+//! Clay: fills up to a plane a little over the surface, so that it builds in flat coats; the other
+//! way round it wears down.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::{Ground, Plane};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Clay {
+pub struct ClayBrush {
     plane: Plane,
 }
 
-impl Brush for Clay {
+impl Brush for ClayBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Clay { plane: on.plane(dab, dab.extra(0) * dab.sign * dab.strength) }
+        ClayBrush { plane: on.plane(dab, dab.extra(0) * dab.sign * dab.strength) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -8,7 +8,7 @@ use crate::brush::surface_query::{Ground, Plane};
 use crate::{PageIn, Reach};
 
 #[derive(Debug, Clone, Copy)]
-pub struct ClayStrips {
+pub struct ClayStripsBrush {
     plane: Plane,
     along: Vec3,
     across: Vec3,
@@ -16,11 +16,11 @@ pub struct ClayStrips {
     round: f32,
 }
 
-impl Brush for ClayStrips {
+impl Brush for ClayStripsBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
         let plane = on.plane(dab, dab.extra(0) * dab.sign * dab.strength);
         let along = dab.along();
-        ClayStrips { plane, along, across: along.cross(dab.normal), round: dab.extra(1) }
+        ClayStripsBrush { plane, along, across: along.cross(dab.normal), round: dab.extra(1) }
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

@@ -1,9 +1,10 @@
 //! Cotangent weights of a closed ring, four triangles at a time.
 //!
-//! Between two neighbours `b` and `c` of a vertex, relative to it, the triangle's doubled area `A = |b x c|` is under both
-//! cotangents that face the vertex's edges: `(c.c - b.c) / A` weighs `b`, `(b.b - b.c) / A` weighs `c` (Pinkall and Polthier
-//! 1993). `A` comes from the same products: `A^2 = b.b c.c - (b.c)^2` (Lagrange), which loses digits only where the angle is so
-//! flat that the clamp rules anyway. Products of four pairs are turned about in registers and summed as lanes.
+//! Between two neighbours `b` and `c` of a vertex, relative to it, the triangle's doubled area `A =
+//! |b x c|` is under both cotangents that face the vertex's edges: `(c.c - b.c) / A` weighs `b`,
+//! `(b.b - b.c) / A` weighs `c` (Pinkall and Polthier 1993). `A` comes from the same products: `A^2
+//! = b.b c.c - (b.c)^2` (Lagrange), which loses digits only where the angle is so flat that the
+//! clamp rules anyway. Products of four pairs are turned about in registers and summed as lanes.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -20,7 +21,8 @@ fn dots(a: [Vec4; 4], b: [Vec4; 4]) -> Vec4 {
     (p.x_axis + p.y_axis) + p.z_axis
 }
 
-/// For four triangles their two cotangents each: what weighs `b`, what weighs `c`. No triangle, no weight.
+/// For four triangles their two cotangents each: what weighs `b`, what weighs `c`. No triangle, no
+/// weight.
 #[inline(always)]
 fn cotangents(bb: Vec4, bc: Vec4, cc: Vec4) -> (Vec4, Vec4) {
     let area2 = bb * cc - bc * bc;
@@ -31,9 +33,9 @@ fn cotangents(bb: Vec4, bc: Vec4, cc: Vec4) -> (Vec4, Vec4) {
     (((cc - bc) * inverse).max(least).min(most), ((bb - bc) * inverse).max(least).min(most))
 }
 
-/// The weighted sum of the neighbours of own vertex `v` relative to its place, and the sum of weights. An edge's two
-/// cotangents are clamped each, and their sum to 0 from below: two obtuse angles would push instead of pull. For closed
-/// rings of up to [`LANES`] neighbours.
+/// The weighted sum of the neighbours of own vertex `v` relative to its place, and the sum of
+/// weights. An edge's two cotangents are clamped each, and their sum to 0 from below: two obtuse
+/// angles would push instead of pull. For closed rings of up to [`LANES`] neighbours.
 #[inline(always)]
 pub fn closed(page: &PageIn<'_>, v: usize) -> (Vec3, f32) {
     let rows = page.rows();
@@ -54,7 +56,8 @@ pub fn closed(page: &PageIn<'_>, v: usize) -> (Vec3, f32) {
     let cc_high = Vec4::new(bb_high.y, bb_high.z, bb_high.w, last);
     let (b_low, c_low) = cotangents(bb_low, bc_low, cc_low);
     let (b_high, c_high) = cotangents(bb_high, bc_high, cc_high);
-    // What weighs neighbour i is of triangle i and of the one before; the last triangle's second corner is the first one.
+    // What weighs neighbour i is of triangle i and of the one before; the last triangle's second
+    // corner is the first one.
     let mut c = [0.0, c_low.x, c_low.y, c_low.z, c_low.w, c_high.x, c_high.y, c_high.z, c_high.w];
     (c[0], c[n]) = (c[n], 0.0);
     let own = |lanes: [f32; 4]| Vec4::from_array(lanes);

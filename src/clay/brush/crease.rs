@@ -6,13 +6,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Crease {
+pub struct CreaseBrush {
     normal: Vec3,
     /// The direction of the stroke, along which nothing is drawn together; zero for a single dab.
     along: Vec3,
 }
 
-impl Crease {
+impl CreaseBrush {
     /// What leads a vertex to the stroke's line, in the tangent plane.
     fn inward(&self, dab: &Dab<'_>, p: Vec3) -> Vec3 {
         let d = dab.centre - p;
@@ -21,10 +21,10 @@ impl Crease {
     }
 }
 
-impl Brush for Crease {
+impl Brush for CreaseBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
         let along = if dab.motion == Vec3::ZERO { Vec3::ZERO } else { dab.along() };
-        Crease { normal: on.plane(dab, 0.0).normal, along }
+        CreaseBrush { normal: on.plane(dab, 0.0).normal, along }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

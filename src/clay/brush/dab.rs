@@ -1,8 +1,8 @@
 //! What a brush is: from a dab it makes itself ready, and then says for each vertex what changes.
 //!
-//! A dab may have images (mirrors, turns). Images whose reaches overlap act together: each reads the clay as it was before
-//! any of them, and what they do is added up. So a symmetric stroke on a symmetric form stays symmetric also where it meets
-//! itself on the mirror.
+//! A dab may have images (mirrors, turns). Images whose reaches overlap act together: each reads
+//! the clay as it was before any of them, and what they do is added up. So a symmetric stroke on a
+//! symmetric form stays symmetric also where it meets itself on the mirror.
 
 use glam::Vec3;
 
@@ -19,9 +19,11 @@ pub const IMAGES: usize = 32;
 pub enum Grip {
     /// It lies on the surface: one dab a spacing.
     Surface,
-    /// It holds what was under it when the pen came down; a dab says how far it was drawn since then.
+    /// It holds what was under it when the pen came down; a dab says how far it was drawn since
+    /// then.
     Anchor,
-    /// It takes the clay along, parallel to the view, and goes along itself; a dab says how far it came since the last.
+    /// It takes the clay along, parallel to the view, and goes along itself; a dab says how far it
+    /// came since the last.
     Tow,
 }
 
@@ -37,7 +39,8 @@ pub struct Dab<'a> {
     pub strength: f32,
     /// 1, or -1 for the other way round.
     pub sign: f32,
-    /// On the surface: from the last dab's centre, zero for the first. Anchored: from the start. Towed: of this step.
+    /// On the surface: from the last dab's centre, zero for the first. Anchored: from the start.
+    /// Towed: of this step.
     pub motion: Vec3,
     /// Anchored: the motion of the dab before.
     pub last: Vec3,
@@ -74,10 +77,13 @@ impl Dab<'_> {
         self.settings.extra[i]
     }
 
-    /// The stroke's direction in the tangent plane, unit length; for a stroke without one, to the right of the view.
+    /// The stroke's direction in the tangent plane, unit length; for a stroke without one, to the
+    /// right of the view.
     pub fn along(&self) -> Vec3 {
         let flat = |d: Vec3| (d - self.normal * d.dot(self.normal)).try_normalize();
-        flat(self.motion).or_else(|| flat(self.right)).unwrap_or_else(|| self.normal.any_orthonormal_vector())
+        flat(self.motion)
+            .or_else(|| flat(self.right))
+            .unwrap_or_else(|| self.normal.any_orthonormal_vector())
     }
 
     /// A ball about the centre.
@@ -106,8 +112,8 @@ impl Spot<'_> {
         self.page.normals.get(self.v)
     }
 
-    /// The middle of the neighbours; on a border of the neighbours on the border only, so that it does not shrink. The
-    /// vertex itself where there are none.
+    /// The middle of the neighbours; on a border of the neighbours on the border only, so that it
+    /// does not shrink. The vertex itself where there are none.
     #[inline]
     pub fn middle(&self) -> Vec3 {
         if self.page.is_border(self.v) {
@@ -121,7 +127,8 @@ impl Spot<'_> {
         if n > 0.0 { self.p + sum / n } else { self.p }
     }
 
-    /// Between the two neighbours on the border: the ends of an open fan. Elsewhere the vertex itself.
+    /// Between the two neighbours on the border: the ends of an open fan. Elsewhere the vertex
+    /// itself.
     fn border_middle(&self) -> Vec3 {
         let mut ring = self.page.ring(self.v);
         match (ring.next(), ring.last(), self.page.is_open(self.v)) {
@@ -163,7 +170,8 @@ pub trait Brush: Copy + Sync {
     const GRIP: Grip = Grip::Surface;
     /// Whether the mask protects from it; a brush that paints the mask must not be stopped by it.
     const MASKED: bool = true;
-    /// Whether triangles may be cut under it: not if it needs to know where vertices were when the stroke began.
+    /// Whether triangles may be cut under it: not if it needs to know where vertices were when the
+    /// stroke began.
     const CUTS: bool = matches!(Self::GRIP, Grip::Surface | Grip::Tow);
 
     /// What the dab needs to know, found out before anything moves.
@@ -174,8 +182,8 @@ pub trait Brush: Copy + Sync {
         dab.ball(1.0)
     }
 
-    /// How much it does to a vertex, 0 to 1, mask left out of account; 0 outside. An anchored brush holds what was under it
-    /// at the start of the stroke.
+    /// How much it does to a vertex, 0 to 1, mask left out of account; 0 outside. An anchored brush
+    /// holds what was under it at the start of the stroke.
     #[inline(always)]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, p: Vec3) -> f32 {
         let at = if matches!(Self::GRIP, Grip::Anchor) { page.before(v) } else { p };
@@ -184,7 +192,8 @@ pub trait Brush: Copy + Sync {
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change;
 
-    /// A faster way for a dab without images that overlap and without options; false: there is none.
+    /// A faster way for a dab without images that overlap and without options; false: there is
+    /// none.
     fn alone(_dab: &Dab<'_>, _tool: &mut super::tool::Tool<'_>) -> bool {
         false
     }

@@ -1,17 +1,19 @@
-//! Density: brings the triangles to the wanted size and evens them along the surface; the form stays.
+//! Density: brings the triangles to the wanted size and evens them along the surface; the form
+//! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::Topology`]); its own file turns it on.
+//! The cutting is that of every brush that cuts ([`super::options::Topology`]); its own file turns
+//! it on.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
-use super::relax::Relax;
+use super::relax::RelaxBrush;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Density(Relax);
+pub struct DensityBrush(RelaxBrush);
 
-impl Brush for Density {
+impl Brush for DensityBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Density(Relax::ready(dab, on))
+        DensityBrush(RelaxBrush::ready(dab, on))
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -6,13 +6,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Draw {
+pub struct DrawBrush {
     offset: Vec3,
 }
 
-impl Brush for Draw {
+impl Brush for DrawBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Draw { offset: on.plane(dab, 0.0).normal * dab.height() }
+        DrawBrush { offset: on.plane(dab, 0.0).normal * dab.height() }
     }
 
     fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -1,13 +1,17 @@
-//! Elastic grab: the clay as an elastic body that is held at a point and moved: regularised Kelvinlets (de Goes and James 2017,
-//! "Regularized Kelvinlets: sculpting brushes based on fundamental solutions of elasticity").
+//! Elastic grab: the clay as an elastic body that is held at a point and moved: regularised
+//! Kelvinlets (de Goes and James 2017, "Regularized Kelvinlets: sculpting brushes based on
+//! fundamental solutions of elasticity").
 //!
-//! The displacement at `r` from the pen by a force `f` (their equation 6), with `e` the brush's size and `r_e = sqrt(r^2 + e^2)`:
+//! The displacement at `r` from the pen by a force `f` (their equation 6), with `e` the brush's
+//! size and `r_e = sqrt(r^2 + e^2)`:
 //!
-//! `u(r) = [ (a - b) / r_e I + b / r_e^3 r r^T + (a / 2) e^2 / r_e^3 I ] f`,  `a = 1 / (4 pi mu)`, `b = a / (4 - 4 nu)`.
+//! `u(r) = [ (a - b) / r_e I + b / r_e^3 r r^T + (a / 2) e^2 / r_e^3 I ] f`,  `a = 1 / (4 pi mu)`,
+//! `b = a / (4 - 4 nu)`.
 //!
-//! The force is what moves the held point as the pen moved. `u` falls as `1 / r`; three of them at sizes `e`, `1.1 e`,
-//! `1.21 e`, weighed so that the far terms vanish (their section 5, "tri-scale"), fall as `1 / r^5`. Each solves the
-//! equations of elasticity, so with `nu = 1/2` their divergence is zero and small moves keep the volume.
+//! The force is what moves the held point as the pen moved. `u` falls as `1 / r`; three of them at
+//! sizes `e`, `1.1 e`, `1.21 e`, weighed so that the far terms vanish (their section 5,
+//! "tri-scale"), fall as `1 / r^5`. Each solves the equations of elasticity, so with `nu = 1/2`
+//! their divergence is zero and small moves keep the volume.
 
 use glam::Vec3;
 
@@ -15,13 +19,14 @@ use super::dab::{Brush, Change, Dab, Grip, Spot};
 use crate::brush::surface_query::Ground;
 use crate::{PageIn, Reach};
 
-/// The brush's size as a share of its radius: the circle drawn on the surface is where about a tenth of the motion is left.
+/// The brush's size as a share of its radius: the circle drawn on the surface is where about a
+/// tenth of the motion is left.
 const SIZE: f32 = 0.75;
 /// Beyond so many radii the motion left is under a part in a thousand, and is let go.
 const FAR: f32 = 4.0;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Elastic {
+pub struct ElasticBrush {
     sizes: [f32; 3],
     weights: [f32; 3],
     /// `b / a`.
@@ -31,7 +36,7 @@ pub struct Elastic {
     by: Vec3,
 }
 
-impl Elastic {
+impl ElasticBrush {
     /// A point moved by `by`; `size` in mesh units; `nu`, Poisson's ratio, 0 to 0.5.
     pub fn new(by: Vec3, size: f32, nu: f32) -> Self {
         let sizes = [size, size * 1.1, size * 1.21];
@@ -41,7 +46,7 @@ impl Elastic {
         let b = 1.0 / (4.0 - 4.0 * nu);
         let at = |e: f32| (1.0 - b) / e + 0.5 / e;
         let middle = sizes.iter().zip(weights).map(|(&e, w)| w * at(e)).sum();
-        Elastic { sizes, weights, b, middle, by }
+        ElasticBrush { sizes, weights, b, middle, by }
     }
 
     /// The displacement at `r` from the held point.
@@ -59,11 +64,11 @@ impl Elastic {
     }
 }
 
-impl Brush for Elastic {
+impl Brush for ElasticBrush {
     const GRIP: Grip = Grip::Anchor;
 
     fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Elastic::new(dab.motion * (dab.strength * dab.sign), dab.radius * SIZE, dab.extra(0))
+        ElasticBrush::new(dab.motion * (dab.strength * dab.sign), dab.radius * SIZE, dab.extra(0))
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

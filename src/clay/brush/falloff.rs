@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::weights::exp;
 
-/// A profile over `x`, the distance to the brush's middle as a share of its radius. All are 1 at the middle (to 4e-6) and 0
-/// from the rim on, [`Falloff::Constant`] excepted, which is 1 up to the rim.
+/// A profile over `x`, the distance to the brush's middle as a share of its radius. All are 1 at
+/// the middle (to 4e-6) and 0 from the rim on, [`Falloff::Constant`] excepted, which is 1 up to the
+/// rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Falloff {

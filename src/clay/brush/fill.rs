@@ -4,13 +4,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::{Ground, Plane};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Fill {
+pub struct FillBrush {
     plane: Plane,
 }
 
-impl Brush for Fill {
+impl Brush for FillBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Fill { plane: on.plane(dab, dab.extra(0)) }
+        FillBrush { plane: on.plane(dab, dab.extra(0)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

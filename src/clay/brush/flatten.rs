@@ -4,13 +4,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::{Ground, Plane};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Flatten {
+pub struct FlattenBrush {
     plane: Plane,
 }
 
-impl Brush for Flatten {
+impl Brush for FlattenBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Flatten { plane: on.plane(dab, dab.extra(0)) }
+        FlattenBrush { plane: on.plane(dab, dab.extra(0)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

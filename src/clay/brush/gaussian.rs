@@ -1,8 +1,8 @@
 //! The Gaussian brush of Cipollini 2020: a bell along the surface normal at the stroke point.
 //!
-//! `height * exp(-x^2 / (2 sigma^2))`, with sigma = 0.7 and `x` the distance to the stroke point scaled so that the radius is
-//! at x = 3.5, the profile's reach (there the bell is 3.7e-6 of its height). Strength changes the height and never the
-//! footprint.
+//! `height * exp(-x^2 / (2 sigma^2))`, with sigma = 0.7 and `x` the distance to the stroke point
+//! scaled so that the radius is at x = 3.5, the profile's reach (there the bell is 3.7e-6 of its
+//! height). Strength changes the height and never the footprint.
 
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ pub const SIGMA: f32 = 0.7;
 pub const REACH: f32 = 3.5;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Gaussian {
+pub struct GaussianBrush {
     centre: Vec3,
     offset: Vec3,
     radius2: f32,
@@ -24,11 +24,11 @@ pub struct Gaussian {
     fall: f32,
 }
 
-impl Gaussian {
+impl GaussianBrush {
     /// `normal` of unit length; `height` in mesh units, negative to carve.
     pub fn new(centre: Vec3, radius: f32, normal: Vec3, height: f32) -> Self {
         let scale = REACH / radius;
-        Gaussian {
+        GaussianBrush {
             centre,
             offset: normal * height,
             radius2: radius * radius,
@@ -37,7 +37,7 @@ impl Gaussian {
     }
 }
 
-impl Kernel for Gaussian {
+impl Kernel for GaussianBrush {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         Weights::with(|w| {
@@ -47,9 +47,9 @@ impl Kernel for Gaussian {
     }
 }
 
-impl Brush for Gaussian {
+impl Brush for GaussianBrush {
     fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Gaussian::new(dab.centre, dab.radius, dab.normal, dab.height())
+        GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height())
     }
 
     #[inline(always)]
@@ -63,7 +63,7 @@ impl Brush for Gaussian {
     }
 
     fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(&Self::reach(dab), &Gaussian::new(dab.centre, dab.radius, dab.normal, dab.height()));
+        tool.run(&Self::reach(dab), &GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height()));
         true
     }
 }

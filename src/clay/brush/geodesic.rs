@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::page::BREAK;
-use crate::{Mesh, PAGE_VERTICES, Page, Reach};
+use crate::{Clay, PAGE_VERTICES, Page, Reach};
 
 /// A vertex by its page and its place in it.
 pub type Key = (u32, u16);
@@ -38,7 +38,7 @@ pub struct Walk {
 
 impl Walk {
     /// Forgets everything.
-    pub fn begin(&mut self, mesh: &Mesh) {
+    pub fn begin(&mut self, mesh: &Clay) {
         for b in &self.blocks[..self.used] {
             if let Some(slot) = self.block_of.get_mut(b.page as usize) {
                 *slot = 0;
@@ -54,7 +54,7 @@ impl Walk {
         self.blocks.get(slot.checked_sub(1)?)
     }
 
-    fn block(&mut self, mesh: &Mesh, page: u32) -> &mut Block {
+    fn block(&mut self, mesh: &Clay, page: u32) -> &mut Block {
         let slot = self.block_of[page as usize] as usize;
         if slot > 0 {
             return &mut self.blocks[slot - 1];
@@ -104,7 +104,7 @@ impl Walk {
 
     /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
     /// Says whether it was nearer.
-    pub fn offer(&mut self, mesh: &Mesh, key: Key, distance: f32, owner: u32) -> bool {
+    pub fn offer(&mut self, mesh: &Clay, key: Key, distance: f32, owner: u32) -> bool {
         let block = self.block(mesh, key.0);
         let old = &mut block.distance[key.1 as usize];
         let nearer = distance < *old;
@@ -118,7 +118,7 @@ impl Walk {
     }
 
     /// Whether the mesh has other pages than when the walk began.
-    pub fn is_stale(&self, mesh: &Mesh) -> bool {
+    pub fn is_stale(&self, mesh: &Clay) -> bool {
         self.block_of.len() != mesh.page_count()
     }
 
@@ -132,7 +132,7 @@ impl Walk {
         self.find(page).and_then(|b| b.owner.get(v as usize)).is_some_and(|o| o[1] == owner)
     }
 
-    pub fn settle(&mut self, mesh: &Mesh, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
+    pub fn settle(&mut self, mesh: &Clay, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
         let block = self.block(mesh, key.0);
         block.place[key.1 as usize] = place;
         block.frame[key.1 as usize] = frame;
@@ -151,9 +151,9 @@ impl Walk {
         None
     }
 
-    /// Distances over the edges from a point on the surface as it was before the stroke, as far as `radius`. The first ring
-    /// about the point is measured straight.
-    pub fn measure(&mut self, mesh: &Mesh, centre: Vec3, normal: Vec3, radius: f32) {
+    /// Distances over the edges from a point on the surface as it was before the stroke, as far as
+    /// `radius`. The first ring about the point is measured straight.
+    pub fn measure(&mut self, mesh: &Clay, centre: Vec3, normal: Vec3, radius: f32) {
         self.begin(mesh);
         let mut seed: Option<(f32, Key)> = None;
         let mut look = |number: u32, page: &Page| {
@@ -189,8 +189,9 @@ impl Walk {
         }
     }
 
-    /// Marks what hangs together, within `radius` of `centre`, with the nearest vertex that faces as `normal` does.
-    pub fn flood(&mut self, mesh: &Mesh, centre: Vec3, normal: Vec3, radius: f32) {
+    /// Marks what hangs together, within `radius` of `centre`, with the nearest vertex that faces
+    /// as `normal` does.
+    pub fn flood(&mut self, mesh: &Clay, centre: Vec3, normal: Vec3, radius: f32) {
         self.begin(mesh);
         let mut seed: Option<(f32, Key)> = None;
         mesh.each_page(&Reach::Sphere { centre, radius }, |number, page| {
@@ -219,7 +220,11 @@ impl Walk {
 }
 
 /// Calls `visit` with each neighbour of a vertex and where it is.
-pub fn ring<'a>(at: impl Fn(u32) -> &'a Arc<Page>, (page, v): Key, mut visit: impl FnMut(Key, Vec3)) {
+pub fn ring<'a>(
+    at: impl Fn(u32) -> &'a Arc<Page>,
+    (page, v): Key,
+    mut visit: impl FnMut(Key, Vec3),
+) {
     let one = at(page);
     let t = one.topology();
     for &k in t.ring(v as usize) {

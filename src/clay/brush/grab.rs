@@ -5,13 +5,13 @@ use crate::brush::surface_query::Ground;
 use crate::Reach;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Grab;
+pub struct GrabBrush;
 
-impl Brush for Grab {
+impl Brush for GrabBrush {
     const GRIP: Grip = Grip::Anchor;
 
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Grab
+        GrabBrush
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

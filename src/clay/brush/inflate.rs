@@ -4,11 +4,11 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Inflate;
+pub struct InflateBrush;
 
-impl Brush for Inflate {
+impl Brush for InflateBrush {
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Inflate
+        InflateBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

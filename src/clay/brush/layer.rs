@@ -1,16 +1,17 @@
-//! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all its dabs, not their sum.
+//! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all
+//! its dabs, not their sum.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Layer;
+pub struct LayerBrush;
 
-impl Brush for Layer {
+impl Brush for LayerBrush {
     const CUTS: bool = false;
 
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Layer
+        LayerBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -4,13 +4,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Mask;
+pub struct MaskBrush;
 
-impl Brush for Mask {
+impl Brush for MaskBrush {
     const MASKED: bool = false;
 
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Mask
+        MaskBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

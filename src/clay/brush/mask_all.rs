@@ -1,4 +1,5 @@
-//! The mask of the whole work at once: each is one step of undo, and costs as much as the work is large.
+//! The mask of the whole work at once: each is one step of undo, and costs as much as the work is
+//! large.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -20,7 +21,8 @@ pub enum MaskAction {
     Grow,
     /// The least.
     Shrink,
-    /// What is hollow by at least so much is protected: mean curvature, times a tenth of the work's bounding radius.
+    /// What is hollow by at least so much is protected: mean curvature, times a tenth of the work's
+    /// bounding radius.
     Cavity(f32),
 }
 
@@ -56,7 +58,9 @@ impl Kernel for MaskAll {
                     MaskAction::Grow => ring().fold(m, f32::max),
                     MaskAction::Shrink => ring().fold(m, f32::min),
                     // Over a tenth of the measure it goes from free to protected.
-                    MaskAction::Cavity(least) => m.max((hollow(page, v) * self.extent * 0.1 - least) * 10.0),
+                    MaskAction::Cavity(least) => {
+                        m.max((hollow(page, v) * self.extent * 0.1 - least) * 10.0)
+                    }
                 },
             );
         }

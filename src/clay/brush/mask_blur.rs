@@ -1,11 +1,12 @@
-//! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it sharpens them.
+//! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it
+//! sharpens them.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 use crate::PageIn;
 
 #[derive(Debug, Clone, Copy)]
-pub struct MaskBlur;
+pub struct MaskBlurBrush;
 
 /// The mean mask of a vertex's neighbours, less its own; 0 where there are none.
 pub(super) fn slope(page: &PageIn<'_>, v: usize) -> f32 {
@@ -20,11 +21,11 @@ pub(super) fn sharper(page: &PageIn<'_>, v: usize) -> f32 {
     (page.mask(v) - 0.5) * 0.5 - slope(page, v)
 }
 
-impl Brush for MaskBlur {
+impl Brush for MaskBlurBrush {
     const MASKED: bool = false;
 
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        MaskBlur
+        MaskBlurBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

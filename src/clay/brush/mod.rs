@@ -1,7 +1,9 @@
-//! Brushes. A brush is one file here (a type that is a [`Brush`]), one file of settings (`config/brushes/NAME.toml`), and one
-//! line in the table below; nothing else knows how many there are.
+//! Brushes. A brush is one file here (a type that is a [`Brush`]), one file of settings
+//! (`config/brushes/NAME.toml`), and one line in the table below; nothing else knows how many there
+//! are.
 //!
-//! * [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]: what a brush may ask first.
+//! * [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]:
+//!   what a brush may ask first.
 //! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
 //! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
 
@@ -31,20 +33,20 @@ pub use alpha::{Alpha, Picture};
 pub use dab::{Brush, Dab, Grip};
 pub use drag::Drag;
 pub use falloff::Falloff;
-pub use gaussian::Gaussian;
+pub use gaussian::GaussianBrush;
 pub use mask_all::MaskAction;
 pub use options::{AutoMask, Measure, Method, Mirror, PathSettings, Topology};
 pub use palm::Palm;
 pub use push::Push;
 pub use settings::{BrushSettings, PressureCurve};
-pub use smooth::Smooth;
+pub use smooth::SmoothBrush;
 pub use stamp::{Stamp, StampBy};
 pub use surface_query::Scratch;
 pub use tool::Tool;
 
 /// Declares the brushes: name, variant, module.
 macro_rules! brushes {
-    ($($name:literal $variant:ident $module:ident,)*) => {
+    ($($name:literal $variant:ident $module:ident::$brush:ident,)*) => {
         $(pub mod $module;)*
 
         /// Which brush a dab is of.
@@ -69,17 +71,17 @@ macro_rules! brushes {
             }
 
             pub fn grip(self) -> Grip {
-                match self { $(BrushKind::$variant => <$module::$variant as Brush>::GRIP,)* }
+                match self { $(BrushKind::$variant => <$module::$brush as Brush>::GRIP,)* }
             }
 
             /// Whether triangles may be cut under it.
             pub fn cuts(self) -> bool {
-                match self { $(BrushKind::$variant => <$module::$variant as Brush>::CUTS,)* }
+                match self { $(BrushKind::$variant => <$module::$brush as Brush>::CUTS,)* }
             }
 
             /// One dab of this brush, and its images.
             pub fn apply(self, dabs: &[Dab<'_>], tool: &mut Tool<'_>) {
-                match self { $(BrushKind::$variant => tool.apply::<$module::$variant>(dabs),)* }
+                match self { $(BrushKind::$variant => tool.apply::<$module::$brush>(dabs),)* }
             }
         }
     };
@@ -87,35 +89,35 @@ macro_rules! brushes {
 
 // Sessions know brushes by their place here: new ones come last.
 brushes! {
-    "gaussian" Gaussian gaussian,
-    "smooth" Smooth smooth,
-    "draw" Draw draw,
-    "clay" Clay clay,
-    "clay-strips" ClayStrips clay_strips,
-    "inflate" Inflate inflate,
-    "layer" Layer layer,
-    "crease" Crease crease,
-    "pinch" Pinch pinch,
-    "blob" Blob blob,
-    "flatten" Flatten flatten,
-    "fill" Fill fill,
-    "scrape" Scrape scrape,
-    "trim" Trim trim,
-    "grab" Grab grab,
-    "elastic" Elastic elastic,
-    "topological" Topological topological,
-    "snake-hook" SnakeHook snake_hook,
-    "twist" Twist twist,
-    "thumb" Thumb thumb,
-    "nudge" Nudge nudge,
-    "relax" Relax relax,
-    "mask" Mask mask,
-    "mask-blur" MaskBlur mask_blur,
-    "paint" Paint paint,
-    "texture" Texture texture,
-    "density" Density density,
-    "simplify" Simplify simplify,
-    "slide-relax" SlideRelax slide_relax,
+    "gaussian" Gaussian gaussian::GaussianBrush,
+    "smooth" Smooth smooth::SmoothBrush,
+    "draw" Draw draw::DrawBrush,
+    "clay" Clay clay::ClayBrush,
+    "clay-strips" ClayStrips clay_strips::ClayStripsBrush,
+    "inflate" Inflate inflate::InflateBrush,
+    "layer" Layer layer::LayerBrush,
+    "crease" Crease crease::CreaseBrush,
+    "pinch" Pinch pinch::PinchBrush,
+    "blob" Blob blob::BlobBrush,
+    "flatten" Flatten flatten::FlattenBrush,
+    "fill" Fill fill::FillBrush,
+    "scrape" Scrape scrape::ScrapeBrush,
+    "trim" Trim trim::TrimBrush,
+    "grab" Grab grab::GrabBrush,
+    "elastic" Elastic elastic::ElasticBrush,
+    "topological" Topological topological::TopologicalBrush,
+    "snake-hook" SnakeHook snake_hook::SnakeHookBrush,
+    "twist" Twist twist::TwistBrush,
+    "thumb" Thumb thumb::ThumbBrush,
+    "nudge" Nudge nudge::NudgeBrush,
+    "relax" Relax relax::RelaxBrush,
+    "mask" Mask mask::MaskBrush,
+    "mask-blur" MaskBlur mask_blur::MaskBlurBrush,
+    "paint" Paint paint::PaintBrush,
+    "texture" Texture texture::TextureBrush,
+    "density" Density density::DensityBrush,
+    "simplify" Simplify simplify::SimplifyBrush,
+    "slide-relax" SlideRelax slide_relax::SlideRelaxBrush,
 }
 
 // The variants come from a macro, which marks no default.

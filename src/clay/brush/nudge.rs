@@ -6,16 +6,16 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Nudge {
+pub struct NudgeBrush {
     by: Vec3,
 }
 
-impl Brush for Nudge {
+impl Brush for NudgeBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
         let n = on.plane(dab, 0.0).normal;
         let flat = dab.motion - n * dab.motion.dot(n);
         // A stroke that leapt to another part of the form does not tear it along.
-        Nudge { by: flat.clamp_length_max(dab.radius) * (dab.strength * dab.sign) }
+        NudgeBrush { by: flat.clamp_length_max(dab.radius) * (dab.strength * dab.sign) }
     }
 
     fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -1,4 +1,5 @@
-//! What may be set on every brush: its images, what it leaves alone, how the pen's path becomes dabs.
+//! What may be set on every brush: its images, what it leaves alone, how the pen's path becomes
+//! dabs.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +33,8 @@ pub struct AutoMask {
     pub boundary: bool,
     /// Only what hangs together with the point under the pen, within the brush.
     pub topology: bool,
-    /// Only what turns from the dab's normal by at most so much, fading over a third of it; 0: everything; to 180 degrees.
+    /// Only what turns from the dab's normal by at most so much, fading over a third of it; 0:
+    /// everything; to 180 degrees.
     pub normal_degrees: f32,
     /// Above 0 the more only hollows are touched, below 0 only ridges; -1 to 1.
     pub cavity: f32,
@@ -60,8 +62,9 @@ pub enum Measure {
     View,
 }
 
-/// Triangles cut to a wanted size under the brush, before each dab. Not for brushes that hold or count from where the stroke
-/// began (grab and its kin, layer, texture, a saturated stroke): new vertices were nowhere then.
+/// Triangles cut to a wanted size under the brush, before each dab. Not for brushes that hold or
+/// count from where the stroke began (grab and its kin, layer, texture, a saturated stroke): new
+/// vertices were nowhere then.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Topology {
@@ -97,7 +100,8 @@ pub enum Method {
     DragDot,
     /// A straight line from where the pen came down to where it lifts.
     Line,
-    /// A curve laid by its points, or near all that was drawn: it may be changed before the brush is drawn along it.
+    /// A curve laid by its points, or near all that was drawn: it may be changed before the brush
+    /// is drawn along it.
     Curve,
 }
 
@@ -109,7 +113,8 @@ pub struct PathSettings {
     pub continuous: bool,
     /// Ticks between the dabs of a resting pen; 1 to 1000.
     pub every_ticks: f32,
-    /// Length of the lazy rope by which the brush is drawn, as a share of the view's height; 0 to 0.5.
+    /// Length of the lazy rope by which the brush is drawn, as a share of the view's height; 0 to
+    /// 0.5.
     pub rope: f32,
     /// Pen reports that are averaged; 0 and 1: none; at most 64.
     pub average: u8,
@@ -117,7 +122,8 @@ pub struct PathSettings {
     pub jitter: f32,
     /// What dabs are strewn by.
     pub seed: u32,
-    /// Strength is scaled by the spacing over a fifth of the radius, so that closer dabs do not build up more.
+    /// Strength is scaled by the spacing over a fifth of the radius, so that closer dabs do not
+    /// build up more.
     pub compensate: bool,
 }
 

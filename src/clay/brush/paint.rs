@@ -4,11 +4,11 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Paint;
+pub struct PaintBrush;
 
-impl Brush for Paint {
+impl Brush for PaintBrush {
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Paint
+        PaintBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -15,8 +15,9 @@ pub struct Palm {
 }
 
 impl Palm {
-    /// A disc of `radius` swept from `from` to `to`, facing along `normal` (unit length, out of the palm). Clay behind the
-    /// disc by up to half its radius is carried to it: the disc went through there.
+    /// A disc of `radius` swept from `from` to `to`, facing along `normal` (unit length, out of the
+    /// palm). Clay behind the disc by up to half its radius is carried to it: the disc went through
+    /// there.
     pub fn new(from: Vec3, to: Vec3, normal: Vec3, radius: f32, strength: f32) -> Self {
         let along = to - from;
         let length2 = along.length_squared();
@@ -38,7 +39,10 @@ impl Kernel for Palm {
             if aside < 1.0 && height <= 0.0 && height > -0.5 * self.radius && faces {
                 out.visit();
                 let fade = 1.0 - aside * aside;
-                out.set(i, p - self.normal * (height * fade * fade * self.strength * (1.0 - page.mask(i))));
+                out.set(
+                    i,
+                    p - self.normal * (height * fade * fade * self.strength * (1.0 - page.mask(i))),
+                );
             }
         }
     }

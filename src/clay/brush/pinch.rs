@@ -1,4 +1,5 @@
-//! Pinch: draws the surface together to the middle of the brush along itself; the other way round it spreads it.
+//! Pinch: draws the surface together to the middle of the brush along itself; the other way round
+//! it spreads it.
 
 use glam::Vec3;
 
@@ -6,13 +7,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Pinch {
+pub struct PinchBrush {
     normal: Vec3,
 }
 
-impl Brush for Pinch {
+impl Brush for PinchBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Pinch { normal: on.plane(dab, 0.0).normal }
+        PinchBrush { normal: on.plane(dab, 0.0).normal }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -1,8 +1,8 @@
 //! What a brush begins with: `config/brushes/NAME.toml`, embedded.
 //!
-//! A file says in `about` what the brush does, in `[settings]` what differs from [`BrushSettings::default`], and in
-//! `[[extra]]` which numbers of its own it has, each with name, value, range and meaning, in the order of
-//! [`BrushSettings::extra`].
+//! A file says in `about` what the brush does, in `[settings]` what differs from
+//! [`BrushSettings::default`], and in `[[extra]]` which numbers of its own it has, each with name,
+//! value, range and meaning, in the order of [`BrushSettings::extra`].
 
 use std::sync::OnceLock;
 
@@ -47,7 +47,10 @@ impl Preset {
         let mut table = file.settings;
         table.insert("kind".into(), kind.name().into());
         if file.extra.len() > EXTRAS {
-            return Err(format!("{} numbers of its own; a brush has at most {EXTRAS}", file.extra.len()));
+            return Err(format!(
+                "{} numbers of its own; a brush has at most {EXTRAS}",
+                file.extra.len()
+            ));
         }
         if !file.extra.is_empty() {
             let mut values = [0.0; EXTRAS];
@@ -57,7 +60,8 @@ impl Preset {
             let values = values.map(|v| toml::Value::Float(f64::from(v)));
             table.insert("extra".into(), toml::Value::Array(values.to_vec()));
         }
-        let settings: BrushSettings = table.clone().try_into().map_err(|e| format!("settings: {e}"))?;
+        let settings: BrushSettings =
+            table.clone().try_into().map_err(|e| format!("settings: {e}"))?;
         Ok(Preset { about: file.about, table, settings, extras: file.extra })
     }
 
@@ -70,7 +74,8 @@ impl Preset {
         self.settings
     }
 
-    /// What the file sets, `kind` and `extra` included: to be laid over the defaults and under what a person wrote.
+    /// What the file sets, `kind` and `extra` included: to be laid over the defaults and under what
+    /// a person wrote.
     pub fn table(&self) -> &toml::Table {
         &self.table
     }
@@ -86,7 +91,8 @@ impl BrushKind {
         static ALL: OnceLock<Vec<Preset>> = OnceLock::new();
         let all = ALL.get_or_init(|| {
             let read = |kind: BrushKind| {
-                // A test reads every file; a build with a broken one falls back to the code's defaults.
+                // A test reads every file; a build with a broken one falls back to the code's
+                // defaults.
                 Preset::read(kind).unwrap_or_else(|_| Preset {
                     about: String::new(),
                     table: toml::Table::new(),

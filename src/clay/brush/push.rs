@@ -18,7 +18,13 @@ impl Push {
     pub fn new(from: Vec3, to: Vec3, radius: f32, strength: f32) -> Self {
         let along = to - from;
         let length2 = along.length_squared();
-        Push { from, along, inv_length2: if length2 > 0.0 { 1.0 / length2 } else { 0.0 }, radius, strength }
+        Push {
+            from,
+            along,
+            inv_length2: if length2 > 0.0 { 1.0 / length2 } else { 0.0 },
+            radius,
+            strength,
+        }
     }
 }
 

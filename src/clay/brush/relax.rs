@@ -1,15 +1,15 @@
-//! Slide-relax: evens the triangles along the surface and leaves the form: the tangential part of the way to the middle of
-//! the neighbours.
+//! Slide-relax: evens the triangles along the surface and leaves the form: the tangential part of
+//! the way to the middle of the neighbours.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Relax;
+pub struct RelaxBrush;
 
-impl Brush for Relax {
+impl Brush for RelaxBrush {
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Relax
+        RelaxBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

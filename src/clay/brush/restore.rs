@@ -4,7 +4,8 @@ use glam::Vec3;
 
 use crate::{Kernel, PageIn, PageOut};
 
-/// Sets every vertex whose place at the start of the stroke lay within the ball to what it was then.
+/// Sets every vertex whose place at the start of the stroke lay within the ball to what it was
+/// then.
 #[derive(Debug, Clone, Copy)]
 pub struct Restore {
     pub centre: Vec3,

@@ -4,13 +4,13 @@ use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::{Ground, Plane};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Scrape {
+pub struct ScrapeBrush {
     plane: Plane,
 }
 
-impl Brush for Scrape {
+impl Brush for ScrapeBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Scrape { plane: on.plane(dab, dab.extra(0)) }
+        ScrapeBrush { plane: on.plane(dab, dab.extra(0)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

@@ -1,4 +1,5 @@
-//! What a person sets on a brush. Plain data: it travels in a [`sculptd_engine::command::Command`] and is part of the world.
+//! What a person sets on a brush. Plain data: it travels in a [`sculptd_engine::command::Command`]
+//! and is part of the world.
 //!
 //! What each brush begins with stands in `config/brushes/NAME.toml`; see [`super::preset`].
 
@@ -43,8 +44,8 @@ pub const EXTRAS: usize = 4;
 #[serde(default, deny_unknown_fields)]
 pub struct BrushSettings {
     pub kind: BrushKind,
-    /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work is loaded or the
-    /// setting changes, so that the brush does not breathe while the form grows.
+    /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work
+    /// is loaded or the setting changes, so that the brush does not breathe while the form grows.
     pub radius: f32,
     /// 0 to 1. Gaussian: the height of one full dab is `strength * radius`.
     pub strength: f32,
@@ -61,14 +62,17 @@ pub struct BrushSettings {
     pub falloff: Falloff,
     /// Of a custom falloff: values at x = 0, 1/8, ... 1, each 0 to 1.
     pub curve: [f32; CURVE],
-    /// The budget of a vertex over one stroke: how far it may get from where the stroke found it, in heights of one full
-    /// dab (`strength * radius`). 0: no bound; else 1 to 1000. 1 is what others call "accumulate off".
+    /// The budget of a vertex over one stroke: how far it may get from where the stroke found it,
+    /// in heights of one full dab (`strength * radius`). 0: no bound; else 1 to 1000. 1 is what
+    /// others call "accumulate off".
     pub saturation: f32,
     /// The share of the radius over which brushes that need a plane average the surface; 0.05 to 2.
     pub normal_radius: f32,
-    /// Brushes that need a plane leave alone what is further from it than so many radii; 0: nothing; to 2.
+    /// Brushes that need a plane leave alone what is further from it than so many radii; 0:
+    /// nothing; to 2.
     pub plane_trim: f32,
-    /// How much the dab's direction leans from the surface normal to the pen's own, 0 to 1. Without a tilt: not at all.
+    /// How much the dab's direction leans from the surface normal to the pen's own, 0 to 1. Without
+    /// a tilt: not at all.
     pub tilt: f32,
     /// RGBA, sRGB: for brushes that paint.
     pub colour: [u8; 4],
@@ -117,7 +121,9 @@ impl BrushSettings {
     #[must_use]
     pub fn clamped(mut self) -> Self {
         let d = BrushSettings::default();
-        self.each_number(|_, v, lo, hi, default| *v = if v.is_finite() { v.clamp(lo, hi) } else { default });
+        self.each_number(|_, v, lo, hi, default| {
+            *v = if v.is_finite() { v.clamp(lo, hi) } else { default }
+        });
         if self.saturation < 1.0 {
             self.saturation = if self.saturation > 0.0 { 1.0 } else { 0.0 };
         }
@@ -148,7 +154,10 @@ impl BrushSettings {
         });
         for (v, e) in self.extra.iter().zip(self.kind.preset().extras()) {
             if !(*v >= e.min && *v <= e.max) && wrong.is_none() {
-                wrong = Some(format!("brush.extra ({}) = {v}: expected {} to {}", e.name, e.min, e.max));
+                wrong = Some(format!(
+                    "brush.extra ({}) = {v}: expected {} to {}",
+                    e.name, e.min, e.max
+                ));
             }
         }
         let count = |key: &str, v: u32, lo: u32, hi: u32| {

@@ -1,17 +1,19 @@
-//! Simplify: draws small triangles together to the wanted size, and leaves large ones; the form stays.
+//! Simplify: draws small triangles together to the wanted size, and leaves large ones; the form
+//! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::Topology`]); its own file turns it on.
+//! The cutting is that of every brush that cuts ([`super::options::Topology`]); its own file turns
+//! it on.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::Ground;
-use super::relax::Relax;
+use super::relax::RelaxBrush;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Simplify(Relax);
+pub struct SimplifyBrush(RelaxBrush);
 
-impl Brush for Simplify {
+impl Brush for SimplifyBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Simplify(Relax::ready(dab, on))
+        SimplifyBrush(RelaxBrush::ready(dab, on))
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

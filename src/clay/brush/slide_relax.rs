@@ -1,8 +1,10 @@
-//! Slide-relax: slides the triangles along the surface with the stroke and leaves the form; the other way round (Shift, or the
-//! other end of the pen) it relaxes them, each vertex towards the middle of its neighbours.
+//! Slide-relax: slides the triangles along the surface with the stroke and leaves the form; the
+//! other way round (Shift, or the other end of the pen) it relaxes them, each vertex towards the
+//! middle of its neighbours.
 //!
-//! A vertex goes in its tangent plane by less than a third of its shortest edge, so that no triangle turns over, and is put back
-//! upon the triangles that it came from: it never leaves the surface as the dab found it. A border stays.
+//! A vertex goes in its tangent plane by less than a third of its shortest edge, so that no
+//! triangle turns over, and is put back upon the triangles that it came from: it never leaves the
+//! surface as the dab found it. A border stays.
 
 use glam::Vec3;
 
@@ -13,14 +15,14 @@ use crate::brush::surface_query::Ground;
 const SAFE: f32 = 0.3;
 
 #[derive(Debug, Clone, Copy)]
-pub struct SlideRelax {
+pub struct SlideRelaxBrush {
     /// Where to; none: each to the middle of its neighbours.
     by: Option<Vec3>,
 }
 
-impl Brush for SlideRelax {
+impl Brush for SlideRelaxBrush {
     fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        SlideRelax { by: (dab.sign > 0.0).then(|| dab.motion.clamp_length_max(dab.radius)) }
+        SlideRelaxBrush { by: (dab.sign > 0.0).then(|| dab.motion.clamp_length_max(dab.radius)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
@@ -38,8 +40,8 @@ impl Brush for SlideRelax {
     }
 }
 
-/// The way to the point of the vertex's own triangles that is nearest to `to` (both from the vertex, and nearer to it than the
-/// far sides of those).
+/// The way to the point of the vertex's own triangles that is nearest to `to` (both from the
+/// vertex, and nearer to it than the far sides of those).
 fn put_back(spot: &Spot<'_>, to: Vec3) -> Vec3 {
     let ring = spot.page.ring(spot.v);
     let count = ring.len();

@@ -1,10 +1,11 @@
 //! The smooth brush: cotangent-weighted Laplacian, weights clamped, boundaries and needles safe.
 //!
-//! Each neighbour `b` of a vertex `p` weighs `cot` of the angles opposite the edge, in the two triangles beside it (Pinkall and
-//! Polthier 1993), each clamped to [`MAX_COT`] either way, their sum to 0 from below: two obtuse
-//! angles would push instead of pull. Over a flat mesh that is Delaunay the sums are what leaves every vertex in its place.
-//! With `b` and `c` relative to `p`, the triangle's doubled area `|b x c|` is under both its cotangents:
-//! at `c` it is `(c.c - b.c) / |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
+//! Each neighbour `b` of a vertex `p` weighs `cot` of the angles opposite the edge, in the two
+//! triangles beside it (Pinkall and Polthier 1993), each clamped to [`MAX_COT`] either way, their
+//! sum to 0 from below: two obtuse angles would push instead of pull. Over a flat mesh that is
+//! Delaunay the sums are what leaves every vertex in its place. With `b` and `c` relative to `p`,
+//! the triangle's doubled area `|b x c|` is under both its cotangents: at `c` it is `(c.c - b.c) /
+//! |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
 
 use glam::{Vec3, Vec4};
 
@@ -20,21 +21,21 @@ use sculptd_geometry::simd::cotangents::MAX_COT;
 const BLOCK: usize = 64;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Smooth {
+pub struct SmoothBrush {
     centre: Vec3,
     radius: f32,
     lambda: f32,
 }
 
-impl Smooth {
+impl SmoothBrush {
     /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre.
     pub fn new(centre: Vec3, radius: f32, lambda: f32) -> Self {
-        Smooth { centre, radius, lambda: lambda.clamp(0.0, 1.0) }
+        SmoothBrush { centre, radius, lambda: lambda.clamp(0.0, 1.0) }
     }
 }
 
-/// The same for any ring. About an open or a tangled one the two cotangents of an edge are met apart, where its triangles
-/// are; each edge's sum is clamped once both are known.
+/// The same for any ring. About an open or a tangled one the two cotangents of an edge are met
+/// apart, where its triangles are; each edge's sum is clamped once both are known.
 fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
     let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
     let mut add = |d: Vec3, w: f32| {
@@ -85,7 +86,7 @@ fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
     }
 }
 
-impl Kernel for Smooth {
+impl Kernel for SmoothBrush {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         let radius2 = self.radius * self.radius;
@@ -118,9 +119,9 @@ impl Kernel for Smooth {
     }
 }
 
-impl Brush for Smooth {
+impl Brush for SmoothBrush {
     fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Smooth::new(dab.centre, dab.radius, dab.strength)
+        SmoothBrush::new(dab.centre, dab.radius, dab.strength)
     }
 
     #[inline(always)]
@@ -139,7 +140,7 @@ impl Brush for Smooth {
     }
 
     fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(&Self::reach(dab), &Smooth::new(dab.centre, dab.radius, dab.strength));
+        tool.run(&Self::reach(dab), &SmoothBrush::new(dab.centre, dab.radius, dab.strength));
         true
     }
 }

@@ -4,13 +4,13 @@ use super::dab::{Brush, Change, Dab, Grip, Spot};
 use crate::brush::surface_query::Ground;
 
 #[derive(Debug, Clone, Copy)]
-pub struct SnakeHook;
+pub struct SnakeHookBrush;
 
-impl Brush for SnakeHook {
+impl Brush for SnakeHookBrush {
     const GRIP: Grip = Grip::Tow;
 
     fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        SnakeHook
+        SnakeHookBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

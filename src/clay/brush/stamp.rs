@@ -1,8 +1,8 @@
-//! An alpha between the brush and the clay: a stamp under each dab, a picture projected along the view, or a stencil that
-//! stands still before the view while the brush works behind it.
+//! An alpha between the brush and the clay: a stamp under each dab, a picture projected along the
+//! view, or a stencil that stands still before the view while the brush works behind it.
 //!
-//! It scales what any brush does: nothing where the alpha is 0, all of it where it is 1. (The texture brush bends its alpha
-//! along the stroke instead; that is `unroll`.)
+//! It scales what any brush does: nothing where the alpha is 0, all of it where it is 1. (The
+//! texture brush bends its alpha along the stroke instead; that is `unroll`.)
 
 use glam::{Mat3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -53,7 +53,8 @@ pub struct Lens {
     pub right: Vec3,
     pub up: Vec3,
     pub back: Vec3,
-    /// Half the view's height over the distance from the eye; without perspective half the height itself.
+    /// Half the view's height over the distance from the eye; without perspective half the height
+    /// itself.
     pub half: f32,
     pub parallel: bool,
 }
@@ -62,7 +63,13 @@ impl Lens {
     /// Seen in a mirror, or from a turned place: `m * p + t`.
     #[must_use]
     pub fn image(&self, m: Mat3, t: Vec3) -> Lens {
-        Lens { eye: m * self.eye + t, right: m * self.right, up: m * self.up, back: m * self.back, ..*self }
+        Lens {
+            eye: m * self.eye + t,
+            right: m * self.right,
+            up: m * self.up,
+            back: m * self.back,
+            ..*self
+        }
     }
 
     /// Half the view's height at a point; zero or less behind the eye.
@@ -70,7 +77,8 @@ impl Lens {
         if self.parallel { self.half } else { self.half * (self.eye - p).dot(self.back) }
     }
 
-    /// Where a point is seen, from the view's middle, in view heights, right and up; `None` behind the eye.
+    /// Where a point is seen, from the view's middle, in view heights, right and up; `None` behind
+    /// the eye.
     pub fn seen(&self, p: Vec3) -> Option<Vec2> {
         let (d, half) = (p - self.eye, self.half_at(p));
         (half > 0.0).then(|| Vec2::new(d.dot(self.right), d.dot(self.up)) * (0.5 / half))

@@ -1,19 +1,20 @@
-//! Stroke parameterisation (Schmidt 2013, "Stroke parameterization"; the map about one point: Schmidt, Grimm, Wyvill 2006,
-//! "Interactive decal compositing with discrete exponential maps").
+//! Stroke parameterisation (Schmidt 2013, "Stroke parameterization"; the map about one point:
+//! Schmidt, Grimm, Wyvill 2006, "Interactive decal compositing with discrete exponential maps").
 //!
-//! Each vertex near the stroke gets `(u, v)`: `u` along the stroke by arc length, `v` across it, 0 on the axis. It belongs to
-//! the stroke's sample that is nearest over the edges. From there coordinates are carried outwards in the order of
-//! distance: a vertex takes the mean of what its nearer neighbours say, each weighing 1 / its distance, and each says: my own
-//! place, and from there along the edge, laid into my tangent plane at its full length. The direction of `u` is carried by
-//! the smallest turn that takes one normal to the other.
+//! Each vertex near the stroke gets `(u, v)`: `u` along the stroke by arc length, `v` across it, 0
+//! on the axis. It belongs to the stroke's sample that is nearest over the edges. From there
+//! coordinates are carried outwards in the order of distance: a vertex takes the mean of what its
+//! nearer neighbours say, each weighing 1 / its distance, and each says: my own place, and from
+//! there along the edge, laid into my tangent plane at its full length. The direction of `u` is
+//! carried by the smallest turn that takes one normal to the other.
 //!
-//! All is measured on the surface as it was when the stroke began, so the relief does not bend its own coordinates; a new
-//! sample touches only vertices that are nearer to it than to all before.
+//! All is measured on the surface as it was when the stroke began, so the relief does not bend its
+//! own coordinates; a new sample touches only vertices that are nearer to it than to all before.
 
 use glam::{Quat, Vec3};
 
 use crate::brush::geodesic::{Key, Walk, ring};
-use crate::{Mesh, Page, Reach};
+use crate::{Clay, Page, Reach};
 
 /// A sample of a stroke on the surface as it was.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -46,9 +47,10 @@ impl Unroll {
         self.count
     }
 
-    /// Goes on to a point on the surface as it is now. Returns whether vertices got coordinates: a stroke has no direction
-    /// before its second sample, which then also serves the first. The first of the two is number [`Unroll::count`] - 1.
-    pub fn step(&mut self, mesh: &Mesh, stroke: u32, now: Vec3, normal: Vec3, radius: f32) -> bool {
+    /// Goes on to a point on the surface as it is now. Returns whether vertices got coordinates: a
+    /// stroke has no direction before its second sample, which then also serves the first. The
+    /// first of the two is number [`Unroll::count`] - 1.
+    pub fn step(&mut self, mesh: &Clay, stroke: u32, now: Vec3, normal: Vec3, radius: f32) -> bool {
         if self.stroke != stroke || self.walk.is_stale(mesh) {
             self.walk.begin(mesh);
             (self.stroke, self.last, self.count) = (stroke, None, 0);
@@ -79,7 +81,7 @@ impl Unroll {
     }
 
     /// The point as it was when the stroke began: moved back as its neighbourhood was moved.
-    fn as_it_was(&self, mesh: &Mesh, now: Vec3, normal: Vec3, radius: f32) -> Option<(Vec3, Vec3)> {
+    fn as_it_was(&self, mesh: &Clay, now: Vec3, normal: Vec3, radius: f32) -> Option<(Vec3, Vec3)> {
         let mut nearest: Option<(f32, Key)> = None;
         mesh.each_page(&Reach::Sphere { centre: now, radius: radius * 0.5 }, |number, page| {
             for v in 0..page.own() {
@@ -105,7 +107,7 @@ impl Unroll {
     }
 
     /// Carries coordinates from a sample to every vertex that is nearer to it than to those before.
-    pub fn spread(&mut self, mesh: &Mesh, from: &Sample, radius: f32) {
+    pub fn spread(&mut self, mesh: &Clay, from: &Sample, radius: f32) {
         self.count += 1;
         let owner = self.count;
         let walk = &mut self.walk;
@@ -143,7 +145,8 @@ impl Unroll {
                     |i| mesh.before(i),
                     key,
                     |other, q| {
-                        let nearer = walk.distance(other.0, other.1 as usize).is_some_and(|e| e < d);
+                        let nearer =
+                            walk.distance(other.0, other.1 as usize).is_some_and(|e| e < d);
                         let (Some(at), Some([e, m])) =
                             (walk.place(other.0, other.1 as usize), walk.frame(other))
                         else {
@@ -164,7 +167,12 @@ impl Unroll {
                     continue;
                 }
                 let flat = along - n * along.dot(n);
-                walk.settle(mesh, key, [place[0] / sum, place[1] / sum], [flat.normalize_or(along), n]);
+                walk.settle(
+                    mesh,
+                    key,
+                    [place[0] / sum, place[1] / sum],
+                    [flat.normalize_or(along), n],
+                );
             }
             ring(
                 |i| mesh.before(i),

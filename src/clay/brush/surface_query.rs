@@ -8,7 +8,7 @@ use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
 use crate::brush::geodesic::Walk;
 use crate::brush::stroke_param::Unroll;
-use crate::{Mesh, Reach};
+use crate::{Clay, Reach};
 
 /// Memory kept from dab to dab.
 #[derive(Debug, Default)]
@@ -50,7 +50,7 @@ impl Scratch {
 /// The clay before a dab.
 #[derive(Debug)]
 pub struct Ground<'a> {
-    pub mesh: &'a Mesh,
+    pub mesh: &'a Clay,
     pub scratch: &'a mut Scratch,
     /// Which of the images that act together this is.
     pub image: usize,
@@ -76,9 +76,10 @@ impl Plane {
 }
 
 impl Ground<'_> {
-    /// The plane through the surface under a dab: middle and mean normal of the vertices within `normal_radius`, those near
-    /// the rim counted less, those that face away not at all; moved by `offset` radii along its normal. In double precision,
-    /// so that images of one dab agree to the last bits.
+    /// The plane through the surface under a dab: middle and mean normal of the vertices within
+    /// `normal_radius`, those near the rim counted less, those that face away not at all; moved by
+    /// `offset` radii along its normal. In double precision, so that images of one dab agree to the
+    /// last bits.
     pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
         let radius = dab.radius * dab.settings.normal_radius;
         let (mut point, mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO, 0.0f64);
@@ -104,14 +105,15 @@ impl Ground<'_> {
         self.scratch.walk_mut(image).flood(self.mesh, dab.centre, dab.normal, dab.radius);
     }
 
-    /// Measures along the surface, as it was when the stroke began, how far each vertex is from the dab's centre: by Dijkstra
-    /// over the edges, no further than the radius.
+    /// Measures along the surface, as it was when the stroke began, how far each vertex is from the
+    /// dab's centre: by Dijkstra over the edges, no further than the radius.
     pub fn measure_before(&mut self, dab: &Dab<'_>) {
         let image = self.image;
         self.scratch.walk_mut(image).measure(self.mesh, dab.centre, dab.normal, dab.radius);
     }
 
-    /// Carries the stroke's own coordinates on to this dab. Answers which samples are new: the number of the newest, or 0.
+    /// Carries the stroke's own coordinates on to this dab. Answers which samples are new: the
+    /// number of the newest, or 0.
     pub fn unroll(&mut self, dab: &Dab<'_>) -> u32 {
         let all = &mut self.scratch.unrolls;
         let image = self.image.min(IMAGES - 1);
@@ -119,6 +121,10 @@ impl Ground<'_> {
             all.push(Unroll::default());
         }
         let one = &mut all[image];
-        if one.step(self.mesh, dab.stroke, dab.centre, dab.normal, dab.radius) { one.count() } else { 0 }
+        if one.step(self.mesh, dab.stroke, dab.centre, dab.normal, dab.radius) {
+            one.count()
+        } else {
+            0
+        }
     }
 }

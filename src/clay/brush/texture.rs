@@ -1,7 +1,7 @@
 //! Texture: an alpha becomes relief along the stroke, bent as the stroke is, repeating along it.
 //!
-//! The relief is laid on the surface as the stroke found it, along that surface's normals: `strength * radius` high where the
-//! alpha is 1. Strokes that cross themselves do not pile up.
+//! The relief is laid on the surface as the stroke found it, along that surface's normals:
+//! `strength * radius` high where the alpha is 1. Strokes that cross themselves do not pile up.
 
 use glam::Vec3;
 
@@ -10,21 +10,21 @@ use crate::brush::surface_query::Ground;
 use crate::{PageIn, Reach};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Texture {
+pub struct TextureBrush {
     /// The newest samples' numbers; vertices that belong to older ones stay as they are.
     newest: u32,
 }
 
-impl Brush for Texture {
+impl Brush for TextureBrush {
     const CUTS: bool = false;
 
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Texture { newest: on.unroll(dab) }
+        TextureBrush { newest: on.unroll(dab) }
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {
-        // What a dab reaches along the surface as it was may have been raised since; and the second dab of a stroke
-        // does the first one's work as well.
+        // What a dab reaches along the surface as it was may have been raised since; and the second
+        // dab of a stroke does the first one's work as well.
         dab.ball(1.5 + dab.strength)
     }
 

@@ -7,15 +7,15 @@ use crate::brush::surface_query::Ground;
 use crate::Reach;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Thumb {
+pub struct ThumbBrush {
     by: Vec3,
 }
 
-impl Brush for Thumb {
+impl Brush for ThumbBrush {
     const GRIP: Grip = Grip::Anchor;
 
     fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
-        Thumb { by: (dab.motion - dab.normal * dab.motion.dot(dab.normal)) * (dab.strength * dab.sign) }
+        ThumbBrush { by: (dab.motion - dab.normal * dab.motion.dot(dab.normal)) * (dab.strength * dab.sign) }
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

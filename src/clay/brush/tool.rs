@@ -6,12 +6,12 @@ use super::dab::{Brush, Change, Dab, Grip, IMAGES, Spot};
 use super::stamp::StampBy;
 use crate::brush::automask::Auto;
 use crate::brush::surface_query::{Ground, Scratch};
-use crate::{DabReport, Kernel, Mesh, PageIn, PageOut, Reach, Workers};
+use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 
 /// The clay in a brush's hand.
 #[derive(Debug)]
 pub struct Tool<'a> {
-    pub mesh: &'a mut Mesh,
+    pub mesh: &'a mut Clay,
     pub workers: &'a Workers,
     pub scratch: &'a mut Scratch,
     /// Summed over all dabs.
@@ -54,8 +54,10 @@ impl Tool<'_> {
             let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let mut n = 0;
             for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
-                let mut on = Ground { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
-                members[n] = Some((dabs[i], B::ready(&dabs[i], &mut on), Auto::ready(&dabs[i], &mut on)));
+                let mut on =
+                    Ground { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
+                members[n] =
+                    Some((dabs[i], B::ready(&dabs[i], &mut on), Auto::ready(&dabs[i], &mut on)));
                 lo = lo.min(balls[i].0 - balls[i].1);
                 hi = hi.max(balls[i].0 + balls[i].1);
                 n += 1;
@@ -79,7 +81,9 @@ impl Tool<'_> {
 fn ball(reach: &Reach) -> (Vec3, f32) {
     match *reach {
         Reach::Sphere { centre, radius } => (centre, radius),
-        Reach::Capsule { from, to, radius } => ((from + to) * 0.5, radius + (to - from).length() * 0.5),
+        Reach::Capsule { from, to, radius } => {
+            ((from + to) * 0.5, radius + (to - from).length() * 0.5)
+        }
     }
 }
 
@@ -107,7 +111,8 @@ impl<B: Brush> Kernel for Each<'_, B> {
                 if !(weight > 0.0) {
                     continue;
                 }
-                let spot = Spot { page, number: page.number(), v, p, weight, scratch: self.scratch };
+                let spot =
+                    Spot { page, number: page.number(), v, p, weight, scratch: self.scratch };
                 let c = brush.change(dab, &spot);
                 sum.by += c.by;
                 if let Some(by) = c.held {
@@ -140,7 +145,8 @@ impl<B: Brush> Kernel for Each<'_, B> {
     }
 }
 
-/// One channel, mixed as light is: sRGB is near enough the square root of it. Never stands still short of its goal.
+/// One channel, mixed as light is: sRGB is near enough the square root of it. Never stands still
+/// short of its goal.
 fn blend(old: u8, new: u8, t: f32) -> u8 {
     let (a, b) = (f32::from(old), f32::from(new));
     let mixed = (a * a * (1.0 - t) + b * b * t).sqrt();
@@ -151,8 +157,9 @@ fn blend(old: u8, new: u8, t: f32) -> u8 {
     rounded
 }
 
-/// Where a vertex comes to rest that may not get further from `before` than `limit`: the step is cut where it leaves the
-/// ball, so the last one ends exactly on it. One that is outside already (its budget is spent) stays, unless it comes nearer.
+/// Where a vertex comes to rest that may not get further from `before` than `limit`: the step is
+/// cut where it leaves the ball, so the last one ends exactly on it. One that is outside already
+/// (its budget is spent) stays, unless it comes nearer.
 #[inline(always)]
 fn held(before: Vec3, p: Vec3, by: Vec3, limit: f32, grip: Grip) -> Vec3 {
     let goal = p + by;

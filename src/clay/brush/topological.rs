@@ -1,4 +1,5 @@
-//! Move-topological: as grab, but what is held is what is near along the surface: lips part, fingers stay apart.
+//! Move-topological: as grab, but what is held is what is near along the surface: lips part,
+//! fingers stay apart.
 
 use glam::Vec3;
 
@@ -7,14 +8,14 @@ use crate::brush::surface_query::Ground;
 use crate::{PageIn, Reach};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Topological;
+pub struct TopologicalBrush;
 
-impl Brush for Topological {
+impl Brush for TopologicalBrush {
     const GRIP: Grip = Grip::Anchor;
 
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
         on.measure_before(dab);
-        Topological
+        TopologicalBrush
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

@@ -1,17 +1,18 @@
-//! Trim: cuts off what stands over a plane set a little below the surface, as a knife does: whatever is deep within the
-//! brush comes to lie on the plane at once. The other way round it fills to a plane set over the surface.
+//! Trim: cuts off what stands over a plane set a little below the surface, as a knife does:
+//! whatever is deep within the brush comes to lie on the plane at once. The other way round it
+//! fills to a plane set over the surface.
 
 use super::dab::{Brush, Change, Dab, Spot};
 use crate::brush::surface_query::{Ground, Plane};
 
 #[derive(Debug, Clone, Copy)]
-pub struct Trim {
+pub struct TrimBrush {
     plane: Plane,
 }
 
-impl Brush for Trim {
+impl Brush for TrimBrush {
     fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
-        Trim { plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength) }
+        TrimBrush { plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {

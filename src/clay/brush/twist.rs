@@ -1,4 +1,5 @@
-//! Twist: turns what was under the brush about the surface normal; to the right a whole radius is one radian.
+//! Twist: turns what was under the brush about the surface normal; to the right a whole radius is
+//! one radian.
 
 use glam::Quat;
 
@@ -7,16 +8,16 @@ use crate::brush::surface_query::Ground;
 use crate::Reach;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Twist {
+pub struct TwistBrush {
     angle: f32,
 }
 
-impl Brush for Twist {
+impl Brush for TwistBrush {
     const GRIP: Grip = Grip::Anchor;
 
     fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
         let drawn = dab.motion.dot(dab.right) / dab.radius;
-        Twist { angle: drawn * dab.strength * dab.sign * dab.hand }
+        TwistBrush { angle: drawn * dab.strength * dab.sign * dab.hand }
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

@@ -1,5 +1,6 @@
-//! How much a brush does to each vertex of a page, computed for all of them at once: loops over plain arrays without a
-//! branch, which the compiler turns into wide instructions, the same bits with any width.
+//! How much a brush does to each vertex of a page, computed for all of them at once: loops over
+//! plain arrays without a branch, which the compiler turns into wide instructions, the same bits
+//! with any width.
 
 use glam::Vec3;
 
@@ -23,8 +24,8 @@ impl Weights {
         work(&mut Weights { weight: [0.0; MOST] })
     }
 
-    /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) * (1 - mask)` within
-    /// `radius2`, else 0. Returns how many lie within.
+    /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) *
+    /// (1 - mask)` within `radius2`, else 0. Returns how many lie within.
     #[inline(always)]
     pub fn sphere(
         &mut self,
@@ -63,10 +64,11 @@ impl Weights {
     }
 }
 
-/// `e^x` for `x <= 0`, with an error below 2e-7 of the result; 0 below -87. No table, no branch, no fused multiply-add:
-/// it runs eight at a time and gives the same bits one at a time.
+/// `e^x` for `x <= 0`, with an error below 2e-7 of the result; 0 below -87. No table, no branch, no
+/// fused multiply-add: it runs eight at a time and gives the same bits one at a time.
 ///
-/// `x = (n + f) ln 2` with `f` in [-1/2, 1/2]; `2^f` by its series to the sixth power, `2^n` by the exponent's bits.
+/// `x = (n + f) ln 2` with `f` in [-1/2, 1/2]; `2^f` by its series to the sixth power, `2^n` by the
+/// exponent's bits.
 #[inline(always)]
 pub fn exp(x: f32) -> f32 {
     // Adding 1.5 * 2^23 rounds to a whole number and leaves it in the low bits.

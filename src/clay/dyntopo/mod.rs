@@ -1,15 +1,17 @@
-//! Topology while sculpting: the triangles within a ball are cut to a wanted size, and the pages about them are built anew.
+//! Topology while sculpting: the triangles within a ball are cut to a wanted size, and the pages
+//! about them are built anew.
 //!
-//! 1. The pages that the ball touches and their neighbours become a [`patch::Patch`], where edges are split, collapsed,
-//!    flipped.
-//! 2. Pages with a changed vertex or triangle are *dirty*. They and their neighbours, whose halos name vertices by their
-//!    place at home, are assembled anew. A page that grew beyond [`PAGE_VERTICES`] is parted; new pages are added at
-//!    the end.
-//! 3. They take the old ones' places. The old ones are the undo step, as of any dab; a page that was not there before was
-//!    empty.
+//! 1. The pages that the ball touches and their neighbours become a [`patch::Patch`], where edges
+//!    are split, collapsed, flipped.
+//! 2. Pages with a changed vertex or triangle are *dirty*. They and their neighbours, whose halos
+//!    name vertices by their place at home, are assembled anew. A page that grew beyond
+//!    [`PAGE_VERTICES`] is parted; new pages are added at the end.
+//! 3. They take the old ones' places. The old ones are the undo step, as of any dab; a page that
+//!    was not there before was empty.
 //!
-//! The cost follows the pages that the ball touches, never the mesh. Vertices and triangles keep the numbers that they
-//! had, so a ring that did not change keeps its order, and its normal its bits.
+//! The cost follows the pages that the ball touches, never the mesh. Vertices and triangles keep
+//! the numbers that they had, so a ring that did not change keeps its order, and its normal its
+//! bits.
 
 mod patch;
 
@@ -20,7 +22,7 @@ use glam::{Vec3, Vec4Swizzles};
 
 use self::patch::Patch;
 pub use self::patch::{Cuts, Detail};
-use super::clay::Mesh;
+use super::clay::Clay;
 use super::page::Page;
 use super::reach::Reach;
 use crate::assembly::splice::remake;
@@ -82,10 +84,14 @@ impl Region {
     }
 }
 
-impl Mesh {
-    /// Cuts the triangles within the ball to the wanted size. Part of the open undo step, if there is one.
+impl Clay {
+    /// Cuts the triangles within the ball to the wanted size. Part of the open undo step, if there
+    /// is one.
     pub fn remodel(&mut self, detail: &Detail) -> Cuts {
-        if self.next_vertex >= LAST_NUMBER || self.next_triangle >= LAST_NUMBER || !(detail.edge > 0.0) {
+        if self.next_vertex >= LAST_NUMBER
+            || self.next_triangle >= LAST_NUMBER
+            || !(detail.edge > 0.0)
+        {
             return Cuts::default();
         }
         let mut inner = Vec::new();
@@ -124,8 +130,9 @@ impl Mesh {
     /// The pages and those that share a triangle with them, ascending.
     fn with_neighbours(&self, of: &[u32]) -> Vec<u32> {
         let own = of.iter().copied();
-        let beyond =
-            of.iter().flat_map(|&i| self.pages[i as usize].topology.neighbours.iter().map(|n| n.page));
+        let beyond = of
+            .iter()
+            .flat_map(|&i| self.pages[i as usize].topology.neighbours.iter().map(|n| n.page));
         let mut all: Vec<u32> = own.chain(beyond).collect();
         all.sort_unstable();
         all.dedup();
@@ -142,8 +149,10 @@ impl Mesh {
             self.next_vertex += 1;
         }
         self.next_triangle = region.patch.next_triangle;
-        let mut dirty: Vec<u32> =
-            (0..region.ids.len()).filter(|&v| region.patch.touched[v]).map(|v| region.page[v]).collect();
+        let mut dirty: Vec<u32> = (0..region.ids.len())
+            .filter(|&v| region.patch.touched[v])
+            .map(|v| region.page[v])
+            .collect();
         dirty.sort_unstable();
         dirty.dedup();
         let anew = self.with_neighbours(&dirty);
@@ -176,7 +185,8 @@ impl Mesh {
         self.assemble_all(&region, &homes, &triangles, &owners);
     }
 
-    /// Who owns what from now on: each page to be built, with its vertices. Pages that grew too large are parted.
+    /// Who owns what from now on: each page to be built, with its vertices. Pages that grew too
+    /// large are parted.
     fn share_out(&mut self, region: &mut Region, anew: &[u32]) -> Vec<(u32, Vec<u32>)> {
         let mut own: BTreeMap<u32, Vec<u32>> = anew.iter().map(|&i| (i, Vec::new())).collect();
         for v in 0..region.ids.len() {
@@ -201,7 +211,8 @@ impl Mesh {
             let start = |c: usize| c * count / parts;
             order::order(&mut items, 0, parts, &start);
             for part in 0..parts {
-                let some: Vec<u32> = items[start(part)..start(part + 1)].iter().map(|i| i.1).collect();
+                let some: Vec<u32> =
+                    items[start(part)..start(part + 1)].iter().map(|i| i.1).collect();
                 let number = if part == 0 { number } else { self.empty_page() };
                 for &v in &some {
                     region.page[v as usize] = number;
@@ -216,8 +227,9 @@ impl Mesh {
         self.pages.push(Arc::new(Page::nothing()));
     }
 
-    /// Makes a cut where the clay is, around it, as it was when the cut was computed: part of the open undo step, if there is one,
-    /// at a cost of the pages around the cut. None, and nothing changed, where it is not so.
+    /// Makes a cut where the clay is, around it, as it was when the cut was computed: part of the
+    /// open undo step, if there is one, at a cost of the pages around the cut. None, and nothing
+    /// changed, where it is not so.
     pub fn graft(&mut self, cut: &Cut) -> Option<Grafted> {
         let old = self.snapshot();
         let made = cut.fits(&old).then(|| remake(&old, cut)).flatten()?;
@@ -239,7 +251,8 @@ impl Mesh {
     fn empty_page(&mut self) -> u32 {
         while let Some(i) = self.empty.pop() {
             if self.pages[i as usize].own() == 0 {
-                // Emptied, filled again by undo, emptied again: then it is noted twice, and must not be given twice.
+                // Emptied, filled again by undo, emptied again: then it is noted twice, and must
+                // not be given twice.
                 self.empty.retain(|&other| other != i);
                 return i;
             }
@@ -296,7 +309,8 @@ impl Mesh {
         let mut built = Vec::with_capacity(owners.len());
         for ((number, own), touching) in owners.iter().zip(&touching) {
             let made = assemble::assemble(&flat, homes, *number, own.clone(), touching);
-            // Too tangled a neighbourhood for one page: the cut is not made. Nothing was changed yet.
+            // Too tangled a neighbourhood for one page: the cut is not made. Nothing was changed
+            // yet.
             let Ok(mut page) = made else { return };
             if let Some(page) = Arc::get_mut(&mut page)
                 && let Some(t) = Arc::get_mut(&mut page.topology)

@@ -1,9 +1,10 @@
-//! A piece of the surface taken out to be cut anew: split, collapse, flip, each only where the surface stays a surface and no
-//! triangle becomes a sliver.
+//! A piece of the surface taken out to be cut anew: split, collapse, flip, each only where the
+//! surface stays a surface and no triangle becomes a sliver.
 //!
-//! Guarantees: what was a manifold stays one, with the same Euler characteristic (collapses keep the link condition of
-//! Dey, Edelsbrunner, Guha and Nekhayev 1999; splits and flips cannot change it). Borders stay where they are. An operation
-//! leaves no angle below [`LEAST`] that is smaller than the smallest about it before. Protected vertices stay.
+//! Guarantees: what was a manifold stays one, with the same Euler characteristic (collapses keep
+//! the link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999; splits and flips cannot change
+//! it). Borders stay where they are. An operation leaves no angle below [`LEAST`] that is smaller
+//! than the smallest about it before. Protected vertices stay.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -43,7 +44,8 @@ pub(super) struct Patch {
 pub struct Detail {
     pub centre: Vec3,
     pub radius: f32,
-    /// The wanted length of edges, mesh units, > 0. Longer than 4/3 of it they are split, shorter than 1/2 collapsed.
+    /// The wanted length of edges, mesh units, > 0. Longer than 4/3 of it they are split, shorter
+    /// than 1/2 collapsed.
     pub edge: f32,
     pub split: bool,
     pub collapse: bool,
@@ -81,8 +83,8 @@ impl Patch {
         (self.points[a as usize] - self.points[b as usize]).length_squared()
     }
 
-    /// The triangles on an edge, if they are two that run along it in opposite ways, and the corner of each that is not on
-    /// it: first that of the triangle with `a` before `b`.
+    /// The triangles on an edge, if they are two that run along it in opposite ways, and the corner
+    /// of each that is not on it: first that of the triangle with `a` before `b`.
     fn wings(&self, a: u32, b: u32) -> Option<[(u32, u32); 2]> {
         let (mut left, mut right) = (None, None);
         for &t in &self.about[a as usize] {
@@ -138,12 +140,16 @@ impl Patch {
     fn split(&mut self, a: u32, b: u32) -> Option<u32> {
         let wings = self.wings(a, b)?;
         let middle = (self.points[a as usize] + self.points[b as usize]) * 0.5;
-        let old =
-            wings.iter().map(|w| self.angle(self.triangles[w.0 as usize])).fold(f32::INFINITY, f32::min);
+        let old = wings
+            .iter()
+            .map(|w| self.angle(self.triangles[w.0 as usize]))
+            .fold(f32::INFINITY, f32::min);
         let at = |v: u32| self.points[v as usize];
         let new = wings
             .iter()
-            .flat_map(|&(_, c)| [smallest_angle(at(a), middle, at(c)), smallest_angle(middle, at(b), at(c))])
+            .flat_map(|&(_, c)| {
+                [smallest_angle(at(a), middle, at(c)), smallest_angle(middle, at(b), at(c))]
+            })
             .fold(f32::INFINITY, f32::min);
         if new < LEAST && new < old {
             return None;
@@ -152,7 +158,8 @@ impl Patch {
         self.points.push(middle);
         self.masks.push((self.masks[a as usize] + self.masks[b as usize]) * 0.5);
         let (p, q) = (self.colours[a as usize], self.colours[b as usize]);
-        self.colours.push(std::array::from_fn(|i| (u16::from(p[i]) + u16::from(q[i])).div_ceil(2) as u8));
+        self.colours
+            .push(std::array::from_fn(|i| (u16::from(p[i]) + u16::from(q[i])).div_ceil(2) as u8));
         self.whole.push(true);
         self.alive.push(true);
         self.touched.push(true);
@@ -177,10 +184,14 @@ impl Patch {
         }
         // The link condition: a and b share the wings' corners and nobody else.
         let near_b = self.neighbours(b);
-        let mut shared: Vec<u32> = self.neighbours(a).into_iter().filter(|v| near_b.contains(v)).collect();
+        let mut shared: Vec<u32> =
+            self.neighbours(a).into_iter().filter(|v| near_b.contains(v)).collect();
         shared.sort_unstable();
         shared.dedup();
-        if shared.len() != 2 || self.about[c as usize].len() <= 3 || self.about[d as usize].len() <= 3 {
+        if shared.len() != 2
+            || self.about[c as usize].len() <= 3
+            || self.about[d as usize].len() <= 3
+        {
             return false;
         }
         let middle = (self.points[a as usize] + self.points[b as usize]) * 0.5;
@@ -192,10 +203,13 @@ impl Patch {
                 if corners.contains(&other) {
                     continue;
                 }
-                let [p, q, r] = corners.map(|k| if k == v { middle } else { self.points[k as usize] });
+                let [p, q, r] =
+                    corners.map(|k| if k == v { middle } else { self.points[k as usize] });
                 let turned = (q - p).cross(r - p).normalize_or_zero();
-                let longest_now =
-                    (p - q).length_squared().max((q - r).length_squared()).max((r - p).length_squared());
+                let longest_now = (p - q)
+                    .length_squared()
+                    .max((q - r).length_squared())
+                    .max((r - p).length_squared());
                 if turned.dot(self.normal(corners)) < 0.3 || longest_now > longest * longest {
                     return false;
                 }
@@ -231,11 +245,13 @@ impl Patch {
         true
     }
 
-    /// Turns the edge between two triangles into their other diagonal, where that makes the smallest angle larger.
+    /// Turns the edge between two triangles into their other diagonal, where that makes the
+    /// smallest angle larger.
     fn flip(&mut self, a: u32, b: u32) -> bool {
         let Some([(left, c), (right, d)]) = self.wings(a, b) else { return false };
         let free = [a, b, c, d].iter().all(|&v| self.whole[v as usize]);
-        if !free || c == d || self.about[a as usize].len() <= 3 || self.about[b as usize].len() <= 3 {
+        if !free || c == d || self.about[a as usize].len() <= 3 || self.about[b as usize].len() <= 3
+        {
             return false;
         }
         if self.neighbours(c).contains(&d) {
@@ -310,7 +326,8 @@ impl Patch {
                     near.sort_unstable();
                     near.dedup();
                     for k in near {
-                        if (self.points[k as usize] - d.centre).length_squared() <= d.radius * d.radius
+                        if (self.points[k as usize] - d.centre).length_squared()
+                            <= d.radius * d.radius
                             && self.whole[k as usize]
                         {
                             offer(&mut heap, self.length2(k, m), k, m);
@@ -321,8 +338,11 @@ impl Patch {
         }
         if d.collapse {
             let under = d.edge * d.edge * 0.25;
-            let mut short: Vec<_> =
-                self.edges(d).into_iter().map(|(a, b)| (self.length2(a, b).to_bits(), a, b)).collect();
+            let mut short: Vec<_> = self
+                .edges(d)
+                .into_iter()
+                .map(|(a, b)| (self.length2(a, b).to_bits(), a, b))
+                .collect();
             short.retain(|e| f32::from_bits(e.0) < under);
             short.sort_unstable();
             for (_, a, b) in short {

@@ -16,7 +16,8 @@ use super::{recording_fail, write_text};
 struct Row {
     t_us: u64,
     device: u16,
-    /// `pen`, `eraser`, `mouse`, `touch`; `hands` for a tracker's frame, whose position is its first palm's x and y and whose buttons count hands.
+    /// `pen`, `eraser`, `mouse`, `touch`; `hands` for a tracker's frame, whose position is its
+    /// first palm's x and y and whose buttons count hands.
     tool: &'static str,
     in_range: bool,
     tip: bool,
@@ -44,7 +45,12 @@ struct Decoded {
     rows: Vec<Row>,
 }
 
-pub(super) fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, json: bool) -> Outcome {
+pub(super) fn decode(
+    path: &Path,
+    csv: Option<&Path>,
+    catalogue: &Catalogue,
+    json: bool,
+) -> Outcome {
     let mut player = Player::open(path, DeviceId(0), catalogue).map_err(recording_fail)?;
     let mut rows = Vec::new();
     player.advance(u64::MAX / 4, &mut |sample| rows.extend(row(&sample)));
@@ -63,8 +69,12 @@ pub(super) fn decode(path: &Path, csv: Option<&Path>, catalogue: &Catalogue, jso
         write_text(out, &text)?;
     }
     let area = info.area_mm;
-    let decoded =
-        Decoded { device: info.name.clone(), area_mm: [area.x, area.y], notes: info.notes.clone(), rows };
+    let decoded = Decoded {
+        device: info.name.clone(),
+        area_mm: [area.x, area.y],
+        notes: info.notes.clone(),
+        rows,
+    };
     if csv.is_some() && !json {
         return Ok(());
     }

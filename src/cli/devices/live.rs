@@ -38,7 +38,8 @@ struct Listed {
 
 pub(super) fn list(config: &DevicesConfig, json: bool) -> Outcome {
     let models = catalogue(config)?;
-    let found = HidApiBus::new().and_then(|mut bus| watch::list(&mut bus, &hid_config(config), &models));
+    let found =
+        HidApiBus::new().and_then(|mut bus| watch::list(&mut bus, &hid_config(config), &models));
     let devices = found.map_err(|e| Fail::Device(format!("pen tablets: {e}")))?;
     let listed = Listed {
         devices,
@@ -123,7 +124,12 @@ fn finish(table: &Table, json: bool) {
     answer(json, &table.summary(), |out| table.draw(out, false));
 }
 
-pub(super) fn record(path: &Path, config: &DevicesConfig, limit_s: Option<f64>, json: bool) -> Outcome {
+pub(super) fn record(
+    path: &Path,
+    config: &DevicesConfig,
+    limit_s: Option<f64>,
+    json: bool,
+) -> Outcome {
     let models = catalogue(config)?;
     let clock = Clock::monotonic();
     let (factory, mut rx) = queue::channel(CHANNEL);
@@ -133,7 +139,8 @@ pub(super) fn record(path: &Path, config: &DevicesConfig, limit_s: Option<f64>, 
     // Created now, so that a path that cannot be written is known before anything is drawn.
     let file = std::fs::OpenOptions::new().write(true).create_new(true).open(path);
     let file = file.map_err(|e| Fail::io(path, &e))?;
-    let mut recorder = Recorder::new(std::io::BufWriter::new(file)).map_err(|e| Fail::io(path, &e))?;
+    let mut recorder =
+        Recorder::new(std::io::BufWriter::new(file)).map_err(|e| Fail::io(path, &e))?;
     let stats = factory.stats();
     let running = watch::start_on(bus, hid_config(config), models, clock.clone(), factory)
         .map_err(|e| Fail::Device(format!("pen tablets: {e}")))?;
@@ -159,7 +166,8 @@ fn write_all<W: Write>(
 ) -> std::io::Result<()> {
     for one in tapped.try_iter() {
         match one {
-            // Interfaces are numbered here and in the file alike: in the order in which they were opened.
+            // Interfaces are numbered here and in the file alike: in the order in which they were
+            // opened.
             Tapped::Opened { who, serial, .. } => {
                 recorder.interface(&who, &serial)?;
             }

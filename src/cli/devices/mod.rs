@@ -103,10 +103,15 @@ fn catalogue(config: &DevicesConfig) -> Result<Catalogue, Fail> {
 }
 
 fn hid_config(config: &DevicesConfig) -> HidConfig {
-    HidConfig { models: config.models.clone(), ignore: config.ignore.clone(), ..HidConfig::default() }
+    HidConfig {
+        models: config.models.clone(),
+        ignore: config.ignore.clone(),
+        ..HidConfig::default()
+    }
 }
 
-/// A recording that cannot be played: an unknown device is 5, a file that is not what it claims is 6.
+/// A recording that cannot be played: an unknown device is 5, a file that is not what it claims is
+/// 6.
 pub(crate) fn recording_fail(e: RecordingError) -> Fail {
     match e {
         RecordingError::Io { path, error } => Fail::io(&path, &error),

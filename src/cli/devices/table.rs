@@ -22,13 +22,14 @@ struct Line {
     samples: u64,
     contacts: u64,
     last: Option<Sample>,
-    /// Count, mean and sum of squared deviations of the intervals without pauses, in microseconds (Welford).
+    /// Count, mean and sum of squared deviations of the intervals without pauses, in microseconds
+    /// (Welford).
     intervals: (u64, f64, f64),
 }
 
 /// One device, in numbers.
 #[derive(Debug, Serialize)]
-pub(super) struct Figures {
+pub(super) struct TickStatistics {
     device: u16,
     kind: &'static str,
     samples: u64,
@@ -42,7 +43,7 @@ pub(super) struct Figures {
 
 #[derive(Debug, Serialize)]
 pub(super) struct Summary {
-    devices: Vec<Figures>,
+    devices: Vec<TickStatistics>,
 }
 
 impl Table {
@@ -72,10 +73,10 @@ impl Table {
         Summary { devices: self.lines.iter().map(|(id, line)| self.figures(*id, line)).collect() }
     }
 
-    fn figures(&self, id: DeviceId, line: &Line) -> Figures {
+    fn figures(&self, id: DeviceId, line: &Line) -> TickStatistics {
         let (n, mean, spread) = line.intervals;
         let lost = self.stats.of(id);
-        Figures {
+        TickStatistics {
             device: id.0,
             kind: match line.last.map(|s| s.body) {
                 Some(Body::Pen(_)) => "pen",
@@ -107,8 +108,13 @@ impl Table {
             match line.last.map(|s| s.body) {
                 Some(Body::Pen(p)) if p.in_range => {
                     let tip = if p.tip { "down" } else { "over" };
-                    let press = p.pressure.map_or(String::new(), |p| format!(" {:.0} %", p * 100.0));
-                    writeln!(out, "{:?} {tip} {:.1}, {:.1} mm{press}", p.tool, p.pos_mm.x, p.pos_mm.y)?;
+                    let press =
+                        p.pressure.map_or(String::new(), |p| format!(" {:.0} %", p * 100.0));
+                    writeln!(
+                        out,
+                        "{:?} {tip} {:.1}, {:.1} mm{press}",
+                        p.tool, p.pos_mm.x, p.pos_mm.y
+                    )?;
                 }
                 Some(Body::Pen(_)) => writeln!(out, "away")?,
                 Some(Body::Hands(h)) => writeln!(out, "{} hands", h.count)?,

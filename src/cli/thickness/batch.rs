@@ -15,7 +15,8 @@ use sculptd_geometry::thickness::report::{escape, fnv, head};
 /// One file's outcome, kept as `NAME.json` in the folder.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Row {
-    /// Changes with the file's bytes, the settings, the limits and the program: an older row with the same key is kept.
+    /// Changes with the file's bytes, the settings, the limits and the program: an older row with
+    /// the same key is kept.
     key: String,
     pub(super) file: String,
     /// The report's file name, in the same folder.
@@ -57,9 +58,11 @@ pub(super) fn run(args: &ThicknessArgs, limits: Limits, json: bool) -> Outcome {
     let reused = rows.iter().filter(|r| r.1).count();
     let rows: Vec<Row> = rows.into_iter().map(|r| r.0).collect();
     let page = folder.join("index.html");
-    write_beside(&page, |w| w.write_all(index(&rows).as_bytes())).map_err(|e| Fail::io(&page, &e))?;
+    write_beside(&page, |w| w.write_all(index(&rows).as_bytes()))
+        .map_err(|e| Fail::io(&page, &e))?;
     if let Some(out) = &args.junit {
-        write_beside(out, |w| w.write_all(junit(&rows).as_bytes())).map_err(|e| Fail::io(out, &e))?;
+        write_beside(out, |w| w.write_all(junit(&rows).as_bytes()))
+            .map_err(|e| Fail::io(out, &e))?;
     }
     answer(json, &All { files: &rows, reused }, |w| {
         for r in &rows {
@@ -81,7 +84,8 @@ fn names(paths: &[PathBuf]) -> Vec<String> {
     paths
         .iter()
         .map(|p| {
-            let stem = p.file_name().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
+            let stem =
+                p.file_name().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
             let mut name = stem.clone();
             let mut n = 2;
             while !taken.insert(name.to_lowercase()) {
@@ -93,7 +97,8 @@ fn names(paths: &[PathBuf]) -> Vec<String> {
         .collect()
 }
 
-/// Checks one file, or takes the row of an earlier run. Only an output that cannot be written ends the batch.
+/// Checks one file, or takes the row of an earlier run. Only an output that cannot be written ends
+/// the batch.
 fn row(
     path: &Path,
     name: &str,
@@ -203,7 +208,8 @@ fn link(name: &str) -> String {
     out
 }
 
-/// JUnit's XML, as build servers read it: a file that fails is a failure, one that cannot be read an error.
+/// JUnit's XML, as build servers read it: a file that fails is a failure, one that cannot be read
+/// an error.
 pub(super) fn junit(rows: &[Row]) -> String {
     let count = |v: &str| rows.iter().filter(|r| r.verdict == v).count();
     let seconds: f64 = rows.iter().map(|r| r.seconds).sum();

@@ -39,7 +39,8 @@ pub struct ThicknessArgs {
     /// Write the outcome as JUnit XML.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Where a batch writes its reports and its page of all; taken up again where it was broken off.
+    /// Where a batch writes its reports and its page of all; taken up again where it was broken
+    /// off.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
 }
@@ -56,7 +57,8 @@ pub struct How {
     /// The cone's full angle, degrees, 0 to 120.
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
     pub opening: f32,
-    /// What each ray's length is corrected by: nothing, the hit face's angle, or the chord's (no bias on bent walls).
+    /// What each ray's length is corrected by: nothing, the hit face's angle, or the chord's (no
+    /// bias on bent walls).
     #[arg(long, value_enum, default_value = "chord")]
     pub correction: CorrectionArg,
     /// keep, range:0.1 to range:0.9, sigma-mean, sigma-median
@@ -74,7 +76,8 @@ pub struct How {
     /// An edge that turns by more than this is sharp.
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0)]
     pub crease: f32,
-    /// Longest edge between two places to measure at; a part of large flat faces gets some by itself, 0 forbids it.
+    /// Longest edge between two places to measure at; a part of large flat faces gets some by
+    /// itself, 0 forbids it.
     #[arg(long, value_name = "MM")]
     pub spacing: Option<f32>,
     /// The file's unit of length.
@@ -151,7 +154,9 @@ fn outliers(text: &str) -> Result<Outliers, String> {
             .and_then(|s| s.parse().ok())
             .filter(|s| (0.1..=0.9).contains(s))
             .map(Outliers::Range)
-            .ok_or_else(|| "expected keep, range:0.1 to range:0.9, sigma-mean or sigma-median".into()),
+            .ok_or_else(|| {
+                "expected keep, range:0.1 to range:0.9, sigma-mean or sigma-median".into()
+            }),
     }
 }
 
@@ -178,7 +183,8 @@ impl LimitArgs {
         let mut limits = Limits::default();
         if let Some(name) = &self.preset {
             let preset = if name.ends_with(".toml") {
-                let text = std::fs::read_to_string(name).map_err(|e| Fail::io(Path::new(name), &e))?;
+                let text =
+                    std::fs::read_to_string(name).map_err(|e| Fail::io(Path::new(name), &e))?;
                 Preset::parse(name, &text).map_err(|e| Fail::Config(e.to_string()))?
             } else {
                 Preset::named(name).map_err(|e| Fail::Usage(e.to_string()))?
@@ -190,8 +196,11 @@ impl LimitArgs {
         limits.fail_above = self.fail_above.or(limits.fail_above);
         limits.neighbour_ratio = self.neighbour_ratio.or(limits.neighbour_ratio);
         limits.minimum_area = self.minimum_area;
-        let given = [limits.fail_below, limits.warn_below, limits.fail_above, limits.neighbour_ratio];
-        if given.into_iter().flatten().any(|l| !(l > 0.0 && l.is_finite())) || !(limits.minimum_area >= 0.0) {
+        let given =
+            [limits.fail_below, limits.warn_below, limits.fail_above, limits.neighbour_ratio];
+        if given.into_iter().flatten().any(|l| !(l > 0.0 && l.is_finite()))
+            || !(limits.minimum_area >= 0.0)
+        {
             return Err(Fail::Usage("limits must be numbers above 0".into()));
         }
         Ok(limits)
@@ -221,7 +230,8 @@ pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
         eprintln!("sculptd: warning: {}: {w}", path.display());
     }
     if let Some(out) = &args.ply {
-        write_beside(out, |w| write_ply(w, &part, &checked.thickness)).map_err(|e| Fail::io(out, &e))?;
+        write_beside(out, |w| write_ply(w, &part, &checked.thickness))
+            .map_err(|e| Fail::io(out, &e))?;
     }
     if let Some(out) = &args.png {
         let colours = checked.thickness.colours(checked.thickness.scale());
@@ -236,20 +246,28 @@ pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
     if let Some(out) = &args.junit {
         let why = judge(&checked.answer).err().map(|e| e.to_string());
         let verdict = if why.is_some() { "fail" } else { "pass" };
-        let row = batch::Row::single(checked.answer.file.clone(), verdict, checked.answer.seconds, why);
-        write_beside(out, |w| w.write_all(batch::junit(&[row]).as_bytes())).map_err(|e| Fail::io(out, &e))?;
+        let row =
+            batch::Row::single(checked.answer.file.clone(), verdict, checked.answer.seconds, why);
+        write_beside(out, |w| w.write_all(batch::junit(&[row]).as_bytes()))
+            .map_err(|e| Fail::io(out, &e))?;
     }
     answer(json, &checked.answer, |w| text(w, &checked.answer));
     judge(&checked.answer)
 }
 
 /// Reads and checks one file.
-fn one(path: &Path, args: &ThicknessArgs, limits: Limits, job: &Job) -> Result<(Part, Checked), Fail> {
+fn one(
+    path: &Path,
+    args: &ThicknessArgs,
+    limits: Limits,
+    job: &Job,
+) -> Result<(Part, Checked), Fail> {
     let (part, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
-    let mut checked = check(&path.display().to_string(), &part, &args.how.settings(), limits, job, seconds)
-        .map_err(|e| Fail::Usage(e.to_string()))?;
+    let mut checked =
+        check(&path.display().to_string(), &part, &args.how.settings(), limits, job, seconds)
+            .map_err(|e| Fail::Usage(e.to_string()))?;
     checked.answer.warnings.splice(0..0, notes);
     Ok((part, checked))
 }
@@ -259,8 +277,8 @@ fn write_report(out: &Path, path: &Path, part: &Part, checked: &Checked) -> Outc
     let bytes = std::fs::read(path).map_err(|e| Fail::io(path, &e))?;
     let program = concat!("sculptd ", env!("CARGO_PKG_VERSION"));
     let origin = report::Origin { hash: report::fnv(&bytes), bytes: bytes.len() as u64, program };
-    let page =
-        report::html(part, checked, origin).map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
+    let page = report::html(part, checked, origin)
+        .map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
     write_beside(out, |w| w.write_all(page.as_bytes())).map_err(|e| Fail::io(out, &e))
 }
 
@@ -273,12 +291,18 @@ fn judge(a: &Answer) -> Outcome {
     if let (Some(limit), Some(min)) = (a.limits.fail_below, a.summary.min)
         && min < limit
     {
-        why.push(format!("the thinnest wall is {}, below the limit of {limit} mm", number(a.summary.min)));
+        why.push(format!(
+            "the thinnest wall is {}, below the limit of {limit} mm",
+            number(a.summary.min)
+        ));
     }
     if let (Some(limit), Some(max)) = (a.limits.fail_above, a.summary.max)
         && max > limit
     {
-        why.push(format!("the thickest wall is {}, above the limit of {limit} mm", number(a.summary.max)));
+        why.push(format!(
+            "the thickest wall is {}, above the limit of {limit} mm",
+            number(a.summary.max)
+        ));
     }
     Err(Fail::Check(format!("{}: {}", a.file, why.join("; "))))
 }
@@ -307,7 +331,11 @@ fn text(w: &mut dyn Write, a: &Answer) -> std::io::Result<()> {
     )?;
     for (name, beyond) in [("below", a.below), ("above", a.above)] {
         if let Some(b) = beyond {
-            writeln!(w, "  {name:9}  {:.3} % of the area is {name} {} mm", b.area_percent, b.limit)?;
+            writeln!(
+                w,
+                "  {name:9}  {:.3} % of the area is {name} {} mm",
+                b.area_percent, b.limit
+            )?;
         }
     }
     if let Some(n) = a.uneven {
@@ -337,7 +365,8 @@ pub fn verdict(v: Verdict) -> &'static str {
     }
 }
 
-/// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none), reason.
+/// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none),
+/// reason.
 fn write_ply(w: &mut dyn Write, part: &Part, t: &Thickness) -> std::io::Result<()> {
     let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
     write!(

@@ -1,4 +1,5 @@
-//! Events for a client that subscribed: what changed since the last look, a line each, until the client has gone.
+//! Events for a client that subscribed: what changed since the last look, a line each, until the
+//! client has gone.
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
@@ -29,7 +30,8 @@ pub(super) fn look(host: &Host) -> Standing {
     [work, history, json!(s.brush), json!(s.figures.losses), journal]
 }
 
-/// Writes what is no longer as `before`, on a thread of its own; it ends with `gone`, or when nobody reads.
+/// Writes what is no longer as `before`, on a thread of its own; it ends with `gone`, or when
+/// nobody reads.
 pub(super) fn start(
     host: &Host,
     mut before: Standing,
@@ -47,7 +49,8 @@ pub(super) fn start(
                 let params = json!({ "event": name, "tick": tick, "now": now[i] });
                 let line = json!({ "jsonrpc": "2.0", "method": "event", "params": params });
                 let Ok(mut out) = out.lock() else { return };
-                // A client that does not read holds up nobody but itself: the write has a time limit.
+                // A client that does not read holds up nobody but itself: the write has a time
+                // limit.
                 if out.write_all(format!("{line}\n").as_bytes()).is_err() {
                     return;
                 }

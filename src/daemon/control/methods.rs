@@ -1,4 +1,5 @@
-//! What can be asked. The names and parameters here are the schema; `methods` lists them to any client.
+//! What can be asked. The names and parameters here are the schema; `methods` lists them to any
+//! client.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,30 +12,39 @@ use super::PROTOCOL;
 use super::protocol::{Code, RpcError};
 use super::server::Host;
 use crate::session::history::{Handle, Want, listing};
-use crate::{Published, boolean_jobs as joiner, startup as rig, trim};
+use crate::{Published, boolean_jobs, startup, trim};
 use sculptd_clay::Snapshot;
 use sculptd_clay::brush::{BrushKind, MaskAction, Picture};
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
-use sculptd_engine::hand::{Choice, ReachBox};
-use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::hand::{MenuItem, ReachBox};
+use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::repair as mend;
+use sculptd_geometry::repair;
 
 /// Every method with its parameters, for `methods` and for the schema test.
 pub const METHODS: &[(&str, &str)] = &[
     ("methods", "{}: this list"),
-    ("status", "{version?}: the loop's figures, the work, the brush, the journal and what stands in its way"),
+    (
+        "status",
+        "{version?}: the loop's figures, the work, the brush, the journal and what stands in its way",
+    ),
     (
         "brush",
         "{kind?, radius?, strength?, negative?, spacing?, ... as in the configuration's [brush]}: another kind comes with its own settings; changes what is named, answers with all",
     ),
     ("brushes", "{}: every brush, what it does, its own numbers"),
-    ("picture", "{path}: loads a picture of heights (PNG, TIFF, EXR) for brushes with the alpha picture"),
-    ("mask", "{action: clear|fill|invert|blur|sharpen|grow|shrink|{cavity: 0..1}}: the whole work's mask"),
+    (
+        "picture",
+        "{path}: loads a picture of heights (PNG, TIFF, EXR) for brushes with the alpha picture",
+    ),
+    (
+        "mask",
+        "{action: clear|fill|invert|blur|sharpen|grow|shrink|{cavity: 0..1}}: the whole work's mask",
+    ),
     (
         "curve",
         "{act: apply|cancel|{delete: n}}: the curve that a pen has laid is drawn, put away, or loses its handle n, from 0",
@@ -129,7 +139,8 @@ impl Default for ThicknessParam {
     }
 }
 
-/// Brings the map that the host keeps up to this state of the clay and tells what it says. The first call measures all.
+/// Brings the map that the host keeps up to this state of the clay and tells what it says. The
+/// first call measures all.
 fn thickness(host: &Host, mesh: &Snapshot, p: &ThicknessParam) -> Result<Value, String> {
     let job = Job::default();
     let mut kept = host.thickness.lock().map_err(|e| e.to_string())?;
@@ -153,7 +164,7 @@ fn thickness(host: &Host, mesh: &Snapshot, p: &ThicknessParam) -> Result<Value, 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JoinParam {
-    operation: Choice,
+    operation: MenuItem,
 }
 
 #[derive(Deserialize)]
@@ -168,7 +179,7 @@ struct BooleanParam {
 /// Runs a join that `progress` and `cancel` know of. One at a time.
 fn watched(
     host: &Host,
-    work: impl FnOnce(&Job) -> Result<joiner::Joined, joiner::JoinError>,
+    work: impl FnOnce(&Job) -> Result<boolean_jobs::Joined, boolean_jobs::JoinError>,
 ) -> Result<Value, RpcError> {
     let failed = |text: String| RpcError::new(Code::Failed, text);
     let job = Arc::new(Job::default());
@@ -192,7 +203,7 @@ fn watched(
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CurveParam {
-    act: DraftAct,
+    act: CurveAction,
 }
 
 #[derive(Deserialize)]
@@ -210,7 +221,8 @@ fn read<T: DeserializeOwned>(params: Value) -> Result<T, RpcError> {
     serde_json::from_value(params).map_err(|e| RpcError::new(Code::BadParams, e.to_string()))
 }
 
-/// Lays the named fields over what is in force; an unknown field or a wrong type is refused by name.
+/// Lays the named fields over what is in force; an unknown field or a wrong type is refused by
+/// name.
 fn merge<T: serde::Serialize + DeserializeOwned>(now: &T, params: Value) -> Result<T, RpcError> {
     let bad = |e: serde_json::Error| RpcError::new(Code::BadParams, e.to_string());
     let mut all = serde_json::to_value(now).map_err(bad)?;
@@ -238,7 +250,8 @@ fn safe(path: &Path) -> Result<(), RpcError> {
 }
 
 fn kept(host: &Host) -> Result<&Handle, RpcError> {
-    let none = || RpcError::new(Code::Failed, "no history is kept: the daemon runs without --session");
+    let none =
+        || RpcError::new(Code::Failed, "no history is kept: the daemon runs without --session");
     host.history.as_ref().ok_or_else(none)
 }
 
@@ -246,7 +259,10 @@ fn kept(host: &Host) -> Result<&Handle, RpcError> {
 pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError> {
     let send = |command: Command| {
         host.commands.try_send(command).map_err(|_| {
-            RpcError::new(Code::Failed, "the loop has more commands waiting than it can take; try again")
+            RpcError::new(
+                Code::Failed,
+                "the loop has more commands waiting than it can take; try again",
+            )
         })
     };
     let failed = |e: String| RpcError::new(Code::Failed, e);
@@ -304,9 +320,10 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "picture" => {
             let p: PathParam = read(params)?;
             safe(&p.path)?;
-            let bytes = std::fs::read(&p.path).map_err(|e| failed(format!("{}: {e}", p.path.display())))?;
-            let picture =
-                Picture::decode(&bytes).map_err(|e| failed(format!("{}: {e}", p.path.display())))?;
+            let bytes =
+                std::fs::read(&p.path).map_err(|e| failed(format!("{}: {e}", p.path.display())))?;
+            let picture = Picture::decode(&bytes)
+                .map_err(|e| failed(format!("{}: {e}", p.path.display())))?;
             let answer = json!({ "width": picture.width, "height": picture.height });
             send(Command::Picture(Arc::new(picture)))?;
             Ok(answer)
@@ -317,7 +334,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         }
         "curve" => {
             let act = read::<CurveParam>(params)?.act;
-            send(Command::Draft(act))?;
+            send(Command::CurveStroke(act))?;
             Ok(json!({ "sent": true, "points": state.draft.points().len() }))
         }
         "brushes" => {
@@ -361,7 +378,8 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "load" => {
             let p: PathParam = read(params)?;
             safe(&p.path)?;
-            let loaded = rig::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
+            let loaded =
+                startup::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
             let vertices = loaded.mesh.vertex_count();
             send(Command::Replace(NewClay::new(Arc::new(loaded.plain), loaded.mesh, false)))?;
             Ok(json!({ "vertices": vertices, "warnings": loaded.warnings }))
@@ -376,7 +394,8 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "take-up" => {
             let p: PathParam = read(params)?;
             safe(&p.path)?;
-            let loaded = rig::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
+            let loaded =
+                startup::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
             let triangles = loaded.plain.triangles.len();
             send(Command::TakeUp(Arc::new(loaded.plain)))?;
             Ok(json!({ "triangles": triangles, "warnings": loaded.warnings }))
@@ -388,7 +407,9 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         }
         "join" => {
             let p: JoinParam = read(params)?;
-            watched(host, |job| joiner::at_rest(&host.published, p.operation, job, &host.commands))
+            watched(host, |job| {
+                boolean_jobs::at_rest(&host.published, p.operation, job, &host.commands)
+            })
         }
         "boolean" => {
             let p: BooleanParam = read(params)?;
@@ -399,18 +420,28 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
                     "expected union, intersection or difference, and a finite place",
                 ));
             }
-            let mut tool = read_mesh(&p.path, &Job::default()).map_err(|e| failed(e.to_string()))?.mesh;
-            mend::weld(&mut tool, 0.0);
+            let mut tool =
+                read_mesh(&p.path, &Job::default()).map_err(|e| failed(e.to_string()))?.mesh;
+            repair::weld(&mut tool, 0.0);
             tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(p.at));
             let given = |_: &Published| Ok(tool.clone());
             watched(host, |job| {
-                joiner::carry_out(&host.published, given, false, p.operation, job, &host.commands)
+                boolean_jobs::carry_out(
+                    &host.published,
+                    given,
+                    false,
+                    p.operation,
+                    job,
+                    &host.commands,
+                )
             })
         }
         "progress" => {
             read::<Nothing>(params)?;
             let under_way = host.joining.lock().map_err(|e| failed(e.to_string()))?;
-            Ok(json!({ "running": under_way.is_some(), "done": under_way.as_ref().map(|j| j.done()) }))
+            Ok(
+                json!({ "running": under_way.is_some(), "done": under_way.as_ref().map(|j| j.done()) }),
+            )
         }
         "cancel" => {
             read::<Nothing>(params)?;
@@ -428,13 +459,16 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let p: LevelParam = read(params)?;
             let finer = matches!(p.to, LevelTo::Up);
             let (command, (level, levels)) =
-                joiner::level(&host.published, finer).map_err(|e| failed(e.to_string()))?;
+                boolean_jobs::level(&host.published, finer).map_err(|e| failed(e.to_string()))?;
             send(command)?;
             Ok(json!({ "level": level, "levels": levels }))
         }
         "reach" => {
-            let reach =
-                if params.is_null() || params == json!({}) { None } else { Some(read::<ReachBox>(params)?) };
+            let reach = if params.is_null() || params == json!({}) {
+                None
+            } else {
+                Some(read::<ReachBox>(params)?)
+            };
             if reach.is_some_and(|r| !r.is_sane()) {
                 return Err(RpcError::new(
                     Code::BadParams,
@@ -451,7 +485,10 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
         "thickness" => {
             let p: ThicknessParam = read(params)?;
             if !(1..=1000).contains(&p.rays) || !p.near.iter().all(|x| x.is_finite()) {
-                return Err(RpcError::new(Code::BadParams, "expected 1 to 1000 rays and a finite place"));
+                return Err(RpcError::new(
+                    Code::BadParams,
+                    "expected 1 to 1000 rays and a finite place",
+                ));
             }
             thickness(host, &state.mesh, &p).map_err(failed)
         }
@@ -460,6 +497,9 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             host.stop.store(true, std::sync::atomic::Ordering::Relaxed);
             Ok(json!({ "stopping": true }))
         }
-        _ => Err(RpcError::new(Code::NoMethod, format!("no method '{method}'; 'methods' lists them"))),
+        _ => Err(RpcError::new(
+            Code::NoMethod,
+            format!("no method '{method}'; 'methods' lists them"),
+        )),
     }
 }

@@ -1,9 +1,12 @@
-//! The control socket: JSON-RPC 2.0, one message a line, on a Unix socket that only its owner may open.
+//! The control socket: JSON-RPC 2.0, one message a line, on a Unix socket that only its owner may
+//! open.
 //!
 //! Laws kept here:
-//! * Nobody from outside holds up the loop: a request becomes a `Command` in a bounded queue, or reads what was published.
+//! * Nobody from outside holds up the loop: a request becomes a `Command` in a bounded queue, or
+//!   reads what was published.
 //! * Everything has a limit: a message's bytes, its nesting, requests a second, clients at a time.
-//! * No TCP. A web page cannot reach a Unix socket; mode 0600 and the peer's user id keep other users out.
+//! * No TCP. A web page cannot reach a Unix socket; mode 0600 and the peer's user id keep other
+//!   users out.
 
 pub mod client;
 pub mod events;
@@ -26,7 +29,8 @@ pub const MAX_RATE: u32 = 200;
 /// The protocol's own version, told by `status` and checked when a client names one.
 pub const PROTOCOL: u32 = 1;
 
-/// Where the daemon listens: `$XDG_RUNTIME_DIR/sculptd.sock`, else a folder of the user's own under the temporary folder.
+/// Where the daemon listens: `$XDG_RUNTIME_DIR/sculptd.sock`, else a folder of the user's own under
+/// the temporary folder.
 pub fn default_path() -> PathBuf {
     match std::env::var_os("XDG_RUNTIME_DIR") {
         Some(dir) if !dir.is_empty() => PathBuf::from(dir).join("sculptd.sock"),

@@ -66,7 +66,10 @@ impl Response {
 /// Reads one line. Size and nesting are looked at before any of it is built in memory.
 pub fn parse(line: &[u8]) -> Result<Request, RpcError> {
     if line.len() > MAX_MESSAGE {
-        return Err(RpcError::new(Code::Invalid, format!("a message may have {MAX_MESSAGE} bytes")));
+        return Err(RpcError::new(
+            Code::Invalid,
+            format!("a message may have {MAX_MESSAGE} bytes"),
+        ));
     }
     if depth(line) > MAX_DEPTH {
         return Err(RpcError::new(Code::Invalid, format!("a message may nest {MAX_DEPTH} deep")));

@@ -134,7 +134,8 @@ pub fn permitted(peer: u32, owner: u32) -> bool {
 }
 
 fn serve(stream: UnixStream, host: &Host) {
-    // A client that sends half a line and sleeps is let go after a minute; one that is merely quiet is not.
+    // A client that sends half a line and sleeps is let go after a minute; one that is merely quiet
+    // is not.
     let _ = stream.set_write_timeout(Some(Duration::from_secs(5)));
     let Ok(out) = stream.try_clone() else { return };
     // Answers and events take turns, a line each.
@@ -162,7 +163,8 @@ fn serve(stream: UnixStream, host: &Host) {
             answer(host, line.trim_ascii())
         };
         // Taken before the client is told: nothing after its answer is missed.
-        let before = (subscribes && !std::mem::replace(&mut subscribed, true)).then(|| events::look(host));
+        let before =
+            (subscribes && !std::mem::replace(&mut subscribed, true)).then(|| events::look(host));
         if let Some(response) = response {
             let Ok(mut bytes) = serde_json::to_vec(&response) else { return };
             bytes.push(b'\n');

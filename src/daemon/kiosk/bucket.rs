@@ -13,8 +13,8 @@ const WHOLE: Duration = Duration::from_secs(300);
 /// How often a sending looks whether the program ends.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// An open place. Keys come from the environment (`AWS_ACCESS_KEY_ID`, `AWS_ENDPOINT`, ...): no secret stands in a settings
-/// file.
+/// An open place. Keys come from the environment (`AWS_ACCESS_KEY_ID`, `AWS_ENDPOINT`, ...): no
+/// secret stands in a settings file.
 #[derive(Debug)]
 pub struct Bucket {
     store: Box<dyn ObjectStore>,
@@ -33,7 +33,8 @@ impl Bucket {
         let (store, prefix): (Box<dyn ObjectStore>, Path) = if url.scheme() == "s3" {
             let prefix = Path::from_url_path(url.path()).map_err(|e| format!("{place}: {e}"))?;
             // The spool tries again by itself, and ends when it is told to.
-            let retry = RetryConfig { max_retries: 0, retry_timeout: WHOLE, ..RetryConfig::default() };
+            let retry =
+                RetryConfig { max_retries: 0, retry_timeout: WHOLE, ..RetryConfig::default() };
             let line = ClientOptions::new().with_connect_timeout(CONNECT).with_timeout(WHOLE);
             let http = std::env::var("AWS_ALLOW_HTTP").is_ok_and(|v| v == "true");
             let s3 = AmazonS3Builder::from_env()

@@ -69,7 +69,8 @@ impl Cycle {
         }
     }
 
-    /// One tick. `touched`: a visitor's pen or hand was felt in it. `done`: the visitor pressed "finished".
+    /// One tick. `touched`: a visitor's pen or hand was felt in it. `done`: the visitor pressed
+    /// "finished".
     pub fn step(&mut self, touched: bool, done: bool) -> Option<Act> {
         self.now += 1;
         if touched {
@@ -99,7 +100,8 @@ impl Cycle {
         Act::End { seconds: ((self.touched - self.begun) as f64 / self.rate_hz) as u64 }
     }
 
-    /// Staff typed `number`. An empty `pin` lets nobody out; after some wrong ones nothing is taken for a while.
+    /// Staff typed `number`. An empty `pin` lets nobody out; after some wrong ones nothing is taken
+    /// for a while.
     pub fn staff(&mut self, number: &str, pin: &str) -> Option<Act> {
         if pin.is_empty() || self.now < self.locked_until {
             return None;

@@ -1,4 +1,5 @@
-//! What plays while nobody is there: a recording cut to its strokes, or the strokes that come with the program.
+//! What plays while nobody is there: a recording cut to its strokes, or the strokes that come with
+//! the program.
 
 use std::path::Path;
 
@@ -67,7 +68,8 @@ impl Film {
         Film::cut((0..=journal.pen.end_us() / STEP_US + 1).map(|i| sample(i * STEP_US)).collect())
     }
 
-    /// Leaves out what comes before the first touch and shortens every pause. The last word of each visit stays.
+    /// Leaves out what comes before the first touch and shortens every pause. The last word of each
+    /// visit stays.
     fn cut(all: Vec<Sample>) -> Film {
         let Some(first) = all.iter().position(touches) else {
             return Film { samples: vec![], next: 0, ends_us: 0 };
@@ -97,7 +99,8 @@ impl Film {
         self.next = 0;
     }
 
-    /// Sends what is due `now_us` after the beginning, which lies at `began_us` on the clock. False when all is over.
+    /// Sends what is due `now_us` after the beginning, which lies at `began_us` on the clock. False
+    /// when all is over.
     pub fn play(&mut self, began_us: u64, now_us: u64, to: &mut Sender) -> bool {
         while let Some(sample) = self.samples.get(self.next).filter(|s| s.t_us <= now_us) {
             to.push(Sample { t_us: began_us + sample.t_us, ..*sample });
@@ -111,7 +114,9 @@ impl Film {
     pub fn stop(&mut self, now_us: u64, to: &mut Sender) {
         let Some(last) = self.next.checked_sub(1).and_then(|i| self.samples.get(i)) else { return };
         let body = match last.body {
-            Body::Pen(pen) => Body::Pen(Pen { in_range: false, tip: false, pressure: Some(0.0), ..pen }),
+            Body::Pen(pen) => {
+                Body::Pen(Pen { in_range: false, tip: false, pressure: Some(0.0), ..pen })
+            }
             Body::Hands(_) => Body::Hands(Default::default()),
             other => other,
         };
@@ -147,7 +152,8 @@ mod tests {
         all.extend((0..600).map(|i| pen(61_000_000 + i * 100_000, false)));
         all.extend((0..100).map(|i| pen(121_000_000 + i * 10_000, true)));
         let film = Film::cut(all);
-        let touched: Vec<u64> = film.samples.iter().filter(|s| touches(s)).map(|s| s.t_us).collect();
+        let touched: Vec<u64> =
+            film.samples.iter().filter(|s| touches(s)).map(|s| s.t_us).collect();
         assert_eq!(touched.len(), 200);
         assert_eq!(touched[0], REST_US);
         // A stroke keeps its own time.

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{write_beside, write_mesh};
 
-/// Names of whole works in `folder`, in order. What a power cut left half-written has another name and is not among them.
+/// Names of whole works in `folder`, in order. What a power cut left half-written has another name
+/// and is not among them.
 pub fn works(folder: &Path) -> std::io::Result<Vec<String>> {
     let mut names: Vec<String> = std::fs::read_dir(folder)?
         .filter_map(|e| e.ok().and_then(|e| e.file_name().into_string().ok()))
@@ -19,14 +20,16 @@ pub fn works(folder: &Path) -> std::io::Result<Vec<String>> {
 /// `work-000123.glb` is number 123.
 pub(super) fn number(name: &str) -> Option<u64> {
     let digits = name.strip_prefix("work-")?.strip_suffix(".glb")?;
-    (digits.len() >= 6 && digits.bytes().all(|b| b.is_ascii_digit())).then(|| digits.parse().ok())?
+    (digits.len() >= 6 && digits.bytes().all(|b| b.is_ascii_digit()))
+        .then(|| digits.parse().ok())?
 }
 
-/// Adds a work and writes the page anew. Each is written beside and renamed; the page is made from the folder, so a cut between
-/// the two is mended by the next.
+/// Adds a work and writes the page anew. Each is written beside and renamed; the page is made from
+/// the folder, so a cut between the two is mended by the next.
 pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     std::fs::create_dir_all(folder)?;
-    // A number is never given twice, even where staff has emptied the folder: a work that was sent would be written over.
+    // A number is never given twice, even where staff has emptied the folder: a work that was sent
+    // would be written over.
     let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
     let next = last.max(super::spool::sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
@@ -54,7 +57,8 @@ pub fn page(folder: &Path) -> std::io::Result<()> {
 
 /// One line a visit: numbers only, nothing of the person.
 pub fn audit(file: &Path, visit: u64, seconds: u64, dabs: u64, kept: bool) -> std::io::Result<()> {
-    let line = serde_json::json!({ "visit": visit, "seconds": seconds, "dabs": dabs, "kept": kept });
+    let line =
+        serde_json::json!({ "visit": visit, "seconds": seconds, "dabs": dabs, "kept": kept });
     let mut out = std::fs::OpenOptions::new().append(true).create(true).open(file)?;
     // In one call: lines of two writers do not mix.
     out.write_all(format!("{line}\n").as_bytes())?;
@@ -71,7 +75,8 @@ mod tests {
         let dir = tempfile::tempdir().expect("a folder");
         let ball = shapes::uv_sphere(1.0, 6, 8);
         keep(dir.path(), &ball).expect("kept");
-        // A hundred cuts in the middle of the second: a part under its hidden name, and a page that was torn.
+        // A hundred cuts in the middle of the second: a part under its hidden name, and a page that
+        // was torn.
         for n in 0..100 {
             #[allow(clippy::disallowed_methods)] // Half a file is what this test is about.
             std::fs::write(dir.path().join(format!(".work-000002.glb.1-{n}.part")), vec![b'g'; n])

@@ -1,4 +1,5 @@
-//! The cycle at work: a thread looks at what the loop publishes, plays the attract recordings, and sends what the cycle asks for.
+//! The cycle at work: a thread looks at what the loop publishes, plays the attract recordings, and
+//! sends what the cycle asks for.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -15,7 +16,7 @@ use super::spool::Spool;
 use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{Sender, SenderFactory};
@@ -39,9 +40,10 @@ pub struct Start {
 }
 
 impl Start {
-    /// The command that puts everything back. Building the pages takes as long as the start is large: not on the tick thread.
+    /// The command that puts everything back. Building the pages takes as long as the start is
+    /// large: not on the tick thread.
     pub fn command(&self) -> Option<Command> {
-        let mesh = Mesh::build(&self.plain, &Job::default()).ok()?;
+        let mesh = Clay::build(&self.plain, &Job::default()).ok()?;
         let clay = NewClay::new(self.plain.clone(), mesh, false);
         Some(Command::Begin(Box::new(Beginning { clay, camera: self.camera, brush: self.brush })))
     }
@@ -112,8 +114,8 @@ pub fn start(
     let catalogue = Catalogue::builtin().map_err(|e| e.to_string())?;
     let mut films = Vec::new();
     for (path, id) in config.attract.iter().zip(ATTRACT_IDS.cycle()) {
-        let film =
-            Film::open(path, DeviceId(id), start.camera.aspect, &catalogue).map_err(|e| e.to_string())?;
+        let film = Film::open(path, DeviceId(id), start.camera.aspect, &catalogue)
+            .map_err(|e| e.to_string())?;
         if film.is_empty() {
             return Err(format!("{}: nothing in it touches the work", path.display()));
         }
@@ -156,8 +158,10 @@ pub fn start(
         share,
     };
     let run = move || keeping.run();
-    let thread =
-        std::thread::Builder::new().name("sculptd-kiosk".into()).spawn(run).map_err(|e| e.to_string())?;
+    let thread = std::thread::Builder::new()
+        .name("sculptd-kiosk".into())
+        .spawn(run)
+        .map_err(|e| e.to_string())?;
     Ok(Keeper { desk, thread })
 }
 

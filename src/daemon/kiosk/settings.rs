@@ -71,15 +71,23 @@ impl KioskConfig {
             }
         }
         if !(1_000..=100_000_000).contains(&self.max_triangles) {
-            return Err(format!("max_triangles = {}: expected 1000 to 100000000", self.max_triangles));
+            return Err(format!(
+                "max_triangles = {}: expected 1000 to 100000000",
+                self.max_triangles
+            ));
         }
         if self.undo_bytes < 1 << 20 {
             return Err(format!("undo_bytes = {}: expected at least 1048576", self.undo_bytes));
         }
         if !(1.0..=1440.0).contains(&self.share_minutes) {
-            return Err(format!("share_minutes = {}: expected a number from 1 to 1440", self.share_minutes));
+            return Err(format!(
+                "share_minutes = {}: expected a number from 1 to 1440",
+                self.share_minutes
+            ));
         }
-        if self.gallery.as_os_str().is_empty() && !(self.gallery_store.is_empty() && self.share.is_empty()) {
+        if self.gallery.as_os_str().is_empty()
+            && !(self.gallery_store.is_empty() && self.share.is_empty())
+        {
             return Err("gallery_store and share need a gallery: works are kept there first".into());
         }
         let digits = self.staff_pin.chars().all(|c| c.is_ascii_digit());
@@ -114,7 +122,8 @@ impl KioskConfig {
             all.push(KioskConfig { language: name.into(), ..self.clone() }.words()?);
         }
         for path in &self.languages {
-            let language = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+            let language =
+                path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
             all.push(KioskConfig { language, ..self.clone() }.words()?);
         }
         let mut seen: Vec<String> = Vec::new();
@@ -152,7 +161,10 @@ mod tests {
 
     #[test]
     fn the_embedded_file_is_the_code_s_own_defaults() {
-        assert_eq!(toml::from_str::<KioskConfig>(DEFAULTS).expect("parses"), KioskConfig::default());
+        assert_eq!(
+            toml::from_str::<KioskConfig>(DEFAULTS).expect("parses"),
+            KioskConfig::default()
+        );
     }
 
     #[test]

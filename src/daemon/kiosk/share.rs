@@ -1,7 +1,9 @@
-//! A visitor's work on the local network, for a while: a link that nobody can guess, and its QR code for the screen.
+//! A visitor's work on the local network, for a while: a link that nobody can guess, and its QR
+//! code for the screen.
 //!
-//! Only what the link names is served, to whoever has it, until it expires; there is no list. `Host` must be an address of
-//! ours or the name in the settings, and a request with an `Origin` is refused: no web page reads works.
+//! Only what the link names is served, to whoever has it, until it expires; there is no list.
+//! `Host` must be an address of ours or the name in the settings, and a request with an `Origin` is
+//! refused: no web page reads works.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -31,7 +33,9 @@ impl Code {
     pub fn of(text: &str) -> Option<Code> {
         let code = qrcodegen::QrCode::encode_text(text, qrcodegen::QrCodeEcc::Medium).ok()?;
         let side = code.size();
-        let dark = (0..side).flat_map(|y| (0..side).map(move |x| (x, y))).map(|(x, y)| code.get_module(x, y));
+        let dark = (0..side)
+            .flat_map(|y| (0..side).map(move |x| (x, y)))
+            .map(|(x, y)| code.get_module(x, y));
         Some(Code { side: side as usize, dark: dark.collect() })
     }
 }
@@ -77,14 +81,21 @@ fn token() -> std::io::Result<String> {
 }
 
 impl Share {
-    /// Listens. `name`: the address that visitors' telephones reach this machine by; empty: the one that is listened on.
-    pub fn start(at: SocketAddr, name: &str, lasts: Duration, clock: Clock) -> std::io::Result<Share> {
+    /// Listens. `name`: the address that visitors' telephones reach this machine by; empty: the one
+    /// that is listened on.
+    pub fn start(
+        at: SocketAddr,
+        name: &str,
+        lasts: Duration,
+        clock: Clock,
+    ) -> std::io::Result<Share> {
         let listener = TcpListener::bind(at)?;
         let at = listener.local_addr()?;
         let name = if name.is_empty() { at.ip().to_string() } else { name.to_owned() };
         let links: Arc<Mutex<BTreeMap<String, Good>>> = Arc::default();
         let closing = Arc::new(AtomicBool::new(false));
-        let (closed, good, known, time) = (closing.clone(), links.clone(), name.clone(), clock.clone());
+        let (closed, good, known, time) =
+            (closing.clone(), links.clone(), name.clone(), clock.clone());
         std::thread::Builder::new().name("sculptd-share".into()).spawn(move || {
             for stream in listener.incoming() {
                 if closed.load(Ordering::SeqCst) {
@@ -110,13 +121,15 @@ impl Share {
             _ => self.name.clone(),
         };
         let url = format!("http://{host}:{}/{token}", self.at.port());
-        let code = Code::of(&url).ok_or_else(|| std::io::Error::other("the link is too long for a code"))?;
+        let code = Code::of(&url)
+            .ok_or_else(|| std::io::Error::other("the link is too long for a code"))?;
         let now = self.clock.now_us();
         let until_us = now + self.lasts.as_micros() as u64;
         if let Ok(mut links) = self.links.lock() {
             links.retain(|_, l| l.until_us > now);
             while links.len() >= LINKS {
-                let Some(oldest) = links.iter().min_by_key(|l| l.1.until_us).map(|l| l.0.clone()) else {
+                let Some(oldest) = links.iter().min_by_key(|l| l.1.until_us).map(|l| l.0.clone())
+                else {
                     break;
                 };
                 links.remove(&oldest);
@@ -130,7 +143,8 @@ impl Share {
 impl Drop for Share {
     fn drop(&mut self) {
         self.closing.store(true, Ordering::SeqCst);
-        let ip = if self.at.ip().is_unspecified() { IpAddr::from([127, 0, 0, 1]) } else { self.at.ip() };
+        let ip =
+            if self.at.ip().is_unspecified() { IpAddr::from([127, 0, 0, 1]) } else { self.at.ip() };
         let _ = TcpStream::connect_timeout(&(ip, self.at.port()).into(), PATIENCE);
     }
 }
@@ -145,7 +159,9 @@ fn serve(
     let Some(head) = read_head(&mut stream)? else { return Ok(()) };
     let (status, kind, body) = match answer(&head, at, name, links, clock) {
         Ok((kind, body)) => ("200 OK", kind, body),
-        Err((status, why)) => (status, "text/plain; charset=utf-8", format!("{why}\n").into_bytes()),
+        Err((status, why)) => {
+            (status, "text/plain; charset=utf-8", format!("{why}\n").into_bytes())
+        }
     };
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: default-src 'none'; style-src 'unsafe-inline'\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n",

@@ -1,10 +1,12 @@
-//! Finished works on their way from the gallery's folder to where they are kept for good: another folder, or a bucket.
+//! Finished works on their way from the gallery's folder to where they are kept for good: another
+//! folder, or a bucket.
 //!
 //! Laws kept here:
-//! * A work is in the local folder before it is offered, and what is offered is a name in `outgoing/`: nothing is lost by a dead
-//!   network, nor by a restart.
-//! * Works arrive in the order in which they were made: the oldest that waits is tried until it is there. So one number says
-//!   which were sent; a work above it without a mark (the program was killed between the two) gets its mark at the start.
+//! * A work is in the local folder before it is offered, and what is offered is a name in
+//!   `outgoing/`: nothing is lost by a dead network, nor by a restart.
+//! * Works arrive in the order in which they were made: the oldest that waits is tried until it is
+//!   there. So one number says which were sent; a work above it without a mark (the program was
+//!   killed between the two) gets its mark at the start.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -59,7 +61,8 @@ pub fn sent(folder: &Path) -> u64 {
     text.trim().parse().unwrap_or(0)
 }
 
-/// Marks the works that have none and were never sent: a kill came between a work and its mark, or nothing was sent so far.
+/// Marks the works that have none and were never sent: a kill came between a work and its mark, or
+/// nothing was sent so far.
 fn catch_up(folder: &Path) -> std::io::Result<()> {
     let (sent, marked) = (sent(folder), waiting(folder));
     for name in super::gallery::works(folder).unwrap_or_default() {
@@ -85,7 +88,9 @@ impl Place {
             return super::bucket::Bucket::open(place).map(|b| Place::Bucket(Box::new(b)));
         }
         if place.contains("://") {
-            return Err(format!("{place}: this build sends to folders only (the feature `s3` is off)"));
+            return Err(format!(
+                "{place}: this build sends to folders only (the feature `s3` is off)"
+            ));
         }
         std::fs::create_dir_all(place).map_err(|e| format!("{place}: {e}"))?;
         Ok(Place::Folder(place.into()))
@@ -98,7 +103,8 @@ impl Place {
         match self {
             Place::Folder(folder) => {
                 // A share that is not mounted is an empty folder above it: it is not made up here.
-                write_beside(&folder.join(name), |out| out.write_all(bytes)).map_err(|e| e.to_string())
+                write_beside(&folder.join(name), |out| out.write_all(bytes))
+                    .map_err(|e| e.to_string())
             }
             #[cfg(feature = "s3")]
             Place::Bucket(bucket) => bucket.put(name, bytes, stop),
@@ -138,7 +144,10 @@ impl Spool {
                             if shown.refused.fetch_add(1, Relaxed) == 0 || wait == LONGEST {
                                 tracing::warn!("gallery: {name}: {e}; kept here and tried again");
                             }
-                            if matches!(calls.recv_timeout(wait), Err(cc::RecvTimeoutError::Disconnected)) {
+                            if matches!(
+                                calls.recv_timeout(wait),
+                                Err(cc::RecvTimeoutError::Disconnected)
+                            ) {
                                 return;
                             }
                             wait = (wait * 2).min(LONGEST);

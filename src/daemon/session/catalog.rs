@@ -108,8 +108,8 @@ pub fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
     Ok(all)
 }
 
-/// The sessions that may go so that `keep` of them stay: the oldest, never one that a daemon writes, never a damaged one
-/// (somebody may still want to save it).
+/// The sessions that may go so that `keep` of them stay: the oldest, never one that a daemon
+/// writes, never a damaged one (somebody may still want to save it).
 pub fn spare(mut all: Vec<Entry>, keep: usize) -> Vec<Entry> {
     let old = all.split_off(keep.min(all.len()));
     old.into_iter().filter(|e| e.damage.is_none() && !in_use(&e.path)).collect()
@@ -121,8 +121,9 @@ pub fn in_use(path: &Path) -> bool {
         .is_ok_and(|f| matches!(f.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))
 }
 
-/// Lets a session's oldest places go until its history takes `most` bytes, and gives the file's room back. What opening needs
-/// stays. `None`: a daemon writes it, or it is within the bound already.
+/// Lets a session's oldest places go until its history takes `most` bytes, and gives the file's
+/// room back. What opening needs stays. `None`: a daemon writes it, or it is within the bound
+/// already.
 ///
 /// # Errors
 /// Where the file cannot be read or written.
@@ -130,7 +131,9 @@ pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     let damaged = |e: std::io::Error| StoreError::Damaged(e.to_string());
     // Held until all is done: no daemon opens it meanwhile.
     let lock = std::fs::File::open(path).map_err(damaged)?;
-    if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock)) || !Store::read(path)?.has_tables() {
+    if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock))
+        || !Store::read(path)?.has_tables()
+    {
         return Ok(None);
     }
     let store = Store::write(path)?;

@@ -1,5 +1,5 @@
-//! A session as a film where there is no GPU: a picture every so many ticks while it is replayed, drawn on the CPU, in
-//! parallel projection.
+//! A session as a film where there is no GPU: a picture every so many ticks while it is replayed,
+//! drawn on the CPU, in parallel projection.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,8 @@ pub struct Film {
 }
 
 impl Film {
-    /// A picture of `size` pixels every `every` ticks, as `frame-00000.png`, ... in `folder`, which is made.
+    /// A picture of `size` pixels every `every` ticks, as `frame-00000.png`, ... in `folder`, which
+    /// is made.
     ///
     /// # Errors
     /// In words, where the folder cannot be made.
@@ -28,7 +29,8 @@ impl Film {
         Ok(Film { folder: folder.into(), every: every.max(1), size, next: 0, frames: 0 })
     }
 
-    /// Takes the pictures that are due: one for every step of time, also where nothing happened, so that time runs evenly.
+    /// Takes the pictures that are due: one for every step of time, also where nothing happened, so
+    /// that time runs evenly.
     ///
     /// # Errors
     /// In words, where a picture cannot be written.
@@ -48,11 +50,13 @@ impl Film {
         let colours: Option<Vec<[u8; 3]>> =
             plain.colours.as_ref().map(|all| all.iter().map(|c| [c[0], c[1], c[2]]).collect());
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
-        let png =
-            draw(&plain, colours.as_deref(), &camera, width, height).png().map_err(|e| e.to_string())?;
+        let png = draw(&plain, colours.as_deref(), &camera, width, height)
+            .png()
+            .map_err(|e| e.to_string())?;
         while self.next <= tick {
             let path = self.folder.join(format!("frame-{:05}.png", self.frames));
-            write_beside(&path, |out| out.write_all(&png)).map_err(|e| format!("{}: {e}", path.display()))?;
+            write_beside(&path, |out| out.write_all(&png))
+                .map_err(|e| format!("{}: {e}", path.display()))?;
             self.frames += 1;
             self.next += self.every;
         }

@@ -23,7 +23,8 @@ pub const TABLES: &str = "
 /// Keys of `meta`.
 pub const META_START: &str = "start_mesh";
 pub const META_SETTINGS: &str = "settings";
-/// Names what lies in memory beside the file, see [`crate::session::shared_memory_log`]; eight bytes.
+/// Names what lies in memory beside the file, see [`crate::session::shared_memory_log`]; eight
+/// bytes.
 pub const META_TAIL: &str = "tail";
 /// The CRC-32 of both, in that order. Files from before it was written go unchecked.
 pub const META_SUMS: &str = "sums";
@@ -93,8 +94,12 @@ mod tests {
 
     #[test]
     fn ticks_come_back_as_they_went_in_and_a_torn_tail_is_an_error_not_a_panic() {
-        let pen =
-            Sample { device: DeviceId(3), t_us: 77, device_t_us: None, body: Body::Pen(Pen::default()) };
+        let pen = Sample {
+            device: DeviceId(3),
+            t_us: 77,
+            device_t_us: None,
+            body: Body::Pen(Pen::default()),
+        };
         let hands = Sample { body: Body::Hands(Hands::default()), ..pen };
         let mut bytes = Vec::new();
         append(&mut bytes, 1, &[pen, hands], &[Command::Undo]);

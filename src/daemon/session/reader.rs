@@ -6,10 +6,11 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
 use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TickInput, ticks};
 use super::{APPLICATION_ID, VERSION};
-use crate::session::shared_memory_log as tail;
+use crate::session::shared_memory_log;
 use sculptd_geometry::TriMesh;
 
-/// Largest start mesh that is read back, bytes; more than the 24 GiB machine's working set makes no session.
+/// Largest start mesh that is read back, bytes; more than the 24 GiB machine's working set makes no
+/// session.
 const MAX_START_BYTES: i64 = 8 << 30;
 
 #[derive(Debug, thiserror::Error)]
@@ -70,13 +71,14 @@ impl std::fmt::Display for Loss {
     }
 }
 
-/// Reads a session and changes nothing in it, also while a daemon writes it. A damaged tail is left out and said in
-/// [`Opened::loss`]; a damaged start is an error.
+/// Reads a session and changes nothing in it, also while a daemon writes it. A damaged tail is left
+/// out and said in [`Opened::loss`]; a damaged start is an error.
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
     read(path, true)
 }
 
-/// `strict`: the checksums of start and settings must hold. Otherwise it is enough that they make sense.
+/// `strict`: the checksums of start and settings must hold. Otherwise it is enough that they make
+/// sense.
 pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
     let name = path.display().to_string();
     if let Err(source) = std::fs::metadata(path) {
@@ -94,10 +96,8 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
     if found != VERSION && found != 0 {
         return Err(OpenError::OtherLayout { path: name, found });
     }
-    let damaged = |what: &'static str, source: Box<dyn std::error::Error + Send + Sync>| OpenError::Damaged {
-        path: name.clone(),
-        what,
-        source,
+    let damaged = |what: &'static str, source: Box<dyn std::error::Error + Send + Sync>| {
+        OpenError::Damaged { path: name.clone(), what, source }
     };
     let meta = |key: &'static str| -> Result<Option<Vec<u8>>, OpenError> {
         db.query_row(
@@ -108,11 +108,13 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
         .optional()
         .map_err(|e| damaged(key, e.into()))
     };
-    let start_bytes = meta(META_START)?.ok_or_else(|| damaged(META_START, "it is missing".into()))?;
+    let start_bytes =
+        meta(META_START)?.ok_or_else(|| damaged(META_START, "it is missing".into()))?;
     let settings_bytes =
         meta(META_SETTINGS)?.ok_or_else(|| damaged(META_SETTINGS, "it is missing".into()))?;
     if strict && let Some(sums) = meta(META_SUMS)? {
-        let sums: (u32, u32) = postcard::from_bytes(&sums).map_err(|e| damaged(META_SUMS, e.into()))?;
+        let sums: (u32, u32) =
+            postcard::from_bytes(&sums).map_err(|e| damaged(META_SUMS, e.into()))?;
         for (what, bytes, sum) in
             [(META_START, &start_bytes, sums.0), (META_SETTINGS, &settings_bytes, sums.1)]
         {
@@ -121,21 +123,26 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
             }
         }
     }
-    let start: TriMesh = postcard::from_bytes(&start_bytes).map_err(|e| damaged(META_START, e.into()))?;
+    let start: TriMesh =
+        postcard::from_bytes(&start_bytes).map_err(|e| damaged(META_START, e.into()))?;
     let count = start.positions.len();
     if start.triangles.iter().flatten().any(|&v| v as usize >= count) {
         return Err(damaged(META_START, "an index is out of range".into()));
     }
-    let settings = postcard::from_bytes(&settings_bytes).map_err(|e| damaged(META_SETTINGS, e.into()))?;
+    let settings =
+        postcard::from_bytes(&settings_bytes).map_err(|e| damaged(META_SETTINGS, e.into()))?;
     let (mut input, cause) = read_log(&db);
     if cause.is_none()
         && let Ok(Some(tail)) = meta(META_TAIL)
         && let Ok(name) = tail.try_into().map(u64::from_le_bytes)
     {
-        tail::lengthen(&mut input, &tail::read(name));
+        shared_memory_log::lengthen(&mut input, &shared_memory_log::read(name));
     }
-    let loss =
-        cause.map(|cause| Loss { kept: input.last().map_or(0, |t| t.tick), last: last_named(&db), cause });
+    let loss = cause.map(|cause| Loss {
+        kept: input.last().map_or(0, |t| t.tick),
+        last: last_named(&db),
+        cause,
+    });
     Ok(Opened { path: path.into(), start, settings, input, loss })
 }
 
@@ -145,7 +152,8 @@ fn last_named(db: &Connection) -> Option<u64> {
     for order in ["ASC", "DESC"] {
         // Row by row and from both ends: a damaged page in the middle hides neither end.
         let mut scan = || -> rusqlite::Result<()> {
-            let mut query = db.prepare(&format!("SELECT last_tick FROM log ORDER BY id {order}"))?;
+            let mut query =
+                db.prepare(&format!("SELECT last_tick FROM log ORDER BY id {order}"))?;
             let mut rows = query.query([])?;
             while let Some(row) = rows.next()? {
                 if let Ok(tick) = row.get::<_, i64>(0) {
@@ -159,11 +167,13 @@ fn last_named(db: &Connection) -> Option<u64> {
     last
 }
 
-/// Every group up to the first that is missing, torn, or out of order, and what is wrong with that one.
+/// Every group up to the first that is missing, torn, or out of order, and what is wrong with that
+/// one.
 fn read_log(db: &Connection) -> (Vec<TickInput>, Option<String>) {
     let mut input: Vec<TickInput> = Vec::new();
     let mut read = || -> Result<Option<String>, rusqlite::Error> {
-        let mut query = db.prepare("SELECT id, first_tick, last_tick, crc, data FROM log ORDER BY id")?;
+        let mut query =
+            db.prepare("SELECT id, first_tick, last_tick, crc, data FROM log ORDER BY id")?;
         let mut rows = query.query([])?;
         let mut expected = 1i64;
         while let Some(row) = rows.next()? {

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use super::history::Store;
 use super::history::keeper::assemble;
 use super::reader::Opened;
-use sculptd_clay::{BuildError, Mesh, Snapshot, Workers};
+use sculptd_clay::{BuildError, Clay, Snapshot, Workers};
 use sculptd_engine::command::{Command, Fetched, Jump};
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
@@ -16,15 +16,17 @@ pub struct Replayed {
     pub world: World,
     /// The last tick that was stepped.
     pub ticks: u64,
-    /// Jumps within the history that were not made: what they name is not in the file, or the work was another.
+    /// Jumps within the history that were not made: what they name is not in the file, or the work
+    /// was another.
     pub jumps_missed: u64,
 }
 
 /// Ticks without any input over which a resting pen is followed: ten minutes at 120 a second.
 const RESTING: u64 = 72_000;
 
-/// Steps every tick from the first to the last with input (at most `until`), and on until nothing of a stroke waits. Ticks
-/// without input matter only while a stroke waits for its budget; over the others the world is at rest.
+/// Steps every tick from the first to the last with input (at most `until`), and on until nothing
+/// of a stroke waits. Ticks without input matter only while a stroke waits for its budget; over the
+/// others the world is at rest.
 pub fn replay(
     opened: &Opened,
     until: Option<u64>,
@@ -42,9 +44,10 @@ pub fn replay_seen(
     job: &Job,
     see: &mut dyn FnMut(u64, &mut World),
 ) -> Result<Replayed, BuildError> {
-    let mut mesh = Mesh::build(&opened.start, job)?;
+    let mut mesh = Clay::build(&opened.start, job)?;
     let s = &opened.settings;
-    let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
+    let options =
+        WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
     let base = mesh.snapshot();
     let world = World::new(mesh, s.camera, s.brush, workers, options);
     let store = Store::read(&opened.path).ok();
@@ -64,7 +67,12 @@ pub struct Run<'a> {
 
 impl Run<'_> {
     /// Goes on from a world with the input after its tick.
-    pub fn from(&self, mut world: World, job: &Job, see: &mut dyn FnMut(u64, &mut World)) -> Replayed {
+    pub fn from(
+        &self,
+        mut world: World,
+        job: &Job,
+        see: &mut dyn FnMut(u64, &mut World),
+    ) -> Replayed {
         see(world.tick(), &mut world);
         let until = self.until.unwrap_or(u64::MAX);
         let mut tick = world.tick();
@@ -77,7 +85,8 @@ impl Run<'_> {
             if input.tick > until || job.cancelled() {
                 break;
             }
-            // The ticks between two inputs: stepped while the last one left work, or while a hand may let go by time.
+            // The ticks between two inputs: stepped while the last one left work, or while a hand
+            // may let go by time.
             while busy && tick + 1 < input.tick {
                 tick += 1;
                 let report = *world.step(tick, &[], &[]);
@@ -99,7 +108,8 @@ impl Run<'_> {
             see(tick, &mut world);
             job.progress(i as f32 / total);
         }
-        // A pen that rests at the end goes on resting as long as was asked for, and no longer than anybody rests.
+        // A pen that rests at the end goes on resting as long as was asked for, and no longer than
+        // anybody rests.
         let rested = if until == u64::MAX { tick } else { until.min(tick.saturating_add(RESTING)) };
         while tick < until && (waits || busy && tick < rested) {
             tick += 1;
@@ -110,10 +120,11 @@ impl Run<'_> {
         Replayed { world, ticks: tick, jumps_missed }
     }
 
-    /// Gives a jump what it names; where that is not to be had, the world takes no notice of it, and it is counted.
+    /// Gives a jump what it names; where that is not to be had, the world takes no notice of it,
+    /// and it is counted.
     fn fetch(&self, jump: &Jump) {
         let Some(store) = self.store else { return };
-        let lineage = jump.lineage;
+        let object_id = jump.object_id;
         let fetched = match &jump.other {
             Some(other) => assemble(store, self.base, &other.rest, &jump.pages, other.levels)
                 .map(|mesh| Fetched::Work(Box::new(mesh))),
@@ -121,9 +132,10 @@ impl Run<'_> {
                 .pages
                 .iter()
                 .map(|&(i, revision)| {
-                    let near = (lineage == self.base.lineage() && (i as usize) < self.base.page_count())
-                        .then(|| (self.base.page(i), 0));
-                    Ok((i, store.page((lineage, i, revision), near)?.0))
+                    let near = (object_id == self.base.object_id()
+                        && (i as usize) < self.base.page_count())
+                    .then(|| (self.base.page(i), 0));
+                    Ok((i, store.page((object_id, i, revision), near)?.0))
                 })
                 .collect::<Result<Vec<_>, _>>()
                 .map(Fetched::Pages),

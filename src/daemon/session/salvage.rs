@@ -1,4 +1,5 @@
-//! What can be read of a damaged session, saved into a new file beside it. The damaged one is not touched.
+//! What can be read of a damaged session, saved into a new file beside it. The damaged one is not
+//! touched.
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +42,12 @@ pub struct Saved {
 
 impl std::fmt::Display for Saved {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: damaged; what can be read is in {}", self.old.display(), self.path.display())?;
+        write!(
+            f,
+            "{}: damaged; what can be read is in {}",
+            self.old.display(),
+            self.path.display()
+        )?;
         if let Some(loss) = &self.loss {
             write!(f, ": {loss}")?;
         }
@@ -52,7 +58,8 @@ impl std::fmt::Display for Saved {
     }
 }
 
-/// Saves what can be read of `path` as `NAME.saved.sculpt` (or `NAME.saved-2.sculpt`, ...) in the same folder.
+/// Saves what can be read of `path` as `NAME.saved.sculpt` (or `NAME.saved-2.sculpt`, ...) in the
+/// same folder.
 pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
     let (opened, start_changed) = match open(path) {
         Ok(Opened { loss: None, .. }) => {
@@ -63,7 +70,8 @@ pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
         Err(e) => return Err(e.into()),
     };
     // A start that cannot be built is no start.
-    if let Err(e) = sculptd_clay::Mesh::build(&opened.start, &sculptd_geometry::job::Job::default()) {
+    if let Err(e) = sculptd_clay::Clay::build(&opened.start, &sculptd_geometry::job::Job::default())
+    {
         return Err(OpenError::Damaged {
             path: path.display().to_string(),
             what: "start_mesh",
@@ -83,7 +91,11 @@ pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
 fn create_beside(path: &Path, opened: &Opened) -> Result<PathBuf, SalvageError> {
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     for n in 1..=NAMES {
-        let name = if n == 1 { format!("{stem}.saved.sculpt") } else { format!("{stem}.saved-{n}.sculpt") };
+        let name = if n == 1 {
+            format!("{stem}.saved.sculpt")
+        } else {
+            format!("{stem}.saved-{n}.sculpt")
+        };
         let new = path.with_file_name(name);
         match writer::create(&new, &opened.start, &opened.settings) {
             Ok((writer, thread)) => {
@@ -103,8 +115,9 @@ fn copy(new: &Path, opened: &Opened) -> rusqlite::Result<()> {
     db.pragma_update(None, "synchronous", "full")?;
     let all = db.transaction()?;
     {
-        let mut put =
-            all.prepare("INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)")?;
+        let mut put = all.prepare(
+            "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
+        )?;
         let mut data = Vec::new();
         for group in opened.input.chunks(GROUP) {
             data.clear();

@@ -1,9 +1,10 @@
 //! The newest input in memory that outlives the process: what a kill finds on its way to the disk.
 //!
-//! A write to a file may wait for the disk, however little it waits for: a file system that brings its own journal to the disk
-//! holds up everybody for tenths of a second on a loaded machine. So every tick's input is first put into a file that lies in
-//! memory (`/dev/shm`), which is a copy and never a wait, and is let go once the session file has it. Whoever opens the session
-//! reads both. A power cut loses the tail; the session file alone is then what there is.
+//! A write to a file may wait for the disk, however little it waits for: a file system that brings
+//! its own journal to the disk holds up everybody for tenths of a second on a loaded machine. So
+//! every tick's input is first put into a file that lies in memory (`/dev/shm`), which is a copy
+//! and never a wait, and is let go once the session file has it. Whoever opens the session reads
+//! both. A power cut loses the tail; the session file alone is then what there is.
 //!
 //! Where there is no such place, input waits for the session file alone.
 
@@ -23,7 +24,8 @@ const PLACE: &str = "/dev/shm";
 const PART: u64 = 256 << 10;
 /// The disk takes nothing: so much is kept at most.
 const MOST: u64 = 64 << 20;
-/// First tick, last tick, the last tick of the entry before, bytes, checksum of all these and the bytes.
+/// First tick, last tick, the last tick of the entry before, bytes, checksum of all these and the
+/// bytes.
 const HEAD: usize = 3 * 8 + 4 + 4;
 
 /// One entry as it is read back.
@@ -44,7 +46,7 @@ struct Part {
 
 /// The writing end: two files, taken in turns.
 #[derive(Debug)]
-pub struct Tail {
+pub struct SharedMemoryLog {
     name: u64,
     parts: [Part; 2],
     now: usize,
@@ -72,9 +74,9 @@ fn sum(head: &[u8], data: &[u8]) -> u32 {
     crc.finalize()
 }
 
-impl Tail {
+impl SharedMemoryLog {
     /// `after`: the last tick of the session so far. `None` where nothing can lie in memory.
-    pub fn create(name: u64, after: u64) -> Option<Tail> {
+    pub fn create(name: u64, after: u64) -> Option<SharedMemoryLog> {
         let part = |n: usize| {
             let mut options = OpenOptions::new();
             options.write(true).create_new(true);
@@ -87,7 +89,7 @@ impl Tail {
             remove(name);
         }
         let (a, b) = made?;
-        Some(Tail { name, parts: [a, b], now: 0, after, committed: Arc::default() })
+        Some(SharedMemoryLog { name, parts: [a, b], now: 0, after, committed: Arc::default() })
     }
 
     /// Puts the input of some ticks. What does not fit is for the session file alone.
@@ -144,8 +146,10 @@ pub fn read(name: u64) -> Vec<Entry> {
 }
 
 fn entries(mut bytes: &[u8], all: &mut Vec<Entry>) {
-    let u64_at = |b: &[u8], at: usize| b[at..at + 8].iter().rev().fold(0u64, |n, x| n << 8 | u64::from(*x));
-    let u32_at = |b: &[u8], at: usize| b[at..at + 4].iter().rev().fold(0u32, |n, x| n << 8 | u32::from(*x));
+    let u64_at =
+        |b: &[u8], at: usize| b[at..at + 8].iter().rev().fold(0u64, |n, x| n << 8 | u64::from(*x));
+    let u32_at =
+        |b: &[u8], at: usize| b[at..at + 4].iter().rev().fold(0u32, |n, x| n << 8 | u32::from(*x));
     while bytes.len() >= HEAD {
         let (head, rest) = bytes.split_at(HEAD);
         let length = u32_at(head, 24) as usize;
@@ -204,8 +208,8 @@ mod tests {
     #[test]
     fn what_was_put_is_read_back_in_order_and_a_hole_ends_it() {
         let name = new_name();
-        let Some(mut tail) = Tail::create(name, 5) else { return };
-        let put = |tail: &mut Tail, tick: u64| {
+        let Some(mut tail) = SharedMemoryLog::create(name, 5) else { return };
+        let put = |tail: &mut SharedMemoryLog, tick: u64| {
             let mut data = Vec::new();
             append(&mut data, tick, &[], &[sculptd_engine::command::Command::Undo]);
             tail.put(tick, tick, &data);

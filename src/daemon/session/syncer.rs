@@ -1,9 +1,9 @@
 //! Bringing the log to the disk itself, on a thread of its own.
 //!
-//! A group that was committed is in the system's hands: a killed process loses nothing of it. That the disk has it too takes as
-//! long as the disk likes, which on a loaded machine is longer than a group; so nobody waits for it but this thread. It also
-//! takes the log over into the database, with SQLite's own syncs before and after, so a power cut never leaves an unreadable
-//! file.
+//! A group that was committed is in the system's hands: a killed process loses nothing of it. That
+//! the disk has it too takes as long as the disk likes, which on a loaded machine is longer than a
+//! group; so nobody waits for it but this thread. It also takes the log over into the database,
+//! with SQLite's own syncs before and after, so a power cut never leaves an unreadable file.
 
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
@@ -50,7 +50,8 @@ impl Syncer {
                 let mut result = sync(&mut log, &path);
                 if since > SYNCS && result.as_ref().is_ok_and(|bytes| *bytes > LOG_BYTES) {
                     since = 0;
-                    result = take_over(&mut own, &database).map(|()| 0).map_err(std::io::Error::other);
+                    result =
+                        take_over(&mut own, &database).map(|()| 0).map_err(std::io::Error::other);
                 }
                 if result.is_ok() {
                     written.fetch_max(tick, Relaxed);
@@ -82,7 +83,8 @@ impl Syncer {
     }
 }
 
-/// Brings the log to the disk; its bytes. The file is opened once: SQLite keeps the same one as long as it is connected.
+/// Brings the log to the disk; its bytes. The file is opened once: SQLite keeps the same one as
+/// long as it is connected.
 fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<u64> {
     if log.is_none() {
         *log = Some(OpenOptions::new().read(true).write(true).open(path)?);

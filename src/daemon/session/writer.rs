@@ -1,7 +1,8 @@
-//! Writing a session: the tick thread fills recycled buffers, a thread of its own turns them into rows.
+//! Writing a session: the tick thread fills recycled buffers, a thread of its own turns them into
+//! rows.
 //!
-//! A full disk does not stop the sculpting: groups are kept in memory up to [`KEPT_BYTES`], the fault is shown, and they are
-//! written as soon as there is room.
+//! A full disk does not stop the sculpting: groups are kept in memory up to [`KEPT_BYTES`], the
+//! fault is shown, and they are written as soon as there is room.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
@@ -13,19 +14,22 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 use rusqlite::{Connection, OptionalExtension};
 
-use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TABLES, TickInput, append};
+use super::format::{
+    META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TABLES, TickInput, append,
+};
 use super::history::{Handle, keeper::Keeper};
 use super::syncer::Syncer;
 use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::live::{Journal, raise_priority_below};
-use crate::session::shared_memory_log as tail;
-use crate::session::shared_memory_log::Tail;
+use crate::session::shared_memory_log;
+use crate::session::shared_memory_log::SharedMemoryLog;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 use sculptd_geometry::TriMesh;
 
-/// Buffers between the tick thread and the writer: at 1,000 ticks a second a quarter of a second of arrears.
+/// Buffers between the tick thread and the writer: at 1,000 ticks a second a quarter of a second of
+/// arrears.
 const BUFFERS: usize = 256;
 /// First size of a buffer; a tick of a few pens fits.
 const BUFFER_BYTES: usize = 4096;
@@ -56,10 +60,11 @@ pub type Fault = Arc<Mutex<Option<String>>>;
 pub struct SessionWriter {
     full: cc::Sender<Message>,
     empty: cc::Receiver<Vec<u8>>,
-    /// Ticks whose input will never be in the file. After the first of them nothing more is handed over: a log with a hole
-    /// cannot be replayed beyond it.
+    /// Ticks whose input will never be in the file. After the first of them nothing more is handed
+    /// over: a log with a hole cannot be replayed beyond it.
     lost: Arc<AtomicU64>,
-    /// Ticks that found no free buffer, while the disk is slow; handed over with the next that finds one.
+    /// Ticks that found no free buffer, while the disk is slow; handed over with the next that
+    /// finds one.
     carry: Vec<u8>,
     carry_ticks: (u64, u64),
     history: Option<Handle>,
@@ -85,11 +90,14 @@ pub struct WriterThread {
 }
 
 impl WriterThread {
-    /// Waits until all that was handed over is written. Call it after the loop, and with it the [`SessionWriter`], has ended.
+    /// Waits until all that was handed over is written. Call it after the loop, and with it the
+    /// [`SessionWriter`], has ended.
     pub fn finish(self) -> Option<String> {
         let history = self.history.and_then(Keeper::finish);
         let _ = self.thread.join();
-        self.health.trouble().or_else(|| history.map(|why| format!("the history is not whole: {why}")))
+        self.health
+            .trouble()
+            .or_else(|| history.map(|why| format!("the history is not whole: {why}")))
     }
 }
 
@@ -156,7 +164,8 @@ pub fn create(
     start_thread(db, lock, path)
 }
 
-/// Keeps a second daemon from writing the same session. Given back when the file is closed, also by a kill.
+/// Keeps a second daemon from writing the same session. Given back when the file is closed, also by
+/// a kill.
 fn lock(path: &Path) -> Result<File, CreateError> {
     let name = || path.display().to_string();
     let file = File::open(path).map_err(|source| CreateError::Io { path: name(), source })?;
@@ -176,7 +185,8 @@ pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError>
     start_thread(db, lock, path)
 }
 
-/// Write-ahead log, every group synced by [`Syncer`]: a kill costs what was not committed, a power cut the last group at most.
+/// Write-ahead log, every group synced by [`Syncer`]: a kill costs what was not committed, a power
+/// cut the last group at most.
 fn tune(db: &Connection) -> rusqlite::Result<()> {
     db.busy_timeout(Duration::from_secs(2))?;
     db.pragma_update(None, "journal_mode", "wal")?;
@@ -200,7 +210,7 @@ fn start_thread(
     let (log_end, tail) = begin_tail(&db).map_err(sql)?;
     let committed = tail.as_ref().map(|t| t.committed.clone()).unwrap_or_default();
     committed.store(log_end, Relaxed);
-    let tail_name = tail.as_ref().map(Tail::name);
+    let tail_name = tail.as_ref().map(SharedMemoryLog::name);
     let syncer = Syncer::start(path, health.written.clone())
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     // From here on the syncer does it, and no commit waits for a disk.
@@ -309,16 +319,18 @@ struct Group {
     data: Vec<u8>,
 }
 
-/// Gives the session a tail of a new name; what the old one still holds is written first. Also the last tick of the log.
-fn begin_tail(db: &Connection) -> rusqlite::Result<(u64, Option<Tail>)> {
-    let old: Option<Vec<u8>> =
-        db.query_row("SELECT value FROM meta WHERE key = ?1", [META_TAIL], |r| r.get(0)).optional()?;
+/// Gives the session a tail of a new name; what the old one still holds is written first. Also the
+/// last tick of the log.
+fn begin_tail(db: &Connection) -> rusqlite::Result<(u64, Option<SharedMemoryLog>)> {
+    let old: Option<Vec<u8>> = db
+        .query_row("SELECT value FROM meta WHERE key = ?1", [META_TAIL], |r| r.get(0))
+        .optional()?;
     let last: Option<i64> = db.query_row("SELECT max(last_tick) FROM log", [], |r| r.get(0))?;
     let mut last = last.map_or(0, |l| l as u64);
     let old = old.and_then(|o| o.try_into().ok()).map(u64::from_le_bytes);
     if let Some(name) = old {
         let mut input = vec![TickInput { tick: last, samples: Vec::new(), commands: Vec::new() }];
-        tail::lengthen(&mut input, &tail::read(name));
+        shared_memory_log::lengthen(&mut input, &shared_memory_log::read(name));
         let mut data = Vec::new();
         for t in &input[1..] {
             append(&mut data, t.tick, &t.samples, &t.commands);
@@ -326,24 +338,31 @@ fn begin_tail(db: &Connection) -> rusqlite::Result<(u64, Option<Tail>)> {
         if let [_, first, ..] = input.as_slice() {
             let end = input.last().map_or(last, |t| t.tick);
             let row = (first.tick as i64, end as i64, crc32fast::hash(&data), &data);
-            db.execute("INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)", row)?;
+            db.execute(
+                "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
+                row,
+            )?;
             last = end;
         }
     }
-    let name = tail::new_name();
-    let made = Tail::create(name, last);
+    let name = shared_memory_log::new_name();
+    let made = SharedMemoryLog::create(name, last);
     db.execute(
         "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)",
         (META_TAIL, name.to_le_bytes().as_slice()),
     )?;
     if let Some(old) = old {
-        tail::remove(old);
+        shared_memory_log::remove(old);
     }
     Ok((last, made))
 }
 
 /// Copies what comes into the tail and hands it on to whoever writes it.
-fn copy_on(mut tail: Option<Tail>, inbox: &cc::Receiver<Message>, onward: &cc::Sender<Message>) {
+fn copy_on(
+    mut tail: Option<SharedMemoryLog>,
+    inbox: &cc::Receiver<Message>,
+    onward: &cc::Sender<Message>,
+) {
     raise_priority_below();
     for message in inbox {
         let Message::Ticks(first, last, data) = &message;
@@ -405,7 +424,8 @@ impl Writing {
                 }
                 let _ = self.recycle.try_send(bytes);
             }
-            if ended || self.clock.now_us() >= due_us || (open.is_none() && !self.groups.is_empty()) {
+            if ended || self.clock.now_us() >= due_us || (open.is_none() && !self.groups.is_empty())
+            {
                 self.groups.extend(open.take());
                 due_us = u64::MAX;
                 self.flush();
@@ -423,7 +443,7 @@ impl Writing {
         let _ = self.db.pragma_update(None, "synchronous", "full");
         let why = self.syncer.take().and_then(Syncer::finish);
         if let Some(name) = self.tail.filter(|_| self.groups.is_empty() && !self.closed) {
-            tail::remove(name);
+            shared_memory_log::remove(name);
         }
         let Some(why) = why else { return };
         if let Ok(mut fault) = self.health.fault.lock() {
@@ -447,7 +467,8 @@ impl Writing {
                 unsynced.map(|e| format!("the session file cannot be synced: {e}"))
             }
             Err(e) if kept > KEPT_BYTES => {
-                // What waits is written when there is room; nothing after it is, for a log with a hole cannot be replayed.
+                // What waits is written when there is room; nothing after it is, for a log with a
+                // hole cannot be replayed.
                 self.closed = true;
                 Some(format!(
                     "the session file takes nothing and {kept} bytes wait: input is being lost ({e})"

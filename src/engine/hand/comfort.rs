@@ -1,8 +1,11 @@
-//! Arms get tired: a person's own reach is laid over the work, and how far the arms are spent is followed.
+//! Arms get tired: a person's own reach is laid over the work, and how far the arms are spent is
+//! followed.
 //!
-//! * [`Reach`]: five seconds of moving the hands about, standing or seated, say where a person can work without stretching.
-//! * [`Fatigue`]: consumed endurance (Hincapié-Ramos, Guo, Moghadasian and Irani, CHI 2014): the torque at the shoulder as a
-//!   share of the strongest, and how long it can be held (Rohmert 1960). A hand with its elbow resting costs nothing.
+//! * [`Reach`]: five seconds of moving the hands about, standing or seated, say where a person can
+//!   work without stretching.
+//! * [`Fatigue`]: consumed endurance (Hincapié-Ramos, Guo, Moghadasian and Irani, CHI 2014): the
+//!   torque at the shoulder as a share of the strongest, and how long it can be held (Rohmert
+//!   1960). A hand with its elbow resting costs nothing.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -33,9 +36,13 @@ impl ReachBox {
             && (30.0..=1000.0).contains(&self.half_mm)
     }
 
-    /// The same reach lower down, where elbows rest: the plane of work a hand's breadth over the table.
+    /// The same reach lower down, where elbows rest: the plane of work a hand's breadth over the
+    /// table.
     pub fn lowered(self) -> Self {
-        ReachBox { middle_mm: Vec3::new(self.middle_mm.x, self.half_mm.max(120.0), self.middle_mm.z), ..self }
+        ReachBox {
+            middle_mm: Vec3::new(self.middle_mm.x, self.half_mm.max(120.0), self.middle_mm.z),
+            ..self
+        }
     }
 }
 
@@ -92,15 +99,18 @@ impl Reach {
         let [x, y, z] = [ends(0), ends(1), ends(2)];
         let middle_mm = Vec3::new(x[0] + x[1], y[0] + y[1], z[0] + z[1]) * 0.5;
         let widths = Vec3::new(x[1] - x[0], y[1] - y[0], z[1] - z[0]) * 0.5;
-        // A person who hardly moved gets a small space, but not one in which a tremble crosses the work.
+        // A person who hardly moved gets a small space, but not one in which a tremble crosses the
+        // work.
         let half_mm = ((widths.x + widths.y + widths.z) / 3.0).clamp(60.0, 400.0);
         Some(ReachBox { middle_mm, half_mm })
     }
 }
 
-/// Mass of an arm, kg, and where its centre is, as shares of the way from shoulder to hand: an average adult (Winter 2009).
+/// Mass of an arm, kg, and where its centre is, as shares of the way from shoulder to hand: an
+/// average adult (Winter 2009).
 const ARM_KG: f32 = 3.5;
-/// The strongest torque of a shoulder, N m: the mean of women and men in the paper's model (male 115.6, female 57.9).
+/// The strongest torque of a shoulder, N m: the mean of women and men in the paper's model (male
+/// 115.6, female 57.9).
 const MAX_TORQUE: f32 = 86.7;
 /// From the elbow up to the shoulder, m: an average upper arm.
 const UPPER_ARM_M: f32 = 0.33;
@@ -115,12 +125,13 @@ pub struct Fatigue {
 }
 
 impl Fatigue {
-    /// The share of the shoulder's strength that holding an arm so takes. The elbow, where the tracker does not say, is taken
-    /// 260 mm behind the palm.
+    /// The share of the shoulder's strength that holding an arm so takes. The elbow, where the
+    /// tracker does not say, is taken 260 mm behind the palm.
     pub fn effort(hand: &Hand) -> f32 {
         let elbow = hand.elbow.unwrap_or(hand.palm + Vec3::Z * 260.0);
         let forearm = (hand.palm - elbow) * 1e-3;
-        // An elbow that is low rests on the table or hangs at the side; one that is lifted swings the upper arm out.
+        // An elbow that is low rests on the table or hangs at the side; one that is lifted swings
+        // the upper arm out.
         let lift = ((elbow.y - 60.0) / 240.0).clamp(0.0, 1.0);
         let out = UPPER_ARM_M * lift;
         let lever = (Vec3::new(forearm.x, 0.0, forearm.z).length() * 0.43 + out).max(0.0);
@@ -172,7 +183,8 @@ mod tests {
             let palm = if i % 100 == 7 {
                 Vec3::splat(900.0)
             } else {
-                Vec3::new(20.0, 180.0, -30.0) + 80.0 * Vec3::new(a.sin(), (1.3 * a).sin(), (0.7 * a).sin())
+                Vec3::new(20.0, 180.0, -30.0)
+                    + 80.0 * Vec3::new(a.sin(), (1.3 * a).sin(), (0.7 * a).sin())
             };
             last = reach.take(i * 10_000, &[hand(palm, palm)]);
         }

@@ -1,6 +1,8 @@
-//! A thing in the hands: a primitive or a loaded mesh that is carried to its place before it is joined with the work.
+//! A thing in the hands: a primitive or a loaded mesh that is carried to its place before it is
+//! joined with the work.
 //!
-//! One pinch carries and turns it, two pinches move, turn and scale it. It touches nothing until it is joined.
+//! One pinch carries and turns it, two pinches move, turn and scale it. It touches nothing until it
+//! is joined.
 
 use std::sync::Arc;
 
@@ -42,8 +44,8 @@ impl Similarity {
         Similarity { shift: to - turn * from, turn, scale: 1.0 }
     }
 
-    /// Two points that were at `from` and are at `to`: moved, scaled, turned by the smallest rotation. `None` where they
-    /// lie on each other.
+    /// Two points that were at `from` and are at `to`: moved, scaled, turned by the smallest
+    /// rotation. `None` where they lie on each other.
     pub fn between(from: [Vec3; 2], to: [Vec3; 2]) -> Option<Similarity> {
         let (a, b) = (from[1] - from[0], to[1] - to[0]);
         let scale = b.length() / a.length();
@@ -65,12 +67,12 @@ impl Similarity {
 
 /// What is held, and where.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Thing {
+pub struct HeldObject {
     pub plain: Arc<TriMesh>,
     pub place: Similarity,
 }
 
-impl Thing {
+impl HeldObject {
     /// Where it stands now, as a mesh of its own.
     pub fn placed(&self) -> TriMesh {
         let positions = self.plain.positions.iter().map(|p| self.place.apply(*p)).collect();
@@ -98,8 +100,8 @@ mod tests {
         for i in 0..900 {
             let t = i as f32 * 0.01;
             let middle = Vec3::new(30.0 * t.sin(), 20.0 * (0.7 * t).cos(), 5.0 * t);
-            let half =
-                Quat::from_rotation_y(0.8 * t) * Vec3::new(40.0 + 25.0 * (1.3 * t).sin(), 9.0 * t.cos(), 0.0);
+            let half = Quat::from_rotation_y(0.8 * t)
+                * Vec3::new(40.0 + 25.0 * (1.3 * t).sin(), 9.0 * t.cos(), 0.0);
             let next = [middle - half, middle + half];
             place = place.then(&Similarity::between(now, next).expect("apart"));
             now = next;
@@ -115,6 +117,8 @@ mod tests {
         let (from, to) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 0.0, -1.0));
         let by = Similarity::carried(from, to, Quat::from_rotation_z(1.0));
         assert!(by.apply(from).distance(to) < 1e-5);
-        assert!(by.apply(from + Vec3::X).distance(to + Quat::from_rotation_z(1.0) * Vec3::X) < 1e-5);
+        assert!(
+            by.apply(from + Vec3::X).distance(to + Quat::from_rotation_z(1.0) * Vec3::X) < 1e-5
+        );
     }
 }

@@ -90,7 +90,8 @@ impl Track {
         false
     }
 
-    /// Whether this may be the same hand that another track lost: near enough for the time gone by, same side.
+    /// Whether this may be the same hand that another track lost: near enough for the time gone by,
+    /// same side.
     pub fn may_continue(&self, t_us: u64, hand: &Hand, s: &HandSettings) -> bool {
         let gap = ms(self.seen_us, t_us);
         // The fastest palms on record move at 1.3 m/s; 60 mm more for the tracker's own jump.
@@ -107,6 +108,8 @@ impl Track {
     /// 0 to 1: how strongly the hand may act now.
     pub fn strength(&self, t_us: u64, s: &HandSettings) -> f32 {
         let ramp = |from: u64, over: f32| (ms(from, t_us) / over.max(1e-3)).min(1.0);
-        ramp(self.appeared_us, s.appear_ramp_ms) * ramp(self.pose_us, s.pose_ramp_ms) * self.confidence
+        ramp(self.appeared_us, s.appear_ramp_ms)
+            * ramp(self.pose_us, s.pose_ramp_ms)
+            * self.confidence
     }
 }

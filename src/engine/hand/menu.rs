@@ -1,5 +1,6 @@
-//! A menu for hands that hold no button: balls in the air at the left, out of the work's way. A pointing fingertip that stays
-//! in one for a while sees a ring; when the ring has closed, the ball is chosen.
+//! A menu for hands that hold no button: balls in the air at the left, out of the work's way. A
+//! pointing fingertip that stays in one for a while sees a ring; when the ring has closed, the ball
+//! is chosen.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -9,7 +10,7 @@ use super::settings::HandSettings;
 /// What may be chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Choice {
+pub enum MenuItem {
     /// The thing in the hands becomes one with the work.
     Add,
     /// It is cut out of the work.
@@ -26,24 +27,26 @@ pub enum Choice {
     Redo,
 }
 
-impl Choice {
+impl MenuItem {
     /// With empty hands.
-    pub const EMPTY: [Choice; 5] = [Choice::Undo, Choice::Redo, Choice::Ball, Choice::Box, Choice::Cylinder];
+    pub const EMPTY: [MenuItem; 5] =
+        [MenuItem::Undo, MenuItem::Redo, MenuItem::Ball, MenuItem::Box, MenuItem::Cylinder];
     /// With a thing in the hands.
-    pub const HOLDING: [Choice; 4] = [Choice::Add, Choice::Carve, Choice::Keep, Choice::PutAway];
+    pub const HOLDING: [MenuItem; 4] =
+        [MenuItem::Add, MenuItem::Carve, MenuItem::Keep, MenuItem::PutAway];
 
     /// What a person reads.
     pub fn label(self) -> &'static str {
         match self {
-            Choice::Add => "add",
-            Choice::Carve => "carve",
-            Choice::Keep => "keep common",
-            Choice::PutAway => "put away",
-            Choice::Ball => "ball",
-            Choice::Box => "box",
-            Choice::Cylinder => "cylinder",
-            Choice::Undo => "undo",
-            Choice::Redo => "redo",
+            MenuItem::Add => "add",
+            MenuItem::Carve => "carve",
+            MenuItem::Keep => "keep common",
+            MenuItem::PutAway => "put away",
+            MenuItem::Ball => "ball",
+            MenuItem::Box => "box",
+            MenuItem::Cylinder => "cylinder",
+            MenuItem::Undo => "undo",
+            MenuItem::Redo => "redo",
         }
     }
 }
@@ -69,8 +72,8 @@ pub struct Menu {
 }
 
 impl Menu {
-    pub fn choices(holding: bool) -> &'static [Choice] {
-        if holding { &Choice::HOLDING } else { &Choice::EMPTY }
+    pub fn choices(holding: bool) -> &'static [MenuItem] {
+        if holding { &MenuItem::HOLDING } else { &MenuItem::EMPTY }
     }
 
     /// The ball that a fingertip is in, and 0 to 1 how far its ring has closed.
@@ -85,10 +88,11 @@ impl Menu {
         t_us: u64,
         holding: bool,
         s: &HandSettings,
-    ) -> Option<Choice> {
+    ) -> Option<MenuItem> {
         let choices = Menu::choices(holding);
-        let inside =
-            |i: &usize, slack: f32| tip_mm.is_some_and(|p| p.distance(ball_mm(*i)) < RADIUS_MM + slack);
+        let inside = |i: &usize, slack: f32| {
+            tip_mm.is_some_and(|p| p.distance(ball_mm(*i)) < RADIUS_MM + slack)
+        };
         let kept = self.over.map(|(i, _)| i).filter(|i| *i < choices.len() && inside(i, 4.0));
         let now = kept.or_else(|| (0..choices.len()).find(|i| inside(i, 0.0)));
         let Some(i) = now else {
@@ -118,7 +122,7 @@ mod tests {
     use super::*;
 
     /// Ten milliseconds a frame; what was chosen, and when.
-    fn watch(path: impl Fn(u64) -> Option<Vec3>, ms: u64) -> Vec<(u64, Choice)> {
+    fn watch(path: impl Fn(u64) -> Option<Vec3>, ms: u64) -> Vec<(u64, MenuItem)> {
         let (mut menu, s) = (Menu::default(), HandSettings::default());
         (0..ms / 10)
             .filter_map(|i| menu.take(path(i * 10), i * 10_000, false, &s).map(|c| (i * 10, c)))
@@ -128,10 +132,10 @@ mod tests {
     #[test]
     fn a_finger_that_dwells_chooses_once_and_one_that_passes_never() {
         let dwelling = watch(|_| Some(ball_mm(1) + Vec3::new(5.0, -6.0, 3.0)), 4000);
-        assert_eq!(dwelling, [(1100, Choice::Redo)]);
+        assert_eq!(dwelling, [(1100, MenuItem::Redo)]);
         let passing = watch(|ms| Some(ball_mm(0) + Vec3::Y * (ms as f32 * 0.1 - 100.0)), 4000);
         assert_eq!(passing, []);
         let away_and_back = watch(|ms| (!(1500..1600).contains(&ms)).then(|| ball_mm(2)), 3000);
-        assert_eq!(away_and_back, [(1100, Choice::Ball), (2700, Choice::Ball)]);
+        assert_eq!(away_and_back, [(1100, MenuItem::Ball), (2700, MenuItem::Ball)]);
     }
 }

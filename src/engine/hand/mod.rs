@@ -1,10 +1,13 @@
 //! Bare hands: from tracked joints to tools that touch the clay, and to the view that turns.
 //!
 //! Laws kept here:
-//! * A hand acts by **contact**, never by a click: the swept path of its tool is what touches, so no speed tunnels through.
-//! * Nothing acts at full strength at once: a hand that appears, a pose that changes, a hand at the edge of what is tracked
-//!   or badly seen, all fade in ([`machine::Track::strength`], [`Volume::edge_fade`]).
-//! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has let go.
+//! * A hand acts by **contact**, never by a click: the swept path of its tool is what touches, so
+//!   no speed tunnels through.
+//! * Nothing acts at full strength at once: a hand that appears, a pose that changes, a hand at the
+//!   edge of what is tracked or badly seen, all fade in ([`machine::Track::strength`],
+//!   [`Volume::edge_fade`]).
+//! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has
+//!   let go.
 //! * Every joint is steadied before anything looks at it, the same in a replay as live.
 //! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
 
@@ -19,9 +22,9 @@ mod volume;
 
 pub use acts::{Act, Drag, PalmPress, Push};
 pub use comfort::{Calibrated, Fatigue, Reach, ReachBox};
-pub use held_object::{Similarity, Thing};
+pub use held_object::{HeldObject, Similarity};
 pub use machine::Track;
-pub use menu::{Choice, Menu};
+pub use menu::{Menu, MenuItem};
 pub use pose::Pose;
 pub use settings::HandSettings;
 pub use volume::Volume;
@@ -71,7 +74,7 @@ pub struct HandTools {
     /// A thing is in the hands: pinches carry it and not the clay.
     pub carrying: bool,
     menu: Menu,
-    chosen: Option<Choice>,
+    chosen: Option<MenuItem>,
     fatigue: Fatigue,
     reach: Option<Reach>,
     sculpted_us: Option<u64>,
@@ -155,18 +158,19 @@ impl HandTools {
             }
         }
         for hand in hands.as_slice() {
-            let known =
-                self.held.iter().position(|h| h.track.device == device && h.track.id == hand.id).or_else(
-                    || {
-                        // The tracker gave the same hand a new number.
-                        let lost = |h: &Held| {
-                            h.track.device == device
-                                && !hands.as_slice().iter().any(|o| o.id == h.track.id)
-                                && h.track.may_continue(t_us, hand, &s)
-                        };
-                        self.held.iter().position(lost)
-                    },
-                );
+            let known = self
+                .held
+                .iter()
+                .position(|h| h.track.device == device && h.track.id == hand.id)
+                .or_else(|| {
+                    // The tracker gave the same hand a new number.
+                    let lost = |h: &Held| {
+                        h.track.device == device
+                            && !hands.as_slice().iter().any(|o| o.id == h.track.id)
+                            && h.track.may_continue(t_us, hand, &s)
+                    };
+                    self.held.iter().position(lost)
+                });
             match known {
                 Some(i) => {
                     let held = &mut self.held[i];
@@ -197,7 +201,7 @@ impl HandTools {
     }
 
     /// What was chosen from the menu since the last call.
-    pub fn take_choice(&mut self) -> Option<Choice> {
+    pub fn take_choice(&mut self) -> Option<MenuItem> {
         self.chosen.take()
     }
 
@@ -209,7 +213,8 @@ impl HandTools {
         &self.fatigue
     }
 
-    /// From now on the hands' movement says what the person can reach, for five seconds; they do nothing else meanwhile.
+    /// From now on the hands' movement says what the person can reach, for five seconds; they do
+    /// nothing else meanwhile.
     pub fn calibrate(&mut self) {
         self.lift();
         self.reach = Some(Reach::default());
@@ -268,8 +273,9 @@ impl HandTools {
 
     /// Two pinches carry a thing: by their grips, so that fingers that open leave it where it is.
     fn carry_between(&mut self, a: Track, b: Track) {
-        let index =
-            |t: Track| self.held.iter().position(|h| (h.track.device, h.track.id) == (t.device, t.id));
+        let index = |t: Track| {
+            self.held.iter().position(|h| (h.track.device, h.track.id) == (t.device, t.id))
+        };
         let Some((i, j)) = index(a).zip(index(b)) else { return };
         let Some((pa, pb)) = self.grip_mm(i).zip(self.grip_mm(j)) else { return };
         let now = [self.volume.to_world(pa), self.volume.to_world(pb)];
@@ -282,7 +288,8 @@ impl HandTools {
         }
     }
 
-    /// Where the pinch would be if the fingers had kept still since it began: what is carried goes with the palm.
+    /// Where the pinch would be if the fingers had kept still since it began: what is carried goes
+    /// with the palm.
     fn grip_mm(&mut self, i: usize) -> Option<Vec3> {
         let held = &mut self.held[i];
         let (track, turn) = (held.track, held.track.orientation.unwrap_or(Quat::IDENTITY));
@@ -305,7 +312,8 @@ impl HandTools {
     }
 
     fn view_may_move(&self, t_us: u64) -> bool {
-        self.sculpted_us.is_none_or(|at| t_us.saturating_sub(at) as f32 * 1e-3 > self.settings.view_rest_ms)
+        self.sculpted_us
+            .is_none_or(|at| t_us.saturating_sub(at) as f32 * 1e-3 > self.settings.view_rest_ms)
     }
 
     fn one_hand(&mut self, i: usize, t_us: u64) {
@@ -316,7 +324,8 @@ impl HandTools {
             let now = track.orientation.map(|q| (v.turn * q).normalize());
             let to = self.grip_mm(i).map(|p| v.to_world(p));
             if let Some((from, to)) = tool.zip(to) {
-                let turned = turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
+                let turned =
+                    turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
                 self.wait(Act::Carry(Similarity::carried(from, to, turned)));
             }
             (self.held[i].tool, self.held[i].turn) = (to, now);
@@ -335,9 +344,12 @@ impl HandTools {
             let strength = strength * Volume::edge_fade(mm);
             if let Some(from) = tool.filter(|_| strength > 0.0) {
                 match track.pose {
-                    Pose::Point => {
-                        self.wait(Act::Push(Push { from, to, radius: s.tip_radius_mm * v.scale, strength }))
-                    }
+                    Pose::Point => self.wait(Act::Push(Push {
+                        from,
+                        to,
+                        radius: s.tip_radius_mm * v.scale,
+                        strength,
+                    })),
                     Pose::Pinch => {
                         self.wait(Act::Drag(Drag {
                             from,

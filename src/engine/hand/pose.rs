@@ -7,7 +7,9 @@ use super::settings::HandSettings;
 use sculptd_devices::{Finger, Hand};
 
 /// What a hand does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, PartialOrd, Ord)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, PartialOrd, Ord,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pose {
     /// Does nothing, and shows that it does nothing.
@@ -26,7 +28,8 @@ pub enum Pose {
 }
 
 impl Pose {
-    pub const ALL: [Pose; 6] = [Pose::Neutral, Pose::Point, Pose::Pinch, Pose::Grab, Pose::Flat, Pose::Open];
+    pub const ALL: [Pose; 6] =
+        [Pose::Neutral, Pose::Point, Pose::Pinch, Pose::Grab, Pose::Flat, Pose::Open];
 }
 
 /// What is measured on one frame. `None`: the fingers that it needs were not tracked.
@@ -52,7 +55,8 @@ impl Features {
         let tip = |i: usize| hand.fingers[i].map(|f| f.tip);
         let between = |a: Option<Vec3>, b: Option<Vec3>| a.zip(b).map(|(a, b)| (a - b).length());
         let width = hand.palm_width.filter(|w| (40.0..=150.0).contains(w)).unwrap_or(PALM_WIDTH_MM);
-        let stretched = |i: usize| hand.fingers[i].is_some_and(|f| is_extended(&f, hand.palm, width));
+        let stretched =
+            |i: usize| hand.fingers[i].is_some_and(|f| is_extended(&f, hand.palm, width));
         let extended = [stretched(1), stretched(2), stretched(3), stretched(4)];
         let curled = || {
             let known: f32 = (1..5).filter_map(tip).map(|t| (t - hand.palm).length() / width).sum();
@@ -71,10 +75,14 @@ impl Features {
 
     /// The pose of this frame, given the pose in force: entry and exit thresholds differ.
     pub fn pose(&self, now: Pose, s: &HandSettings) -> Pose {
-        // Trackers give a hand seen from its edge a high grab strength though its fingers are out: a fist has none to show.
+        // Trackers give a hand seen from its edge a high grab strength though its fingers are out:
+        // a fist has none to show.
         let out = self.extended.iter().filter(|e| **e).count();
-        let fist =
-            if now == Pose::Grab { self.grab >= s.grab_off } else { self.grab >= s.grab_on && out <= 1 };
+        let fist = if now == Pose::Grab {
+            self.grab >= s.grab_off
+        } else {
+            self.grab >= s.grab_on && out <= 1
+        };
         if fist {
             return Pose::Grab;
         }

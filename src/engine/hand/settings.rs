@@ -8,7 +8,8 @@ use sculptd_devices::filter::OneEuro;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HandSettings {
-    /// Thumb tip to index tip, mm: fingers that touch are 15 to 22 mm apart at their centres, as trackers see them.
+    /// Thumb tip to index tip, mm: fingers that touch are 15 to 22 mm apart at their centres, as
+    /// trackers see them.
     pub pinch_on_mm: f32,
     /// A pinch lets go well after the tips part, so that it does not flutter while dragging.
     pub pinch_off_mm: f32,
@@ -17,13 +18,16 @@ pub struct HandSettings {
     pub grab_off: f32,
     /// A closing fist brings thumb and index together: above this grab strength no pinch begins.
     pub pinch_max_grab: f32,
-    /// Index tip to little finger's tip, mm, over the palm's width: below, fingers lie together (a flat palm), above, apart.
+    /// Index tip to little finger's tip, mm, over the palm's width: below, fingers lie together (a
+    /// flat palm), above, apart.
     pub spread: f32,
     /// A pose must hold this long before it acts, ms: two frames at 90 Hz.
     pub hold_ms: f32,
-    /// Full strength this long after a change of pose, ms: slower than a slip of the hand, quicker than patience.
+    /// Full strength this long after a change of pose, ms: slower than a slip of the hand, quicker
+    /// than patience.
     pub pose_ramp_ms: f32,
-    /// Full strength this long after a hand appears, ms: a hand that comes into view inside the clay must not tear it.
+    /// Full strength this long after a hand appears, ms: a hand that comes into view inside the
+    /// clay must not tear it.
     pub appear_ramp_ms: f32,
     /// A hand lost for no longer is bridged, ms.
     pub bridge_ms: f32,
@@ -33,7 +37,8 @@ pub struct HandSettings {
     pub pinch_radius_mm: f32,
     /// Palm tool, mm: half a palm's width.
     pub palm_radius_mm: f32,
-    /// Motion smaller than this does not turn or move the view, mm; grows by `dwell_zone_mm` while the hand rests.
+    /// Motion smaller than this does not turn or move the view, mm; grows by `dwell_zone_mm` while
+    /// the hand rests.
     pub dead_zone_mm: f32,
     pub dwell_zone_mm: f32,
     /// After sculpting the view stays still this long, ms, whatever the hand does.
@@ -42,7 +47,8 @@ pub struct HandSettings {
     pub dwell_ms: f32,
     /// ... which closes in so long: time to see it and to leave.
     pub ring_ms: f32,
-    /// The part of the tracked space that is laid over the work; a calibration finds a person's own.
+    /// The part of the tracked space that is laid over the work; a calibration finds a person's
+    /// own.
     pub reach: ReachBox,
     /// How joints are steadied.
     pub steady: OneEuro,

@@ -5,13 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use super::comfort::ReachBox;
 
-/// The middle of a Leap's interaction box, mm over the device (protocol v6 `interactionBox.center`).
+/// The middle of a Leap's interaction box, mm over the device (protocol v6
+/// `interactionBox.center`).
 pub const BOX_MIDDLE_MM: Vec3 = Vec3::new(0.0, 200.0, 0.0);
 /// Half the side of the tracked cube that is mapped, mm: the box is 235 x 235 x 148 mm.
 pub const BOX_HALF_MM: f32 = 117.6;
 /// The work's bounding sphere takes this share of the cube, so that a hand can come from outside.
 const WORK_SHARE: f32 = 0.6;
-/// The tool fades out over the last 30 mm before the edge of what a Leap tracks well (about 250 mm from the middle).
+/// The tool fades out over the last 30 mm before the edge of what a Leap tracks well (about 250 mm
+/// from the middle).
 const EDGE_MM: [f32; 2] = [220.0, 250.0];
 
 /// `world = origin + turn * (mm * scale)`.
@@ -24,8 +26,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Over a work with this middle and bounding radius, seen from `yaw`: "toward the user" is toward the camera. `reach` is
-    /// the part of the tracked space that is used.
+    /// Over a work with this middle and bounding radius, seen from `yaw`: "toward the user" is
+    /// toward the camera. `reach` is the part of the tracked space that is used.
     pub fn over(middle: Vec3, extent: f32, yaw: f32, reach: &ReachBox) -> Self {
         let scale = extent / (reach.half_mm * WORK_SHARE);
         let turn = Quat::from_rotation_y(yaw);
@@ -47,8 +49,9 @@ impl Volume {
         ((EDGE_MM[1] - off) / (EDGE_MM[1] - EDGE_MM[0])).clamp(0.0, 1.0)
     }
 
-    /// The volume in which the two world points held so far lie under two fingers at `a` and `b` (mm): moved, scaled, and
-    /// turned by the smallest rotation. `None` where the fingers are too near each other to say.
+    /// The volume in which the two world points held so far lie under two fingers at `a` and `b`
+    /// (mm): moved, scaled, and turned by the smallest rotation. `None` where the fingers are too
+    /// near each other to say.
     pub fn holding(&self, held: [Vec3; 2], fingers: [Vec3; 2]) -> Option<Volume> {
         let (mm, world) = (fingers[1] - fingers[0], held[1] - held[0]);
         // Fingers nearer than 20 mm would turn the work by their own noise.
@@ -60,7 +63,11 @@ impl Volume {
         let turn = (Quat::from_rotation_arc(seen, world.normalize()) * self.turn).normalize();
         let middle = (fingers[0] + fingers[1]) * 0.5;
         let origin = (held[0] + held[1]) * 0.5 - turn * (middle * scale);
-        (scale.is_finite() && scale > 0.0 && origin.is_finite()).then_some(Volume { origin, turn, scale })
+        (scale.is_finite() && scale > 0.0 && origin.is_finite()).then_some(Volume {
+            origin,
+            turn,
+            scale,
+        })
     }
 }
 

@@ -1,6 +1,7 @@
-//! A fair curve through a hand's path: one cubic Bezier from where the pen came down to where it lifts, as near as least
-//! squares bring it to all that was drawn between (Schneider 1990, "An algorithm for automatically fitting digitized curves",
-//! without its corners: one piece, ends held, parameters mended by Newton's step).
+//! A fair curve through a hand's path: one cubic Bezier from where the pen came down to where it
+//! lifts, as near as least squares bring it to all that was drawn between (Schneider 1990, "An
+//! algorithm for automatically fitting digitized curves", without its corners: one piece, ends
+//! held, parameters mended by Newton's step).
 
 use glam::{DVec2, Vec2};
 use serde::{Deserialize, Serialize};
@@ -112,7 +113,8 @@ impl Curve {
         }
     }
 
-    /// Each point's parameter a Newton step nearer to the foot of its perpendicular; never out of order.
+    /// Each point's parameter a Newton step nearer to the foot of its perpendicular; never out of
+    /// order.
     fn mend(&mut self, place: impl Fn(&PenPoint) -> DVec2) {
         let [a, b, c, d] = self.control;
         let mut before = 0.0;

@@ -1,8 +1,9 @@
-//! A curve that is laid by its points before it is drawn: handles over the view, to be dragged, added to and taken away, until
-//! the curve is applied or put away.
+//! A curve that is laid by its points before it is drawn: handles over the view, to be dragged,
+//! added to and taken away, until the curve is applied or put away.
 //!
-//! The curve passes through every handle (Catmull and Rom 1974, centripetal as Barry and Goldman 1988 have it: it has no loops or
-//! cusps between handles, however unevenly they are laid). Pressure and tilt go from handle to handle in a straight line.
+//! The curve passes through every handle (Catmull and Rom 1974, centripetal as Barry and Goldman
+//! 1988 have it: it has no loops or cusps between handles, however unevenly they are laid).
+//! Pressure and tilt go from handle to handle in a straight line.
 
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,8 @@ use super::surface::PenPoint;
 pub const MOST: usize = 64;
 /// Straight pieces from handle to handle that the curve is walked in.
 pub const PIECES: usize = 16;
-/// A pen this near to a handle takes hold of it, and nearly this near to the curve puts a new one on it; heights of the view.
+/// A pen this near to a handle takes hold of it, and nearly this near to the curve puts a new one
+/// on it; heights of the view.
 pub const REACH: f32 = 0.018;
 /// Handles made of what was drawn freely, its ends counted.
 const FREE: usize = 5;
@@ -24,7 +26,7 @@ const SLIP: f32 = 0.01;
 /// What is done with a curve that is being laid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum DraftAct {
+pub enum CurveAction {
     /// The brush in hand is drawn along it, as one stroke.
     Apply,
     /// It is put away.
@@ -35,12 +37,12 @@ pub enum DraftAct {
 
 /// A curve by its handles, in their order.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Draft {
+pub struct CurveStroke {
     points: Vec<PenPoint>,
     held: Option<usize>,
 }
 
-impl Draft {
+impl CurveStroke {
     pub fn points(&self) -> &[PenPoint] {
         &self.points
     }
@@ -62,13 +64,14 @@ impl Draft {
     /// The handle within reach of a place, the nearest. `aspect`: width over height of the view.
     pub fn handle_at(&self, view: Vec2, aspect: f32) -> Option<usize> {
         let off = |p: &PenPoint| length(p.view - view, aspect);
-        let near =
-            (0..self.points.len()).min_by(|a, b| off(&self.points[*a]).total_cmp(&off(&self.points[*b])));
+        let near = (0..self.points.len())
+            .min_by(|a, b| off(&self.points[*a]).total_cmp(&off(&self.points[*b])));
         near.filter(|i| off(&self.points[*i]) <= REACH)
     }
 
-    /// The pen comes down: it takes hold of a handle, or puts one on the curve, or one more at the end that is nearer, and
-    /// holds that. Where there are as many as there may be, it takes hold of the nearest.
+    /// The pen comes down: it takes hold of a handle, or puts one on the curve, or one more at the
+    /// end that is nearer, and holds that. Where there are as many as there may be, it takes hold
+    /// of the nearest.
     pub fn grab(&mut self, at: &PenPoint, aspect: f32) {
         self.held = self.handle_at(at.view, aspect).or_else(|| {
             if self.points.len() >= MOST {
@@ -76,16 +79,18 @@ impl Draft {
                 let all = 0..self.points.len();
                 return all.min_by(|a, b| off(&self.points[*a]).total_cmp(&off(&self.points[*b])));
             }
-            let place = match (self.span_at(at.view, aspect), self.points.first(), self.points.last()) {
-                (Some(span), ..) => span + 1,
-                (None, Some(first), Some(last))
-                    if self.points.len() > 1
-                        && length(first.view - at.view, aspect) < length(last.view - at.view, aspect) =>
-                {
-                    0
-                }
-                _ => self.points.len(),
-            };
+            let place =
+                match (self.span_at(at.view, aspect), self.points.first(), self.points.last()) {
+                    (Some(span), ..) => span + 1,
+                    (None, Some(first), Some(last))
+                        if self.points.len() > 1
+                            && length(first.view - at.view, aspect)
+                                < length(last.view - at.view, aspect) =>
+                    {
+                        0
+                    }
+                    _ => self.points.len(),
+                };
             self.points.insert(place, *at);
             Some(place)
         });
@@ -135,7 +140,10 @@ impl Draft {
             let t = (-a.dot(b - a) / (b - a).length_squared().max(1e-20)).clamp(0.0, 1.0);
             (a.lerp(b, t).length(), k / PIECES)
         });
-        pieces.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(off, _)| *off <= REACH * 0.8).map(|(_, span)| span)
+        pieces
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(off, _)| *off <= REACH * 0.8)
+            .map(|(_, span)| span)
     }
 
     /// Straight pieces of the whole curve; none of a single point.
@@ -143,11 +151,14 @@ impl Draft {
         self.points.len().saturating_sub(1) * PIECES
     }
 
-    /// The pen after `k` pieces of the curve; at its end for what is beyond, and as it is by default on a curve of no handles.
+    /// The pen after `k` pieces of the curve; at its end for what is beyond, and as it is by
+    /// default on a curve of no handles.
     pub fn at(&self, k: usize, aspect: f32) -> PenPoint {
         let Some(last) = self.points.last() else { return PenPoint::default() };
         let (span, t) = (k / PIECES, (k % PIECES) as f32 / PIECES as f32);
-        let (Some(b), Some(c)) = (self.points.get(span), self.points.get(span + 1)) else { return *last };
+        let (Some(b), Some(c)) = (self.points.get(span), self.points.get(span + 1)) else {
+            return *last;
+        };
         if t == 0.0 {
             return *b;
         }
@@ -162,7 +173,8 @@ fn length(d: Vec2, aspect: f32) -> f32 {
     (d.x * aspect).hypot(d.y)
 }
 
-/// Between the middle two of four points, by Barry and Goldman's pyramid with knots a square root of the distance apart.
+/// Between the middle two of four points, by Barry and Goldman's pyramid with knots a square root
+/// of the distance apart.
 fn through(p: [Vec2; 4], t: f32, aspect: f32) -> Vec2 {
     let knot = |a: Vec2, b: Vec2| length(b - a, aspect).sqrt().max(1e-4);
     let t0 = 0.0;
@@ -185,8 +197,8 @@ mod tests {
         PenPoint { view: Vec2::new(x, y), pressure: x, tilt: None, inverted: false }
     }
 
-    fn laid(points: &[(f32, f32)]) -> Draft {
-        let mut draft = Draft::default();
+    fn laid(points: &[(f32, f32)]) -> CurveStroke {
+        let mut draft = CurveStroke::default();
         for &(x, y) in points {
             draft.grab(&at(x, y), ASPECT);
             draft.release();
@@ -203,8 +215,11 @@ mod tests {
         }
         // Fair: no corner of more than a few degrees between pieces.
         for k in 1..draft.pieces() {
-            let (a, b, c) =
-                (draft.at(k - 1, ASPECT).view, draft.at(k, ASPECT).view, draft.at(k + 1, ASPECT).view);
+            let (a, b, c) = (
+                draft.at(k - 1, ASPECT).view,
+                draft.at(k, ASPECT).view,
+                draft.at(k + 1, ASPECT).view,
+            );
             assert!((b - a).angle_to(c - b).abs() < 0.45, "a corner at {k}");
         }
         assert!((draft.at(PIECES / 2, ASPECT).pressure - 0.3).abs() < 1e-6);
@@ -235,7 +250,7 @@ mod tests {
 
     #[test]
     fn there_are_never_too_many() {
-        let mut draft = Draft::default();
+        let mut draft = CurveStroke::default();
         for i in 0..200 {
             draft.grab(&at((i * 37 % 200) as f32 / 200.0, (i * 61 % 200) as f32 / 200.0), ASPECT);
             draft.release();
@@ -252,7 +267,7 @@ mod tests {
             drawn.take(&at(0.2 + 0.6 * t, 0.5 - 0.2 * (t * 3.0).sin()));
         }
         drawn.end(ASPECT);
-        let mut draft = Draft::default();
+        let mut draft = CurveStroke::default();
         draft.lay(&drawn, ASPECT);
         assert_eq!(draft.points().len(), FREE);
         for k in 0..=draft.pieces() {

@@ -7,8 +7,8 @@ pub mod stabilizer;
 pub mod surface;
 pub mod track;
 
-pub use curve_stroke::{Draft, DraftAct};
+pub use curve_stroke::{CurveAction, CurveStroke};
 pub use spacer::Spacer;
-pub use stabilizer::Steady;
-pub use surface::{Flow, Laid, PenPoint, Surface, Way};
+pub use stabilizer::Stabilizer;
+pub use surface::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 pub use track::{PenEvent, PenTrack};

@@ -1,21 +1,26 @@
-//! Resampling: a stroke is a chain of dabs one *spacing* apart, however slow the frame or fast the pen.
+//! Resampling: a stroke is a chain of dabs one *spacing* apart, however slow the frame or fast the
+//! pen.
 //!
-//! After Cipollini 2020 ("Fast Digital Sculpting on CPU"), a stroke is sampled every 20 % of the radius, the missing points
-//! are placed along the **screen** path, and each is picked anew on the surface. Here the next point is the one on the screen
-//! segment whose picked position is one spacing away from the last dab *as it stands now* (the last dab's own view point is
-//! picked again after it was applied), found by a guarded bisection, so that perspective, foreshortening and the relief just
-//! raised are all accounted for.
+//! After Cipollini 2020 ("Fast Digital Sculpting on CPU"), a stroke is sampled every 20 % of the
+//! radius, the missing points are placed along the **screen** path, and each is picked anew on the
+//! surface. Here the next point is the one on the screen segment whose picked position is one
+//! spacing away from the last dab *as it stands now* (the last dab's own view point is picked again
+//! after it was applied), found by a guarded bisection, so that perspective, foreshortening and the
+//! relief just raised are all accounted for.
 //!
-//! The law: **within a run, a dab is never further than the spacing from the one before it.** A run goes on
-//! * where the surface is seen without a break along the path: the next dab lies 0.94 to 1 of the spacing on;
-//! * where it leaps, and what is hidden by a crest is at most [`BRIDGED`] spacings wide, brink to far side: one more dab is laid
-//!   on the brink, and if the far side is still too far, others on the hidden clay between, found straight below the line of
-//!   sight over it, until it is not.
+//! The law: **within a run, a dab is never further than the spacing from the one before it.** A run
+//! goes on
+//! * where the surface is seen without a break along the path: the next dab lies 0.94 to 1 of the
+//!   spacing on;
+//! * where it leaps, and what is hidden by a crest is at most [`BRIDGED`] spacings wide, brink to
+//!   far side: one more dab is laid on the brink, and if the far side is still too far, others on
+//!   the hidden clay between, found straight below the line of sight over it, until it is not.
 //!
-//! It ends, and the first dab beyond begins another (it says so: [`Laid::first`]), only where the path leaves the surface,
-//! where the leap is wider (another limb, what stands behind), or where no surface without a break leads across (the brink
-//! hangs over). A dab on a brink has a share of the strength for the way that led to it, so that what a stroke lays down
-//! depends on its way and not on how often the surface leapt, nor on how the path was cut into frames.
+//! It ends, and the first dab beyond begins another (it says so: [`Laid::first`]), only where the
+//! path leaves the surface, where the leap is wider (another limb, what stands behind), or where no
+//! surface without a break leads across (the brink hangs over). A dab on a brink has a share of the
+//! strength for the way that led to it, so that what a stroke lays down depends on its way and not
+//! on how often the surface leapt, nor on how the path was cut into frames.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -23,17 +28,21 @@ use serde::{Deserialize, Serialize};
 use super::surface::{Flow, Laid, PenPoint, Surface};
 use sculptd_clay::{Hit, Ray};
 
-/// A dab is accepted between these shares of the spacing: never above one, so that the law holds with room for rounding.
+/// A dab is accepted between these shares of the spacing: never above one, so that the law holds
+/// with room for rounding.
 const ACCEPT: std::ops::RangeInclusive<f32> = 0.94..=1.0;
 /// Hidden clay up to so many spacings from brink to far side is crossed within a run.
 pub const BRIDGED: f32 = 2.0;
 /// No dab on a brink that is nearer to the last one than this share of the spacing.
 const ON_BRINK: f32 = 0.1;
-/// Dabs on hidden clay at a leap: a slope of five times its width is the steepest that is gone down.
+/// Dabs on hidden clay at a leap: a slope of five times its width is the steepest that is gone
+/// down.
 const MOST_HIDDEN: usize = 10;
-/// Beyond so many spacings the surface at a dab's own view point is another one than that which the dab was laid on.
+/// Beyond so many spacings the surface at a dab's own view point is another one than that which the
+/// dab was laid on.
 const JUMPED: f32 = 4.0;
-/// Bisection steps for one dab: 2^-20 of a spacing as it is seen, or what single precision can tell apart.
+/// Bisection steps for one dab: 2^-20 of a spacing as it is seen, or what single precision can tell
+/// apart.
 const MAX_BISECTIONS: u32 = 20;
 /// Steps over a stretch with no surface, in heights of the view.
 const BLIND_STEP: f32 = 0.004;
@@ -43,9 +52,11 @@ const BLIND_STEP: f32 = 0.004;
 pub struct Spacer {
     /// Where the surface of the last dab stood after it.
     last: Option<Vec3>,
-    /// The last dab made its surface leap away from under the pen: the next run begins a step further.
+    /// The last dab made its surface leap away from under the pen: the next run begins a step
+    /// further.
     leapt: bool,
-    /// Height and width of the view in the same unit: x is multiplied by this before lengths are taken.
+    /// Height and width of the view in the same unit: x is multiplied by this before lengths are
+    /// taken.
     aspect: f32,
 }
 
@@ -89,7 +100,8 @@ enum Step {
     End,
 }
 
-/// The next point a spacing away along a path from `start`, by advancing `step` and bisecting. `seek` says what is met.
+/// The next point a spacing away along a path from `start`, by advancing `step` and bisecting.
+/// `seek` says what is met.
 fn advance(
     start: f32,
     mut step: f32,
@@ -173,9 +185,15 @@ impl Spacer {
         flow
     }
 
-    /// Walks the segment from `from` to `to`, starting at the share `start` of it. Returns 1 when the whole segment was
-    /// walked, else the share at which the budget ended.
-    pub fn walk(&mut self, from: &PenPoint, to: &PenPoint, start: f32, on: &mut dyn Surface) -> f32 {
+    /// Walks the segment from `from` to `to`, starting at the share `start` of it. Returns 1 when
+    /// the whole segment was walked, else the share at which the budget ended.
+    pub fn advance(
+        &mut self,
+        from: &PenPoint,
+        to: &PenPoint,
+        start: f32,
+        on: &mut dyn Surface,
+    ) -> f32 {
         let d = to.view - from.view;
         let length = (d.x * self.aspect).hypot(d.y);
         let mut t = start;
@@ -187,7 +205,9 @@ impl Spacer {
         while t < 1.0 {
             let flow = match self.next(&way, t, on) {
                 Step::Dab(sight) => self.lay(&way, &mut t, &sight, 1.0, on),
-                Step::Leap(brink, _) if brink.off > ON_BRINK => self.lay(&way, &mut t, &brink, brink.off, on),
+                Step::Leap(brink, _) if brink.off > ON_BRINK => {
+                    self.lay(&way, &mut t, &brink, brink.off, on)
+                }
                 Step::Leap(_, beyond) if beyond.at <= bridged => {
                     // What was laid to get there tore it away.
                     (self.last, self.leapt) = (None, true);
@@ -234,8 +254,9 @@ impl Spacer {
             }
             return first_seen(way, start, on);
         };
-        let off =
-            |hit: &Hit, at: &PenPoint, on: &dyn Surface| (hit.position - last).length() / on.spacing(at);
+        let off = |hit: &Hit, at: &PenPoint, on: &dyn Surface| {
+            (hit.position - last).length() / on.spacing(at)
+        };
         let here = hit.map(|hit| Sight { at: start, hit, off: off(&hit, &at, on) });
         advance(start, step, here, &mut |t| {
             let at = way.at(t);
@@ -244,8 +265,8 @@ impl Spacer {
         })
     }
 
-    /// The last dab lies on a brink: dabs on the hidden clay from there to what is seen `beyond`, where they can lead to it;
-    /// else the run ends.
+    /// The last dab lies on a brink: dabs on the hidden clay from there to what is seen `beyond`,
+    /// where they can lead to it; else the run ends.
     fn bridge(&mut self, at: &PenPoint, beyond: &Sight, on: &mut dyn Surface) -> Flow {
         let spacing = on.spacing(at);
         let Some(from) = self.last else { return Flow::Go };
@@ -356,11 +377,13 @@ mod tests {
 
     #[test]
     fn one_fast_move_leaves_no_gap_on_flat_steep_or_wavy_ground() {
-        for height in [|_: f32| Some(0.0), |x: f32| Some(4.0 * x), |x: f32| Some((x * 20.0).sin() * 0.1)] {
+        for height in
+            [|_: f32| Some(0.0), |x: f32| Some(4.0 * x), |x: f32| Some((x * 20.0).sin() * 0.1)]
+        {
             let mut field = Field { height, dabs: vec![], budget: usize::MAX };
             let mut spacer = Spacer::new(1.0);
             spacer.begin(&point(0.05), &mut field);
-            assert_eq!(spacer.walk(&point(0.05), &point(0.95), 0.0, &mut field), 1.0);
+            assert_eq!(spacer.advance(&point(0.05), &point(0.95), 0.0, &mut field), 1.0);
             assert!(widest(&field.dabs) <= 1.05 * 0.02, "gap of {}", widest(&field.dabs));
             assert!(field.dabs.len() >= 45);
             assert!((field.dabs[field.dabs.len() - 1].x - 0.95).abs() < 0.021);
@@ -375,7 +398,7 @@ mod tests {
             spacer.begin(&point(0.0), &mut field);
             for i in 0..pieces {
                 let at = |k: usize| point(k as f32 / pieces as f32);
-                spacer.walk(&at(i), &at(i + 1), 0.0, &mut field);
+                spacer.advance(&at(i), &at(i + 1), 0.0, &mut field);
             }
             field.dabs.len() as i64
         };
@@ -388,7 +411,7 @@ mod tests {
         let mut field = Field { height, dabs: vec![], budget: usize::MAX };
         let mut spacer = Spacer::new(1.0);
         spacer.begin(&point(0.1), &mut field);
-        spacer.walk(&point(0.1), &point(0.9), 0.0, &mut field);
+        spacer.advance(&point(0.1), &point(0.9), 0.0, &mut field);
         let before = field.dabs.iter().rfind(|p| p.x < 0.5).expect("dabs before the gap").x;
         let after = field.dabs.iter().find(|p| p.x > 0.5).expect("dabs after the gap").x;
         assert!(before > 0.375 && (0.6..0.601).contains(&after), "{before} {after}");
@@ -399,10 +422,10 @@ mod tests {
         let mut field = Field { height: |_| Some(0.0), dabs: vec![], budget: 10 };
         let mut spacer = Spacer::new(1.0);
         spacer.begin(&point(0.0), &mut field);
-        let mut t = spacer.walk(&point(0.0), &point(1.0), 0.0, &mut field);
+        let mut t = spacer.advance(&point(0.0), &point(1.0), 0.0, &mut field);
         while t < 1.0 {
             field.budget = 10;
-            t = spacer.walk(&point(0.0), &point(1.0), t, &mut field);
+            t = spacer.advance(&point(0.0), &point(1.0), t, &mut field);
         }
         assert!(widest(&field.dabs) <= 1.05 * 0.02 && field.dabs.len() >= 50);
     }

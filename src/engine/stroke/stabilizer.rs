@@ -11,7 +11,7 @@ const MOST: usize = 64;
 
 /// What lies between the pen and the brush.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Steady {
+pub struct Stabilizer {
     /// The newest reports, in a ring.
     #[serde(with = "sculptd_devices::long_array")]
     seen: [PenPoint; MOST],
@@ -22,14 +22,14 @@ pub struct Steady {
     newest: PenPoint,
 }
 
-impl Default for Steady {
+impl Default for Stabilizer {
     fn default() -> Self {
         let none = PenPoint::default();
-        Steady { seen: [none; MOST], count: 0, next: 0, brush: none, newest: none }
+        Stabilizer { seen: [none; MOST], count: 0, next: 0, brush: none, newest: none }
     }
 }
 
-impl Steady {
+impl Stabilizer {
     /// The pen comes down: the brush is where the pen is.
     pub fn begin(&mut self, at: &PenPoint) {
         (self.count, self.next) = (0, 0);
@@ -43,8 +43,8 @@ impl Steady {
         self.count = (self.count + 1).min(MOST);
     }
 
-    /// Where the brush is drawn to by a pen at `at`; `None` while the rope hangs loose. `aspect`: width over height of the
-    /// view; the rope is measured in heights.
+    /// Where the brush is drawn to by a pen at `at`; `None` while the rope hangs loose. `aspect`:
+    /// width over height of the view; the rope is measured in heights.
     pub fn follow(&mut self, at: &PenPoint, path: &PathSettings, aspect: f32) -> Option<PenPoint> {
         self.newest = *at;
         self.remember(at);
@@ -62,7 +62,8 @@ impl Steady {
             if length <= path.rope {
                 return None;
             }
-            goal.view = self.brush.view + (goal.view - self.brush.view) * (1.0 - path.rope / length);
+            goal.view =
+                self.brush.view + (goal.view - self.brush.view) * (1.0 - path.rope / length);
         }
         self.brush = goal;
         Some(goal)
@@ -70,7 +71,8 @@ impl Steady {
 
     /// The pen lifts: an averaged stroke ends where the pen did; a rope stays as it lies.
     pub fn catch_up(&mut self, path: &PathSettings) -> Option<PenPoint> {
-        (path.average > 1 && path.rope <= 0.0 && self.newest.view != self.brush.view).then_some(self.newest)
+        (path.average > 1 && path.rope <= 0.0 && self.newest.view != self.brush.view)
+            .then_some(self.newest)
     }
 }
 
@@ -85,7 +87,7 @@ mod tests {
     #[test]
     fn a_rope_keeps_its_length_and_a_loose_one_moves_nothing() {
         let path = PathSettings { rope: 0.1, ..PathSettings::default() };
-        let mut steady = Steady::default();
+        let mut steady = Stabilizer::default();
         steady.begin(&at(0.2, 0.5));
         assert_eq!(steady.follow(&at(0.25, 0.5), &path, 1.0), None);
         let mut last = at(0.2, 0.5);
@@ -102,14 +104,18 @@ mod tests {
     #[test]
     fn an_average_lies_amid_what_it_averages_and_ends_where_the_pen_did() {
         let path = PathSettings { average: 8, ..PathSettings::default() };
-        let mut steady = Steady::default();
+        let mut steady = Stabilizer::default();
         steady.begin(&at(0.0, 0.5));
         for i in 1..=40 {
-            // A tremble about a straight line, from report to report: the average of eight has none of it.
+            // A tremble about a straight line, from report to report: the average of eight has none
+            // of it.
             let wobble = if i % 2 == 0 { 0.01 } else { -0.01 };
             let b = steady.follow(&at(i as f32 * 0.01, 0.5 + wobble), &path, 1.6).expect("no rope");
             if i >= 8 {
-                assert!((b.view.y - 0.5).abs() < 1e-6 && (b.view.x - (i as f32 - 3.5) * 0.01).abs() < 1e-5);
+                assert!(
+                    (b.view.y - 0.5).abs() < 1e-6
+                        && (b.view.x - (i as f32 - 3.5) * 0.01).abs() < 1e-5
+                );
             }
         }
         assert!((steady.catch_up(&path).expect("it lags").view.x - 0.4).abs() < 1e-6);

@@ -1,4 +1,5 @@
-//! What a stroke is drawn on and by: the pen at an instant, the surface under it, and what a dab tells of its place.
+//! What a stroke is drawn on and by: the pen at an instant, the surface under it, and what a dab
+//! tells of its place.
 
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -42,7 +43,7 @@ pub enum Flow {
 
 /// How a pen's path becomes dabs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum StrokeMethod {
     /// One a spacing.
     Spaced,
     /// One a report.
@@ -62,8 +63,8 @@ pub struct Laid {
     pub first: bool,
     /// Direction from the one before it, of length one; none for the first of a run.
     pub along: Option<Vec3>,
-    /// The part of a whole dab's strength that is due to the way since the one before it: 1, and less where a dab had to be
-    /// laid before a whole spacing was travelled. Above 0, at most 1.
+    /// The part of a whole dab's strength that is due to the way since the one before it: 1, and
+    /// less where a dab had to be laid before a whole spacing was travelled. Above 0, at most 1.
     pub share: f32,
 }
 
@@ -80,8 +81,8 @@ pub trait Surface {
     /// World length of a step of one view height at the hit's depth.
     fn world_per_view(&self, hit: &Hit) -> f32;
     /// How the pen's path becomes dabs.
-    fn way(&self) -> Way {
-        Way::Spaced
+    fn way(&self) -> StrokeMethod {
+        StrokeMethod::Spaced
     }
     /// A held brush: the pen came down here, or is here now.
     fn hold(&mut self, _at: &PenPoint, _began: bool) -> Flow {

@@ -1,4 +1,5 @@
-//! One pen's visit to the surface, as a bounded queue of path points that the world walks within its budget.
+//! One pen's visit to the surface, as a bounded queue of path points that the world walks within
+//! its budget.
 
 use std::collections::VecDeque;
 
@@ -7,14 +8,15 @@ use serde::{Deserialize, Serialize};
 
 use super::curve::Curve;
 use super::spacer::Spacer;
-use super::surface::{Flow, PenPoint, Surface, Way};
-use crate::stroke::curve_stroke::Draft;
-use crate::stroke::stabilizer::Steady;
+use super::surface::{Flow, PenPoint, StrokeMethod, Surface};
+use crate::stroke::curve_stroke::CurveStroke;
+use crate::stroke::stabilizer::Stabilizer;
 use sculptd_clay::brush::PathSettings;
 use sculptd_devices::{Pen, Tool};
 
-/// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears; beyond that the newest
-/// motion replaces the one before it (the path is cut short between two points, never broken).
+/// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears;
+/// beyond that the newest motion replaces the one before it (the path is cut short between two
+/// points, never broken).
 const MAX_WAITING: usize = 2048;
 
 /// What a pen sample means for a stroke.
@@ -31,7 +33,7 @@ pub enum PenEvent {
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PenTrack {
     waiting: VecDeque<PenEvent>,
-    steady: Steady,
+    steady: Stabilizer,
     /// Where the pen came down: a straight line begins there.
     start: PenPoint,
     /// The line from there, or the curve, is being drawn; so many pieces of it are done.
@@ -39,10 +41,11 @@ pub struct PenTrack {
     pieces: usize,
     /// What the pen draws freely, to be made a curve of, and the curve.
     curve: Curve,
-    draft: Draft,
+    draft: CurveStroke,
     laying: Laying,
     spacer: Spacer,
-    /// Where the walk stands: the point reached, and the share of the segment to the first waiting point.
+    /// Where the walk stands: the point reached, and the share of the segment to the first waiting
+    /// point.
     from: PenPoint,
     share: f32,
     /// The pen is down as its samples tell.
@@ -59,12 +62,12 @@ impl Default for PenTrack {
     fn default() -> Self {
         PenTrack {
             waiting: VecDeque::with_capacity(MAX_WAITING),
-            steady: Steady::default(),
+            steady: Stabilizer::default(),
             start: PenPoint::default(),
             drawing: false,
             pieces: 0,
             curve: Curve::default(),
-            draft: Draft::default(),
+            draft: CurveStroke::default(),
             laying: Laying::No,
             spacer: Spacer::default(),
             from: PenPoint::default(),
@@ -100,7 +103,8 @@ impl PenTrack {
     pub fn take(&mut self, pen: &Pen, path: &PathSettings, aspect: f32) {
         let area = pen.area_mm.max(Vec2::splat(1e-3));
         let at = PenPoint {
-            // Beyond the view by at most its own size: there is nothing to hit, and nothing to overflow.
+            // Beyond the view by at most its own size: there is nothing to hit, and nothing to
+            // overflow.
             view: (pen.pos_mm / area).clamp(Vec2::splat(-1.0), Vec2::splat(2.0)),
             pressure: pen.pressure.unwrap_or(1.0),
             tilt: pen.tilt,
@@ -141,7 +145,9 @@ impl PenTrack {
 
     fn push(&mut self, event: PenEvent) {
         if self.waiting.len() >= MAX_WAITING {
-            if let (Some(PenEvent::Move(last)), PenEvent::Move(at)) = (self.waiting.back_mut(), event) {
+            if let (Some(PenEvent::Move(last)), PenEvent::Move(at)) =
+                (self.waiting.back_mut(), event)
+            {
                 *last = at;
                 self.merged += 1;
                 return;
@@ -169,7 +175,7 @@ impl PenTrack {
     }
 
     /// The curve that is being laid; empty: none is.
-    pub fn draft(&self) -> &Draft {
+    pub fn draft(&self) -> &CurveStroke {
         &self.draft
     }
 
@@ -212,7 +218,7 @@ impl PenTrack {
         let event = *self.waiting.front()?;
         let mut walked = Walked::default();
         let flow = match event {
-            PenEvent::Down(at) if on.way() == Way::Curve => {
+            PenEvent::Down(at) if on.way() == StrokeMethod::Curve => {
                 self.from = at;
                 if self.draft.is_empty() {
                     self.curve.begin(&at);
@@ -257,9 +263,9 @@ impl PenTrack {
                 self.spacer = Spacer::new(aspect);
                 (self.from, self.start, self.drawing) = (at, at, false);
                 match on.way() {
-                    Way::Spaced | Way::Each => self.spacer.begin(&at, on),
-                    Way::Held => on.hold(&at, true),
-                    Way::Line | Way::Curve => Flow::Go,
+                    StrokeMethod::Spaced | StrokeMethod::Each => self.spacer.begin(&at, on),
+                    StrokeMethod::Held => on.hold(&at, true),
+                    StrokeMethod::Line | StrokeMethod::Curve => Flow::Go,
                 }
             }
             // Its curve was put away while it was down.
@@ -269,25 +275,29 @@ impl PenTrack {
             }
             PenEvent::Move(to) => {
                 let flow = match on.way() {
-                    Way::Spaced => {
-                        self.share = self.spacer.walk(&self.from, &to, self.share, on);
+                    StrokeMethod::Spaced => {
+                        self.share = self.spacer.advance(&self.from, &to, self.share, on);
                         if self.share < 1.0 {
                             walked.paused = true;
                             return Some(walked);
                         }
                         Flow::Go
                     }
-                    Way::Each => self.spacer.begin(&to, on),
+                    StrokeMethod::Each => self.spacer.begin(&to, on),
                     // Only where it is now matters: what came between is passed over.
-                    Way::Held if matches!(self.waiting.get(1), Some(PenEvent::Move(_))) => Flow::Go,
-                    Way::Held => on.hold(&to, false),
-                    Way::Line | Way::Curve => Flow::Go,
+                    StrokeMethod::Held
+                        if matches!(self.waiting.get(1), Some(PenEvent::Move(_))) =>
+                    {
+                        Flow::Go
+                    }
+                    StrokeMethod::Held => on.hold(&to, false),
+                    StrokeMethod::Line | StrokeMethod::Curve => Flow::Go,
                 };
                 self.from = to;
                 flow
             }
             PenEvent::Up => {
-                if on.way() == Way::Line && self.open && !self.draw_line(on) {
+                if on.way() == StrokeMethod::Line && self.open && !self.draw_line(on) {
                     walked.paused = true;
                     return Some(walked);
                 }
@@ -302,13 +312,14 @@ impl PenTrack {
         Some(walked)
     }
 
-    /// Draws the line that waited for the pen to lift. False: there is more of it, for the next tick.
+    /// Draws the line that waited for the pen to lift. False: there is more of it, for the next
+    /// tick.
     fn draw_line(&mut self, on: &mut dyn Surface) -> bool {
         if !self.drawing {
             (self.drawing, self.share) = (true, 0.0);
             self.spacer.begin(&self.start, on);
         }
-        self.share = self.spacer.walk(&self.start, &self.from, self.share, on);
+        self.share = self.spacer.advance(&self.start, &self.from, self.share, on);
         self.share >= 1.0
     }
 
@@ -321,8 +332,9 @@ impl PenTrack {
             self.spacer.begin(&self.from, on);
         }
         while self.pieces < self.draft.pieces() {
-            let (from, to) = (self.draft.at(self.pieces, aspect), self.draft.at(self.pieces + 1, aspect));
-            self.share = self.spacer.walk(&from, &to, self.share, on);
+            let (from, to) =
+                (self.draft.at(self.pieces, aspect), self.draft.at(self.pieces + 1, aspect));
+            self.share = self.spacer.advance(&from, &to, self.share, on);
             if self.share < 1.0 {
                 return false;
             }

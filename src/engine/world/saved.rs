@@ -1,27 +1,28 @@
-//! What the world remembers of itself for others: the deeds of a tick, and its whole state while it is at rest.
+//! What the world remembers of itself for others: the deeds of a tick, and its whole state while it
+//! is at rest.
 //!
 //! Laws kept here:
-//! * A world made of a saved state goes on, to the bit, as the one that was saved: everything is in it but undo, which a
-//!   session keeps outside ([`sculptd_daemon::session`]).
+//! * A world made of a saved state goes on, to the bit, as the one that was saved: everything is in
+//!   it but undo, which a session keeps outside ([`sculptd_daemon::session`]).
 //! * A moment costs what its step changed: it holds a snapshot, not a copy.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Seat, World, WorldOptions};
+use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::{Fetched, Jump};
-use crate::hand::{HandTools, Similarity, Thing};
+use crate::hand::{HandTools, HeldObject, Similarity};
 use sculptd_clay::brush::{BrushSettings, Picture};
-use sculptd_clay::{Levels, Mesh, Rest, Snapshot, Workers};
+use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
 use sculptd_devices::Hands;
 use sculptd_geometry::TriMesh;
 
 /// What was done to the work as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Deed {
+pub enum HistoryEvent {
     /// A stroke, a mask, a cut: one step of undo.
     Step,
     Undo,
@@ -36,8 +37,8 @@ pub enum Deed {
 
 /// A deed, and the work right after it.
 #[derive(Debug, Clone)]
-pub struct Moment {
-    pub deed: Deed,
+pub struct HistoryEntry {
+    pub deed: HistoryEvent,
     pub work: Snapshot,
     /// Middle and bounding radius of the work when it was put in place.
     pub middle: glam::Vec3,
@@ -47,7 +48,7 @@ pub struct Moment {
 /// Large things that seldom change, kept beside the state and named by it.
 #[derive(Debug, Clone)]
 pub enum Side {
-    Thing(Arc<TriMesh>),
+    HeldObject(Arc<TriMesh>),
     Picture(Arc<Picture>),
     Levels(Arc<Levels>),
 }
@@ -56,7 +57,7 @@ pub enum Side {
 #[derive(Debug, Clone)]
 pub struct Saved {
     pub tick: u64,
-    pub rest: Rest,
+    pub rest: ObjectState,
     /// Everything small, as bytes.
     pub core: Vec<u8>,
     pub thing: Option<Arc<TriMesh>>,
@@ -77,7 +78,7 @@ struct CoreRef<'a> {
     camera: &'a Camera,
     middle: glam::Vec3,
     extent: f32,
-    pens: &'a [Seat],
+    pens: &'a [PenSlot],
     strokes: u32,
     hands: &'a HandTools,
     last_hands: &'a Option<Hands>,
@@ -91,7 +92,7 @@ struct Core {
     camera: Camera,
     middle: glam::Vec3,
     extent: f32,
-    pens: Vec<Seat>,
+    pens: Vec<PenSlot>,
     strokes: u32,
     hands: HandTools,
     last_hands: Option<Hands>,
@@ -106,16 +107,16 @@ impl World {
     }
 
     /// The deeds of the last tick, in order.
-    pub fn moments(&self) -> &[Moment] {
+    pub fn moments(&self) -> &[HistoryEntry] {
         self.moments.as_deref().unwrap_or_default()
     }
 
     /// The work as it is, as a moment: what a history begins with.
-    pub fn moment(&mut self, deed: Deed) -> Moment {
-        Moment { deed, work: self.mesh.snapshot(), middle: self.middle, extent: self.extent }
+    pub fn moment(&mut self, deed: HistoryEvent) -> HistoryEntry {
+        HistoryEntry { deed, work: self.mesh.snapshot(), middle: self.middle, extent: self.extent }
     }
 
-    pub(super) fn note(&mut self, deed: Deed) {
+    pub(super) fn note(&mut self, deed: HistoryEvent) {
         if self.moments.is_some() {
             let moment = self.moment(deed);
             self.moments.as_mut().into_iter().for_each(|all| all.push(moment.clone()));
@@ -130,13 +131,15 @@ impl World {
     }
 
     pub(super) fn jump(&mut self, jump: &Jump) {
-        if jump.from != (self.mesh.lineage(), self.mesh.revision()) {
+        if jump.from != (self.mesh.object_id(), self.mesh.revision()) {
             return;
         }
-        let Some(fetched) = jump.fetched.try_lock().ok().and_then(|mut slot| slot.take()) else { return };
+        let Some(fetched) = jump.fetched.try_lock().ok().and_then(|mut slot| slot.take()) else {
+            return;
+        };
         self.lift_all();
         // A stroke that ended here has changed the work after all.
-        if jump.from != (self.mesh.lineage(), self.mesh.revision()) {
+        if jump.from != (self.mesh.object_id(), self.mesh.revision()) {
             return;
         }
         match (fetched, &jump.other) {
@@ -154,7 +157,7 @@ impl World {
             _ => return,
         }
         self.report.jumps += 1;
-        self.note(Deed::Jump(jump.node));
+        self.note(HistoryEvent::Jump(jump.node));
     }
 
     /// Whether nothing is under way: no stroke, nothing that waits, no open step.
@@ -197,7 +200,7 @@ impl World {
     /// # Errors
     /// [`BadState`]
     pub fn restore(
-        mut mesh: Mesh,
+        mut mesh: Clay,
         saved: Saved,
         workers: Workers,
         options: WorldOptions,
@@ -215,7 +218,7 @@ impl World {
         world.strokes = core.strokes;
         world.hands = core.hands;
         world.last_hands = core.last_hands;
-        world.thing = saved.thing.zip(core.place).map(|(plain, place)| Thing { plain, place });
+        world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
         Ok(world)

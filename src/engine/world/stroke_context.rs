@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::StepReport;
 use crate::camera::Camera;
-use crate::stroke::{Flow, Laid, PenPoint, Surface, Way};
+use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 use sculptd_clay::brush::dab::IMAGES;
 use sculptd_clay::brush::restore::Restore;
 use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
-use sculptd_clay::{DabReport, Detail, Hit, Mesh, Ray, Reach, Workers};
+use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
 
-/// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this one stopped.
+/// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this
+/// one stopped.
 const MOST_CUTS: usize = 2000;
 
 /// What one pen's stroke remembers from dab to dab.
@@ -128,8 +129,8 @@ impl Images {
 }
 
 /// The clay while pens walk over it.
-pub(super) struct Clay<'a> {
-    pub(super) mesh: &'a mut Mesh,
+pub(super) struct StrokeContext<'a> {
+    pub(super) mesh: &'a mut Clay,
     pub(super) workers: &'a Workers,
     pub(super) scratch: &'a mut Scratch,
     pub(super) camera: &'a Camera,
@@ -141,7 +142,7 @@ pub(super) struct Clay<'a> {
     pub(super) stroke: Stroke,
 }
 
-impl Clay<'_> {
+impl StrokeContext<'_> {
     fn radius(&self, pressure: f32) -> f32 {
         self.brush.radius * self.extent * self.brush.pressure_radius.factor(pressure)
     }
@@ -149,7 +150,9 @@ impl Clay<'_> {
     /// A number between 0 and 1 that only the seed, the stroke, the dab and `salt` decide.
     fn dice(&self, salt: u32) -> f32 {
         let mut x = u64::from(self.brush.path.seed) << 32 | u64::from(self.stroke.number);
-        x = x.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(self.stroke.dabs) << 8 ^ u64::from(salt);
+        x = x.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            ^ u64::from(self.stroke.dabs) << 8
+            ^ u64::from(salt);
         // The finaliser of splitmix64.
         x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -163,8 +166,16 @@ impl Clay<'_> {
         (self.camera.backward() + right * lean.x - up * lean.y).normalize()
     }
 
-    /// One dab and its images. `share`: of the strength. `drag`: what a held brush was drawn, now and before.
-    fn one_dab(&mut self, at: &PenPoint, hit: &Hit, radius: f32, share: f32, drag: Option<(Vec3, Vec3)>) {
+    /// One dab and its images. `share`: of the strength. `drag`: what a held brush was drawn, now
+    /// and before.
+    fn one_dab(
+        &mut self,
+        at: &PenPoint,
+        hit: &Hit,
+        radius: f32,
+        share: f32,
+        drag: Option<(Vec3, Vec3)>,
+    ) {
         self.mesh.begin_step();
         let s = self.brush;
         let mut strength = s.strength * s.pressure_strength.factor(at.pressure);
@@ -173,9 +184,11 @@ impl Clay<'_> {
         }
         strength *= share;
         let normal = match at.tilt {
-            Some(tilt) if s.tilt > 0.0 => {
-                hit.normal.lerp(self.pen_direction(tilt), s.tilt).try_normalize().unwrap_or(hit.normal)
-            }
+            Some(tilt) if s.tilt > 0.0 => hit
+                .normal
+                .lerp(self.pen_direction(tilt), s.tilt)
+                .try_normalize()
+                .unwrap_or(hit.normal),
             _ => hit.normal,
         };
         let moved = self.stroke.last.map_or(Vec3::ZERO, |last| hit.position - last);
@@ -204,11 +217,13 @@ impl Clay<'_> {
         };
         let mut dabs = [first; IMAGES];
         let mut count = 1;
-        for (i, image) in Images::of(s, self.middle, self.extent).each().iter().enumerate().skip(1) {
+        for (i, image) in Images::of(s, self.middle, self.extent).each().iter().enumerate().skip(1)
+        {
             let (centre, normal) = (image.at(hit.position), image.m * normal);
-            // The same view from the mirrored eye. On a symmetric work it lands on the mirrored point, which is then
-            // taken as it is; else the brush lies on what is there.
-            let there = self.mesh.pick(Ray { origin: image.at(ray.origin), dir: image.m * ray.dir });
+            // The same view from the mirrored eye. On a symmetric work it lands on the mirrored
+            // point, which is then taken as it is; else the brush lies on what is there.
+            let there =
+                self.mesh.pick(Ray { origin: image.at(ray.origin), dir: image.m * ray.dir });
             let held = drag.is_some();
             let (centre, normal) = match there {
                 _ if held => (centre, normal),
@@ -259,7 +274,8 @@ impl Clay<'_> {
             Measure::View => self.world_per_view(hit),
         };
         let path = self.brush.path.method;
-        let counts = self.brush.saturation > 0.0 || matches!(path, Method::Anchored | Method::DragDot);
+        let counts =
+            self.brush.saturation > 0.0 || matches!(path, Method::Anchored | Method::DragDot);
         if counts || !self.brush.kind.cuts() {
             return;
         }
@@ -273,7 +289,8 @@ impl Clay<'_> {
                 most: MOST_CUTS,
             };
             let cuts = self.mesh.remodel(&detail);
-            self.left = self.left.saturating_sub(8 * (cuts.splits + cuts.collapses + cuts.flips) as u64);
+            self.left =
+                self.left.saturating_sub(8 * (cuts.splits + cuts.collapses + cuts.flips) as u64);
         }
     }
 
@@ -287,7 +304,10 @@ impl Clay<'_> {
         let (u, v) = hit.normal.any_orthonormal_pair();
         let aside = hit.position + (u * angle.cos() + v * angle.sin()) * far;
         let down = Ray { origin: aside + hit.normal * radius, dir: -hit.normal };
-        self.mesh.pick(down).filter(|h| (h.position - aside).length() < 2.0 * radius).unwrap_or(*hit)
+        self.mesh
+            .pick(down)
+            .filter(|h| (h.position - aside).length() < 2.0 * radius)
+            .unwrap_or(*hit)
     }
 
     /// Takes back the dab that is not final, and all its images.
@@ -296,7 +316,8 @@ impl Clay<'_> {
         for image in Images::of(self.brush, self.middle, self.extent).each() {
             let centre = image.at(centre);
             let reach = Reach::Sphere { centre, radius: radius * 2.5 };
-            let done = self.mesh.dab(&reach, &Restore { centre, radius: radius * 1.01 }, self.workers);
+            let done =
+                self.mesh.dab(&reach, &Restore { centre, radius: radius * 1.01 }, self.workers);
             self.left = self.left.saturating_sub(done.affected as u64 + 1);
         }
     }
@@ -329,10 +350,12 @@ impl Clay<'_> {
                 }
             }
             (_, Grip::Tow) => {
-                // In steps that are short against the brush, each from where the last one left the clay.
+                // In steps that are short against the brush, each from where the last one left the
+                // clay.
                 let radius = self.radius(at.pressure);
                 let whole = drag - held.drag;
-                let steps = (whole.length() / (radius * self.brush.spacing)).ceil().clamp(1.0, 4096.0);
+                let steps =
+                    (whole.length() / (radius * self.brush.spacing)).ceil().clamp(1.0, 4096.0);
                 let by = whole / steps;
                 for _ in 0..steps as usize {
                     self.one_dab(at, &held.hit, radius, 1.0, Some((by, Vec3::ZERO)));
@@ -340,7 +363,8 @@ impl Clay<'_> {
                 }
             }
             _ => {
-                // What was held at the start is held on: pressure later does not change how much that is.
+                // What was held at the start is held on: pressure later does not change how much
+                // that is.
                 let radius = self.radius(held.from.pressure);
                 self.one_dab(at, &held.hit, radius, 1.0, Some((drag, held.drag)));
             }
@@ -350,7 +374,7 @@ impl Clay<'_> {
     }
 }
 
-impl Surface for Clay<'_> {
+impl Surface for StrokeContext<'_> {
     fn pick(&mut self, view: Vec2) -> Option<Hit> {
         self.mesh.pick(self.camera.ray(view))
     }
@@ -364,14 +388,14 @@ impl Surface for Clay<'_> {
         self.camera.world_per_view(depth.max(1e-6))
     }
 
-    fn way(&self) -> Way {
+    fn way(&self) -> StrokeMethod {
         match (self.brush.kind.grip(), self.brush.path.method) {
-            (Grip::Anchor | Grip::Tow, _) => Way::Held,
-            (Grip::Surface, Method::Anchored | Method::DragDot) => Way::Held,
-            (Grip::Surface, Method::Space | Method::Airbrush) => Way::Spaced,
-            (Grip::Surface, Method::Dots) => Way::Each,
-            (Grip::Surface, Method::Line) => Way::Line,
-            (Grip::Surface, Method::Curve) => Way::Curve,
+            (Grip::Anchor | Grip::Tow, _) => StrokeMethod::Held,
+            (Grip::Surface, Method::Anchored | Method::DragDot) => StrokeMethod::Held,
+            (Grip::Surface, Method::Space | Method::Airbrush) => StrokeMethod::Spaced,
+            (Grip::Surface, Method::Dots) => StrokeMethod::Each,
+            (Grip::Surface, Method::Line) => StrokeMethod::Line,
+            (Grip::Surface, Method::Curve) => StrokeMethod::Curve,
         }
     }
 
@@ -398,7 +422,7 @@ impl Surface for Clay<'_> {
 
     fn dab(&mut self, at: &PenPoint, hit: &Hit, laid: Laid) -> Flow {
         let radius = self.radius(at.pressure);
-        if laid.first && self.way() != Way::Each {
+        if laid.first && self.way() != StrokeMethod::Each {
             // Nothing leads over from the run before.
             self.stroke.last = None;
         }

@@ -11,7 +11,7 @@ use super::pieces::{self, Piece, Shape};
 use super::points::Points;
 use crate::PolyMesh;
 use crate::boolean::classify::{Fates, place};
-use crate::boolean::intersect as meet;
+use crate::boolean::intersect;
 use crate::boolean::intersect::Meeting;
 use crate::job::{Cancelled, Job};
 
@@ -37,7 +37,8 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// `eps`: places nearer than this are one; `floor`: what rounding alone does. `around`: for a patch of A, the whole of it.
+    /// `eps`: places nearer than this are one; `floor`: what rounding alone does. `around`: for a
+    /// patch of A, the whole of it.
     pub fn new(
         operands: [&PolyMesh; 2],
         eps: f64,
@@ -50,24 +51,46 @@ impl Arrangement {
             common(operands, eps, job, lap)?;
         let own = points.at.len();
         job.progress(0.2);
-        let meeting = meet::meet([&triangles[0], &triangles[1]], pairs, &mut points, eps, job)?;
+        let meeting =
+            intersect::meet([&triangles[0], &triangles[1]], pairs, &mut points, eps, job)?;
         lap("meet");
         job.progress(0.5);
         let mut pieces: [Vec<Piece>; 2] = [Vec::new(), Vec::new()];
         for s in 0..2 {
             let flat = |f: usize| merge::is_flat(&meshes[s], f, &points.at, 4.0 * floor);
-            let cut = pieces::cut(&meshes[s], s, &triangles[s], &starts[s], &meeting, &points.at, flat, job);
+            let cut = pieces::cut(
+                &meshes[s],
+                s,
+                &triangles[s],
+                &starts[s],
+                &meeting,
+                &points.at,
+                flat,
+                job,
+            );
             pieces[s] = cut?;
         }
         lap("cut");
-        let fates = place(&meshes, &triangles, bounds, &mut pieces, &meeting, &points, around, job)?;
+        let fates =
+            place(&meshes, &triangles, bounds, &mut pieces, &meeting, &points, around, job)?;
         lap("place");
         job.progress(0.8);
-        Ok(Arrangement { points, meshes, triangles, starts, pieces, fates, meeting, own, eps, floor })
+        Ok(Arrangement {
+            points,
+            meshes,
+            triangles,
+            starts,
+            pieces,
+            fates,
+            meeting,
+            own,
+            eps,
+            floor,
+        })
     }
 
-    /// Calls `take(origin, corners, whole)` for each face of a result; `whole`: an operand's face as it came. A cancelled job
-    /// leaves faces out.
+    /// Calls `take(origin, corners, whole)` for each face of a result; `whole`: an operand's face
+    /// as it came. A cancelled job leaves faces out.
     pub fn faces(
         &self,
         operation: Operation,
@@ -76,8 +99,9 @@ impl Arrangement {
         mut take: impl FnMut(Origin, &[u32], bool),
     ) {
         let takes = |s: usize, place| operation.takes(s, place, keep_contact);
-        let flat =
-            |s: usize, f: u32| merge::is_flat(&self.meshes[s], f as usize, &self.points.at, 4.0 * self.floor);
+        let flat = |s: usize, f: u32| {
+            merge::is_flat(&self.meshes[s], f as usize, &self.points.at, 4.0 * self.floor)
+        };
         let mut used = vec![false; self.own];
         let mut back = Vec::new();
         let mut give = |origin, corners: &[u32], turned: bool, whole: bool| {
@@ -103,9 +127,11 @@ impl Arrangement {
                 let corners = self.meshes[s].face(face as usize);
                 corners.iter().for_each(|&v| used[v as usize] = true);
                 let origin = Origin { operand: s as u8, face };
-                // A bent face seen from behind may come in other triangles: then these are what is turned.
+                // A bent face seen from behind may come in other triangles: then these are what is
+                // turned.
                 if turned && corners.len() > 3 && !flat(s, face) {
-                    let (first, last) = (self.starts[s][face as usize], self.starts[s][face as usize + 1]);
+                    let (first, last) =
+                        (self.starts[s][face as usize], self.starts[s][face as usize + 1]);
                     for t in &self.triangles[s][first as usize..last as usize] {
                         give(origin, t, true, false);
                     }
@@ -125,8 +151,13 @@ impl Arrangement {
                     let own: Vec<&Piece> =
                         group.iter().copied().filter(|p| takes(s, p.place) == Some(side)).collect();
                     if let Some(first) = own.first() {
-                        let made =
-                            merge::polygons(s as u8, first.face, &own, flat(s, first.face), &self.points.at);
+                        let made = merge::polygons(
+                            s as u8,
+                            first.face,
+                            &own,
+                            flat(s, first.face),
+                            &self.points.at,
+                        );
                         turns.resize(turns.len() + made.len(), side);
                         cut.extend(made);
                     }

@@ -1,5 +1,5 @@
-//! What faces carry besides their shape, from the operands to a result: colours by place within the face of origin, groups by
-//! face.
+//! What faces carry besides their shape, from the operands to a result: colours by place within the
+//! face of origin, groups by face.
 
 use glam::DVec3;
 
@@ -7,8 +7,8 @@ use super::Solid;
 use super::emit::Origin;
 use crate::{PolyMesh, triangulate};
 
-/// Gives a result its colours and groups where an operand has some. Vertices of an operand without colours are white; B's groups
-/// are counted on from A's, so that no two become one.
+/// Gives a result its colours and groups where an operand has some. Vertices of an operand without
+/// colours are white; B's groups are counted on from A's, so that no two become one.
 pub fn carry(mesh: &mut PolyMesh, origins: &[Origin], operands: [&PolyMesh; 2]) {
     if operands.iter().any(|m| m.groups.is_some()) {
         let first = operands[0].groups.as_ref().map_or(1, |g| g.iter().max().map_or(0, |m| m + 1));
@@ -38,8 +38,8 @@ pub fn carry(mesh: &mut PolyMesh, origins: &[Origin], operands: [&PolyMesh; 2]) 
     }
 }
 
-/// A number for each vertex of a result from one for each vertex of A, such as a mask: mixed by place within the face that it
-/// came from; 0 where it came from B alone.
+/// A number for each vertex of a result from one for each vertex of A, such as a mask: mixed by
+/// place within the face that it came from; 0 where it came from B alone.
 pub fn mixed(solid: &Solid, a: &PolyMesh, values: &[f32]) -> Vec<f32> {
     let mut out: Vec<Option<f32>> = vec![None; solid.mesh.positions.len()];
     for (f, o) in solid.origins.iter().enumerate().filter(|(_, o)| o.operand == 0) {
@@ -47,7 +47,8 @@ pub fn mixed(solid: &Solid, a: &PolyMesh, values: &[f32]) -> Vec<f32> {
             let slot = &mut out[v as usize];
             if slot.is_none() {
                 let shares = shares(a, o.face as usize, solid.mesh.positions[v as usize]);
-                let sum = shares.iter().map(|&(v, w)| f64::from(values[v as usize]) * w).sum::<f64>();
+                let sum =
+                    shares.iter().map(|&(v, w)| f64::from(values[v as usize]) * w).sum::<f64>();
                 *slot = Some(sum as f32);
             }
         }
@@ -60,7 +61,8 @@ fn colour(mesh: &PolyMesh, face: usize, place: DVec3) -> [u8; 4] {
     let Some(colours) = &mesh.colours else { return [255; 4] };
     let shares = shares(mesh, face, place);
     [0, 1, 2, 3].map(|k| {
-        shares.iter().map(|&(v, w)| f64::from(colours[v as usize][k]) * w).sum::<f64>().round() as u8
+        shares.iter().map(|&(v, w)| f64::from(colours[v as usize][k]) * w).sum::<f64>().round()
+            as u8
     })
 }
 
@@ -114,12 +116,16 @@ mod tests {
         a.groups = Some((0..a.face_count() as u32).collect());
         let mut b = cuboid(DVec3::splat(1.0), DVec3::splat(3.0));
         b.groups = Some(vec![2; b.face_count()]);
-        let (solids, _) = compute([&a, &b], &Operation::ALL, &Options::default(), &Job::default(), || 0.0)
-            .expect("a result");
+        let (solids, _) =
+            compute([&a, &b], &Operation::ALL, &Options::default(), &Job::default(), || 0.0)
+                .expect("a result");
         for s in &solids {
             let (colours, groups) =
                 (s.mesh.colours.as_ref().expect("some"), s.mesh.groups.as_ref().expect("some"));
-            assert_eq!((colours.len(), groups.len()), (s.mesh.positions.len(), s.mesh.face_count()));
+            assert_eq!(
+                (colours.len(), groups.len()),
+                (s.mesh.positions.len(), s.mesh.face_count())
+            );
             for (f, o) in s.origins.iter().enumerate() {
                 assert_eq!(groups[f], if o.operand == 0 { o.face } else { 8 });
                 for &v in s.mesh.face(f) {
@@ -130,7 +136,10 @@ mod tests {
                         .enumerate()
                         .any(|(g, o)| o.operand == 0 && s.mesh.face(g).contains(&v));
                     if of_a {
-                        assert!((f64::from(c[0]) - p.x * 127.5).abs() <= 1.0 && c[1] == 0, "{p}: {c:?}");
+                        assert!(
+                            (f64::from(c[0]) - p.x * 127.5).abs() <= 1.0 && c[1] == 0,
+                            "{p}: {c:?}"
+                        );
                     } else {
                         assert_eq!(c, [255; 4], "{p}");
                     }

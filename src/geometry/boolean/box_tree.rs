@@ -105,7 +105,8 @@ impl Tree {
         Ok(())
     }
 
-    /// Calls `f` for items whose leaf's box the segment from `o` to `p` may cross; stops when it returns false.
+    /// Calls `f` for items whose leaf's box the segment from `o` to `p` may cross; stops when it
+    /// returns false.
     pub fn along(&self, o: DVec3, p: DVec3, mut f: impl FnMut(u32) -> bool) {
         let inverse = 1.0 / (p - o);
         let mut stack = if self.nodes.is_empty() { vec![] } else { vec![0u32] };
@@ -129,8 +130,8 @@ impl Tree {
     }
 }
 
-/// Nodes of a branch, indices from `base` on of the whole tree's items, child indices relative to the branch's root.
-/// A cancelled job leaves branches out.
+/// Nodes of a branch, indices from `base` on of the whole tree's items, child indices relative to
+/// the branch's root. A cancelled job leaves branches out.
 fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> Vec<Node> {
     let span = items.iter().fold(Span::EMPTY, |s, i| s.join(spans[i.0 as usize]));
     if items.len() <= LEAF || (items.len() > FORK && job.cancelled()) {
@@ -157,7 +158,8 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> 
     let mut out = Vec::with_capacity(1 + l.len() + r.len());
     let (one, two) = (1, 1 + l.len() as u32);
     out.push(Node { span, at: two, count: 0 });
-    let shifted = |by: u32| move |n: Node| Node { at: if n.count == 0 { n.at + by } else { n.at }, ..n };
+    let shifted =
+        |by: u32| move |n: Node| Node { at: if n.count == 0 { n.at + by } else { n.at }, ..n };
     out.extend(l.into_iter().map(shifted(one)));
     out.extend(r.into_iter().map(shifted(two)));
     out

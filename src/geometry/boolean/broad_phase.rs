@@ -1,5 +1,6 @@
-//! Which triangles of two surfaces may meet. Most of a surface is nowhere near the other: a coarse grid over the box that both
-//! are in says so at a few operations a triangle, and only what is left gets a tree.
+//! Which triangles of two surfaces may meet. Most of a surface is nowhere near the other: a coarse
+//! grid over the box that both are in says so at a few operations a triangle, and only what is left
+//! gets a tree.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -39,7 +40,8 @@ pub fn pairs(
     slack: f64,
     job: &Job,
 ) -> Result<Vec<(u32, u32)>, Cancelled> {
-    let both = Span { lo: bounds[0].lo.max(bounds[1].lo), hi: bounds[0].hi.min(bounds[1].hi) }.grown(slack);
+    let both = Span { lo: bounds[0].lo.max(bounds[1].lo), hi: bounds[0].hi.min(bounds[1].hi) }
+        .grown(slack);
     if !both.lo.cmple(both.hi).all() {
         return Ok(Vec::new());
     }
@@ -62,7 +64,9 @@ pub fn pairs(
     let (a, b) = rayon::join(|| side(0, &first), || side(1, &second));
     let ((own, tree), (others, other)) = (a?, b?);
     let mut out = Vec::new();
-    tree.pairs(&own, &other, &others, slack, job, |i, j| out.push((first[i as usize], second[j as usize])))?;
+    tree.pairs(&own, &other, &others, slack, job, |i, j| {
+        out.push((first[i as usize], second[j as usize]))
+    })?;
     out.par_sort_unstable();
     Ok(out)
 }
@@ -95,15 +99,17 @@ impl Grid {
         Grid { both, slack, scale: scale.into() }
     }
 
-    /// First and last cell of a box on each axis; rounding is monotone, so boxes that meet have a cell in common.
+    /// First and last cell of a box on each axis; rounding is monotone, so boxes that meet have a
+    /// cell in common.
     fn cells(&self, s: &Span) -> [(usize, usize); 3] {
-        let cell =
-            |x: f64, k: usize| (((x - self.both.lo[k]) * self.scale[k]).max(0.0) as usize).min(CELLS - 1);
+        let cell = |x: f64, k: usize| {
+            (((x - self.both.lo[k]) * self.scale[k]).max(0.0) as usize).min(CELLS - 1)
+        };
         [0, 1, 2].map(|k| (cell(s.lo[k], k), cell(s.hi[k], k)))
     }
 
-    /// The triangles of the list that reach the box and, where cells are given, a marked cell; and the cells they are in. A
-    /// cancelled job leaves some out.
+    /// The triangles of the list that reach the box and, where cells are given, a marked cell; and
+    /// the cells they are in. A cancelled job leaves some out.
     fn sift(
         &self,
         surface: &Surface<'_>,
@@ -134,10 +140,13 @@ impl Grid {
             to.0.push(t);
             to
         };
-        list.with_min_len(least).fold(Default::default, part).reduce(Default::default, |mut a, b| {
-            a.0.extend(b.0);
-            (a.0, a.1.join(b.1))
-        })
+        list.with_min_len(least).fold(Default::default, part).reduce(
+            Default::default,
+            |mut a, b| {
+                a.0.extend(b.0);
+                (a.0, a.1.join(b.1))
+            },
+        )
     }
 }
 
@@ -150,19 +159,23 @@ mod tests {
     fn the_grid_loses_no_pair() {
         let job = Job::default();
         let (a, b) = (icosphere(1.0, 30).to_poly(), icosphere(0.9, 23).to_poly());
-        for shift in [DVec3::ZERO, DVec3::new(0.7, 0.3, 0.2), DVec3::new(1.9, 0.0, 0.0), DVec3::splat(3.0)] {
+        for shift in
+            [DVec3::ZERO, DVec3::new(0.7, 0.3, 0.2), DVec3::new(1.9, 0.0, 0.0), DVec3::splat(3.0)]
+        {
             let moved: Vec<DVec3> = b.positions.iter().map(|p| *p + shift).collect();
             let (ta, tb) = (a.triangles().0, b.triangles().0);
             let surfaces = [
                 Surface { triangles: &ta, at: &a.positions, base: 0 },
                 Surface { triangles: &tb, at: &moved, base: 0 },
             ];
-            let got =
-                pairs(surfaces, surfaces.map(|s| Span::of(s.at.iter().copied())), 1e-6, &job).expect("runs");
+            let got = pairs(surfaces, surfaces.map(|s| Span::of(s.at.iter().copied())), 1e-6, &job)
+                .expect("runs");
             let mut want = Vec::new();
             for i in 0..ta.len() as u32 {
                 let s = surfaces[0].span(i).grown(1e-6);
-                want.extend((0..tb.len() as u32).filter(|&j| s.meets(&surfaces[1].span(j))).map(|j| (i, j)));
+                want.extend(
+                    (0..tb.len() as u32).filter(|&j| s.meets(&surfaces[1].span(j))).map(|j| (i, j)),
+                );
             }
             assert_eq!(got, want, "{shift}");
             assert_eq!(want.is_empty(), shift.x != 0.7);

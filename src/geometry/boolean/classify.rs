@@ -1,5 +1,5 @@
-//! Where each part of a surface lies as seen from the other solid: faces in contact by their borders, all else by one winding
-//! number for each part that the cut leaves connected.
+//! Where each part of a surface lies as seen from the other solid: faces in contact by their
+//! borders, all else by one winding number for each part that the cut leaves connected.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -241,7 +241,8 @@ impl Other<'_> {
         self.asked += 1;
         if self.asked > WITHOUT_TREE && self.tree.is_none() {
             let count = self.surface.triangles.len() as u32;
-            let spans: Vec<Span> = (0..count).into_par_iter().map(|t| self.surface.span(t)).collect();
+            let spans: Vec<Span> =
+                (0..count).into_par_iter().map(|t| self.surface.span(t)).collect();
             self.tree = Some(Tree::build(&spans, job)?);
         }
         let reach = (self.bounds.hi - self.bounds.lo).length() * 2.0;
@@ -264,7 +265,8 @@ impl Other<'_> {
     }
 }
 
-/// A place in a triangle that nobody draws an edge through: an edge of the other surface may lie in this one.
+/// A place in a triangle that nobody draws an edge through: an edge of the other surface may lie in
+/// this one.
 fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
 }
@@ -288,16 +290,22 @@ fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
     best
 }
 
-/// Signed crossings of a segment of length `reach` that leaves the surface's box, decided exactly; a segment that meets an
-/// edge is tried anew in another direction. `along` shows the triangles near the segment to `o`'s far end until told false.
-pub fn crossings(o: DVec3, reach: f64, along: impl Fn(DVec3, &mut dyn FnMut([DVec3; 3]) -> bool)) -> i32 {
+/// Signed crossings of a segment of length `reach` that leaves the surface's box, decided exactly;
+/// a segment that meets an edge is tried anew in another direction. `along` shows the triangles
+/// near the segment to `o`'s far end until told false.
+pub fn crossings(
+    o: DVec3,
+    reach: f64,
+    along: impl Fn(DVec3, &mut dyn FnMut([DVec3; 3]) -> bool),
+) -> i32 {
     for attempt in 0..64 {
         let k = attempt as f64;
         let d = DVec3::new((k * 1.7 + 0.4).sin(), (k * 2.3 + 1.1).sin(), (k * 0.9 + 2.2).cos());
         let p = o + d.normalize_or(DVec3::X) * reach;
         let (mut sum, mut good) = (0, true);
         along(p, &mut |[a, b, c]| {
-            let (x, y) = (orient3d(c3(a), c3(b), c3(c), c3(o)), orient3d(c3(a), c3(b), c3(c), c3(p)));
+            let (x, y) =
+                (orient3d(c3(a), c3(b), c3(c), c3(o)), orient3d(c3(a), c3(b), c3(c), c3(p)));
             if (x > 0.0 && y > 0.0) || (x < 0.0 && y < 0.0) {
                 return true;
             }

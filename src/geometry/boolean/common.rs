@@ -1,12 +1,12 @@
-//! Both operands over one list of points: places of theirs within the tolerance of each other are one point, where the surfaces
-//! are near each other; elsewhere each keeps its own.
+//! Both operands over one list of points: places of theirs within the tolerance of each other are
+//! one point, where the surfaces are near each other; elsewhere each keeps its own.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::points::Points;
 use crate::boolean::box_tree::Span;
-use crate::boolean::broad_phase as near;
+use crate::boolean::broad_phase;
 use crate::boolean::broad_phase::Surface;
 use crate::job::{Cancelled, Job};
 use crate::{PolyMesh, triangulate};
@@ -39,9 +39,10 @@ pub fn common(
     );
     let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
     let surface = |s: usize, triangles| Surface { triangles, at: &operands[s].positions, base: 0 };
-    let mut pairs = near::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
+    let mut pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
     lap("near");
-    let mut points = Points::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
+    let mut points =
+        Points::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
     let mut names: Vec<u32> = (0..points.at.len() as u32).collect();
     let corners = |t: &[[u32; 3]], of: &dyn Fn(&(u32, u32)) -> u32| -> Vec<u32> {
         let mut near: Vec<u32> = pairs.iter().flat_map(|p| t[of(p) as usize]).collect();
@@ -65,24 +66,25 @@ pub fn common(
     }
     let named = |s: usize, v: u32| names[(bases[s] + v) as usize];
     let mut again = false;
-    let mut one = |s: usize, t: &mut Vec<[u32; 3]>, starts: &mut Vec<u32>| -> Result<PolyMesh, Cancelled> {
-        let m = operands[s];
-        job.check()?;
-        // Polygons of both that are the same by now are to come in the same triangles.
-        if shrunk[s] || renamed[s] && t.len() != m.face_count() {
-            let mesh = without_doubles(m, |v| named(s, v));
-            (*t, *starts) = split(&mesh, &points.at, job)?;
-            again = true;
-            return Ok(mesh);
-        }
-        t.par_iter_mut().for_each(|t| *t = t.map(|v| named(s, v)));
-        let corners = m.corners.par_iter().map(|&v| named(s, v)).collect();
-        Ok(PolyMesh { face_starts: m.face_starts.clone(), corners, ..PolyMesh::new() })
-    };
+    let mut one =
+        |s: usize, t: &mut Vec<[u32; 3]>, starts: &mut Vec<u32>| -> Result<PolyMesh, Cancelled> {
+            let m = operands[s];
+            job.check()?;
+            // Polygons of both that are the same by now are to come in the same triangles.
+            if shrunk[s] || renamed[s] && t.len() != m.face_count() {
+                let mesh = without_doubles(m, |v| named(s, v));
+                (*t, *starts) = split(&mesh, &points.at, job)?;
+                again = true;
+                return Ok(mesh);
+            }
+            t.par_iter_mut().for_each(|t| *t = t.map(|v| named(s, v)));
+            let corners = m.corners.par_iter().map(|&v| named(s, v)).collect();
+            Ok(PolyMesh { face_starts: m.face_starts.clone(), corners, ..PolyMesh::new() })
+        };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
     if again {
         let surface = |triangles| Surface { triangles, at: &points.at, base: 0 };
-        pairs = near::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
+        pairs = broad_phase::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
     }
     lap("weld");
     Ok(Common { points, meshes, triangles: [ta, tb], starts: [sa, sb], bounds, pairs })

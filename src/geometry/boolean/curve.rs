@@ -1,9 +1,11 @@
-//! The curve in which two surfaces meet, from its pieces: chains that end only where the curve ends or branches.
+//! The curve in which two surfaces meet, from its pieces: chains that end only where the curve ends
+//! or branches.
 
 use std::collections::BTreeMap;
 
-/// Chains of points through all pieces, each piece once; a closed chain names its first point again at its end. Chains between
-/// branches come first, in the order of the numbers of their first points, then closed ones likewise.
+/// Chains of points through all pieces, each piece once; a closed chain names its first point again
+/// at its end. Chains between branches come first, in the order of the numbers of their first
+/// points, then closed ones likewise.
 pub fn chains(pieces: &[(u32, u32)]) -> Vec<Vec<u32>> {
     let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (i, &(a, b)) in pieces.iter().enumerate() {

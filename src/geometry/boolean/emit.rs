@@ -1,5 +1,5 @@
-//! A result as a mesh: chosen pieces, turned where the operation asks, and vertices doubled where the solid touches itself, so
-//! that what comes out is an oriented 2-manifold.
+//! A result as a mesh: chosen pieces, turned where the operation asks, and vertices doubled where
+//! the solid touches itself, so that what comes out is an oriented 2-manifold.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -73,9 +73,10 @@ fn compact(mesh: &mut PolyMesh, at: &[DVec3], degrees: &[u32]) {
     mesh.corners.par_iter_mut().for_each(|c| *c = names[*c as usize]);
 }
 
-/// Drops unused points, doubles vertices where the surface touches itself, and where that leaves one edge between two pairs of
-/// faces, gives one pair a corner in the middle. Corners of `mesh` index `at`. Returns whether each edge found its partner:
-/// then the mesh is closed, oriented and manifold.
+/// Drops unused points, doubles vertices where the surface touches itself, and where that leaves
+/// one edge between two pairs of faces, gives one pair a corner in the middle. Corners of `mesh`
+/// index `at`. Returns whether each edge found its partner: then the mesh is closed, oriented and
+/// manifold.
 pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Cancelled> {
     let n = mesh.corners.len();
     let mut face_of = vec![0u32; n];
@@ -181,8 +182,8 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
     Ok(closed)
 }
 
-/// Partners around an edge with more than two faces: those with the solid between them, as Requicha's regularised boundary
-/// has it, so that what only touches comes apart.
+/// Partners around an edge with more than two faces: those with the solid between them, as
+/// Requicha's regularised boundary has it, so that what only touches comes apart.
 fn around(mesh: &PolyMesh, at: &[DVec3], group: &[(u64, u32)], face_of: &[u32]) -> Vec<(u32, u32)> {
     let (a, b) = ((group[0].0 >> 32) as usize, (group[0].0 & 0xffff_ffff) as usize);
     let d = (at[b] - at[a]).normalize_or(DVec3::Z);
@@ -196,7 +197,11 @@ fn around(mesh: &PolyMesh, at: &[DVec3], group: &[(u64, u32)], face_of: &[u32]) 
             let (s, t) = (w.dot(x), w.dot(y));
             // Directions that differ by rounding only are one direction; the solid starts after it.
             let angle = (t.atan2(s) * 1e9).round();
-            (if angle <= -(std::f64::consts::PI * 1e9).round() { -angle } else { angle }, forward, c)
+            (
+                if angle <= -(std::f64::consts::PI * 1e9).round() { -angle } else { angle },
+                forward,
+                c,
+            )
         })
         .collect();
     all.sort_by(|p, q| p.0.total_cmp(&q.0).then(q.1.cmp(&p.1)).then(p.2.cmp(&q.2)));
@@ -220,10 +225,13 @@ fn around(mesh: &PolyMesh, at: &[DVec3], group: &[(u64, u32)], face_of: &[u32]) 
     out
 }
 
-/// Volume and area, about the box's centre; faces in the triangles that [`PolyMesh::triangles`] gives.
+/// Volume and area, about the box's centre; faces in the triangles that [`PolyMesh::triangles`]
+/// gives.
 pub fn measure(mesh: &PolyMesh) -> (f64, f64) {
-    let (lo, hi) =
-        mesh.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let (lo, hi) = mesh
+        .positions
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
     let centre = (lo + hi) * 0.5;
     let part = |t: &[u32]| {
         t.chunks_exact(3).fold((0.0, 0.0), |(v, s), t| {

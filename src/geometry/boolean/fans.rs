@@ -1,5 +1,6 @@
-//! Whether faces form a closed, oriented 2-manifold as they stand: each edge has two faces, which run along it in opposite
-//! directions, and the faces around each vertex are one fan. Most results are; only others are taken apart.
+//! Whether faces form a closed, oriented 2-manifold as they stand: each edge has two faces, which
+//! run along it in opposite directions, and the faces around each vertex are one fan. Most results
+//! are; only others are taken apart.
 
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};

@@ -1,8 +1,9 @@
-//! The other route: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always gives a closed manifold.
-//! It knows no tolerance and leaves sheets where faces only nearly touch, so it is asked only where the first route found no
-//! consistent answer. Its *Exact* engine alone keeps what is not cut; its status is read, for it drops bad operands silently,
-//! and a panic within it (an index out of its arrays, on operands that cross themselves) is an error like any other. A result
-//! of no faces is a value.
+//! The other route: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always
+//! gives a closed manifold. It knows no tolerance and leaves sheets where faces only nearly touch,
+//! so it is asked only where the first route found no consistent answer. Its *Exact* engine alone
+//! keeps what is not cut; its status is read, for it drops bad operands silently, and a panic
+//! within it (an index out of its arrays, on operands that cross themselves) is an error like any
+//! other. A result of no faces is a value.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,11 +27,13 @@ use crate::job::{Cancelled, Job};
 /// A result: its mesh, the origin of each face, its facts.
 pub type Made = (PolyMesh, Vec<Origin>, Facts);
 
-/// What the crate gives, or in words why it gave nothing. What it was given is not used again after a panic.
+/// What the crate gives, or in words why it gave nothing. What it was given is not used again after
+/// a panic.
 fn guarded<T>(what: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(what)).unwrap_or_else(|payload| {
         let said = payload.downcast_ref::<String>().map(String::as_str);
-        let said = said.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no reason given");
+        let said =
+            said.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no reason given");
         Err(format!("the global engine panicked: {said}"))
     })
 }
@@ -45,8 +48,9 @@ fn sound(m: Manifold) -> Result<Manifold, String> {
 /// How often the one who waits looks whether it was cancelled.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// What `what` gives, on a thread of its own: the crate looks for its end only here and there, and this wait ends at once. What
-/// is left behind ends at its next look at the token or the job that it is given.
+/// What `what` gives, on a thread of its own: the crate looks for its end only here and there, and
+/// this wait ends at once. What is left behind ends at its next look at the token or the job that
+/// it is given.
 fn aside<T: Send + 'static>(
     job: &Job,
     what: impl FnOnce(&CancelToken, &Job) -> Result<T, String> + Send + 'static,
@@ -91,7 +95,11 @@ struct Held {
 
 impl Engine {
     /// Takes closed operands; the inner error says why the crate refuses one.
-    pub fn new(operands: [&PolyMesh; 2], eps: f64, job: &Job) -> Result<Result<Engine, String>, Cancelled> {
+    pub fn new(
+        operands: [&PolyMesh; 2],
+        eps: f64,
+        job: &Job,
+    ) -> Result<Result<Engine, String>, Cancelled> {
         let meshes = operands.map(PolyMesh::clone);
         let made = aside(job, move |_, job| {
             let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
@@ -116,7 +124,8 @@ impl Engine {
                 Operation::ReverseDifference => (b, a, OpType::Subtract),
             };
             let engine = BooleanEngine::Exact;
-            let out = sound(first.boolean_with_engine_and_token(second, kind, engine, Some(token)))?;
+            let out =
+                sound(first.boolean_with_engine_and_token(second, kind, engine, Some(token)))?;
             held.polygons(&out.get_mesh_gl64(-1), job).map_err(|e| e.to_string())
         })
     }
@@ -143,7 +152,8 @@ impl Held {
         let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
         for ((operand, face, _), rings) in groups {
             let source = &self.meshes[operand as usize];
-            let flat = rings.len() > 1 && is_flat(source, face as usize, &source.positions, self.eps);
+            let flat =
+                rings.len() > 1 && is_flat(source, face as usize, &source.positions, self.eps);
             let rings = if flat { joined_rings(rings, &at) } else { rings };
             for r in rings {
                 mesh.push_face(&r);
@@ -162,8 +172,11 @@ fn points(gl: &MeshGL64) -> Vec<DVec3> {
 
 /// As the crate takes it: manifold triangles, each with its face's number.
 fn plain(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
-    let mut own =
-        PolyMesh { face_starts: mesh.face_starts.clone(), corners: mesh.corners.clone(), ..PolyMesh::new() };
+    let mut own = PolyMesh {
+        face_starts: mesh.face_starts.clone(),
+        corners: mesh.corners.clone(),
+        ..PolyMesh::new()
+    };
     separate(&mut own, &mesh.positions, job)?;
     let (triangles, of) = own.triangles();
     Ok(MeshGL64 {
@@ -177,18 +190,21 @@ fn plain(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
     })
 }
 
-/// A surface that crosses itself as the solid of all places that it goes around (positively): what `--solve winding` asks for.
-/// Faces come in triangles.
+/// A surface that crosses itself as the solid of all places that it goes around (positively): what
+/// `--solve winding` asks for. Faces come in triangles.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Cancelled> {
     let mesh = mesh.clone();
     aside(job, move |token, job| {
         let said = |e: Cancelled| e.to_string();
         let given = plain(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
         let raw = sound(Manifold::from_mesh_gl64_robust(&given))?;
-        let gl = sound(raw.rebuild_solid_with_token(WindingRule::Positive, Some(token)))?.get_mesh_gl64(-1);
+        let gl = sound(raw.rebuild_solid_with_token(WindingRule::Positive, Some(token)))?
+            .get_mesh_gl64(-1);
         let at = points(&gl);
         let mut merged: Map<u32, u32> = Map::default();
-        merged.extend(gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)));
+        merged.extend(
+            gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)),
+        );
         let mut out = PolyMesh::new();
         for t in gl.tri_verts.chunks_exact(3) {
             let t = [0, 1, 2].map(|k| merged.get(&(t[k] as u32)).copied().unwrap_or(t[k] as u32));

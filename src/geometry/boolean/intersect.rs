@@ -1,5 +1,5 @@
-//! Where two surfaces meet: points of one on vertices, edges and faces of the other, each found once and known by all
-//! triangles around it; then the segments that cut each triangle.
+//! Where two surfaces meet: points of one on vertices, edges and faces of the other, each found
+//! once and known by all triangles around it; then the segments that cut each triangle.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
@@ -30,7 +30,8 @@ pub struct Meeting {
     pub edges: Vec<Edge>,
     /// Triangle to its marks, a side each.
     pub marks: [Map<u32, Marks>; 2],
-    /// Pieces of the curve in which the surfaces meet, lesser end first: between two points that both have, and nothing between.
+    /// Pieces of the curve in which the surfaces meet, lesser end first: between two points that
+    /// both have, and nothing between.
     pub curve: Map<(u32, u32), ()>,
     /// Points on both surfaces; one a point.
     pub shared: Vec<bool>,
@@ -62,8 +63,13 @@ pub fn meet(
         near_plane(&points.at, s, t, eps) && near_plane(&points.at, t, s, eps)
     });
     job.check()?;
-    let mut f =
-        Finder { points, eps, m: Meeting::default(), crossings: Map::default(), piercings: Map::default() };
+    let mut f = Finder {
+        points,
+        eps,
+        m: Meeting::default(),
+        crossings: Map::default(),
+        piercings: Map::default(),
+    };
     for (n, &(i, j)) in pairs.iter().enumerate() {
         if n % 1024 == 0 {
             job.check()?;
@@ -123,7 +129,8 @@ impl Finder<'_> {
     }
 
     fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2]) {
-        let edges = tris.map(|t| [self.edge(t[0], t[1]), self.edge(t[1], t[2]), self.edge(t[2], t[0])]);
+        let edges =
+            tris.map(|t| [self.edge(t[0], t[1]), self.edge(t[1], t[2]), self.edge(t[2], t[0])]);
         let mut touch = [[[false; 3]; 3]; 2];
         let mut lies = [[false; 3]; 2];
         for s in 0..2 {
@@ -224,7 +231,8 @@ impl Finder<'_> {
                 let height = |x: DVec3| orient3d(c3(a), c3(b), c3(c), c3(x));
                 let turn = |i: DVec3, j: DVec3| orient3d(c3(p), c3(q), c3(i), c3(j));
                 let (x, y) = (height(p), height(q));
-                // An end that lies on the triangle is known to; all else is as the numbers say, exactly.
+                // An end that lies on the triangle is known to; all else is as the numbers say,
+                // exactly.
                 let through = (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0);
                 let inside = through && {
                     let w = [turn(a, b), turn(b, c), turn(c, a)];
@@ -308,7 +316,9 @@ impl Meeting {
         });
         let mut found: [Vec<(u32, u32)>; 2] = Default::default();
         let chain = |list: &mut Vec<u32>, d: DVec3, out: &mut Vec<(u32, u32)>| {
-            list.sort_by(|&i, &j| at[i as usize].dot(d).total_cmp(&at[j as usize].dot(d)).then(i.cmp(&j)));
+            list.sort_by(|&i, &j| {
+                at[i as usize].dot(d).total_cmp(&at[j as usize].dot(d)).then(i.cmp(&j))
+            });
             out.extend(list.windows(2).map(|w| (w[0], w[1])));
         };
         if straight {
@@ -321,8 +331,11 @@ impl Meeting {
                 for k in 0..3 {
                     let Some(e) = self.edge_of(t[k], t[(k + 1) % 3]) else { continue };
                     let e = &self.edges[e as usize];
-                    let mut on: Vec<u32> =
-                        x.iter().copied().filter(|i| e.ends.contains(i) || e.inner.contains(i)).collect();
+                    let mut on: Vec<u32> = x
+                        .iter()
+                        .copied()
+                        .filter(|i| e.ends.contains(i) || e.inner.contains(i))
+                        .collect();
                     let d = at[e.ends[1] as usize] - at[e.ends[0] as usize];
                     chain(&mut on, d, &mut found[s]);
                 }

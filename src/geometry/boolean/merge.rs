@@ -1,4 +1,5 @@
-//! Cells of one face with one fate, joined again into as few simple polygons as can be had by dropping borders between two.
+//! Cells of one face with one fate, joined again into as few simple polygons as can be had by
+//! dropping borders between two.
 
 use glam::DVec3;
 
@@ -15,7 +16,8 @@ pub struct Polygon {
     pub corners: Vec<u32>,
 }
 
-/// Polygons of all pieces in cells of one face and place. `flat` says that the face is a plane, so that cells may be joined.
+/// Polygons of all pieces in cells of one face and place. `flat` says that the face is a plane, so
+/// that cells may be joined.
 pub fn polygons(side: u8, face: u32, group: &[&Piece], flat: bool, at: &[DVec3]) -> Vec<Polygon> {
     let mut rings: Vec<Vec<u32>> = Vec::new();
     for p in group {
@@ -28,7 +30,9 @@ pub fn polygons(side: u8, face: u32, group: &[&Piece], flat: bool, at: &[DVec3])
             }
             // A border that touches itself at a point is no simple polygon.
             Shape::Cell(c) if repeats(&c.outer) => {
-                rings.extend(triangles(&[&c.outer], DVec3::ZERO, at).into_iter().map(|t| t.to_vec()));
+                rings.extend(
+                    triangles(&[&c.outer], DVec3::ZERO, at).into_iter().map(|t| t.to_vec()),
+                );
             }
             Shape::Cell(c) => rings.push(c.outer.clone()),
             Shape::Border(b) => rings.push(b.clone()),
@@ -90,7 +94,8 @@ fn spiked(ring: &[u32], at: &[DVec3]) -> bool {
     (0..n).any(|i| {
         let [a, o, b] = [i + n - 1, i, i + 1].map(|k| at[ring[k % n] as usize]);
         let (u, v) = (a - o, b - o);
-        u.dot(v) > 0.0 && u.cross(v).length_squared() <= 1e-18 * u.length_squared() * v.length_squared()
+        u.dot(v) > 0.0
+            && u.cross(v).length_squared() <= 1e-18 * u.length_squared() * v.length_squared()
     })
 }
 
@@ -124,7 +129,8 @@ pub fn is_flat(mesh: &PolyMesh, f: usize, at: &[DVec3], eps: f64) -> bool {
     c.iter().all(|&v| (at[v as usize] - o).dot(n).abs() <= 2.0 * eps)
 }
 
-/// Drops corners that only subdivide a straight edge between two polygons, unless an input face has them there.
+/// Drops corners that only subdivide a straight edge between two polygons, unless an input face has
+/// them there.
 pub fn straighten(
     polygons: &mut [Polygon],
     meshes: &[PolyMesh; 2],
@@ -146,9 +152,9 @@ pub fn straighten(
     for v in order {
         let users = &uses[&v];
         if kept(v)
-            || users
-                .iter()
-                .any(|&i| meshes[polygons[i].side as usize].face(polygons[i].face as usize).contains(&v))
+            || users.iter().any(|&i| {
+                meshes[polygons[i].side as usize].face(polygons[i].face as usize).contains(&v)
+            })
         {
             continue;
         }

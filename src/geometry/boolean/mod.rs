@@ -1,13 +1,16 @@
 //! Booleans of polygon meshes: union, intersection and both differences from one arrangement.
 //!
-//! The way: both surfaces are brought over common points (places within the tolerance are one point), so that faces that a
-//! person means to be coplanar *are*, by the identity of their points; then each point where an edge of one meets an edge or a
-//! face of the other is found once (signs decided exactly, Shewchuk 1997) and known to every triangle around it; each crossed
-//! triangle is cut into the cells of its plane graph; the parts of each surface between cuts are placed by one winding
-//! number each; contact is found by equal borders. Cells of one face with one fate are joined again, so that a face that
-//! is not crossed comes out as it went in. Every result is checked before it is given: closed, and volumes that add up.
+//! The way: both surfaces are brought over common points (places within the tolerance are one
+//! point), so that faces that a person means to be coplanar *are*, by the identity of their points;
+//! then each point where an edge of one meets an edge or a face of the other is found once (signs
+//! decided exactly, Shewchuk 1997) and known to every triangle around it; each crossed triangle is
+//! cut into the cells of its plane graph; the parts of each surface between cuts are placed by one
+//! winding number each; contact is found by equal borders. Cells of one face with one fate are
+//! joined again, so that a face that is not crossed comes out as it went in. Every result is
+//! checked before it is given: closed, and volumes that add up.
 //!
-//! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the tolerance.
+//! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the
+//! tolerance.
 
 pub mod arrange;
 mod attributes;
@@ -50,8 +53,12 @@ pub enum Operation {
 }
 
 impl Operation {
-    pub const ALL: [Operation; 4] =
-        [Operation::Union, Operation::Intersection, Operation::Difference, Operation::ReverseDifference];
+    pub const ALL: [Operation; 4] = [
+        Operation::Union,
+        Operation::Intersection,
+        Operation::Difference,
+        Operation::ReverseDifference,
+    ];
 
     pub fn name(self) -> &'static str {
         match self {
@@ -70,7 +77,9 @@ impl Operation {
             (Union, _, Outside) | (Union, 0, Same) => Some(false),
             (Intersection, _, Inside) | (Intersection, 0, Same) => Some(false),
             (Intersection, _, Against) if contact => Some(false),
-            (Difference, 0, Outside | Against) | (ReverseDifference, 1, Outside | Against) => Some(false),
+            (Difference, 0, Outside | Against) | (ReverseDifference, 1, Outside | Against) => {
+                Some(false)
+            }
             (Difference, 1, Inside) | (ReverseDifference, 0, Inside) => Some(true),
             _ => None,
         }
@@ -79,8 +88,8 @@ impl Operation {
 
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
-    /// Length under which contact is contact. `None`: from the operands' own rounding, about 4e-12 of the largest
-    /// coordinate. 0: only what rounding of computed points needs.
+    /// Length under which contact is contact. `None`: from the operands' own rounding, about 4e-12
+    /// of the largest coordinate. 0: only what rounding of computed points needs.
     pub tolerance: Option<f64>,
     /// Faces in which the solids only touch belong to the intersection too, both sides of them.
     pub keep_contact: bool,
@@ -116,8 +125,8 @@ pub struct Report {
     /// The tolerance that was used.
     pub tolerance: f64,
     pub warnings: Vec<String>,
-    /// The cut: places where both surfaces are, as polylines that end where the curve ends or branches. A closed one names its
-    /// first place again at its end. Of the global engine: none.
+    /// The cut: places where both surfaces are, as polylines that end where the curve ends or
+    /// branches. A closed one names its first place again at its end. Of the global engine: none.
     pub cut: Vec<Vec<DVec3>>,
     /// Phase names, called as each ends.
     pub phases: Vec<(&'static str, f64)>,
@@ -125,7 +134,8 @@ pub struct Report {
 
 pub const NAMES: [&str; 2] = ["A", "B"];
 
-/// The asked operations on A and B, from one arrangement. `now` gives seconds (any origin), for the phases only.
+/// The asked operations on A and B, from one arrangement. `now` gives seconds (any origin), for the
+/// phases only.
 pub fn compute(
     operands: [&PolyMesh; 2],
     operations: &[Operation],
@@ -136,12 +146,14 @@ pub fn compute(
     let mut report = Report::default();
     let start = now();
     job.check()?;
-    let (a, b) = rayon::join(|| check(operands[0], NAMES[0], job), || check(operands[1], NAMES[1], job));
+    let (a, b) =
+        rayon::join(|| check(operands[0], NAMES[0], job), || check(operands[1], NAMES[1], job));
     let volumes = [a?, b?];
     report.phases.push(("check", now() - start));
     let reach = operands.iter().map(|m| reach(&m.positions)).fold(0.0, f64::max);
     let floor = reach * 2f64.powi(-49);
-    let wanted = options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
+    let wanted =
+        options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
     let mut why = String::new();
     // Where the first tolerance falls between what is and is not in contact, another does not.
     for factor in [1.0, 0.125, 16.0, 1.0 / 64.0] {
@@ -150,7 +162,9 @@ pub fn compute(
             Ok(solids) => {
                 report.tolerance = eps;
                 if factor != 1.0 {
-                    report.warnings.push(format!("tolerance {eps:.3e} taken instead of {wanted:.3e}: {why}"));
+                    report
+                        .warnings
+                        .push(format!("tolerance {eps:.3e} taken instead of {wanted:.3e}: {why}"));
                 }
                 return Ok((solids, report));
             }
@@ -161,7 +175,9 @@ pub fn compute(
             }
         }
     }
-    report.warnings.push(format!("no consistent result within the tolerance ({why}): global engine taken"));
+    report
+        .warnings
+        .push(format!("no consistent result within the tolerance ({why}): global engine taken"));
     report.tolerance = wanted;
     let solids = globally(operands, volumes, operations, wanted, job, &now, &mut report)?;
     Ok((solids, report))
@@ -187,7 +203,8 @@ fn globally(
     let engine = global::Engine::new(operands, eps, job)?.map_err(Error::Inconsistent)?;
     let mut solids = Vec::new();
     for &operation in operations {
-        let (mut mesh, origins, facts) = engine.run(operation, job)?.map_err(Error::Inconsistent)?;
+        let (mut mesh, origins, facts) =
+            engine.run(operation, job)?.map_err(Error::Inconsistent)?;
         attributes::carry(&mut mesh, &origins, operands);
         if !facts.closed {
             return Err(Error::Inconsistent(format!("the {} is not closed", operation.name())));
@@ -201,7 +218,8 @@ fn globally(
     }
 }
 
-/// A surface that crosses itself as the solid of all places that it goes around: for operands that [`compute`] refuses.
+/// A surface that crosses itself as the solid of all places that it goes around: for operands that
+/// [`compute`] refuses.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Error> {
     global::solve(mesh, job)?.map_err(Error::Inconsistent)
 }
@@ -223,8 +241,8 @@ pub fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, E
     if volume < 0.0 { Err(Error::InsideOut { operand, volume }) } else { Ok(volume) }
 }
 
-/// Whether the edges, each as a number of 128 bits with its direction as its sign, add up to nothing: so they do where each has
-/// its partners, and else all but never.
+/// Whether the edges, each as a number of 128 bits with its direction as its sign, add up to
+/// nothing: so they do where each has its partners, and else all but never.
 fn balanced(mesh: &PolyMesh) -> bool {
     let mix = |x: u64, by: u64| {
         let z = (x ^ (x >> 32)).wrapping_mul(by);
@@ -249,8 +267,9 @@ fn balanced(mesh: &PolyMesh) -> bool {
     };
     const BLOCK: usize = 1 << 14;
     let blocks = mesh.face_count().div_ceil(BLOCK);
-    let block =
-        |i: usize| part(&mesh.face_starts[i * BLOCK..mesh.face_starts.len().min((i + 1) * BLOCK + 1)]);
+    let block = |i: usize| {
+        part(&mesh.face_starts[i * BLOCK..mesh.face_starts.len().min((i + 1) * BLOCK + 1)])
+    };
     (0..blocks).into_par_iter().map(block).reduce(|| 0, u128::wrapping_add) == 0
 }
 
@@ -322,7 +341,10 @@ fn attempt(
 fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<String> {
     let of = |o| solids.iter().find(|s| s.operation == o).map(|s| s.facts.volume);
     let area: f64 = solids.iter().map(|s| s.facts.area).sum();
-    let size = at.par_chunks(1 << 15).map(|c| Span::of(c.iter().copied())).reduce(|| Span::EMPTY, Span::join);
+    let size = at
+        .par_chunks(1 << 15)
+        .map(|c| Span::of(c.iter().copied()))
+        .reduce(|| Span::EMPTY, Span::join);
     let slack = (a + b) * 5e-13 + area * eps + (size.hi - size.lo).length().powi(3) * 1e-16;
     let (u, i) = (of(Operation::Union), of(Operation::Intersection));
     let (d, r) = (of(Operation::Difference), of(Operation::ReverseDifference));
@@ -333,7 +355,10 @@ fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<S
     ];
     for (off, what) in sums {
         if off.is_some_and(|x| x.abs() > slack) {
-            return Some(format!("the volumes of {what} do not add up, by {:.3e}", off.unwrap_or(0.0)));
+            return Some(format!(
+                "the volumes of {what} do not add up, by {:.3e}",
+                off.unwrap_or(0.0)
+            ));
         }
     }
     solids

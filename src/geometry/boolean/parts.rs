@@ -8,8 +8,9 @@ use crate::PolyMesh;
 use crate::boolean::box_tree::Span;
 use crate::job::Job;
 
-/// The solid above the plane `normal . p = offset` and the solid below it, both closed by the cut; where the solid is on one side,
-/// the other is empty. Faces of the cut have the origin B. Phases by `now`, as in [`compute`].
+/// The solid above the plane `normal . p = offset` and the solid below it, both closed by the cut;
+/// where the solid is on one side, the other is empty. Faces of the cut have the origin B. Phases
+/// by `now`, as in [`compute`].
 ///
 /// # Errors
 /// As [`compute`]; [`Error::NotFinite`] for a normal without a direction.
@@ -36,7 +37,8 @@ pub fn split(
 /// A block below the plane around all of the mesh that is there.
 fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
     let span = Span::of(mesh.positions.iter().copied());
-    let (middle, size) = ((span.lo + span.hi) * 0.5, (span.hi - span.lo).length().max(f64::MIN_POSITIVE));
+    let (middle, size) =
+        ((span.lo + span.hi) * 0.5, (span.hi - span.lo).length().max(f64::MIN_POSITIVE));
     let top = n.dot(middle) - offset;
     let (x, y) = n.any_orthonormal_pair();
     // From the plane down to below all, however far above the solid the plane is.
@@ -49,7 +51,8 @@ fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
     out
 }
 
-/// Each connected shell as a mesh of its own, in the order of their first faces, colours and groups with it.
+/// Each connected shell as a mesh of its own, in the order of their first faces, colours and groups
+/// with it.
 pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
     let mut sets = Sets::new(mesh.positions.len());
     for f in mesh.faces() {
@@ -102,7 +105,8 @@ mod tests {
         let n = DVec3::new(0.3, -0.5, 0.8);
         for offset in [-0.4, 0.0, 0.25] {
             let ([above, below], report) =
-                split(&ball, n, offset, &Options::default(), &Job::default(), || 0.0).expect("two parts");
+                split(&ball, n, offset, &Options::default(), &Job::default(), || 0.0)
+                    .expect("two parts");
             assert!((above.facts.volume + below.facts.volume - whole).abs() < 1e-12 * whole);
             assert!(above.facts.volume > 0.0 && below.facts.volume > 0.0);
             assert!(above.mesh.positions.iter().all(|p| p.dot(n) >= offset - 1e-9));
@@ -115,7 +119,9 @@ mod tests {
         let far = split(&ball, DVec3::Z, 9.0, &Options::default(), &Job::default(), || 0.0);
         let ([above, below], _) = far.expect("two parts");
         assert_eq!((above.mesh.face_count(), below.mesh.face_count()), (0, ball.face_count()));
-        assert!(split(&ball, DVec3::ZERO, 0.0, &Options::default(), &Job::default(), || 0.0).is_err());
+        assert!(
+            split(&ball, DVec3::ZERO, 0.0, &Options::default(), &Job::default(), || 0.0).is_err()
+        );
     }
 
     #[test]

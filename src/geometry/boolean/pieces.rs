@@ -1,4 +1,5 @@
-//! The faces of both operands near the cut: whole where nothing cuts them, in cells where something does.
+//! The faces of both operands near the cut: whole where nothing cuts them, in cells where something
+//! does.
 
 use glam::DVec3;
 
@@ -40,13 +41,16 @@ impl Piece {
         match &self.shape {
             Shape::Whole => vec![face(self.face)],
             Shape::Border(b) => vec![b],
-            Shape::Cell(c) => std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect(),
+            Shape::Cell(c) => {
+                std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect()
+            }
         }
     }
 }
 
-/// Cuts the faces of one operand that the other may meet. `mesh` has its corners over the common points; `starts[f]` is the
-/// first triangle of face `f`. A face with a corner on the other surface is among them.
+/// Cuts the faces of one operand that the other may meet. `mesh` has its corners over the common
+/// points; `starts[f]` is the first triangle of face `f`. A face with a corner on the other surface
+/// is among them.
 pub fn cut(
     mesh: &PolyMesh,
     side: usize,
@@ -59,7 +63,8 @@ pub fn cut(
 ) -> Result<Vec<Piece>, Cancelled> {
     let mut out = Vec::new();
     let marks = &m.marks[side];
-    let mut near: Vec<u32> = marks.keys().map(|t| starts.partition_point(|s| s <= t) as u32 - 1).collect();
+    let mut near: Vec<u32> =
+        marks.keys().map(|t| starts.partition_point(|s| s <= t) as u32 - 1).collect();
     near.sort_unstable();
     near.dedup();
     for (n, f) in near.into_iter().map(|f| f as usize).enumerate() {
@@ -69,8 +74,9 @@ pub fn cut(
         let mut push = |shape| out.push(Piece { face: f as u32, shape, place: Place::Outside });
         let range = starts[f]..starts[f + 1];
         let own = &triangles[range.start as usize..range.end as usize];
-        let split = range.clone().any(|t| marks.get(&t).is_some_and(|k| k.flat || !k.segments.is_empty()))
-            || (range.len() > 1 && along_diagonal(mesh.face(f), own, m));
+        let split =
+            range.clone().any(|t| marks.get(&t).is_some_and(|k| k.flat || !k.segments.is_empty()))
+                || (range.len() > 1 && along_diagonal(mesh.face(f), own, m));
         if !split {
             let border = ring(mesh.face(f), m);
             if border.len() == mesh.face(f).len() {
@@ -152,7 +158,8 @@ pub fn triangles(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<[u32; 3]> {
     out
 }
 
-/// Holes joined to the border by the shortest bridges that cross nothing: one loop that runs along each bridge twice.
+/// Holes joined to the border by the shortest bridges that cross nothing: one loop that runs along
+/// each bridge twice.
 fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
     let flat = flatten(n);
     let spot = |v: u32| flat(at[v as usize]);
@@ -183,12 +190,14 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
         // Where a ring's corner comes twice, the bridge must start in the right one of its angles.
         let opens = |i: usize, q: u32| {
             let len = ring.len();
-            let (p, v, x) = (spot(ring[(i + len - 1) % len]), spot(ring[i]), spot(ring[(i + 1) % len]));
+            let (p, v, x) =
+                (spot(ring[(i + len - 1) % len]), spot(ring[i]), spot(ring[(i + 1) % len]));
             let turn = robust::orient2d(p, v, x);
             let (l, r) = (robust::orient2d(p, v, spot(q)), robust::orient2d(v, x, spot(q)));
             if turn > 0.0 { l > 0.0 && r > 0.0 } else { l > 0.0 || r > 0.0 }
         };
-        let way = ways.iter().find(|w| opens(w.1, left[w.2][w.3]) && !crosses(ring[w.1], left[w.2][w.3]));
+        let way =
+            ways.iter().find(|w| opens(w.1, left[w.2][w.3]) && !crosses(ring[w.1], left[w.2][w.3]));
         let &(_, i, h, j) = way.unwrap_or(&ways[0]);
         let hole = left.remove(h);
         let mut next = ring[..=i].to_vec();
@@ -220,7 +229,11 @@ mod tests {
         let want: DVec3 = loops.iter().map(|l| area_vector(&at, l)).sum();
         let made = triangles(&loops, want, &at);
         let got: f64 = made.iter().map(|t| area_vector(&at, t).length()).sum();
-        assert!((got - want.length()).abs() < 1e-12, "{made:?}: {got} instead of {}", want.length());
+        assert!(
+            (got - want.length()).abs() < 1e-12,
+            "{made:?}: {got} instead of {}",
+            want.length()
+        );
         // A corner of the hole is in line with one of the border: no triangle is that line.
         assert!(made.iter().all(|t| area_vector(&at, t).length() > 1e-6), "{made:?}");
     }

@@ -1,4 +1,5 @@
-//! A triangle cut by segments: the cells of the plane graph, each with its holes. Angles are compared exactly.
+//! A triangle cut by segments: the cells of the plane graph, each with its holes. Angles are
+//! compared exactly.
 
 use std::cmp::Ordering;
 
@@ -35,8 +36,8 @@ pub fn flatten(n: DVec3) -> impl Fn(DVec3) -> Coord<f64> + Copy {
     }
 }
 
-/// Cells of the polygon `ring` (counter-clockwise) cut by `segments`; both over global points placed by `at`.
-/// Segments that separate nothing are left out.
+/// Cells of the polygon `ring` (counter-clockwise) cut by `segments`; both over global points
+/// placed by `at`. Segments that separate nothing are left out.
 pub fn cells(ring: &[u32], segments: &[(u32, u32)], at: impl Fn(u32) -> Coord<f64>) -> Vec<Cell> {
     let mut ids: Map<u32, usize> = Map::default();
     let mut names: Vec<u32> = Vec::new();
@@ -90,7 +91,9 @@ fn trace(edges: &[(usize, usize)], alive: &[bool], spots: &[Coord<f64>]) -> Vec<
     }
     let mut place = vec![0usize; edges.len() * 2];
     for (v, hs) in out.iter_mut().enumerate() {
-        hs.sort_by(|&g, &h| angle(spots[v], spots[tail(g ^ 1)], spots[tail(h ^ 1)]).then(g.cmp(&h)));
+        hs.sort_by(|&g, &h| {
+            angle(spots[v], spots[tail(g ^ 1)], spots[tail(h ^ 1)]).then(g.cmp(&h))
+        });
         hs.iter().enumerate().for_each(|(i, &h)| place[h] = i);
     }
     let mut seen = vec![false; edges.len() * 2];
@@ -173,7 +176,10 @@ fn assemble(
             }
             odd
         };
-        let best = out.iter_mut().filter(|c| c.3 != part && inside(c.2)).min_by(|x, y| x.1.total_cmp(&y.1));
+        let best = out
+            .iter_mut()
+            .filter(|c| c.3 != part && inside(c.2))
+            .min_by(|x, y| x.1.total_cmp(&y.1));
         if let Some(c) = best {
             c.0.holes.push(name(l));
         }
@@ -181,12 +187,13 @@ fn assemble(
     out.into_iter().map(|c| c.0).collect()
 }
 
-/// The triangles of a polygon with holes, as few thin ones as can be (constrained Delaunay, Chew 1989). None where rounding
-/// makes the loops cross.
+/// The triangles of a polygon with holes, as few thin ones as can be (constrained Delaunay, Chew
+/// 1989). None where rounding makes the loops cross.
 pub fn delaunay(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Option<Vec<[u32; 3]>> {
     use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
     let flat = flatten(n);
-    let mut cdt: ConstrainedDelaunayTriangulation<Point2<f64>> = ConstrainedDelaunayTriangulation::new();
+    let mut cdt: ConstrainedDelaunayTriangulation<Point2<f64>> =
+        ConstrainedDelaunayTriangulation::new();
     let mut names: Vec<u32> = Vec::new();
     let mut rings = Vec::new();
     for l in loops {
@@ -259,7 +266,8 @@ mod tests {
         let at = |i: u32| Coord { x: spots[i as usize].0, y: spots[i as usize].1 };
         let c = cells(&[0, 4, 1, 2, 5, 3], &[(4, 5), (6, 7), (7, 8), (8, 6), (2, 9)], at);
         assert_eq!(c.len(), 3);
-        let mut shape: Vec<(usize, usize)> = c.iter().map(|c| (c.outer.len(), c.holes.len())).collect();
+        let mut shape: Vec<(usize, usize)> =
+            c.iter().map(|c| (c.outer.len(), c.holes.len())).collect();
         shape.sort_unstable();
         assert_eq!(shape, [(3, 0), (4, 0), (4, 1)]);
     }

@@ -1,6 +1,9 @@
 //! Points with an identity: two places within the tolerance are one point.
 
-#![expect(clippy::disallowed_types, reason = "a fixed hash, and nothing here shows the map's order")]
+#![expect(
+    clippy::disallowed_types,
+    reason = "a fixed hash, and nothing here shows the map's order"
+)]
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};

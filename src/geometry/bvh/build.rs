@@ -7,20 +7,22 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 use super::collapse::Plan;
-use super::{LEAF, NO_TRIANGLE, Node, Pack, WideTree};
+use super::{Bvh8, LEAF, NO_TRIANGLE, Node, Pack};
 use crate::TriMesh;
 use crate::job::{Cancelled, Job};
 
 /// Share of the nodes that each reinsertion pass looks at.
 const REINSERTION: f32 = 0.02;
-/// Boxes grow by this share of the largest coordinate: the triangle test's shear rounds a corner by less.
+/// Boxes grow by this share of the largest coordinate: the triangle test's shear rounds a corner by
+/// less.
 pub(super) const PAD: f32 = 1e-6;
 
-pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
+pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
     let corners = |t: u32| -> Option<[Vec3; 3]> {
         let [a, b, c] = mesh.triangles[t as usize].map(|v| mesh.positions.get(v as usize).copied());
-        Some([a?, b?, c?])
-            .filter(|c| c.iter().all(|p| p.is_finite() && p.abs().max_element() <= super::REACH as f32))
+        Some([a?, b?, c?]).filter(|c| {
+            c.iter().all(|p| p.is_finite() && p.abs().max_element() <= super::REACH as f32)
+        })
     };
     let mut used = Vec::with_capacity(mesh.triangles.len());
     let mut boxes = Vec::with_capacity(mesh.triangles.len());
@@ -32,13 +34,14 @@ pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
         boxes.push(Aabb::new(lo.into(), hi.into()));
         used.push(t);
     }
-    let mut tree = WideTree { nodes: Vec::new(), packs: Vec::new(), bounds, stack: 0, scalar: false };
+    let mut tree = Bvh8 { nodes: Vec::new(), packs: Vec::new(), bounds, stack: 0, scalar: false };
     if used.is_empty() {
         return Ok(tree);
     }
     job.check()?;
     let count = boxes.len();
-    // A search threshold above 0 ruins the tree of long thin triangles, the surface of most mechanical parts.
+    // A search threshold above 0 ruins the tree of long thin triangles, the surface of most
+    // mechanical parts.
     let mut binary = PlocBuilder::with_capacity(count).build(
         PlocSearchDistance::Low,
         &boxes,
@@ -54,8 +57,15 @@ pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
 
     let (lo, hi) = bounds;
     let pad = Vec3::splat(lo.abs().max(hi.abs()).max_element() * PAD);
-    let mut maker =
-        Maker { binary: &binary, plan: &plan, used: &used, pad, corners, tree: &mut tree, depth: 0 };
+    let mut maker = Maker {
+        binary: &binary,
+        plan: &plan,
+        used: &used,
+        pad,
+        corners,
+        tree: &mut tree,
+        depth: 0,
+    };
     maker.tree.nodes.reserve(count / 6);
     maker.tree.packs.reserve(count / 2);
     maker.root();
@@ -74,13 +84,14 @@ struct Maker<'a, C> {
     used: &'a [u32],
     pad: Vec3,
     corners: C,
-    tree: &'a mut WideTree,
+    tree: &'a mut Bvh8,
     depth: usize,
 }
 
 impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
     fn root(&mut self) {
-        // (binary node, wide node to fill, depth); a work list, for the binary tree may be deeper than the thread's stack.
+        // (binary node, wide node to fill, depth); a work list, for the binary tree may be deeper
+        // than the thread's stack.
         let mut todo = vec![(0usize, 0usize, 1usize)];
         self.tree.nodes.push(empty());
         while let Some((from, to, depth)) = todo.pop() {

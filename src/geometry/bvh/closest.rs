@@ -1,15 +1,17 @@
 //! The nearest point of the mesh, exactly.
 //!
-//! Single precision bounds how near and how far each triangle can be, and so finds the few that may be nearest; double
-//! precision decides between them. The bounds are widened by single precision's own rounding. So the answer is that of a double-precision search over all
-//! triangles, of two equally near the one of lower index.
+//! Single precision bounds how near and how far each triangle can be, and so finds the few that may
+//! be nearest; double precision decides between them. The bounds are widened by single precision's
+//! own rounding. So the answer is that of a double-precision search over all triangles, of two
+//! equally near the one of lower index.
 
 use glam::DVec3;
 
-use super::{LEAF, NO_TRIANGLE, WideTree};
+use super::{Bvh8, LEAF, NO_TRIANGLE};
 use crate::simd::wide::{self, Wide, WideWork};
 
-/// Which part of a triangle holds the nearest point. `Edge(k)` runs from corner `k` to corner `k + 1`.
+/// Which part of a triangle holds the nearest point. `Edge(k)` runs from corner `k` to corner `k +
+/// 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feature {
     Face,
@@ -33,8 +35,8 @@ impl Nearest {
     }
 }
 
-/// The nearest point of triangle `a`, `b`, `c` to `p`, by the seven regions of its plane (Ericson, "Real-Time Collision
-/// Detection", 2005, 5.1.5). A triangle without area is three segments.
+/// The nearest point of triangle `a`, `b`, `c` to `p`, by the seven regions of its plane (Ericson,
+/// "Real-Time Collision Detection", 2005, 5.1.5). A triangle without area is three segments.
 pub fn nearest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, Feature) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -98,17 +100,20 @@ fn nearest_on_segments(p: DVec3, corners: [DVec3; 3]) -> (DVec3, Feature) {
     (best.1, best.2)
 }
 
-impl WideTree {
-    /// Squares of lengths must fit single precision: neither the mesh nor `p` may reach beyond [`REACH`].
+impl Bvh8 {
+    /// Squares of lengths must fit single precision: neither the mesh nor `p` may reach beyond
+    /// [`REACH`].
     pub(crate) fn out_of_range(&self, p: DVec3) -> bool {
         let (lo, hi) = self.bounds;
         // Not a number is out of range too.
-        let within = p.abs().max_element() <= REACH && lo.abs().max(hi.abs()).max_element() as f64 <= REACH;
+        let within =
+            p.abs().max_element() <= REACH && lo.abs().max(hi.abs()).max_element() as f64 <= REACH;
         !within || p.is_nan() || self.nodes.is_empty()
     }
 
-    /// The nearest point of the mesh; `None` where nothing lies within `within` (a distance, infinity allowed), the mesh is
-    /// empty, or `p` or the mesh reach beyond [`REACH`]. A good bound makes the search faster, never different.
+    /// The nearest point of the mesh; `None` where nothing lies within `within` (a distance,
+    /// infinity allowed), the mesh is empty, or `p` or the mesh reach beyond [`REACH`]. A good
+    /// bound makes the search faster, never different.
     #[inline]
     pub fn nearest(&self, p: DVec3, within: f64) -> Option<Nearest> {
         if self.out_of_range(p) {
@@ -119,7 +124,7 @@ impl WideTree {
 }
 
 struct Search<'a> {
-    tree: &'a WideTree,
+    tree: &'a Bvh8,
     p: DVec3,
     within: f64,
 }
@@ -145,7 +150,8 @@ impl WideWork for Search<'_> {
         let mut maybe = [(0.0f32, 0u32); MAYBE];
         let mut count = 0;
         let mut inline = [(0.0f32, 0u32); INLINE];
-        let mut heap = if tree.stack > INLINE { vec![(0.0f32, 0u32); tree.stack] } else { Vec::new() };
+        let mut heap =
+            if tree.stack > INLINE { vec![(0.0f32, 0u32); tree.stack] } else { Vec::new() };
         let stack: &mut [(f32, u32)] = if heap.is_empty() { &mut inline } else { &mut heap };
         let mut top = 0;
         let mut at = 0u32;
@@ -214,7 +220,8 @@ impl WideWork for Search<'_> {
 /// Triangles that wait for the double-precision test.
 const MAYBE: usize = 32;
 
-/// The square of a radius, rounded up. Finite always: what is infinitely far is a child that is not there.
+/// The square of a radius, rounded up. Finite always: what is infinitely far is a child that is not
+/// there.
 #[inline(always)]
 fn square(radius: f32) -> f32 {
     (radius * radius * (1.0 + SLACK)).min(f32::MAX)
@@ -222,7 +229,7 @@ fn square(radius: f32) -> f32 {
 
 /// The double-precision side of a search.
 struct Exact<'a> {
-    tree: &'a WideTree,
+    tree: &'a Bvh8,
     p: DVec3,
     moved: f32,
     limit: f64,
@@ -245,7 +252,8 @@ impl Exact<'_> {
             if id == NO_TRIANGLE {
                 continue;
             }
-            let corners = pack.v.map(|c| DVec3::new(c[0][i] as f64, c[1][i] as f64, c[2][i] as f64));
+            let corners =
+                pack.v.map(|c| DVec3::new(c[0][i] as f64, c[1][i] as f64, c[2][i] as f64));
             let (point, feature) = nearest_on_triangle(self.p, corners);
             let d = self.p.distance_squared(point);
             let better = match &self.best {

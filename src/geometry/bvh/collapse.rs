@@ -1,9 +1,11 @@
-//! From the binary tree to a plan of the wide one: which binary nodes become children of which wide node, and which
-//! subtrees become leaves, so that the expected cost of a ray is the least (Ylitie, Karras, Laine, "Efficient incoherent
-//! ray traversal on GPUs through compressed wide BVHs", 2017, section 3.1).
+//! From the binary tree to a plan of the wide one: which binary nodes become children of which wide
+//! node, and which subtrees become leaves, so that the expected cost of a ray is the least (Ylitie,
+//! Karras, Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", 2017,
+//! section 3.1).
 //!
-//! `cost(n, i)` is the least cost of the subtree of `n` cut into at most `i` wide roots. Opening the largest child until a
-//! node is full, the simple way, leaves the lowest nodes half empty: four children of eight on average.
+//! `cost(n, i)` is the least cost of the subtree of `n` cut into at most `i` wide roots. Opening
+//! the largest child until a node is full, the simple way, leaves the lowest nodes half empty: four
+//! children of eight on average.
 
 use obvhs::bvh2::Bvh2;
 
@@ -16,7 +18,8 @@ const LEAF_MAX: u32 = 4;
 struct Choice {
     /// The least cost with at most 1 to 7 roots.
     cost: [f32; WIDTH - 1],
-    /// With at most 2 to 8 roots: how many of them are the left child's; 0: one root fewer is no worse.
+    /// With at most 2 to 8 roots: how many of them are the left child's; 0: one root fewer is no
+    /// worse.
     left: [u8; WIDTH - 1],
     /// Triangles below, and whether one root is a leaf.
     count: u32,
@@ -58,7 +61,10 @@ impl<'a> Plan<'a> {
         if node.is_leaf() {
             return Choice { cost: [as_leaf; 7], left: [0; 7], count: node.prim_count, leaf: true };
         }
-        let (l, r) = (&self.choices[node.first_index as usize], &self.choices[node.first_index as usize + 1]);
+        let (l, r) = (
+            &self.choices[node.first_index as usize],
+            &self.choices[node.first_index as usize + 1],
+        );
         let mut out = Choice { count: l.count + r.count, ..Choice::default() };
         if out.count <= LEAF_MAX {
             return Choice { cost: [as_leaf; 7], left: [0; 7], count: out.count, leaf: true };
@@ -101,13 +107,14 @@ impl<'a> Plan<'a> {
         // (binary node, roots it may become).
         let mut todo = [(0usize, 0usize); WIDTH];
         let mut top = 0;
-        let put = |todo: &mut [(usize, usize); WIDTH], top: &mut usize, from: usize, roots: usize| {
-            let k = self.choices[from].left[roots - 2] as usize;
-            let first = self.binary.nodes[from].first_index as usize;
-            todo[*top] = (first + 1, roots - k);
-            todo[*top + 1] = (first, k);
-            *top += 2;
-        };
+        let put =
+            |todo: &mut [(usize, usize); WIDTH], top: &mut usize, from: usize, roots: usize| {
+                let k = self.choices[from].left[roots - 2] as usize;
+                let first = self.binary.nodes[from].first_index as usize;
+                todo[*top] = (first + 1, roots - k);
+                todo[*top + 1] = (first, k);
+                *top += 2;
+            };
         put(&mut todo, &mut top, n, WIDTH);
         while top > 0 {
             top -= 1;

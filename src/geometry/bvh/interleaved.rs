@@ -1,22 +1,23 @@
-//! Several rays at once down the tree. One ray's walk is a chain: what a node says decides which is read next, and the
-//! processor waits for memory, for the boxes' verdict, for the branch. Rays do not depend on each other, so a few take
-//! turns, one node or leaf each: while one's next node is on its way from memory, the others work.
+//! Several rays at once down the tree. One ray's walk is a chain: what a node says decides which is
+//! read next, and the processor waits for memory, for the boxes' verdict, for the branch. Rays do
+//! not depend on each other, so a few take turns, one node or leaf each: while one's next node is
+//! on its way from memory, the others work.
 
-use super::traverse::{Waiting, fetch, nearest_of, open};
-use super::{LEAF, Ray, TreeHit, WideTree};
+use super::traverse::{StackEntry, fetch, nearest_of, open};
+use super::{Bvh8, LEAF, Ray, TreeHit};
 use crate::simd::wide::{Prepared, Wide, WideWork};
 
 /// Rays that take turns.
 pub(super) const LANES: usize = 4;
 
 /// The nearest hits of many rays.
-pub(super) struct Several<'a, A> {
-    pub tree: &'a WideTree,
+pub(super) struct Interleaved<'a, A> {
+    pub tree: &'a Bvh8,
     pub rays: &'a [Ray],
     /// Which triangles ray `i` may hit.
     pub accept: A,
     /// [`LANES`] times the tree's need.
-    pub stack: &'a mut [Waiting],
+    pub stack: &'a mut [StackEntry],
     /// One for each ray.
     pub hits: &'a mut [Option<TreeHit>],
 }
@@ -44,12 +45,12 @@ impl Lane {
     }
 }
 
-impl<A: Fn(usize, u32) -> bool> WideWork for Several<'_, A> {
+impl<A: Fn(usize, u32) -> bool> WideWork for Interleaved<'_, A> {
     type Out = ();
 
     #[inline(always)]
     fn run<W: Wide>(self, w: W) {
-        let Several { tree, rays, accept, stack, hits } = self;
+        let Interleaved { tree, rays, accept, stack, hits } = self;
         hits.fill(None);
         if tree.nodes.is_empty() || rays.is_empty() {
             return;
@@ -85,9 +86,9 @@ impl<A: Fn(usize, u32) -> bool> WideWork for Several<'_, A> {
 #[inline(always)]
 fn step<W: Wide>(
     w: W,
-    tree: &WideTree,
+    tree: &Bvh8,
     lane: &mut Lane,
-    stack: &mut [Waiting],
+    stack: &mut [StackEntry],
     near: &mut [f32; 8],
     accept: &impl Fn(usize, u32) -> bool,
 ) -> bool {
@@ -101,7 +102,8 @@ fn step<W: Wide>(
         }
     } else {
         let pack = &tree.packs[(lane.at & !LEAF) as usize];
-        lane.t_max = nearest_of(w, &lane.ready, pack, lane.t_max, &mut lane.best, |t| accept(lane.ray, t));
+        lane.t_max =
+            nearest_of(w, &lane.ready, pack, lane.t_max, &mut lane.best, |t| accept(lane.ray, t));
     }
     while lane.top > lane.floor {
         lane.top -= 1;

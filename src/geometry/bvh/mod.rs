@@ -1,12 +1,14 @@
 //! The eight-wide tree: rays and closest points against a triangle mesh that does not change.
 //!
-//! Guaranteed: a ray never slips between two triangles that share an edge or a vertex (watertight test); the answer is the
-//! same with and without AVX2 and does not depend on the tree's shape (of two triangles at the same distance the one of
-//! lower index wins). Not guaranteed: distances better than single precision gives them, about 1e-6 of the larger of the
-//! mesh's extent and the ray's distance from it.
+//! Guaranteed: a ray never slips between two triangles that share an edge or a vertex (watertight
+//! test); the answer is the same with and without AVX2 and does not depend on the tree's shape (of
+//! two triangles at the same distance the one of lower index wins). Not guaranteed: distances
+//! better than single precision gives them, about 1e-6 of the larger of the mesh's extent and the
+//! ray's distance from it.
 //!
-//! Built as a binary tree by locally ordered clustering (Meister and Bittner 2018, crate `obvhs`), improved by a short
-//! reinsertion (Meister and Bittner 2017), then collapsed into wide nodes at the least expected cost.
+//! Built as a binary tree by locally ordered clustering (Meister and Bittner 2018, crate `obvhs`),
+//! improved by a short reinsertion (Meister and Bittner 2017), then collapsed into wide nodes at
+//! the least expected cost.
 
 mod build;
 mod closest;
@@ -26,7 +28,8 @@ pub use traverse::Stack;
 pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};
 pub use closest::{Feature, Nearest, REACH, nearest_on_triangle};
 
-/// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <= t_max` count.
+/// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <=
+/// t_max` count.
 #[derive(Debug, Clone, Copy)]
 pub struct Ray {
     pub origin: Vec3,
@@ -42,7 +45,8 @@ impl Ray {
     }
 }
 
-/// Where a ray met a triangle: at `origin + t * dir`, and at `(1 - u - v) a + u b + v c` of its corners.
+/// Where a ray met a triangle: at `origin + t * dir`, and at `(1 - u - v) a + u b + v c` of its
+/// corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TreeHit {
     pub t: f32,
@@ -52,9 +56,10 @@ pub struct TreeHit {
     pub v: f32,
 }
 
-/// The tree. It keeps its own copy of the corners, in the order in which rays meet them, and no reference to the mesh.
+/// The tree. It keeps its own copy of the corners, in the order in which rays meet them, and no
+/// reference to the mesh.
 #[derive(Debug, Clone)]
-pub struct WideTree {
+pub struct Bvh8 {
     nodes: Vec<Node>,
     packs: Vec<Pack>,
     bounds: (Vec3, Vec3),
@@ -63,24 +68,27 @@ pub struct WideTree {
     scalar: bool,
 }
 
-/// Bytes of leaves from which on a tree is read from memory rather than from the processor's caches.
+/// Bytes of leaves from which on a tree is read from memory rather than from the processor's
+/// caches.
 const CACHED: usize = 16 << 20;
 
-impl WideTree {
-    /// Builds the tree in about 0.35 us a triangle on one core. Triangles with a coordinate that is not finite or is beyond [`REACH`], or with a
-    /// corner index past the end, are left out: no ray and no point meets them. `job` is looked at between the phases, of
-    /// which none takes more than about 40 ms per 100,000 triangles.
-    pub fn build(mesh: &TriMesh, job: &Job) -> Result<WideTree, Cancelled> {
+impl Bvh8 {
+    /// Builds the tree in about 0.35 us a triangle on one core. Triangles with a coordinate that is
+    /// not finite or is beyond [`REACH`], or with a corner index past the end, are left out: no ray
+    /// and no point meets them. `job` is looked at between the phases, of which none takes more
+    /// than about 40 ms per 100,000 triangles.
+    pub fn build(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
         build::build(mesh, job)
     }
 
     /// The same tree that answers without AVX2; for the comparison of the two.
-    pub fn without_simd(mut self) -> WideTree {
+    pub fn without_simd(mut self) -> Bvh8 {
         self.scalar = true;
         self
     }
 
-    /// Lower and upper corner of the box around all triangles; an empty tree has them inverted (+inf, -inf).
+    /// Lower and upper corner of the box around all triangles; an empty tree has them inverted
+    /// (+inf, -inf).
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.bounds
     }
@@ -90,7 +98,8 @@ impl WideTree {
         self.packs.is_empty()
     }
 
-    /// The wide nodes. Node 0 is the root; children come after their parent. The boxes are padded by about 1e-6 of the extent.
+    /// The wide nodes. Node 0 is the root; children come after their parent. The boxes are padded
+    /// by about 1e-6 of the extent.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
@@ -100,7 +109,8 @@ impl WideTree {
         &self.packs
     }
 
-    /// Entries that a depth-first traversal needs at most when it pushes every child of a node at once.
+    /// Entries that a depth-first traversal needs at most when it pushes every child of a node at
+    /// once.
     pub fn stack_need(&self) -> usize {
         self.stack
     }
@@ -127,9 +137,9 @@ impl WideTree {
         wide::dispatch(self.scalar, traverse::Closest { tree: self, ray: &ray, accept, stack })
     }
 
-    /// The nearest hit of each ray on a triangle that `accept` takes (it is told the ray's index); `hits` becomes as long
-    /// as `rays`. The same answers as [`Self::closest_hit`]; in a tree too large for the caches a fifth faster, for there
-    /// rays take turns.
+    /// The nearest hit of each ray on a triangle that `accept` takes (it is told the ray's index);
+    /// `hits` becomes as long as `rays`. The same answers as [`Self::closest_hit`]; in a tree too
+    /// large for the caches a fifth faster, for there rays take turns.
     #[inline]
     pub fn closest_hits(
         &self,
@@ -144,7 +154,10 @@ impl WideTree {
         if self.packs.len() * size_of::<Pack>() < CACHED {
             wide::dispatch(self.scalar, traverse::OneByOne { tree, rays, accept, stack, hits });
         } else {
-            wide::dispatch(self.scalar, interleaved::Several { tree, rays, accept, stack, hits });
+            wide::dispatch(
+                self.scalar,
+                interleaved::Interleaved { tree, rays, accept, stack, hits },
+            );
         }
     }
 

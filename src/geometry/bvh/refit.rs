@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::build::PAD;
-use super::{LEAF, NO_TRIANGLE, WideTree};
+use super::{Bvh8, LEAF, NO_TRIANGLE};
 use crate::TriMesh;
 
 /// Where each triangle, leaf and node hangs; made once for a tree that is to follow its mesh.
@@ -18,7 +18,7 @@ pub struct Parents {
     stamped: Vec<bool>,
 }
 
-impl WideTree {
+impl Bvh8 {
     /// `triangles` is the number of triangles of the mesh.
     pub fn parents(&self, triangles: usize) -> Parents {
         let mut p = Parents {
@@ -46,7 +46,8 @@ impl WideTree {
         p
     }
 
-    /// Brings the tree up to date with the corners of `moved` triangles. Rays then answer as in a tree built anew.
+    /// Brings the tree up to date with the corners of `moved` triangles. Rays then answer as in a
+    /// tree built anew.
     pub fn refit(&mut self, mesh: &TriMesh, moved: &[u32], parents: &mut Parents) {
         let mut leaves: Vec<u32> =
             moved.iter().map(|&t| parents.leaf_of[t as usize]).filter(|&l| l != u32::MAX).collect();
@@ -81,7 +82,8 @@ impl WideTree {
                 at = parents.above_node[at as usize].0;
             }
         }
-        // Children come after their parents: from the last to the first, every box is ready when it is asked for.
+        // Children come after their parents: from the last to the first, every box is ready when it
+        // is asked for.
         touched.sort_unstable_by(|a, b| b.cmp(a));
         for at in touched {
             parents.stamped[at as usize] = false;
@@ -90,8 +92,10 @@ impl WideTree {
             }
             let planes = &self.nodes[at as usize].planes;
             let low = |axis: usize| planes[axis].iter().copied().fold(f32::INFINITY, f32::min);
-            let high = |axis: usize| planes[3 + axis].iter().copied().fold(f32::NEG_INFINITY, f32::max);
-            let (lo, hi) = (Vec3::new(low(0), low(1), low(2)), Vec3::new(high(0), high(1), high(2)));
+            let high =
+                |axis: usize| planes[3 + axis].iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            let (lo, hi) =
+                (Vec3::new(low(0), low(1), low(2)), Vec3::new(high(0), high(1), high(2)));
             let (node, lane) = parents.above_node[at as usize];
             self.put(node, lane, lo, hi);
         }

@@ -1,18 +1,19 @@
 //! The walk down the tree, written once and compiled for each processor.
 
-use super::{LEAF, Node, Pack, Ray, TreeHit, WideTree};
+use super::{Bvh8, LEAF, Node, Pack, Ray, TreeHit};
 use crate::simd::wide::{Prepared, Wide, WideWork};
 
-/// A subtree still to visit: in the upper half where the ray enters it, in the lower half its place. As whole numbers
-/// two of them are put in order without a branch that the processor would have to guess. Floats that are not negative
-/// have the order of their bits; where the ray may start behind its origin the order is only less good.
+/// A subtree still to visit: in the upper half where the ray enters it, in the lower half its
+/// place. As whole numbers two of them are put in order without a branch that the processor would
+/// have to guess. Floats that are not negative have the order of their bits; where the ray may
+/// start behind its origin the order is only less good.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Waiting(i64);
+pub(super) struct StackEntry(i64);
 
-impl Waiting {
+impl StackEntry {
     #[inline(always)]
     pub fn new(at: u32, near: f32) -> Self {
-        Waiting((near.to_bits() as i64) << 32 | at as i64)
+        StackEntry((near.to_bits() as i64) << 32 | at as i64)
     }
 
     #[inline(always)]
@@ -28,7 +29,7 @@ impl Waiting {
 
 /// The subtrees still to visit; kept between rays so that it is made once.
 #[derive(Debug, Clone, Default)]
-pub struct Stack(Vec<Waiting>);
+pub struct Stack(Vec<StackEntry>);
 
 impl Stack {
     pub fn new() -> Self {
@@ -36,10 +37,10 @@ impl Stack {
     }
 
     #[inline(always)]
-    pub(super) fn slots(&mut self, tree: &WideTree) -> &mut [Waiting] {
+    pub(super) fn slots(&mut self, tree: &Bvh8) -> &mut [StackEntry] {
         let need = tree.stack * crate::bvh::interleaved::LANES;
         if self.0.len() < need {
-            self.0.resize(need, Waiting(0));
+            self.0.resize(need, StackEntry(0));
         }
         &mut self.0
     }
@@ -49,9 +50,9 @@ impl Stack {
 #[inline(always)]
 fn walk<W: Wide>(
     w: W,
-    tree: &WideTree,
+    tree: &Bvh8,
     ray: &Ray,
-    slots: &mut [Waiting],
+    slots: &mut [StackEntry],
     mut leaf: impl FnMut(&Prepared, u32, f32) -> f32,
 ) {
     if tree.nodes.is_empty() {
@@ -91,20 +92,21 @@ fn walk<W: Wide>(
     }
 }
 
-/// Of the children in `mask`, which is not empty, the nearest, to go on with; the others wait, the nearest of them on top.
+/// Of the children in `mask`, which is not empty, the nearest, to go on with; the others wait, the
+/// nearest of them on top.
 #[inline(always)]
 pub(super) fn open<W: Wide>(
     w: W,
-    tree: &WideTree,
+    tree: &Bvh8,
     node: &Node,
     mut mask: u32,
     near: &[f32; 8],
-    slots: &mut [Waiting],
+    slots: &mut [StackEntry],
     top: &mut usize,
 ) -> u32 {
     let child = |mask: u32| {
         let i = mask.trailing_zeros() as usize & 7;
-        Waiting::new(node.child[i], near[i])
+        StackEntry::new(node.child[i], near[i])
     };
     let mut best = child(mask);
     mask &= mask - 1;
@@ -137,7 +139,7 @@ pub(super) fn open<W: Wide>(
 
 /// Asks for what is visited later, before it is needed.
 #[inline(always)]
-pub(super) fn fetch<W: Wide>(w: W, tree: &WideTree, at: u32) {
+pub(super) fn fetch<W: Wide>(w: W, tree: &Bvh8, at: u32) {
     if at & LEAF == 0 {
         w.fetch(&tree.nodes, at as usize);
     } else {
@@ -171,10 +173,10 @@ pub(super) fn nearest_of<W: Wide>(
 }
 
 pub(super) struct Closest<'a, A> {
-    pub tree: &'a WideTree,
+    pub tree: &'a Bvh8,
     pub ray: &'a Ray,
     pub accept: A,
-    pub stack: &'a mut [Waiting],
+    pub stack: &'a mut [StackEntry],
 }
 
 impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
@@ -189,9 +191,9 @@ impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
 #[inline(always)]
 fn closest<W: Wide>(
     w: W,
-    tree: &WideTree,
+    tree: &Bvh8,
     ray: &Ray,
-    stack: &mut [Waiting],
+    stack: &mut [StackEntry],
     accept: impl Fn(u32) -> bool,
 ) -> Option<TreeHit> {
     let mut best = None::<TreeHit>;
@@ -203,11 +205,11 @@ fn closest<W: Wide>(
 
 /// The nearest hits of many rays, one after the other.
 pub(super) struct OneByOne<'a, A> {
-    pub tree: &'a WideTree,
+    pub tree: &'a Bvh8,
     pub rays: &'a [Ray],
     /// Which triangles ray `i` may hit.
     pub accept: A,
-    pub stack: &'a mut [Waiting],
+    pub stack: &'a mut [StackEntry],
     /// One for each ray.
     pub hits: &'a mut [Option<TreeHit>],
 }
@@ -224,10 +226,10 @@ impl<A: Fn(usize, u32) -> bool> WideWork for OneByOne<'_, A> {
 }
 
 pub(super) struct Each<'a, V> {
-    pub tree: &'a WideTree,
+    pub tree: &'a Bvh8,
     pub ray: &'a Ray,
     pub visit: V,
-    pub stack: &'a mut [Waiting],
+    pub stack: &'a mut [StackEntry],
 }
 
 impl<V: FnMut(TreeHit) -> bool> WideWork for Each<'_, V> {
@@ -243,7 +245,12 @@ impl<V: FnMut(TreeHit) -> bool> WideWork for Each<'_, V> {
             while mask != 0 {
                 let i = mask.trailing_zeros() as usize & 3;
                 mask &= mask - 1;
-                if !(self.visit)(TreeHit { t: hits.t[i], triangle: pack.id[i], u: hits.u[i], v: hits.v[i] }) {
+                if !(self.visit)(TreeHit {
+                    t: hits.t[i],
+                    triangle: pack.id[i],
+                    u: hits.u[i],
+                    v: hits.v[i],
+                }) {
                     // Nothing is nearer than this: the walk ends.
                     return f32::NEG_INFINITY;
                 }

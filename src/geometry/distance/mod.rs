@@ -1,9 +1,10 @@
 //! Signed distance to a mesh: negative inside, positive outside, zero on the surface.
 //!
-//! Guaranteed: the distance is that of an exhaustive search in double precision; the sign does not depend on the number of
-//! threads. On a closed mesh, self-intersecting or not, the winding number gives the sign that filling it would; the
-//! pseudonormal gives the same on meshes that do not cross themselves, for less. Not guaranteed: a meaningful sign within
-//! a hole of an open mesh; there it follows the generalised winding number, which closes holes smoothly.
+//! Guaranteed: the distance is that of an exhaustive search in double precision; the sign does not
+//! depend on the number of threads. On a closed mesh, self-intersecting or not, the winding number
+//! gives the sign that filling it would; the pseudonormal gives the same on meshes that do not
+//! cross themselves, for less. Not guaranteed: a meaningful sign within a hole of an open mesh;
+//! there it follows the generalised winding number, which closes holes smoothly.
 
 pub mod topology;
 
@@ -12,25 +13,27 @@ use rayon::prelude::*;
 
 use super::winding::Winding;
 use crate::TriMesh;
-use crate::bvh::{Nearest, WideTree};
+use crate::bvh::{Bvh8, Nearest};
 use crate::job::{Cancelled, Job};
 pub use topology::Topology;
 
 /// How inside is told from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sign {
-    /// By the winding number: right on every closed mesh, also where shells overlap, and smooth across holes.
+    /// By the winding number: right on every closed mesh, also where shells overlap, and smooth
+    /// across holes.
     #[default]
     Winding,
-    /// By the angle-weighted normal of the nearest face, edge or vertex (Baerentzen and Aanaes, "Signed distance computation
-    /// using the angle weighted pseudonormal", 2005). Right on closed meshes that do not cross themselves.
+    /// By the angle-weighted normal of the nearest face, edge or vertex (Baerentzen and Aanaes,
+    /// "Signed distance computation using the angle weighted pseudonormal", 2005). Right on closed
+    /// meshes that do not cross themselves.
     Pseudonormal,
 }
 
 /// A mesh made ready for questions of distance.
 #[derive(Debug, Clone)]
 pub struct Solid {
-    pub tree: WideTree,
+    pub tree: Bvh8,
     winding: Winding,
     pub topology: Topology,
     sign: Sign,
@@ -40,16 +43,18 @@ pub struct Solid {
 const CHUNK: usize = 256;
 
 impl Solid {
-    /// About 0.4 us a triangle. The sign is the winding number's; [`Solid::with_sign`] changes that.
+    /// About 0.4 us a triangle. The sign is the winding number's; [`Solid::with_sign`] changes
+    /// that.
     pub fn build(mesh: &TriMesh, job: &Job) -> Result<Solid, Cancelled> {
-        let (tree, topology) = rayon::join(|| WideTree::build(mesh, job), || Topology::build(mesh));
+        let (tree, topology) = rayon::join(|| Bvh8::build(mesh, job), || Topology::build(mesh));
         let tree = tree?;
         job.check()?;
         let winding = Winding::build(&tree);
         Ok(Solid { tree, winding, topology, sign: Sign::default() })
     }
 
-    /// [`Sign::Pseudonormal`] is refused, and the winding number kept, on meshes that are not closed.
+    /// [`Sign::Pseudonormal`] is refused, and the winding number kept, on meshes that are not
+    /// closed.
     pub fn with_sign(mut self, sign: Sign) -> Solid {
         self.sign = if self.topology.closed { sign } else { Sign::Winding };
         self
@@ -72,7 +77,8 @@ impl Solid {
         {
             let away = p - n.point;
             let side = away.dot(normal);
-            // Too close to call where rounding of the nearest point matters: the winding number decides.
+            // Too close to call where rounding of the nearest point matters: the winding number
+            // decides.
             if side.abs() > 1e-9 * away.length() * normal.length() {
                 return side < 0.0;
             }
@@ -95,7 +101,7 @@ impl Solid {
         self.batch(points, f64::INFINITY, job, |p| self.signed_distance(p))
     }
 
-    /// The nearest point to each, on all threads; `None` as in [`WideTree::nearest`].
+    /// The nearest point to each, on all threads; `None` as in [`Bvh8::nearest`].
     pub fn nearest(&self, points: &[DVec3], job: &Job) -> Result<Vec<Option<Nearest>>, Cancelled> {
         self.batch(points, None, job, |p| self.tree.nearest(p, f64::INFINITY))
     }

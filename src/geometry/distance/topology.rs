@@ -13,7 +13,8 @@ pub const NO_PARTNER: u32 = u32::MAX;
 pub struct Topology {
     /// The welded vertices' places, in order of x, y, z.
     pub positions: Vec<Vec3>,
-    /// Welded corners of each triangle of the mesh; triangles with a bad index have `[u32::MAX; 3]`.
+    /// Welded corners of each triangle of the mesh; triangles with a bad index have `[u32::MAX;
+    /// 3]`.
     pub triangles: Vec<[u32; 3]>,
     /// The triangle on the other side of edge `k` (from corner `k` to `k + 1`), or [`NO_PARTNER`].
     pub across: Vec<[u32; 3]>,
@@ -61,7 +62,8 @@ impl Topology {
         Topology { positions, triangles, across, face_normals, vertex_normals, closed, blunt }
     }
 
-    /// The normal that tells the sides of the surface apart at a nearest point; `None` where the mesh does not say.
+    /// The normal that tells the sides of the surface apart at a nearest point; `None` where the
+    /// mesh does not say.
     pub fn pseudonormal(&self, at: &Nearest) -> Option<DVec3> {
         let t = at.triangle as usize;
         let tri = self.triangles[t];
@@ -70,7 +72,8 @@ impl Topology {
             Feature::Edge(k) => {
                 let k = k as usize;
                 let other = self.across[t][k];
-                if other == NO_PARTNER || self.blunt[tri[k] as usize] && self.blunt[tri[(k + 1) % 3] as usize]
+                if other == NO_PARTNER
+                    || self.blunt[tri[k] as usize] && self.blunt[tri[(k + 1) % 3] as usize]
                 {
                     return None;
                 }
@@ -116,14 +119,16 @@ fn radsort(order: &mut [([u32; 3], u32)]) {
     order.par_sort_unstable();
 }
 
-/// The partner of each half-edge: of two triangles that pass an edge opposite ways. And whether all have one or, at edges
-/// of more than two triangles, as many one way as the other.
+/// The partner of each half-edge: of two triangles that pass an edge opposite ways. And whether all
+/// have one or, at edges of more than two triangles, as many one way as the other.
 fn partners(triangles: &[[u32; 3]], vertices: usize) -> (Vec<[u32; 3]>, bool) {
     // Half-edges by their lower vertex: counted, then filled.
     let mut starts = vec![0u32; vertices + 1];
     let halves = |t: &[u32; 3]| {
         let t = *t;
-        (0..3).map(move |k| (t[k], t[(k + 1) % 3])).filter(move |&(a, b)| t[0] != u32::MAX && a != b)
+        (0..3)
+            .map(move |k| (t[k], t[(k + 1) % 3]))
+            .filter(move |&(a, b)| t[0] != u32::MAX && a != b)
     };
     for t in triangles {
         halves(t).for_each(|(a, b)| starts[a.min(b) as usize + 1] += 1);

@@ -1,8 +1,9 @@
 //! Signed distances near a surface only, refined block by block.
 //!
-//! What is sampled is any combination of signed distances that is itself no steeper than a distance: a value far from zero
-//! at the middle of a block settles the whole block. So the cost follows the surface, not the volume. Exact within one
-//! spacing of zero; further away only the sign is right, and the size is at least one spacing.
+//! What is sampled is any combination of signed distances that is itself no steeper than a
+//! distance: a value far from zero at the middle of a block settles the whole block. So the cost
+//! follows the surface, not the volume. Exact within one spacing of zero; further away only the
+//! sign is right, and the size is at least one spacing.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -49,9 +50,9 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
             // A bound that rounding made too small would lose the nearest triangle.
             let found = solid.tree.nearest(p, within * (1.0 + 1e-9) + self.spacing * 1e-6);
             let d = found.map_or(f64::INFINITY, |n| n.distance());
-            let settled = near
-                .iter()
-                .find(|n| self.closed && d + n[s].signed.abs() > p.distance(n[s].at) * (1.0 + 1e-9));
+            let settled = near.iter().find(|n| {
+                self.closed && d + n[s].signed.abs() > p.distance(n[s].at) * (1.0 + 1e-9)
+            });
             let inside = match settled {
                 Some(n) => n[s].signed < 0.0,
                 None => solid.inside(p, found.as_ref()),
@@ -61,7 +62,14 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
     }
 
     /// Fills the block of `side` samples from `(i, j, k)`; `slab` begins at the plane `k0`.
-    fn block(&self, slab: &mut [f32], k0: usize, from: [usize; 3], side: usize, near: &[[Known; N]]) {
+    fn block(
+        &self,
+        slab: &mut [f32],
+        k0: usize,
+        from: [usize; 3],
+        side: usize,
+        near: &[[Known; N]],
+    ) {
         let [nx, ny, _] = self.size;
         let to: [usize; 3] = std::array::from_fn(|a| (from[a] + side).min(self.size[a]));
         if (0..3).any(|a| from[a] >= to[a]) {
@@ -117,18 +125,21 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
     /// Near a hole the side changes with no surface near: the corners are asked too.
     fn one_side(&self, from: [usize; 3], to: [usize; 3], inside: bool) -> bool {
         (0..8).all(|c| {
-            let at: [usize; 3] = std::array::from_fn(|a| if c >> a & 1 == 0 { from[a] } else { to[a] - 1 });
+            let at: [usize; 3] =
+                std::array::from_fn(|a| if c >> a & 1 == 0 { from[a] } else { to[a] - 1 });
             let p = self.place(at[0] as f64, at[1] as f64, at[2] as f64);
             let signed = self.solids.map(|s| if s.inside(p, None) { -f64::MAX } else { f64::MAX });
-            // Only the sides count here, so any combination that keeps the order of its arguments will do.
+            // Only the sides count here, so any combination that keeps the order of its arguments
+            // will do.
             ((self.combine)(signed) < 0.0) == inside
         })
     }
 }
 
 impl Grid {
-    /// Samples `combine` of the solids' signed distances near where it is zero. `combine` must change by no more than its
-    /// arguments do: minima, maxima, negation and adding a constant are such. The outermost samples are always outside.
+    /// Samples `combine` of the solids' signed distances near where it is zero. `combine` must
+    /// change by no more than its arguments do: minima, maxima, negation and adding a constant are
+    /// such. The outermost samples are always outside.
     pub fn band<const N: usize>(
         solids: [&Solid; N],
         combine: impl Fn([f64; N]) -> f64 + Sync,

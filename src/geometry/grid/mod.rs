@@ -26,8 +26,8 @@ pub struct Grid {
 pub const MAX_SAMPLES: usize = 1 << 31;
 
 impl Grid {
-    /// Where the samples of a grid of `side` samples along the longest side lie: the box of the mesh, `margin` samples wider
-    /// on every side. `side` is at least 2 + 2 * `margin`.
+    /// Where the samples of a grid of `side` samples along the longest side lie: the box of the
+    /// mesh, `margin` samples wider on every side. `side` is at least 2 + 2 * `margin`.
     pub fn layout((lo, hi): (DVec3, DVec3), side: usize, margin: usize) -> Grid {
         let side = side.max(2 + 2 * margin);
         let extent = (hi - lo).max(DVec3::ZERO);
@@ -43,8 +43,9 @@ impl Grid {
         Grid { origin: centre - span * 0.5, spacing, size, values: Vec::new() }
     }
 
-    /// Every sample exact, on all threads. The sign is asked for only where the distances do not settle it: two samples
-    /// further from the surface, together, than from each other are on the same side of a closed one.
+    /// Every sample exact, on all threads. The sign is asked for only where the distances do not
+    /// settle it: two samples further from the surface, together, than from each other are on the
+    /// same side of a closed one.
     pub fn sample(solid: &Solid, layout: Grid, job: &Job) -> Result<Grid, Cancelled> {
         let mut grid = layout;
         let [nx, ny, nz] = grid.size;
@@ -66,8 +67,9 @@ impl Grid {
                         continue;
                     };
                     let d = n.distance();
-                    let settled =
-                        |other: f64| carry && other.is_finite() && d + other.abs() > h * (1.0 + 1e-9);
+                    let settled = |other: f64| {
+                        carry && other.is_finite() && d + other.abs() > h * (1.0 + 1e-9)
+                    };
                     let inside = if settled(before) {
                         before < 0.0
                     } else if settled(above[i]) {
@@ -127,13 +129,18 @@ impl Grid {
         ]
     }
 
-    /// Interpolated along x, then y, then z. Outside the grid, the value of the nearest place in it.
+    /// Interpolated along x, then y, then z. Outside the grid, the value of the nearest place in
+    /// it.
     #[inline]
     pub fn interpolate(&self, p: DVec3) -> f32 {
         let (at, [x, y, z]) = self.cell(p);
         let c = self.corners(at);
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        mix(mix(mix(c[0], c[1], x), mix(c[2], c[3], x), y), mix(mix(c[4], c[5], x), mix(c[6], c[7], x), y), z)
+        mix(
+            mix(mix(c[0], c[1], x), mix(c[2], c[3], x), y),
+            mix(mix(c[4], c[5], x), mix(c[6], c[7], x), y),
+            z,
+        )
     }
 
     /// The interpolant's gradient: about of unit length, away from the solid.
@@ -141,8 +148,9 @@ impl Grid {
         let (at, [x, y, z]) = self.cell(p);
         let c = self.corners(at);
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        let face =
-            |a: [usize; 4], s: f32, t: f32| mix(mix(c[a[0]], c[a[1]], s), mix(c[a[2]], c[a[3]], s), t) as f64;
+        let face = |a: [usize; 4], s: f32, t: f32| {
+            mix(mix(c[a[0]], c[a[1]], s), mix(c[a[2]], c[a[3]], s), t) as f64
+        };
         let d = DVec3::new(
             face([1, 3, 5, 7], y, z) - face([0, 2, 4, 6], y, z),
             face([2, 3, 6, 7], x, z) - face([0, 1, 4, 5], x, z),

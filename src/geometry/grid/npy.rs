@@ -1,7 +1,7 @@
 //! Grids as files of NumPy's format 1.0: a header that is a Python literal, then the samples.
 //!
-//! The array is `[z][y][x]`, single precision, little-endian, C order. Where the samples lie stands in the header as a
-//! comment that NumPy ignores: `# origin x y z spacing s`, after the literal.
+//! The array is `[z][y][x]`, single precision, little-endian, C order. Where the samples lie stands
+//! in the header as a comment that NumPy ignores: `# origin x y z spacing s`, after the literal.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -47,7 +47,8 @@ impl Grid {
     /// Reads what [`Grid::write_npy`] wrote.
     pub fn read_npy(path: &Path) -> Result<Grid, NpyError> {
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|source| NpyError::Io { path: name.clone(), source })?;
+        let bytes =
+            std::fs::read(path).map_err(|source| NpyError::Io { path: name.clone(), source })?;
         parse(&bytes).map_err(|expected| NpyError::Format { path: name, expected })
     }
 }
@@ -61,21 +62,30 @@ fn parse(bytes: &[u8]) -> Result<Grid, &'static str> {
     if !header.contains("'descr': '<f4'") || !header.contains("'fortran_order': False") {
         return Err("single precision, little-endian, C order");
     }
-    let shape = header.split_once("'shape': (").and_then(|(_, s)| s.split_once(')')).ok_or("a shape")?.0;
+    let shape =
+        header.split_once("'shape': (").and_then(|(_, s)| s.split_once(')')).ok_or("a shape")?.0;
     let shape: Vec<usize> = shape.split(',').filter_map(|n| n.trim().parse().ok()).collect();
     let [z, y, x] = shape[..] else { return Err("three dimensions") };
     let count = x.checked_mul(y).and_then(|n| n.checked_mul(z)).filter(|&n| n <= MAX_SAMPLES);
     if x < 2 || y < 2 || z < 2 || count.and_then(|n| n.checked_mul(4)) != Some(data.len()) {
         return Err("as many samples as the shape says, two or more along each side");
     }
-    let place = header.split_once("# origin ").ok_or("the grid's place, '# origin x y z spacing s'")?.1;
-    let numbers: Vec<f64> =
-        place.split_whitespace().filter(|w| *w != "spacing").map_while(|w| w.parse().ok()).collect();
-    let [ox, oy, oz, spacing] = numbers[..] else { return Err("an origin of three numbers and a spacing") };
-    if !(spacing > 0.0 && spacing.is_finite() && ox.is_finite() && oy.is_finite() && oz.is_finite()) {
+    let place =
+        header.split_once("# origin ").ok_or("the grid's place, '# origin x y z spacing s'")?.1;
+    let numbers: Vec<f64> = place
+        .split_whitespace()
+        .filter(|w| *w != "spacing")
+        .map_while(|w| w.parse().ok())
+        .collect();
+    let [ox, oy, oz, spacing] = numbers[..] else {
+        return Err("an origin of three numbers and a spacing");
+    };
+    if !(spacing > 0.0 && spacing.is_finite() && ox.is_finite() && oy.is_finite() && oz.is_finite())
+    {
         return Err("a finite origin and a positive spacing");
     }
-    let values = data.chunks_exact(4).map(|c| f32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
+    let values =
+        data.chunks_exact(4).map(|c| f32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
     Ok(Grid { origin: DVec3::new(ox, oy, oz), spacing, size: [x, y, z], values })
 }
 
@@ -86,8 +96,12 @@ mod tests {
     #[test]
     fn a_grid_survives_the_file_and_noise_does_not_pass() {
         let values: Vec<f32> = (0..24).map(|i| (i as f32).sin()).collect();
-        let grid =
-            Grid { origin: DVec3::new(0.1, -2.5e-7, 3e9), spacing: 1.0 / 3.0, size: [4, 3, 2], values };
+        let grid = Grid {
+            origin: DVec3::new(0.1, -2.5e-7, 3e9),
+            spacing: 1.0 / 3.0,
+            size: [4, 3, 2],
+            values,
+        };
         let mut bytes = Vec::new();
         grid.write_npy(&mut bytes).unwrap();
         assert_eq!(parse(&bytes).unwrap(), grid);

@@ -19,18 +19,25 @@ impl Drop for Temporary {
     }
 }
 
-/// Writes through `fill` into a new file beside `path`, syncs it and renames it over `path`, so that a reader sees the old
-/// file or the new one, whole, whatever happens in between. The temporary file is made by us or not at all (`create_new`:
-/// no symbolic link that somebody put there is followed); if `path` itself is a symbolic link, the link is replaced and
-/// what it points to is left alone. Permissions of a replaced regular file are kept.
-pub fn write_beside(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+/// Writes through `fill` into a new file beside `path`, syncs it and renames it over `path`, so
+/// that a reader sees the old file or the new one, whole, whatever happens in between. The
+/// temporary file is made by us or not at all (`create_new`: no symbolic link that somebody put
+/// there is followed); if `path` itself is a symbolic link, the link is replaced and what it points
+/// to is left alone. Permissions of a replaced regular file are kept.
+pub fn write_beside(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "expected the name of a file"))?;
+    let name = path.file_name().ok_or_else(|| {
+        io::Error::new(io::ErrorKind::InvalidInput, "expected the name of a file")
+    })?;
     let old = std::fs::symlink_metadata(path).ok();
     if old.as_ref().is_some_and(|m| m.is_dir()) {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "expected a file's name, found a folder"));
+        return Err(io::Error::new(
+            io::ErrorKind::IsADirectory,
+            "expected a file's name, found a folder",
+        ));
     }
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,
@@ -47,7 +54,8 @@ pub fn write_beside(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result
     drop(file);
     std::fs::rename(&temporary.path, path)?;
     temporary.keep = true;
-    // The name itself reaches the disk with its folder; not every file system can do that, and none then loses the data.
+    // The name itself reaches the disk with its folder; not every file system can do that, and none
+    // then loses the data.
     #[cfg(unix)]
     if let Ok(d) = File::open(folder) {
         let _ = d.sync_all();
@@ -55,7 +63,11 @@ pub fn write_beside(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result
     Ok(())
 }
 
-fn create(folder: &Path, name: &std::ffi::OsStr, count: &AtomicU32) -> io::Result<(Temporary, File)> {
+fn create(
+    folder: &Path,
+    name: &std::ffi::OsStr,
+    count: &AtomicU32,
+) -> io::Result<(Temporary, File)> {
     for _ in 0..100 {
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);

@@ -1,9 +1,11 @@
-//! glTF 2.0, as JSON with its buffers beside it or inside it, and as GLB. The JSON's meaning is read by the kept crate
-//! `gltf-json`; buffers, views and accessors by us, so that each length is checked against the bytes there are.
+//! glTF 2.0, as JSON with its buffers beside it or inside it, and as GLB. The JSON's meaning is
+//! read by the kept crate `gltf-json`; buffers, views and accessors by us, so that each length is
+//! checked against the bytes there are.
 //!
-//! Triangles (lists, strips, fans) of the default scene, each node's transform applied; coordinates as they stand, y up and
-//! without a unit's change. Corners of one node that are equal in place are one vertex: files of this format have a vertex for each
-//! normal and texture coordinate. Skins, morph targets and materials are passed over.
+//! Triangles (lists, strips, fans) of the default scene, each node's transform applied; coordinates
+//! as they stand, y up and without a unit's change. Corners of one node that are equal in place are
+//! one vertex: files of this format have a vertex for each normal and texture coordinate. Skins,
+//! morph targets and materials are passed over.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -17,7 +19,7 @@ use super::problem::{At, Problem, Stop, excerpt};
 use super::stl::weld;
 use super::text::refuse;
 use crate::job::Job;
-use crate::{PolyMesh, repair as mend};
+use crate::{PolyMesh, repair};
 
 /// Corners that instances may add up to: a small file can name one mesh a million times.
 pub(super) const MAX_INSTANCED: usize = 200_000_000;
@@ -28,22 +30,35 @@ fn bad(at: At, expected: impl Into<String>, found: impl Into<String>) -> Stop {
 
 /// A GLB container's two chunks.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Stop> {
-    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let word =
+        |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(bad(At::Byte(bytes.len() as u64), "a GLB header of 12 bytes", "the end of the file"));
+        return Err(bad(
+            At::Byte(bytes.len() as u64),
+            "a GLB header of 12 bytes",
+            "the end of the file",
+        ));
     };
     if version != 2 {
         return Err(bad(At::Byte(4), "version 2", version.to_string()));
     }
     if length as usize > bytes.len() {
         let found = format!("the end of the file after {} bytes", bytes.len());
-        return Err(bad(At::Byte(bytes.len() as u64), format!("{length} bytes as the header states"), found));
+        return Err(bad(
+            At::Byte(bytes.len() as u64),
+            format!("{length} bytes as the header states"),
+            found,
+        ));
     }
     let (mut at, mut json, mut binary) = (12, None, None);
     while at + 8 <= length as usize {
         let (Some(size), Some(kind)) = (word(at), word(at + 4)) else { break };
         let Some(body) = bytes.get(at + 8..at + 8 + size as usize) else {
-            return Err(bad(At::Byte(at as u64), format!("a chunk of {size} bytes"), "the end of the file"));
+            return Err(bad(
+                At::Byte(at as u64),
+                format!("a chunk of {size} bytes"),
+                "the end of the file",
+            ));
         };
         match kind {
             0x4e4f_534a if json.is_none() => json = Some(body),
@@ -67,7 +82,11 @@ pub(super) fn parse(
         .map_err(|e| bad(At::Line(e.line() as u64), "glTF 2.0 as JSON", format!("{e}")))?;
     for needed in &root.extensions_required {
         if needed.contains("compression") || needed.contains("meshopt") {
-            return Err(bad(At::File, "geometry that is not compressed", format!("the extension {needed}")));
+            return Err(bad(
+                At::File,
+                "geometry that is not compressed",
+                format!("the extension {needed}"),
+            ));
         }
         warnings.push(format!("the extension {needed} is not looked at"));
     }
@@ -91,7 +110,11 @@ pub(super) fn parse(
         };
         if (bytes.len() as u64) < buffer.byte_length.0 {
             let found = format!("{} bytes", bytes.len());
-            return Err(bad(At::File, format!("{} bytes in buffer {n}", buffer.byte_length.0), found));
+            return Err(bad(
+                At::File,
+                format!("{} bytes in buffer {n}", buffer.byte_length.0),
+                found,
+            ));
         }
         file.buffers.push(bytes);
     }
@@ -145,9 +168,9 @@ pub(super) fn parse(
 fn fetch(uri: &str, name: &Path, n: usize) -> Result<Vec<u8>, Stop> {
     if let Some(data) = uri.strip_prefix("data:") {
         let body = data.split_once(";base64,").map(|(_, b)| b);
-        return body
-            .and_then(base64)
-            .ok_or_else(|| bad(At::File, format!("base64 data in buffer {n}"), excerpt(uri.as_bytes())));
+        return body.and_then(base64).ok_or_else(|| {
+            bad(At::File, format!("base64 data in buffer {n}"), excerpt(uri.as_bytes()))
+        });
     }
     let refused = |why: &str| {
         bad(
@@ -228,7 +251,11 @@ impl File<'_> {
     fn instance(&mut self, mesh: usize, place: DMat4, job: &Job) -> Result<(), Stop> {
         let root = self.root;
         let Some(source) = root.meshes.get(mesh) else {
-            return Err(bad(At::File, format!("a mesh below {}", root.meshes.len()), mesh.to_string()));
+            return Err(bad(
+                At::File,
+                format!("a mesh below {}", root.meshes.len()),
+                mesh.to_string(),
+            ));
         };
         let (mut points, mut colours, mut corners, mut groups) =
             (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -236,7 +263,8 @@ impl File<'_> {
             job.check()?;
             let what = format!("primitive {p} of mesh {mesh}");
             let first = points.len() as u32;
-            let Some(triangles) = self.primitive(primitive, &what, &mut points, &mut colours)? else {
+            let Some(triangles) = self.primitive(primitive, &what, &mut points, &mut colours)?
+            else {
                 continue;
             };
             if self.mesh.corners.len() + corners.len() + triangles.len() > MAX_INSTANCED {
@@ -278,14 +306,15 @@ impl File<'_> {
             }
         }
         if place.determinant() < 0.0 {
-            mend::flip(&mut part);
+            repair::flip(&mut part);
         }
         part.faces().for_each(|f| self.mesh.push_face(f));
         self.groups.extend(kept);
         Ok(())
     }
 
-    /// Appends a primitive's points (and white where it has no colours); its triangles' corners, or `None` if it has none.
+    /// Appends a primitive's points (and white where it has no colours); its triangles' corners, or
+    /// `None` if it has none.
     fn primitive(
         &mut self,
         primitive: &Primitive,
@@ -339,7 +368,11 @@ impl File<'_> {
                 if !matches!(list.kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
                     || list.parts != 1
                 {
-                    return Err(bad(At::File, format!("whole numbers as indices of {what}"), "another type"));
+                    return Err(bad(
+                        At::File,
+                        format!("whole numbers as indices of {what}"),
+                        "another type",
+                    ));
                 }
                 (0..list.count).map(|i| list.get(i, 0) as u32).collect()
             }
@@ -354,7 +387,9 @@ impl File<'_> {
                 .enumerate()
                 .flat_map(|(n, w)| if n % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
                 .collect(),
-            Mode::TriangleFan => order.windows(2).skip(1).flat_map(|w| [order[0], w[0], w[1]]).collect(),
+            Mode::TriangleFan => {
+                order.windows(2).skip(1).flat_map(|w| [order[0], w[0], w[1]]).collect()
+            }
             _ => {
                 self.left_out += 1;
                 points.truncate(first);
@@ -365,12 +400,12 @@ impl File<'_> {
     }
 
     fn accessor(&self, n: usize, what: &str) -> Result<Values<'_>, Stop> {
-        let wrong =
-            |expected: &str, found: String| bad(At::File, format!("{expected} for the {what}"), found);
-        let a =
-            self.root.accessors.get(n).ok_or_else(|| {
-                wrong("an accessor", format!("number {n} of {}", self.root.accessors.len()))
-            })?;
+        let wrong = |expected: &str, found: String| {
+            bad(At::File, format!("{expected} for the {what}"), found)
+        };
+        let a = self.root.accessors.get(n).ok_or_else(|| {
+            wrong("an accessor", format!("number {n} of {}", self.root.accessors.len()))
+        })?;
         if a.sparse.is_some() {
             return Err(wrong("a plain accessor", "a sparse one".into()));
         }
@@ -393,7 +428,10 @@ impl File<'_> {
             .and_then(|end| buffer.get(start..end))
             .and_then(|b| b.get(a.byte_offset.map_or(0, |o| o.0) as usize..))
             .ok_or_else(|| {
-                wrong("bytes inside its buffer", format!("a view past its end ({} bytes)", buffer.len()))
+                wrong(
+                    "bytes inside its buffer",
+                    format!("a view past its end ({} bytes)", buffer.len()),
+                )
             })?;
         let size = kind.0.size();
         let parts = match shape {
@@ -405,7 +443,9 @@ impl File<'_> {
         };
         let stride = view.byte_stride.map_or(size * parts, |s| s.0);
         let count = a.count.0 as usize;
-        let need = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size * parts));
+        let need = count
+            .checked_sub(1)
+            .map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size * parts));
         if stride == 0 || need.is_none_or(|n| n > bytes.len()) || count >= u32::MAX as usize {
             return Err(wrong(
                 "as many bytes as its count needs",

@@ -1,9 +1,10 @@
 //! Mesh files: OBJ, STL, PLY, glTF/GLB, 3MF, OFF, in and out.
 //!
-//! A file is what its content says; the extension decides only where the content does not. Positions keep double precision and
-//! faces their corners, as far as the format has them. Counts in a file are held against its length before memory is
-//! taken for them; what may grow beyond it (3MF's packed parts, instances in glTF and 3MF) has a bound of its own. What is wrong is
-//! told with its line or byte where the format has one, what was expected and what was found.
+//! A file is what its content says; the extension decides only where the content does not.
+//! Positions keep double precision and faces their corners, as far as the format has them. Counts
+//! in a file are held against its length before memory is taken for them; what may grow beyond it
+//! (3MF's packed parts, instances in glTF and 3MF) has a bound of its own. What is wrong is told
+//! with its line or byte where the format has one, what was expected and what was found.
 
 pub mod beside;
 mod gltf;
@@ -26,7 +27,8 @@ pub use write::{encode, writable_format, write_mesh};
 use super::PolyMesh;
 use crate::job::Job;
 
-/// Longest file that is read: what needs more memory than a workstation has is refused before it is taken.
+/// Longest file that is read: what needs more memory than a workstation has is refused before it is
+/// taken.
 pub const MAX_FILE: u64 = 16 << 30;
 
 /// What a file turned out to be.
@@ -71,8 +73,9 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads the mesh at `path`. Every vertex is finite in single precision too, every face has at least three corners, every
-/// index is in range; nothing else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
+/// Reads the mesh at `path`. Every vertex is finite in single precision too, every face has at
+/// least three corners, every index is in range; nothing else is promised: it may be open, crossed
+/// or inside out ([`super::check::report`] tells).
 pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
     let io = |source| ReadError::Io { path: path.into(), source };
     let meta = std::fs::metadata(path).map_err(io)?;
@@ -83,7 +86,8 @@ pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
         )));
     }
     if meta.len() > MAX_FILE {
-        let found = format!("{} bytes; the file and its mesh must both fit into memory", meta.len());
+        let found =
+            format!("{} bytes; the file and its mesh must both fit into memory", meta.len());
         let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
         return Err(ReadError::Format { path: path.into(), problem });
     }
@@ -104,7 +108,8 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
     let mut warnings = Vec::new();
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let is = |e: &str| extension == e;
-    let (mesh, format) = if bytes.starts_with(b"ply") && bytes.get(3).is_some_and(u8::is_ascii_whitespace)
+    let (mesh, format) = if bytes.starts_with(b"ply")
+        && bytes.get(3).is_some_and(u8::is_ascii_whitespace)
         || is("ply")
     {
         ply::parse(bytes, &mut warnings, job)?
@@ -129,7 +134,12 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
         (obj::parse(text, &mut warnings, job)?, Format::Obj)
     } else {
         let found = problem::excerpt(bytes);
-        return Err(Problem::new(At::Byte(0), "a mesh as OBJ, STL, PLY, OFF, glTF, GLB or 3MF", found).into());
+        return Err(Problem::new(
+            At::Byte(0),
+            "a mesh as OBJ, STL, PLY, OFF, glTF, GLB or 3MF",
+            found,
+        )
+        .into());
     };
     job.progress(1.0);
     Ok(Loaded { mesh, format, warnings })

@@ -1,9 +1,10 @@
-//! Wavefront OBJ. Own code, so that errors name their line, double precision and polygons are kept, and pieces of the file are
-//! read on all cores.
+//! Wavefront OBJ. Own code, so that errors name their line, double precision and polygons are kept,
+//! and pieces of the file are read on all cores.
 //!
-//! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative indices, a backslash that
-//! continues a line, and `g`, `usemtl`, `o` as groups. Normals, texture coordinates, lines, points and smoothing groups are
-//! passed over in silence; free-form curves and surfaces with a warning.
+//! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative
+//! indices, a backslash that continues a line, and `g`, `usemtl`, `o` as groups. Normals, texture
+//! coordinates, lines, points and smoothing groups are passed over in silence; free-form curves and
+//! surfaces with a warning.
 
 use std::collections::BTreeMap;
 
@@ -18,8 +19,8 @@ use crate::job::Job;
 /// Large enough that a piece's start-up costs nothing, small enough that two cores end together.
 const PIECE: usize = 1 << 20;
 
-/// What one piece of the file holds. Corners count from the whole file's first vertex if positive (from 1), else from the
-/// piece's own first vertex: `RELATIVE + n`.
+/// What one piece of the file holds. Corners count from the whole file's first vertex if positive
+/// (from 1), else from the piece's own first vertex: `RELATIVE + n`.
 #[derive(Default)]
 struct Piece {
     positions: Vec<DVec3>,
@@ -54,7 +55,9 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
         } else {
             super::problem::excerpt(text.trim_ascii_start())
         };
-        return Err(Problem::new(At::File, "OBJ text with vertices (lines \"v x y z\")", found).into());
+        return Err(
+            Problem::new(At::File, "OBJ text with vertices (lines \"v x y z\")", found).into()
+        );
     }
     if vertices >= u32::MAX as usize || corners >= u32::MAX as usize {
         return Err(Problem::new(
@@ -86,9 +89,15 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
             for &c in &part.corners[at..at + n as usize] {
                 let v = if c > 0 { c - 1 } else { base + (c - RELATIVE) };
                 if v < 0 || v >= vertices as i64 {
-                    return Err(
-                        out_of_range(text, start, end, f, if c > 0 { c } else { v + 1 }, vertices).into()
-                    );
+                    return Err(out_of_range(
+                        text,
+                        start,
+                        end,
+                        f,
+                        if c > 0 { c } else { v + 1 },
+                        vertices,
+                    )
+                    .into());
                 }
                 mesh.corners.push(v as u32);
             }
@@ -121,7 +130,14 @@ fn place(text: &[u8], start: usize, e: Problem) -> Stop {
 
 /// The line of the piece's face `f`, found by reading again: only a bad file pays for it.
 #[cold]
-fn out_of_range(text: &[u8], start: usize, end: usize, f: usize, index: i64, vertices: usize) -> Problem {
+fn out_of_range(
+    text: &[u8],
+    start: usize,
+    end: usize,
+    f: usize,
+    index: i64,
+    vertices: usize,
+) -> Problem {
     let part = &text[start..end];
     let mut cursor = Cursor::new(part);
     let mut count = 0;
@@ -253,7 +269,12 @@ fn vertex(cursor: &mut Cursor, out: &mut Piece, text: &[u8], line: usize) -> Res
         let byte = |v: f64| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
         let alpha = if n >= 8 { byte(values[from + 3]) } else { 255 };
         out.colours.resize(out.positions.len() - 1, [255; 4]);
-        out.colours.push([byte(values[from]), byte(values[from + 1]), byte(values[from + 2]), alpha]);
+        out.colours.push([
+            byte(values[from]),
+            byte(values[from + 1]),
+            byte(values[from + 2]),
+            alpha,
+        ]);
     }
     Ok(())
 }
@@ -285,7 +306,8 @@ fn face(cursor: &mut Cursor, out: &mut Piece, text: &[u8]) -> Result<(), Problem
     Ok(())
 }
 
-/// Numbers groups in the order in which faces use them: one for each different set of object, group and material.
+/// Numbers groups in the order in which faces use them: one for each different set of object, group
+/// and material.
 #[derive(Default)]
 struct Groups {
     now: [String; 3],
@@ -317,7 +339,8 @@ impl Groups {
             return;
         }
         let next = self.known.len() as u32;
-        let id = *self.id.get_or_insert_with(|| *self.known.entry(self.now.clone()).or_insert(next));
+        let id =
+            *self.id.get_or_insert_with(|| *self.known.entry(self.now.clone()).or_insert(next));
         self.of_face.resize(faces, id);
     }
 }

@@ -1,5 +1,5 @@
-//! OFF, the Object File Format of Geomview, as text: `OFF`, `COFF` (colours), `NOFF`, `STOFF` and their mixtures. Own code:
-//! there is no kept library.
+//! OFF, the Object File Format of Geomview, as text: `OFF`, `COFF` (colours), `NOFF`, `STOFF` and
+//! their mixtures. Own code: there is no kept library.
 
 use glam::DVec3;
 
@@ -10,7 +10,8 @@ use crate::job::Job;
 
 /// The first word that is no comment, if it is an OFF header.
 pub(super) fn header(text: &[u8]) -> Option<&[u8]> {
-    let word = Cursor::new(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).word_anywhere(true)?;
+    let word =
+        Cursor::new(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).word_anywhere(true)?;
     let flags = word.strip_suffix(b"OFF")?;
     let rest = flags.strip_prefix(b"ST").unwrap_or(flags);
     rest.iter().all(|b| b"CN4n".contains(b)).then_some(word)
@@ -23,9 +24,12 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
     };
     let _ = cursor.word_anywhere(true);
     if kind.contains(&b'4') || kind.contains(&b'n') {
-        return Err(Problem::new(At::Line(1), "three coordinates a vertex (OFF)", excerpt(kind)).into());
+        return Err(
+            Problem::new(At::Line(1), "three coordinates a vertex (OFF)", excerpt(kind)).into()
+        );
     }
-    let (textured, coloured, normals) = (kind.starts_with(b"ST"), kind.contains(&b'C'), kind.contains(&b'N'));
+    let (textured, coloured, normals) =
+        (kind.starts_with(b"ST"), kind.contains(&b'C'), kind.contains(&b'N'));
     let mut counts = [0usize; 3];
     for (n, slot) in counts.iter_mut().enumerate() {
         let at = cursor.at;
@@ -41,11 +45,15 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
         }
     }
     let [vertices, faces, _] = counts;
-    // The shortest vertex is "0 0 0\n", the shortest face "3 0 1 2\n"; so no count makes us take memory that the file's
-    // length does not warrant.
+    // The shortest vertex is "0 0 0\n", the shortest face "3 0 1 2\n"; so no count makes us take
+    // memory that the file's length does not warrant.
     let room = text.len() as u64;
-    if vertices as u64 * 6 > room + 6 || faces as u64 * 4 > room + 6 || vertices >= u32::MAX as usize {
-        let found = format!("counts of {vertices} vertices and {faces} faces in a file of {room} bytes");
+    if vertices as u64 * 6 > room + 6
+        || faces as u64 * 4 > room + 6
+        || vertices >= u32::MAX as usize
+    {
+        let found =
+            format!("counts of {vertices} vertices and {faces} faces in a file of {room} bytes");
         return Err(Problem::new(
             At::Line(line_of(text, cursor.at)),
             "as many vertices and faces as the file has room for",
@@ -54,9 +62,12 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
         .into());
     }
     if vertices == 0 {
-        return Err(
-            Problem::new(At::Line(line_of(text, cursor.at)), "at least one vertex", "a count of 0").into()
-        );
+        return Err(Problem::new(
+            At::Line(line_of(text, cursor.at)),
+            "at least one vertex",
+            "a count of 0",
+        )
+        .into());
     }
     if !text[..cursor.at].ends_with(b"\n") {
         cursor.skip_line();
@@ -73,10 +84,17 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
         let mut xyz = [0f64; 3];
         for c in &mut xyz {
             let Some(value) = cursor.word().and_then(float) else {
-                return Err(unexpected(text, line, format!("three coordinates of vertex {v}")).into());
+                return Err(
+                    unexpected(text, line, format!("three coordinates of vertex {v}")).into()
+                );
             };
             if let Some(found) = refuse(value) {
-                return Err(Problem::new(At::Line(line_of(text, line)), "a finite coordinate", found).into());
+                return Err(Problem::new(
+                    At::Line(line_of(text, line)),
+                    "a finite coordinate",
+                    found,
+                )
+                .into());
             }
             *c = value;
         }
@@ -115,11 +133,20 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
                     )
                     .into());
                 }
-                None => return Err(unexpected(text, line, format!("{n} vertex indices of face {f}")).into()),
+                None => {
+                    return Err(
+                        unexpected(text, line, format!("{n} vertex indices of face {f}")).into()
+                    );
+                }
             }
         }
         if mesh.corners.len() >= u32::MAX as usize {
-            return Err(Problem::new(At::Line(line_of(text, line)), "fewer than 2^32 corners", "more").into());
+            return Err(Problem::new(
+                At::Line(line_of(text, line)),
+                "fewer than 2^32 corners",
+                "more",
+            )
+            .into());
         }
         if n < 3 {
             mesh.corners.truncate(first);

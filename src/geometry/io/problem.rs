@@ -75,7 +75,8 @@ pub enum ReadError {
     Cancelled { path: PathBuf },
 }
 
-/// Why [`super::write_mesh`] wrote nothing. A file that stood at the path still stands there, whole.
+/// Why [`super::write_mesh`] wrote nothing. A file that stood at the path still stands there,
+/// whole.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     #[error("{}: {source}", path.display())]

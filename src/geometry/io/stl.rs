@@ -1,8 +1,9 @@
-//! STL, both kinds. Own code, so that errors name their byte or line, and the weld's rule and order are ours.
+//! STL, both kinds. Own code, so that errors name their byte or line, and the weld's rule and order
+//! are ours.
 //!
-//! A file is binary if its length is what its triangle count says, whatever its header starts with. Corners that are equal in
-//! all three coordinates are one vertex, in the order of first use (minus zero is zero); nothing else is merged, so that what
-//! was written apart stays apart.
+//! A file is binary if its length is what its triangle count says, whatever its header starts with.
+//! Corners that are equal in all three coordinates are one vertex, in the order of first use (minus
+//! zero is zero); nothing else is merged, so that what was written apart stays apart.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -38,7 +39,11 @@ pub(super) fn looks_ascii(bytes: &[u8]) -> bool {
             || memchr::memmem::find(&lower, b"endsolid").is_some())
 }
 
-pub(super) fn parse_binary(bytes: &[u8], warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+pub(super) fn parse_binary(
+    bytes: &[u8],
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, Stop> {
     let Some(count) = binary_count(bytes) else {
         let problem = Problem::new(
             At::Byte(bytes.len() as u64),
@@ -64,12 +69,16 @@ pub(super) fn parse_binary(bytes: &[u8], warnings: &mut Vec<String>, job: &Job) 
         return Err(Problem::new(At::Byte(80), "at least one triangle", "a count of 0").into());
     }
     if count * 3 >= u32::MAX as u64 {
-        return Err(
-            Problem::new(At::Byte(80), "fewer than 2^32 corners", format!("{count} triangles")).into()
-        );
+        return Err(Problem::new(
+            At::Byte(80),
+            "fewer than 2^32 corners",
+            format!("{count} triangles"),
+        )
+        .into());
     }
     if need < bytes.len() as u64 {
-        warnings.push(format!("{} bytes after the last triangle left out", bytes.len() as u64 - need));
+        warnings
+            .push(format!("{} bytes after the last triangle left out", bytes.len() as u64 - need));
     }
     let records = &bytes[HEAD..need as usize];
     let mut corners = vec![[0u32; 3]; count as usize * 3];
@@ -113,7 +122,11 @@ pub(super) fn parse_binary(bytes: &[u8], warnings: &mut Vec<String>, job: &Job) 
     Ok(triangles(positions, corners))
 }
 
-pub(super) fn parse_ascii(text: &[u8], _warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+pub(super) fn parse_ascii(
+    text: &[u8],
+    _warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, Stop> {
     let mut cursor = Cursor::new(text);
     let mut corners: Vec<[u64; 3]> = Vec::new();
     let mut in_facet = 0;
@@ -165,9 +178,12 @@ pub(super) fn parse_ascii(text: &[u8], _warnings: &mut Vec<String>, job: &Job) -
         } else if is(b"solid") || is(b"endsolid") {
             ended = is(b"endsolid");
         } else if !(is(b"facet") || is(b"outer") || is(b"endloop") || is(b"end") || is(b"color")) {
-            return Err(
-                unexpected(text, line, "facet, outer loop, vertex, endloop, endfacet or endsolid").into()
-            );
+            return Err(unexpected(
+                text,
+                line,
+                "facet, outer loop, vertex, endloop, endfacet or endsolid",
+            )
+            .into());
         }
         cursor.skip_line();
     }
@@ -178,11 +194,19 @@ pub(super) fn parse_ascii(text: &[u8], _warnings: &mut Vec<String>, job: &Job) -
         return Err(Problem::new(At::File, "at least one facet", "none").into());
     }
     if corners.len() >= u32::MAX as usize {
-        return Err(Problem::new(At::File, "fewer than 2^32 corners", format!("{}", corners.len())).into());
+        return Err(Problem::new(
+            At::File,
+            "fewer than 2^32 corners",
+            format!("{}", corners.len()),
+        )
+        .into());
     }
     job.progress(0.7);
     let (positions, corners) = weld(corners.len(), job, |i| corners[i])?;
-    Ok(triangles(positions.into_iter().map(|p| DVec3::from(p.map(f64::from_bits))).collect(), corners))
+    Ok(triangles(
+        positions.into_iter().map(|p| DVec3::from(p.map(f64::from_bits))).collect(),
+        corners,
+    ))
 }
 
 fn triangles(positions: Vec<DVec3>, corners: Vec<u32>) -> PolyMesh {
@@ -190,13 +214,15 @@ fn triangles(positions: Vec<DVec3>, corners: Vec<u32>) -> PolyMesh {
     PolyMesh { positions, face_starts, corners, ..Default::default() }
 }
 
-/// Equal keys become one, numbered by first use. An open table of half load: one probe and a half a corner.
+/// Equal keys become one, numbered by first use. An open table of half load: one probe and a half a
+/// corner.
 pub(crate) fn weld<K: Copy + PartialEq + Bits>(
     count: usize,
     job: &Job,
     key: impl Fn(usize) -> K,
 ) -> Result<(Vec<K>, Vec<u32>), crate::job::Cancelled> {
-    // A closed surface has a sixth as many vertices as corners; the table grows where there are more.
+    // A closed surface has a sixth as many vertices as corners; the table grows where there are
+    // more.
     let mut table = vec![u32::MAX; (count / 2).max(16).next_power_of_two()];
     let mut unique: Vec<K> = Vec::with_capacity(count / 6 + 1);
     let mut of = Vec::with_capacity(count);

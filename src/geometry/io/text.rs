@@ -3,13 +3,13 @@
 use super::problem::{At, Problem, excerpt};
 
 const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
-    1e19, 1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// A decimal number, correctly rounded. The common case (up to 19 digits whose value is under 2^53, and a small exponent)
-/// is one exact multiplication or division (Clinger 1990); all else goes to the standard library.
-/// "nan" and "inf" are numbers here: the caller says why they are refused.
+/// A decimal number, correctly rounded. The common case (up to 19 digits whose value is under 2^53,
+/// and a small exponent) is one exact multiplication or division (Clinger 1990); all else goes to
+/// the standard library. "nan" and "inf" are numbers here: the caller says why they are refused.
 #[inline]
 pub(super) fn float(token: &[u8]) -> Option<f64> {
     let (negative, digits) = match token.first()? {
@@ -54,7 +54,8 @@ pub(super) fn float(token: &[u8]) -> Option<f64> {
         return slow(token);
     }
     let value = mantissa as f64;
-    let value = if scale < 0 { value / POWERS[-scale as usize] } else { value * POWERS[scale as usize] };
+    let value =
+        if scale < 0 { value / POWERS[-scale as usize] } else { value * POWERS[scale as usize] };
     Some(if negative { -value } else { value })
 }
 
@@ -84,8 +85,8 @@ pub(super) fn integer(token: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// What is wrong with a coordinate, if anything. It must have room in single precision, the clay's own. (Real files hold boxes
-/// of 3.4e38 a side, meant as half spaces.)
+/// What is wrong with a coordinate, if anything. It must have room in single precision, the clay's
+/// own. (Real files hold boxes of 3.4e38 a side, meant as half spaces.)
 #[inline]
 pub(super) fn refuse(value: f64) -> Option<&'static str> {
     if (value as f32).is_finite() {
@@ -165,7 +166,8 @@ pub(super) fn line_of(text: &[u8], at: usize) -> u64 {
     memchr::memchr_iter(b'\n', &text[..at.min(text.len())]).count() as u64 + 1
 }
 
-/// The problem that at `at` of `text` something else was expected; shows the line from there, or what `word` is.
+/// The problem that at `at` of `text` something else was expected; shows the line from there, or
+/// what `word` is.
 #[cold]
 pub(super) fn unexpected(text: &[u8], at: usize, expected: impl Into<String>) -> Problem {
     let rest = text.get(at..).unwrap_or_default();
@@ -173,7 +175,8 @@ pub(super) fn unexpected(text: &[u8], at: usize, expected: impl Into<String>) ->
     Problem::new(At::Line(line_of(text, at)), expected.into(), found)
 }
 
-/// Pieces of about `size` bytes that end after a line's end; a line that ends in a backslash goes on.
+/// Pieces of about `size` bytes that end after a line's end; a line that ends in a backslash goes
+/// on.
 pub(super) fn pieces(text: &[u8], size: usize) -> Vec<(usize, usize)> {
     let mut out = Vec::new();
     let mut start = 0;
@@ -250,9 +253,12 @@ mod tests {
             s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             let v = f64::from_bits(s);
             if v.is_finite() {
-                for t in
-                    [format!("{v}"), format!("{v:e}"), format!("{:.6}", v % 1e6), format!("{}", v as f32)]
-                {
+                for t in [
+                    format!("{v}"),
+                    format!("{v:e}"),
+                    format!("{:.6}", v % 1e6),
+                    format!("{}", v as f32),
+                ] {
                     assert_eq!(float(t.as_bytes()), t.parse().ok(), "{t}");
                 }
             }

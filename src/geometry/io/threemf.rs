@@ -1,7 +1,9 @@
-//! 3MF: a zip of XML, its objects placed by the build list, in millimetres whatever unit the file is in.
+//! 3MF: a zip of XML, its objects placed by the build list, in millimetres whatever unit the file
+//! is in.
 //!
-//! Own reading over the kept crates `zip` and `quick-xml`: the kept reader of whole 3MF files reads without a bound (a zip of a few
-//! kilobytes can hold gigabytes), keeps no place for messages and no parts beyond the first.
+//! Own reading over the kept crates `zip` and `quick-xml`: the kept reader of whole 3MF files reads
+//! without a bound (a zip of a few kilobytes can hold gigabytes), keeps no place for messages and
+//! no parts beyond the first.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
@@ -14,7 +16,7 @@ use super::gltf::MAX_INSTANCED;
 use super::problem::{At, Problem, Stop};
 use super::text::{float, integer, refuse};
 use crate::job::Job;
-use crate::{PolyMesh, repair as mend};
+use crate::{PolyMesh, repair};
 
 /// Where a part's path and an object's number name an object.
 type Name = (String, i64);
@@ -38,19 +40,26 @@ fn bad(at: At, expected: impl Into<String>, found: impl Into<String>) -> Stop {
 }
 
 pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, Stop> {
-    let mut zip = zip::ZipArchive::new(Cursor::new(bytes))
-        .map_err(|e| bad(At::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string()))?;
+    let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
+        bad(At::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
+    })?;
     // A choice, not a law of the format: what unpacks to more than this is taken for a trap.
     let mut room = bytes.len() as u64 * 100 + (16 << 20);
     let mut part = |name: &str| -> Result<Vec<u8>, Stop> {
-        let entry = zip.by_name(name).map_err(|e| bad(At::File, format!("a part {name}"), e.to_string()))?;
+        let entry = zip
+            .by_name(name)
+            .map_err(|e| bad(At::File, format!("a part {name}"), e.to_string()))?;
         let mut out = Vec::new();
         entry
             .take(room + 1)
             .read_to_end(&mut out)
             .map_err(|e| bad(At::File, format!("the part {name} whole"), e.to_string()))?;
         room = room.checked_sub(out.len() as u64).ok_or_else(|| {
-            bad(At::File, "parts of at most a hundred times the file's length", format!("more in {name}"))
+            bad(
+                At::File,
+                "parts of at most a hundred times the file's length",
+                format!("more in {name}"),
+            )
         })?;
         Ok(out)
     };
@@ -64,10 +73,16 @@ pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, Stop> {
     job.progress(0.6);
     // Parts that the root's components and items name.
     loop {
-        let named =
-            package.objects.values().flat_map(|o| &o.components).chain(&package.build).map(|(n, _)| n);
-        let missing =
-            named.filter(|n| !package.objects.contains_key(n) && n.0 != root).map(|n| n.0.clone()).next();
+        let named = package
+            .objects
+            .values()
+            .flat_map(|o| &o.components)
+            .chain(&package.build)
+            .map(|(n, _)| n);
+        let missing = named
+            .filter(|n| !package.objects.contains_key(n) && n.0 != root)
+            .map(|n| n.0.clone())
+            .next();
         let Some(path) = missing else { break };
         let text = part(&path)?;
         let before = package.objects.len();
@@ -104,9 +119,17 @@ fn get(e: &BytesStart, name: &str) -> Option<String> {
         .map(|a| a.value.to_string())
 }
 
-fn model(text: &[u8], path: &str, root: bool, package: &mut Package, job: &Job) -> Result<(), Stop> {
-    let text = std::str::from_utf8(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text))
-        .map_err(|e| bad(At::Byte(e.valid_up_to() as u64), format!("UTF-8 in {path}"), "other bytes"))?;
+fn model(
+    text: &[u8],
+    path: &str,
+    root: bool,
+    package: &mut Package,
+    job: &Job,
+) -> Result<(), Stop> {
+    let text =
+        std::str::from_utf8(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).map_err(|e| {
+            bad(At::Byte(e.valid_up_to() as u64), format!("UTF-8 in {path}"), "other bytes")
+        })?;
     let mut reader = Reader::from_str(text);
     let mut now: Option<(i64, Object)> = None;
     let mut count = 0u32;
@@ -119,7 +142,8 @@ fn model(text: &[u8], path: &str, root: bool, package: &mut Package, job: &Job) 
             job.check()?;
         }
         let at = At::Byte(reader.buffer_position());
-        let wrong = |expected: &str, found: String| bad(at, format!("{expected} (in {path})"), found);
+        let wrong =
+            |expected: &str, found: String| bad(at, format!("{expected} (in {path})"), found);
         let event = reader.read_event().map_err(|e| wrong("well-formed XML", e.to_string()))?;
         let (e, empty) = match event {
             Event::Start(e) => (e, false),
@@ -134,8 +158,8 @@ fn model(text: &[u8], path: &str, root: bool, package: &mut Package, job: &Job) 
             _ => continue,
         };
         let number = |name: &str| -> Result<f64, Stop> {
-            let text =
-                get(&e, name).ok_or_else(|| wrong(&format!("the attribute \"{name}\""), "none".into()))?;
+            let text = get(&e, name)
+                .ok_or_else(|| wrong(&format!("the attribute \"{name}\""), "none".into()))?;
             let value = float(text.as_bytes())
                 .ok_or_else(|| wrong(&format!("a number as \"{name}\""), text.clone()))?;
             match refuse(value) {
@@ -144,16 +168,19 @@ fn model(text: &[u8], path: &str, root: bool, package: &mut Package, job: &Job) 
             }
         };
         let index = |name: &str| -> Result<i64, Stop> {
-            let text =
-                get(&e, name).ok_or_else(|| wrong(&format!("the attribute \"{name}\""), "none".into()))?;
+            let text = get(&e, name)
+                .ok_or_else(|| wrong(&format!("the attribute \"{name}\""), "none".into()))?;
             integer(text.as_bytes())
                 .ok_or_else(|| wrong(&format!("a whole number as \"{name}\""), text.clone()))
         };
         let target = || -> Result<(Name, DMat4), Stop> {
-            let place = get(&e, "path").map_or(path.to_string(), |p| p.trim_start_matches('/').to_string());
+            let place =
+                get(&e, "path").map_or(path.to_string(), |p| p.trim_start_matches('/').to_string());
             let transform = match get(&e, "transform") {
                 None => DMat4::IDENTITY,
-                Some(t) => transform(&t).ok_or_else(|| wrong("twelve numbers as \"transform\"", t))?,
+                Some(t) => {
+                    transform(&t).ok_or_else(|| wrong("twelve numbers as \"transform\"", t))?
+                }
             };
             Ok(((place, index("objectid")?), transform))
         };
@@ -175,7 +202,8 @@ fn model(text: &[u8], path: &str, root: bool, package: &mut Package, job: &Job) 
                 };
             }
             "object" => {
-                let object = (index("id")?, Object { mesh: PolyMesh::new(), components: Vec::new() });
+                let object =
+                    (index("id")?, Object { mesh: PolyMesh::new(), components: Vec::new() });
                 if empty {
                     package.objects.insert((path.to_string(), object.0), object.1);
                 } else {
@@ -234,7 +262,9 @@ fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
         .iter()
         .enumerate()
         .rev()
-        .map(|(n, (name, t))| (name, DMat4::from_scale(DVec3::splat(package.unit)) * *t, 0, n as u32))
+        .map(|(n, (name, t))| {
+            (name, DMat4::from_scale(DVec3::splat(package.unit)) * *t, 0, n as u32)
+        })
         .collect();
     if todo.is_empty() {
         // A file without a build list: all objects as they stand.
@@ -249,10 +279,18 @@ fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
             return Err(bad(At::File, format!("an object {} in {}", name.1, name.0), "none"));
         };
         if depth > DEPTH || visits > 1_000_000 {
-            return Err(bad(At::File, "objects within objects, up to 32 deep", "a circle or too many"));
+            return Err(bad(
+                At::File,
+                "objects within objects, up to 32 deep",
+                "a circle or too many",
+            ));
         }
         if out.corners.len() + object.mesh.corners.len() > MAX_INSTANCED {
-            return Err(bad(At::File, format!("at most {MAX_INSTANCED} corners in all objects"), "more"));
+            return Err(bad(
+                At::File,
+                format!("at most {MAX_INSTANCED} corners in all objects"),
+                "more",
+            ));
         }
         let base = out.positions.len() as u32;
         for p in &object.mesh.positions {
@@ -265,7 +303,7 @@ fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
         let mut part = PolyMesh::new();
         object.mesh.faces().for_each(|f| part.push_face(&[f[0] + base, f[1] + base, f[2] + base]));
         if place.determinant() < 0.0 {
-            mend::flip(&mut part);
+            repair::flip(&mut part);
         }
         part.faces().for_each(|f| out.push_face(f));
         groups.resize(out.face_count(), group);

@@ -1,5 +1,5 @@
-//! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in single precision and no
-//! colours, OFF no groups, PLY no groups.
+//! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in
+//! single precision and no colours, OFF no groups, PLY no groups.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -13,12 +13,15 @@ const ENDINGS: [&str; 6] = ["obj", "stl", "ply", "off", "glb", "3mf"];
 /// The ending (lower case) by which [`write_mesh`] will write, asked for before the work is done.
 pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {
     let kind = extension(path);
-    ENDINGS.into_iter().find(|e| *e == kind).ok_or_else(|| WriteError::Extension { path: path.into() })
+    ENDINGS
+        .into_iter()
+        .find(|e| *e == kind)
+        .ok_or_else(|| WriteError::Extension { path: path.into() })
 }
 
-/// Writes `mesh` in the format that the extension of `path` names, whole or not at all ([`write_beside`]).
-/// The same mesh gives the same bytes. Reading it again gives the same mesh, to the last bit of every coordinate, where the
-/// format keeps double precision (OBJ, OFF, PLY).
+/// Writes `mesh` in the format that the extension of `path` names, whole or not at all
+/// ([`write_beside`]). The same mesh gives the same bytes. Reading it again gives the same mesh, to
+/// the last bit of every coordinate, where the format keeps double precision (OBJ, OFF, PLY).
 pub fn write_mesh(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
     let kind = writable_format(path)?;
     write_beside(path, |out| encode(kind, mesh, out))
@@ -34,7 +37,10 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "off" => off(mesh, out),
         "glb" => write_packed::glb(mesh, out),
         "3mf" => write_packed::threemf(mesh, out),
-        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, format!("no mesh format is called \"{kind}\""))),
+        _ => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("no mesh format is called \"{kind}\""),
+        )),
     }
 }
 
@@ -87,8 +93,9 @@ fn whole(line: &mut Vec<u8>, mut n: u64) {
 
 fn stl(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     let (triangles, _) = mesh.triangles();
-    let count = u32::try_from(triangles.len())
-        .map_err(|_| io::Error::new(io::ErrorKind::InvalidInput, "STL holds at most 2^32 - 1 triangles"))?;
+    let count = u32::try_from(triangles.len()).map_err(|_| {
+        io::Error::new(io::ErrorKind::InvalidInput, "STL holds at most 2^32 - 1 triangles")
+    })?;
     let mut head = [0u8; 84];
     head[..7].copy_from_slice(b"sculptd");
     head[80..].copy_from_slice(&count.to_le_bytes());

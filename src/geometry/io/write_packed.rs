@@ -10,9 +10,10 @@ use crate::PolyMesh;
 pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     let (triangles, _) = mesh.triangles();
     let points: Vec<glam::Vec3> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
-    let (lo, hi) = points
-        .iter()
-        .fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let (lo, hi) =
+        points.iter().fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(lo, hi), &p| {
+            (lo.min(p), hi.max(p))
+        });
     let (place, index) = (points.len() * 12, triangles.len() * 12);
     let colour = mesh.colours.as_ref().map_or(0, |c| c.len() * 4);
     let total = place + index + colour;
@@ -28,7 +29,8 @@ pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     let mut attributes = serde_json::json!({"POSITION": 0});
     if colour > 0 {
         views.push(serde_json::json!({"buffer": 0, "byteOffset": place + index, "byteLength": colour, "target": 34962}));
-        accessors.push(serde_json::json!({"bufferView": 2, "componentType": 5121, "normalized": true,
+        accessors
+            .push(serde_json::json!({"bufferView": 2, "componentType": 5121, "normalized": true,
             "count": points.len(), "type": "VEC4"}));
         attributes["COLOR_0"] = 2.into();
     }
@@ -77,7 +79,8 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     // No clock in it: the same mesh gives the same bytes.
-    let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default()).large_file(true);
+    let options =
+        SimpleFileOptions::default().last_modified_time(zip::DateTime::default()).large_file(true);
     for (name, text) in [("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONS)] {
         zip.start_file(name, options)?;
         zip.write_all(text.as_bytes())?;
@@ -97,7 +100,10 @@ pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     for [a, b, c] in mesh.triangles().0 {
         writeln!(text, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>")?;
     }
-    writeln!(text, "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>")?;
+    writeln!(
+        text,
+        "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>"
+    )?;
     text.flush()?;
     drop(text);
     out.write_all(&zip.finish()?.into_inner())

@@ -1,8 +1,9 @@
 //! Orthographic projection of a solid: its shadow's outline and area, by three methods.
 //!
-//! *Exact*: the silhouette edges resolved into polygons, right to about 4e-9 of the extent. *Sample*: random points of the
-//! plane, told inside from outside by rays; the area has the standard error of a binomial share, the outline is the points'
-//! alpha shape. *March*: the same with rays through a sampled distance instead of the mesh.
+//! *Exact*: the silhouette edges resolved into polygons, right to about 4e-9 of the extent.
+//! *Sample*: random points of the plane, told inside from outside by rays; the area has the
+//! standard error of a binomial share, the outline is the points' alpha shape. *March*: the same
+//! with rays through a sampled distance instead of the mesh.
 
 mod draw;
 
@@ -46,7 +47,8 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// The alpha shape of the points inside: its polygons and area. Low by about its perimeter times half the spacing.
+    /// The alpha shape of the points inside: its polygons and area. Low by about its perimeter
+    /// times half the spacing.
     pub fn shape(&self, alpha: f64) -> (Vec<Polygon>, f64) {
         alpha_shape(&self.inside, alpha)
     }
@@ -65,7 +67,8 @@ pub fn rectangle(solid: &Solid, plane: &Plane) -> Option<(DVec2, DVec2)> {
     Some(used.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
 }
 
-/// Classifies each point of the plane: does the line through it along the plane's normal meet the solid?
+/// Classifies each point of the plane: does the line through it along the plane's normal meet the
+/// solid?
 pub fn classify(
     solid: &Solid,
     plane: &Plane,
@@ -96,7 +99,8 @@ pub fn classify(
     Ok(out)
 }
 
-/// `count` random points of the rectangle around the shadow, told inside from outside. The same seed, the same points.
+/// `count` random points of the rectangle around the shadow, told inside from outside. The same
+/// seed, the same points.
 pub fn sample(
     solid: &Solid,
     plane: &Plane,
@@ -114,7 +118,8 @@ pub fn sample(
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     };
-    let points: Vec<DVec2> = (0..count).map(|_| lo + (hi - lo) * DVec2::new(unit(), unit())).collect();
+    let points: Vec<DVec2> =
+        (0..count).map(|_| lo + (hi - lo) * DVec2::new(unit(), unit())).collect();
     let inside = classify(solid, plane, &points, by, job)?;
     let whole = (hi - lo).x * (hi - lo).y;
     let n = count.max(1) as f64;
@@ -135,7 +140,8 @@ pub fn sample(
     Ok(out)
 }
 
-/// The exact area of the shadow along each direction, on all threads; zero for a direction of no length.
+/// The exact area of the shadow along each direction, on all threads; zero for a direction of no
+/// length.
 pub fn shadow_areas(solid: &Solid, directions: &[DVec3], job: &Job) -> Result<Vec<f64>, Cancelled> {
     directions
         .par_iter()
@@ -146,7 +152,8 @@ pub fn shadow_areas(solid: &Solid, directions: &[DVec3], job: &Job) -> Result<Ve
         .collect()
 }
 
-/// `count` directions spread evenly over half the sphere (a shadow is the same from both sides), by the golden angle.
+/// `count` directions spread evenly over half the sphere (a shadow is the same from both sides), by
+/// the golden angle.
 pub fn spread_directions(count: usize) -> Vec<DVec3> {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     (0..count)

@@ -1,12 +1,14 @@
 //! The zero surface of a grid as triangles: always a closed 2-manifold.
 //!
-//! Dual marching cubes (Nielson, "Dual marching cubes", 2004): within a cell the crossed edges fall into patches, the same
-//! on both sides of every face, because an ambiguous face always keeps its inside corners apart. A patch becomes a vertex,
-//! a crossed edge a quadrilateral between the patches of its four cells. Two patches can then share two borders across one
-//! ambiguous face, the only way in which an edge could get four faces (Wenger, "Isosurfaces", 2013): such borders get a
+//! Dual marching cubes (Nielson, "Dual marching cubes", 2004): within a cell the crossed edges fall
+//! into patches, the same on both sides of every face, because an ambiguous face always keeps its
+//! inside corners apart. A patch becomes a vertex, a crossed edge a quadrilateral between the
+//! patches of its four cells. Two patches can then share two borders across one ambiguous face, the
+//! only way in which an edge could get four faces (Wenger, "Isosurfaces", 2013): such borders get a
 //! vertex of their own in the middle.
 //!
-//! Guaranteed: every edge has two faces, opposite ways; every vertex one fan. Not guaranteed: that faces do not cross.
+//! Guaranteed: every edge has two faces, opposite ways; every vertex one fan. Not guaranteed: that
+//! faces do not cross.
 
 use std::sync::LazyLock;
 
@@ -38,14 +40,16 @@ struct Pattern {
     count: u8,
 }
 
-/// The four edges of face `axis`, `side`, and which of them meet at each inside corner where all four are crossed.
+/// The four edges of face `axis`, `side`, and which of them meet at each inside corner where all
+/// four are crossed.
 fn face_edges(axis: usize, side: usize) -> [usize; 4] {
     let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
     // Along b: next is c, after is axis. Along c: next is axis, after is b.
     [edge(b, 0, side), edge(b, 1, side), edge(c, side, 0), edge(c, side, 1)]
 }
 
-/// The two arcs of an ambiguous face: the pairs of its edges (places in [`face_edges`]) at its inside corners.
+/// The two arcs of an ambiguous face: the pairs of its edges (places in [`face_edges`]) at its
+/// inside corners.
 fn arcs(axis: usize, side: usize, case: usize) -> [[usize; 2]; 2] {
     let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
     let near = case >> (side << axis) & 1 == 1;
@@ -126,7 +130,8 @@ impl Cells<'_> {
         &PATTERNS[self.cases[at] as usize]
     }
 
-    /// The middle that the border between `low` and the next cell along `axis` needs where `e`, an edge of `low`, meets it.
+    /// The middle that the border between `low` and the next cell along `axis` needs where `e`, an
+    /// edge of `low`, meets it.
     fn middle(&self, low: usize, axis: usize, e: usize) -> Option<u64> {
         let high = low + self.step(axis);
         let (here, there) = (face_edges(axis, 1), face_edges(axis, 0));
@@ -138,7 +143,8 @@ impl Cells<'_> {
             return None;
         }
         let place = here.iter().position(|&x| x == e)?;
-        let arc = arcs(axis, 1, self.cases[low] as usize).iter().position(|a| a.contains(&place))?;
+        let arc =
+            arcs(axis, 1, self.cases[low] as usize).iter().position(|a| a.contains(&place))?;
         Some((low as u64 * 3 + axis as u64) * 2 + arc as u64)
     }
 
@@ -149,7 +155,8 @@ impl Cells<'_> {
     }
 }
 
-/// The zero surface. `place` puts a vertex, given the points where its patch's edges are crossed (3 to 12).
+/// The zero surface. `place` puts a vertex, given the points where its patch's edges are crossed (3
+/// to 12).
 pub fn extract(
     grid: &Grid,
     place: impl Fn(&[DVec3]) -> DVec3 + Sync,
@@ -254,7 +261,8 @@ pub fn extract(
     Ok((positions, triangles))
 }
 
-/// The faces of the edges that start at the lower corner of each listed cell; those with a middle apart.
+/// The faces of the edges that start at the lower corner of each listed cell; those with a middle
+/// apart.
 fn faces(cells: &Cells, list: &[u32], positions: &[Vec3]) -> (Vec<[u32; 3]>, Vec<Vec<Corner>>) {
     let (mut triangles, mut odd) = (Vec::with_capacity(list.len() * 2), Vec::new());
     for &at in list {
@@ -270,7 +278,8 @@ fn faces(cells: &Cells, list: &[u32], positions: &[Vec3]) -> (Vec<[u32; 3]>, Vec
             let ids = around.map(|(cell, next, after)| {
                 cells.first[cell] + cells.pattern(cell).patch[edge(axis, next, after)] as u32
             });
-            // The border between consecutive cells: its lower cell, its axis, and the edge as that cell calls it.
+            // The border between consecutive cells: its lower cell, its axis, and the edge as that
+            // cell calls it.
             let (ab, ac) = ((axis + 1) % 3, (axis + 2) % 3);
             let middles = [
                 cells.middle(at - b, ab, edge(axis, 1, 0)),

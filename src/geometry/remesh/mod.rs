@@ -1,4 +1,5 @@
-//! A new mesh from the field of an old one: even triangles, one closed surface, whatever the old one was.
+//! A new mesh from the field of an old one: even triangles, one closed surface, whatever the old
+//! one was.
 
 pub mod dual;
 
@@ -16,8 +17,8 @@ use crate::job::{Cancelled, Job};
 pub struct Settings {
     /// Samples along the longest side of the box, 8 to 1024.
     pub side: usize,
-    /// Vertices at the meeting point of the faces around (Ju et al., "Dual contouring of Hermite data", 2002) instead of in
-    /// their middle.
+    /// Vertices at the meeting point of the faces around (Ju et al., "Dual contouring of Hermite
+    /// data", 2002) instead of in their middle.
     pub sharp: bool,
 }
 
@@ -58,9 +59,15 @@ pub(super) fn layout(solid: &Solid, more: f64, side: usize) -> Result<Grid, Reme
     if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }
 }
 
-/// Voxel remeshing: one closed 2-manifold around everything that is inside `mesh`, its vertices on the old surface (or,
-/// where a hole was closed, between its rims), with the old colours. `solid` was built from `mesh`.
-pub fn remesh(mesh: &TriMesh, solid: &Solid, settings: Settings, job: &Job) -> Result<TriMesh, RemeshError> {
+/// Voxel remeshing: one closed 2-manifold around everything that is inside `mesh`, its vertices on
+/// the old surface (or, where a hole was closed, between its rims), with the old colours. `solid`
+/// was built from `mesh`.
+pub fn remesh(
+    mesh: &TriMesh,
+    solid: &Solid,
+    settings: Settings,
+    job: &Job,
+) -> Result<TriMesh, RemeshError> {
     let grid = Grid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
     let h = grid.spacing;
     let place = |points: &[DVec3]| {
@@ -77,7 +84,8 @@ pub fn remesh(mesh: &TriMesh, solid: &Solid, settings: Settings, job: &Job) -> R
     Ok(TriMesh { positions, triangles, colours })
 }
 
-/// The place on the old surface nearest to `p`, less a fiftieth of the way: two vertices that meet at a corner stay two.
+/// The place on the old surface nearest to `p`, less a fiftieth of the way: two vertices that meet
+/// at a corner stay two.
 fn onto(solid: &Solid, p: DVec3, h: f64) -> DVec3 {
     match solid.tree.nearest(p, h) {
         Some(n) => p + (n.point - p) * 0.98,
@@ -85,7 +93,8 @@ fn onto(solid: &Solid, p: DVec3, h: f64) -> DVec3 {
     }
 }
 
-/// Where the planes of the surface at `points` meet, as near to `middle` as they leave open; at most a spacing away.
+/// Where the planes of the surface at `points` meet, as near to `middle` as they leave open; at
+/// most a spacing away.
 fn corner(solid: &Solid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
     // A weak pull to the middle decides along a flat or an edge.
     let (mut a, mut b) = (DMat3::from_diagonal(DVec3::splat(0.01)), DVec3::ZERO);

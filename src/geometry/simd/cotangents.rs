@@ -1,19 +1,23 @@
-//! Cotangent-weighted sums about vertices with a closed ring of six, eight vertices at a time where the processor can.
+//! Cotangent-weighted sums about vertices with a closed ring of six, eight vertices at a time where
+//! the processor can.
 //!
-//! Between two neighbours `b` and `c` of a vertex, relative to it, the triangle's doubled area `A = |b x c|` is under both
-//! cotangents that face the vertex's edges: `(c.c - b.c) / A` weighs `b`, `(b.b - b.c) / A` weighs `c` (Pinkall and Polthier
-//! 1993). `A` comes from the same products: `A^2 = b.b c.c - (b.c)^2` (Lagrange), which loses digits only where the angle is so
-//! flat that the clamp rules anyway. An edge's two cotangents are clamped each, and their sum to 0 from below: two obtuse
-//! angles would push instead of pull.
+//! Between two neighbours `b` and `c` of a vertex, relative to it, the triangle's doubled area `A =
+//! |b x c|` is under both cotangents that face the vertex's edges: `(c.c - b.c) / A` weighs `b`,
+//! `(b.b - b.c) / A` weighs `c` (Pinkall and Polthier 1993). `A` comes from the same products: `A^2
+//! = b.b c.c - (b.c)^2` (Lagrange), which loses digits only where the angle is so flat that the
+//! clamp rules anyway. An edge's two cotangents are clamped each, and their sum to 0 from below:
+//! two obtuse angles would push instead of pull.
 
 use glam::Vec4;
 
 use super::rings::Hexes;
 
-/// Cotangents beyond 20 belong to angles under 3 degrees: needles, whose weights would rule the ring.
+/// Cotangents beyond 20 belong to angles under 3 degrees: needles, whose weights would rule the
+/// ring.
 pub const MAX_COT: f32 = 20.0;
 
-/// One number, or the same of several vertices. Both give the same bits; of a comparison with NaN the second is taken.
+/// One number, or the same of several vertices. Both give the same bits; of a comparison with NaN
+/// the second is taken.
 trait Lanes: Copy {
     fn all(value: f32) -> Self;
     fn add(self, other: Self) -> Self;
@@ -69,8 +73,9 @@ fn pair<L: Lanes>(bb: L, cc: L, bc: L) -> (L, L) {
     (cc.sub(bc).mul(inverse).max(least).min(most), bb.sub(bc).mul(inverse).max(least).min(most))
 }
 
-/// The weighted sum of the neighbours' places relative to the vertex, and the sum of the weights. Written out: an array's
-/// `map` and a closure are not always inlined into code for wider instructions.
+/// The weighted sum of the neighbours' places relative to the vertex, and the sum of the weights.
+/// Written out: an array's `map` and a closure are not always inlined into code for wider
+/// instructions.
 #[inline(always)]
 fn weigh<L: Lanes>(d: &[[L; 3]; 6]) -> ([L; 3], L) {
     let zero = L::all(0.0);
@@ -93,7 +98,8 @@ fn weigh<L: Lanes>(d: &[[L; 3]; 6]) -> ([L; 3], L) {
     ([x, y, z], weights)
 }
 
-/// About one vertex: the sum in the first three lanes, the weights in the fourth. None where its ring is not among `hexes`.
+/// About one vertex: the sum in the first three lanes, the weights in the fourth. None where its
+/// ring is not among `hexes`.
 #[inline(always)]
 pub fn about(hexes: &Hexes, points: &[Vec4], v: usize) -> Option<Vec4> {
     let (ring, p) = (hexes.get(v)?, points[v]);
@@ -132,7 +138,8 @@ mod wide {
     use super::{Lanes, weigh};
     use crate::simd::rings::{Hexes, joined};
 
-    // Each method is only sound where AVX2 is, which is where `about_each` below inlines it: the type is private to it.
+    // Each method is only sound where AVX2 is, which is where `about_each` below inlines it: the
+    // type is private to it.
     #[derive(Clone, Copy)]
     struct Eight(__m256);
 
@@ -214,7 +221,8 @@ mod wide {
                 (at[i], rings[i]) = (v as usize, ring);
             }
             let mut d = [[Eight(_mm256_setzero_ps()); 3]; 6];
-            // SAFETY: every vertex in `hexes` and every index in its rings is below `rows`; `lanes` has room for eight.
+            // SAFETY: every vertex in `hexes` and every index in its rings is below `rows`; `lanes`
+            // has room for eight.
             unsafe {
                 let p = turned(rows, &at);
                 for k in 0..6 {
@@ -249,8 +257,9 @@ mod tests {
             state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
             state >> 8
         };
-        let mut points: Vec<Vec4> =
-            (0..90).map(|_| Vec4::from_array([(); 4].map(|()| next() as f32 / 1e5 - 80.0))).collect();
+        let mut points: Vec<Vec4> = (0..90)
+            .map(|_| Vec4::from_array([(); 4].map(|()| next() as f32 / 1e5 - 80.0)))
+            .collect();
         // Places that coincide: triangles without an area.
         points[5] = points[6];
         points[7] = points[6];
@@ -259,7 +268,8 @@ mod tests {
         let (mut wide, mut one) = (vec![Vec4::ZERO; who.len()], vec![Vec4::ONE; who.len()]);
         about_each(&hexes, &points, &who, &mut wide);
         plain(&hexes, &points, &who, &mut one);
-        let bits = |v: &[Vec4]| v.iter().map(|v| v.to_array().map(f32::to_bits)).collect::<Vec<_>>();
+        let bits =
+            |v: &[Vec4]| v.iter().map(|v| v.to_array().map(f32::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&wide), bits(&one));
     }
 }

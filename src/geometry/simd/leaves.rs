@@ -2,11 +2,12 @@
 
 use glam::{Mat4, Vec4};
 
-/// The vertices of each leaf, each once. Whoever has as many rows as they need can follow every index: that is known from the
-/// start, so the inner loop does not ask.
+/// The vertices of each leaf, each once. Whoever has as many rows as they need can follow every
+/// index: that is known from the start, so the inner loop does not ask.
 #[derive(Debug, Clone, Default)]
 pub struct Leaves {
-    /// Each leaf's filled up to a multiple of four with its last one: a loop that turns two or three times is foreseen.
+    /// Each leaf's filled up to a multiple of four with its last one: a loop that turns two or
+    /// three times is foreseen.
     corners: Box<[u16]>,
     /// Where each leaf's end.
     ends: Box<[u16]>,
@@ -20,7 +21,8 @@ impl Leaves {
         for leaf in leaves {
             corners.extend_from_slice(&leaf);
             let last = leaf.last().copied();
-            corners.extend(last.into_iter().cycle().take(leaf.len().next_multiple_of(4) - leaf.len()));
+            corners
+                .extend(last.into_iter().cycle().take(leaf.len().next_multiple_of(4) - leaf.len()));
             ends.push(u16::try_from(corners.len()).ok()?);
         }
         let rows = corners.iter().max().map_or(0, |&most| most as usize + 1);
@@ -45,8 +47,8 @@ impl Leaves {
         (self.corners.len() + self.ends.len()) * 2
     }
 
-    /// The boxes of leaves `8 * i..8 * i + 8`: lower sides, then upper ones, axis by axis. Those of leaves past the last are
-    /// inverted and infinite.
+    /// The boxes of leaves `8 * i..8 * i + 8`: lower sides, then upper ones, axis by axis. Those of
+    /// leaves past the last are inverted and infinite.
     #[inline(always)]
     pub fn boxes(&self, i: usize, points: &[Vec4], planes: &mut [[f32; 8]; 6]) {
         assert!(self.rows <= points.len(), "leaves of another page");
@@ -57,7 +59,8 @@ impl Leaves {
             let (mut least, mut most) = (*lo, *hi);
             for four in self.corners[from..end as usize].chunks_exact(4) {
                 for &v in four {
-                    // SAFETY: every corner is below `rows` (`Leaves::new`), and there are as many points.
+                    // SAFETY: every corner is below `rows` (`Leaves::new`), and there are as many
+                    // points.
                     let p = unsafe { *points.get_unchecked(v as usize) };
                     (least, most) = (least.min(p), most.max(p));
                 }
@@ -68,8 +71,11 @@ impl Leaves {
         for (rows, first) in [(&los, 0), (&his, 3)] {
             for half in [0, 4] {
                 let turned =
-                    Mat4::from_cols(rows[half], rows[half + 1], rows[half + 2], rows[half + 3]).transpose();
-                for (axis, row) in [turned.x_axis, turned.y_axis, turned.z_axis].into_iter().enumerate() {
+                    Mat4::from_cols(rows[half], rows[half + 1], rows[half + 2], rows[half + 3])
+                        .transpose();
+                for (axis, row) in
+                    [turned.x_axis, turned.y_axis, turned.z_axis].into_iter().enumerate()
+                {
                     planes[first + axis][half..half + 4].copy_from_slice(&row.to_array());
                 }
             }
@@ -83,17 +89,23 @@ mod tests {
 
     #[test]
     fn boxes_hold_their_vertices_and_no_more() {
-        let points: Vec<Vec4> =
-            (0..40).map(|i| Vec4::new((i * 7 % 40) as f32, -(i as f32), (i * i % 11) as f32, 9.0)).collect();
-        let sets: Vec<Vec<u16>> = (0..11).map(|i| (i..i + 3 + i % 6).map(|v| v * 2).collect()).collect();
+        let points: Vec<Vec4> = (0..40)
+            .map(|i| Vec4::new((i * 7 % 40) as f32, -(i as f32), (i * i % 11) as f32, 9.0))
+            .collect();
+        let sets: Vec<Vec<u16>> =
+            (0..11).map(|i| (i..i + 3 + i % 6).map(|v| v * 2).collect()).collect();
         let leaves = Leaves::new(sets.iter().cloned()).unwrap();
         for node in 0..2 {
             let mut planes = [[0.0; 8]; 6];
             leaves.boxes(node, &points, &mut planes);
             for lane in 0..8 {
                 for axis in 0..3 {
-                    let of =
-                        || sets.get(8 * node + lane).into_iter().flatten().map(|&v| points[v as usize][axis]);
+                    let of = || {
+                        sets.get(8 * node + lane)
+                            .into_iter()
+                            .flatten()
+                            .map(|&v| points[v as usize][axis])
+                    };
                     assert_eq!(planes[axis][lane], of().fold(f32::INFINITY, f32::min));
                     assert_eq!(planes[3 + axis][lane], of().fold(f32::NEG_INFINITY, f32::max));
                 }

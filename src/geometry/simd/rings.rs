@@ -1,13 +1,16 @@
-//! The normals of vertices with a closed ring of six: eight at a time where the processor can, their rings two in a register.
+//! The normals of vertices with a closed ring of six: eight at a time where the processor can,
+//! their rings two in a register.
 //!
-//! About a vertex `p` with neighbours `a` to `f` the sum of the six triangles' doubled area vectors is
-//! `b' x (c - a) + d' x (e - c) + f' x (a - e)`, with `b' = b - p` and so on: neighbouring terms share a factor. A cross product is
-//! `yzx(u * yzx(v) - yzx(u) * v)`, and one shuffle at the end serves all three.
+//! About a vertex `p` with neighbours `a` to `f` the sum of the six triangles' doubled area vectors
+//! is `b' x (c - a) + d' x (e - c) + f' x (a - e)`, with `b' = b - p` and so on: neighbouring terms
+//! share a factor. A cross product is `yzx(u * yzx(v) - yzx(u) * v)`, and one shuffle at the end
+//! serves all three.
 
 use glam::{Vec4, Vec4Swizzles};
 
-/// Rings of six neighbours each, counter-clockwise, one a vertex from vertex 0 on. Whoever has as many rows as
-/// [`Hexes::rows`] says can follow every index: that is known from the start, so the inner loop does not ask.
+/// Rings of six neighbours each, counter-clockwise, one a vertex from vertex 0 on. Whoever has as
+/// many rows as [`Hexes::rows`] says can follow every index: that is known from the start, so the
+/// inner loop does not ask.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 #[serde(from = "Vec<[u16; 6]>", into = "Vec<[u16; 6]>")]
 pub struct Hexes {
@@ -17,7 +20,8 @@ pub struct Hexes {
 
 impl Hexes {
     pub fn new(rings: Vec<[u16; 6]>) -> Self {
-        let rows = rings.iter().flatten().max().map_or(0, |&most| most as usize + 1).max(rings.len());
+        let rows =
+            rings.iter().flatten().max().map_or(0, |&most| most as usize + 1).max(rings.len());
         Hexes { rings: rings.into(), rows }
     }
 
@@ -69,7 +73,8 @@ fn sum(points: &[Vec4], ring: &[u16; 6], p: Vec4) -> Vec4 {
     (term(b, c - a) + term(d, e - c) + term(f, a - e)).yzxw()
 }
 
-/// The sums about vertices `first..first + out.len()`, twice the area each. The fourth lane is nothing.
+/// The sums about vertices `first..first + out.len()`, twice the area each. The fourth lane is
+/// nothing.
 #[inline(always)]
 pub fn sums(hexes: &Hexes, points: &[Vec4], first: usize, out: &mut [Vec4]) {
     let rings = &hexes.rings[first..first + out.len()];
@@ -78,7 +83,8 @@ pub fn sums(hexes: &Hexes, points: &[Vec4], first: usize, out: &mut [Vec4]) {
     }
 }
 
-/// The squared lengths between which one over the root is a good factor: beyond them a sum must be scaled first.
+/// The squared lengths between which one over the root is a good factor: beyond them a sum must be
+/// scaled first.
 pub const LENGTHS: std::ops::Range<f32> = 1e-30..f32::INFINITY;
 
 /// Vertices whose normals are to be computed: `first..first + rows.len()`.
@@ -93,19 +99,25 @@ pub struct Rows<'a> {
     pub mark: u8,
 }
 
-/// Writes the unit normals of as many vertices as go eight at a time, from the first on, and says how many. It stops before
-/// eight with a sum whose squared length is outside [`LENGTHS`].
+/// Writes the unit normals of as many vertices as go eight at a time, from the first on, and says
+/// how many. It stops before eight with a sum whose squared length is outside [`LENGTHS`].
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-pub(super) fn normals_avx2(_: super::wide::Avx2, hexes: &Hexes, points: &[Vec4], to: &mut Rows<'_>) -> usize {
+pub(super) fn normals_avx2(
+    _: super::wide::Avx2,
+    hexes: &Hexes,
+    points: &[Vec4],
+    to: &mut Rows<'_>,
+) -> usize {
     use std::arch::x86_64::*;
     let count = to.rows.len().min(to.old.len()).min(to.marks.len());
     let eights = count.min(hexes.rings.len().saturating_sub(to.first)) / 8;
     assert!(hexes.rows <= points.len(), "rings of another page");
     let rows = points.as_ptr().cast::<f32>();
     for k in 0..eights {
-        // SAFETY: the token proves AVX2. `to.first + 8 * eights` is within `rings`, `8 * eights` within `old`, `rows` and `marks`.
-        // Every index in `rings` is below `hexes.rows` (`Hexes::new`), as are the vertices themselves; `points` is as long.
+        // SAFETY: the token proves AVX2. `to.first + 8 * eights` is within `rings`, `8 * eights`
+        // within `old`, `rows` and `marks`. Every index in `rings` is below `hexes.rows`
+        // (`Hexes::new`), as are the vertices themselves; `points` is as long.
         unsafe {
             let at = to.first + 8 * k;
             let ring = hexes.rings.as_ptr().add(at);

@@ -1,19 +1,21 @@
-//! The inner tests of the eight-wide tree, each in AVX2 and in plain Rust with the same bits: one ray against eight boxes,
-//! one ray against four triangles, and the same two for the distance of a point. The order of operations is the same in both, there is no fused multiply-add,
-//! and `max`/`min` return their second argument on NaN in both (as the processor does).
+//! The inner tests of the eight-wide tree, each in AVX2 and in plain Rust with the same bits: one
+//! ray against eight boxes, one ray against four triangles, and the same two for the distance of a
+//! point. The order of operations is the same in both, there is no fused multiply-add, and
+//! `max`/`min` return their second argument on NaN in both (as the processor does).
 //!
 //! Boxes: slabs, the far side widened by two roundings (Ize, "Robust BVH ray traversal", 2013).
-//! Triangles: Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013. The vertices are sheared into a
-//! frame in which the ray is the z axis. The product terms of an edge function are rounded monotonically, so the sign of
-//! their difference is exact or the difference is zero; zero counts as inside on both sides. So a ray cannot slip through
-//! an edge or a vertex of a closed surface.
+//! Triangles: Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013. The
+//! vertices are sheared into a frame in which the ray is the z axis. The product terms of an edge
+//! function are rounded monotonically, so the sign of their difference is exact or the difference
+//! is zero; zero counts as inside on both sides. So a ray cannot slip through an edge or a vertex
+//! of a closed surface.
 
 use glam::Vec4;
 
 use super::rings::{Hexes, Rows};
 
-/// One vertex coordinate of four triangles, and so on: `v[corner][axis][lane]`. Lanes without a triangle hold NaN, which
-/// fails every comparison, and the id [`NO_TRIANGLE`].
+/// One vertex coordinate of four triangles, and so on: `v[corner][axis][lane]`. Lanes without a
+/// triangle hold NaN, which fails every comparison, and the id [`NO_TRIANGLE`].
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub struct Pack {
@@ -29,7 +31,8 @@ pub const NO_TRIANGLE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub struct Node {
-    /// `planes[axis]` are the lower sides, `planes[3 + axis]` the upper ones. An unused child has +inf below and -inf above.
+    /// `planes[axis]` are the lower sides, `planes[3 + axis]` the upper ones. An unused child has
+    /// +inf below and -inf above.
     pub planes: [[f32; 8]; 6],
     /// A node's index, or, with [`LEAF`] set, a pack's.
     pub child: [u32; 8],
@@ -45,10 +48,12 @@ pub struct Prepared {
     inverse: [f32; 3],
     /// The same for the far sides, so much larger that rounding never loses a box.
     wider: [f32; 3],
-    /// Index into [`Node::planes`], below 6, of the side that the ray meets first, and last, per axis.
+    /// Index into [`Node::planes`], below 6, of the side that the ray meets first, and last, per
+    /// axis.
     near: [usize; 3],
     far: [usize; 3],
-    /// The axes, below 3, in the order in which the triangle test reads them: the last is the ray's longest.
+    /// The axes, below 3, in the order in which the triangle test reads them: the last is the ray's
+    /// longest.
     k: [usize; 3],
     /// The origin in that order.
     turned: [f32; 3],
@@ -82,7 +87,8 @@ impl Prepared {
         let not_x = (a[1].max(a[2]) > a[0]) as usize;
         let kz = not_x + (not_x & (a[2] > a[1]) as usize);
         let (kx, ky) = ([1, 2, 0][kz], [2, 0, 1][kz]);
-        // A zero component would make 0 * inf = NaN on a slab's own plane; 1e36 cannot, and no t is so large.
+        // A zero component would make 0 * inf = NaN on a slab's own plane; 1e36 cannot, and no t is
+        // so large.
         let inverse = dir.map(|d| if d.abs() < 1e-36 { 1e36f32.copysign(d) } else { 1.0 / d });
         let s = dir.map(|d| d.is_sign_negative() as usize * 3);
         Prepared {
@@ -99,11 +105,12 @@ impl Prepared {
     }
 }
 
-/// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3), and one rounding more of its own product.
+/// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3), and one rounding more of
+/// its own product.
 const WIDEN: f32 = 1.000_000_5;
 
-/// Squared sine of the angle from which on a triangle's plane is sure to a few roundings: below it the plane bounds the
-/// distance from below only.
+/// Squared sine of the angle from which on a triangle's plane is sure to a few roundings: below it
+/// the plane bounds the distance from below only.
 const WIDE: f32 = 0.1;
 
 /// A set of hits in a pack: which lanes, and where.
@@ -118,20 +125,30 @@ pub struct PackHits {
 
 /// The tests. Both implementations give the same bits.
 pub trait Wide: Copy {
-    /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it enters each.
+    /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it
+    /// enters each.
     fn boxes(self, ray: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32;
     /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included.
     fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
-    /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which is finite: an unused box
-    /// is infinitely far.
+    /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which
+    /// is finite: an unused box is infinitely far.
     fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32;
-    /// Bounds of the four triangles' distances from `p`: nowhere is a triangle nearer than `low`, and somewhere it is as
-    /// near as `high`. `slack` is the rounding's share of the largest distance of a corner. A sliver of which single
-    /// precision cannot tell gets 0 and infinity, and so does an empty lane.
-    fn near_triangles(self, p: [f32; 3], pack: &Pack, slack: f32, low: &mut [f32; 4], high: &mut [f32; 4]);
+    /// Bounds of the four triangles' distances from `p`: nowhere is a triangle nearer than `low`,
+    /// and somewhere it is as near as `high`. `slack` is the rounding's share of the largest
+    /// distance of a corner. A sliver of which single precision cannot tell gets 0 and infinity,
+    /// and so does an empty lane.
+    fn near_triangles(
+        self,
+        p: [f32; 3],
+        pack: &Pack,
+        slack: f32,
+        low: &mut [f32; 4],
+        high: &mut [f32; 4],
+    );
     /// Asks the memory for `of[at]`; nothing where there is no such place.
     fn fetch<T>(self, of: &[T], at: usize);
-    /// Writes the normals of as many vertices of `to`, from the first on, as go fast, and says how many.
+    /// Writes the normals of as many vertices of `to`, from the first on, as go fast, and says how
+    /// many.
     fn ring_normals(self, hexes: &Hexes, points: &[Vec4], to: &mut Rows<'_>) -> usize;
 }
 
@@ -208,7 +225,14 @@ impl Wide for Scalar {
     }
 
     #[inline(always)]
-    fn near_triangles(self, p: [f32; 3], pack: &Pack, slack: f32, low: &mut [f32; 4], high: &mut [f32; 4]) {
+    fn near_triangles(
+        self,
+        p: [f32; 3],
+        pack: &Pack,
+        slack: f32,
+        low: &mut [f32; 4],
+        high: &mut [f32; 4],
+    ) {
         let dot = |a: [f32; 3], b: [f32; 3]| (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
         let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let cross = |a: [f32; 3], b: [f32; 3]| {
@@ -262,8 +286,8 @@ mod avx2 {
     impl Wide for Avx2 {
         #[inline(always)]
         fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
-            // SAFETY: the token proves AVX2; `near` and `far` are below 6, as only `Prepared::new` makes them; all loads and
-            // stores are within the arrays they take their address from.
+            // SAFETY: the token proves AVX2; `near` and `far` are below 6, as only `Prepared::new`
+            // makes them; all loads and stores are within the arrays they take their address from.
             unsafe {
                 let at = |plane: usize, axis: usize, inverse: [f32; 3]| {
                     let p = _mm256_load_ps(node.planes.get_unchecked(plane).as_ptr());
@@ -288,8 +312,8 @@ mod avx2 {
         #[inline(always)]
         fn triangles(self, r: &Prepared, p: &Pack, t_max: f32) -> PackHits {
             let mut out = PackHits { mask: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
-            // SAFETY: the token proves AVX2 (and so SSE); `k` is below 3, as only `Prepared::new` makes it; all loads and
-            // stores are within their arrays.
+            // SAFETY: the token proves AVX2 (and so SSE); `k` is below 3, as only `Prepared::new`
+            // makes it; all loads and stores are within their arrays.
             unsafe {
                 let o = r.turned.map(|x| _mm_set1_ps(x));
                 let s = r.shear.map(|s| _mm_set1_ps(s));
@@ -317,13 +341,15 @@ mod avx2 {
                     return out;
                 }
                 let det = _mm_add_ps(_mm_add_ps(u, v), w);
-                let sum = _mm_add_ps(_mm_add_ps(_mm_mul_ps(u, az), _mm_mul_ps(v, bz)), _mm_mul_ps(w, cz));
+                let sum =
+                    _mm_add_ps(_mm_add_ps(_mm_mul_ps(u, az), _mm_mul_ps(v, bz)), _mm_mul_ps(w, cz));
                 let t = _mm_div_ps(sum, det);
                 let within = _mm_and_ps(
                     _mm_cmp_ps::<_CMP_GE_OQ>(t, _mm_set1_ps(r.t_min)),
                     _mm_cmp_ps::<_CMP_LE_OQ>(t, _mm_set1_ps(t_max)),
                 );
-                let hit = _mm_and_ps(_mm_and_ps(same, within), _mm_cmp_ps::<_CMP_NEQ_OQ>(det, zero));
+                let hit =
+                    _mm_and_ps(_mm_and_ps(same, within), _mm_cmp_ps::<_CMP_NEQ_OQ>(det, zero));
                 out.mask = _mm_movemask_ps(hit) as u32;
                 if out.mask != 0 {
                     _mm_storeu_ps(out.t.as_mut_ptr(), t);
@@ -361,7 +387,8 @@ mod avx2 {
             high: &mut [f32; 4],
         ) {
             type Three = [__m128; 3];
-            // SAFETY: the token proves AVX2 (and so SSE); all loads are within the pack, which is aligned.
+            // SAFETY: the token proves AVX2 (and so SSE); all loads are within the pack, which is
+            // aligned.
             unsafe {
                 let dot = |a: Three, b: Three| {
                     let xy = _mm_add_ps(_mm_mul_ps(a[0], b[0]), _mm_mul_ps(a[1], b[1]));
@@ -372,7 +399,11 @@ mod avx2 {
                 };
                 let det = |a, b, c, d| _mm_sub_ps(_mm_mul_ps(a, b), _mm_mul_ps(c, d));
                 let cross = |a: Three, b: Three| {
-                    [det(a[1], b[2], a[2], b[1]), det(a[2], b[0], a[0], b[2]), det(a[0], b[1], a[1], b[0])]
+                    [
+                        det(a[1], b[2], a[2], b[1]),
+                        det(a[2], b[0], a[0], b[2]),
+                        det(a[0], b[1], a[1], b[0]),
+                    ]
                 };
                 let origin = [_mm_set1_ps(p[0]), _mm_set1_ps(p[1]), _mm_set1_ps(p[2])];
                 let corner = |c: usize| {
@@ -390,7 +421,8 @@ mod avx2 {
                     let q = [along(0), along(1), along(2)];
                     dot(q, q)
                 };
-                let within = |v: Three, e: Three| _mm_cmp_ps::<_CMP_GE_OQ>(dot(cross(e, n), v), zero);
+                let within =
+                    |v: Three, e: Three| _mm_cmp_ps::<_CMP_GE_OQ>(dot(cross(e, n), v), zero);
                 let far = |v: Three| dot(v, v);
                 let inf = _mm_set1_ps(f32::INFINITY);
                 let near = _mm_min_ps(segment(v0, e0), inf);
@@ -427,8 +459,8 @@ mod avx2 {
     }
 }
 
-/// Work that is written once and compiled for each kind of processor. `run` must be `#[inline(always)]`, or it is not
-/// compiled for AVX2.
+/// Work that is written once and compiled for each kind of processor. `run` must be
+/// `#[inline(always)]`, or it is not compiled for AVX2.
 pub trait WideWork {
     type Out;
     fn run<W: Wide>(self, w: W) -> Self::Out;
@@ -440,7 +472,8 @@ fn with_avx2<J: WideWork>(work: J) -> J::Out {
     work.run(Avx2(()))
 }
 
-/// Runs `work` compiled for AVX2 where the processor has it (and `scalar` is not asked for), else in plain Rust.
+/// Runs `work` compiled for AVX2 where the processor has it (and `scalar` is not asked for), else
+/// in plain Rust.
 #[inline(always)]
 pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Out {
     #[cfg(target_arch = "x86_64")]
@@ -451,7 +484,8 @@ pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Out {
     work.run(Scalar)
 }
 
-/// AVX2 came together with BMI in every processor (Haswell, Excavator); both are checked all the same, once.
+/// AVX2 came together with BMI in every processor (Haswell, Excavator); both are checked all the
+/// same, once.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(super) fn has_fast() -> bool {
@@ -462,7 +496,8 @@ pub(super) fn has_fast() -> bool {
         2 => false,
         _ => {
             use std::arch::is_x86_feature_detected as has;
-            let all = has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt");
+            let all =
+                has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt");
             KNOWN.store(if all { 1 } else { 2 }, Relaxed);
             all
         }

@@ -1,21 +1,24 @@
-//! Thickness by the largest inscribed sphere: the ball inside the wall that touches the surface at the site. Manufacturing
-//! means this by "wall thickness" (a probe ball that fits).
+//! Thickness by the largest inscribed sphere: the ball inside the wall that touches the surface at
+//! the site. Manufacturing means this by "wall thickness" (a probe ball that fits).
 //!
-//! Shrinking ball (Ma, Bae, Choi, "3D medial axis point approximation using nearest neighbors and the normal field", 2012):
-//! begin with the ball whose diameter is the axis ray's length; while a surface point `q` lies inside it, take the ball
-//! through the site and `q`, tangent at the site: `r = |pq|^2 / (2 away . pq)`. Each ball lies inside the last, so no
-//! earlier constraint comes back. Left out: the site's own triangles, and triangles that turn from the site's normal by
-//! less than [`SAME_SIDE`]; a tessellated wall would otherwise dent every ball that rests on it.
+//! Shrinking ball (Ma, Bae, Choi, "3D medial axis point approximation using nearest neighbors and
+//! the normal field", 2012): begin with the ball whose diameter is the axis ray's length; while a
+//! surface point `q` lies inside it, take the ball through the site and `q`, tangent at the site:
+//! `r = |pq|^2 / (2 away . pq)`. Each ball lies inside the last, so no earlier constraint comes
+//! back. Left out: the site's own triangles, and triangles that turn from the site's normal by less
+//! than [`SAME_SIDE`]; a tessellated wall would otherwise dent every ball that rests on it.
 
 use glam::Vec3;
 
 use super::ray::{Caster, Site};
-use crate::bvh::{LEAF, NO_TRIANGLE, Pack, WideTree};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack};
 use crate::simd::wide::{self, Wide, WideWork};
 
-/// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the wall.
+/// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
+/// wall.
 const SAME_SIDE: f32 = 0.94;
-/// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in a wall.
+/// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in
+/// a wall.
 const CORNER: f32 = -0.766;
 /// The ball has settled when no point is deeper inside it than this share of its radius.
 const SETTLED: f32 = 1e-5;
@@ -25,8 +28,8 @@ const STEPS: usize = 40;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     pub diameter: f32,
-    /// The two touches are nearer to each other than 140 degrees seen from the centre: the ball is held by a corner or
-    /// an edge, not by the opposite side of a wall.
+    /// The two touches are nearer to each other than 140 degrees seen from the centre: the ball is
+    /// held by a corner or an edge, not by the opposite side of a wall.
     pub in_corner: bool,
 }
 
@@ -39,7 +42,8 @@ impl Caster<'_> {
                 touch = Some(site.point - site.away * hit.t);
                 hit.t * 0.5
             }
-            // Open below: begin with a ball as large as the mesh, and let the rest of the surface bound it.
+            // Open below: begin with a ball as large as the mesh, and let the rest of the surface
+            // bound it.
             None => {
                 let (lo, hi) = self.tree.bounds();
                 (hi - lo).length()
@@ -49,7 +53,8 @@ impl Caster<'_> {
             let centre = site.point - site.away * r;
             let limit = r * (1.0 - SETTLED);
             let accept = |t: u32| {
-                self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE && !site.own.contains(&t)
+                self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE
+                    && !site.own.contains(&t)
             };
             let query = Nearest { tree: self.tree, centre, limit, accept };
             let Some(q) = wide::dispatch(self.tree.scalar(), query) else { break };
@@ -75,7 +80,7 @@ impl Caster<'_> {
 
 /// The nearest surface point within `limit` of `centre` on a triangle that `accept` takes.
 struct Nearest<'a, A> {
-    tree: &'a WideTree,
+    tree: &'a Bvh8,
     centre: Vec3,
     limit: f32,
     accept: A,
@@ -130,8 +135,9 @@ impl<A: Fn(u32) -> bool> WideWork for Nearest<'_, A> {
             let mut d = [0f32; 8];
             for i in 0..8 {
                 for axis in 0..3 {
-                    let out =
-                        (node.planes[axis][i] - c[axis]).max(c[axis] - node.planes[3 + axis][i]).max(0.0);
+                    let out = (node.planes[axis][i] - c[axis])
+                        .max(c[axis] - node.planes[3 + axis][i])
+                        .max(0.0);
                     d[i] += out * out;
                 }
             }
@@ -153,7 +159,8 @@ impl<A: Fn(u32) -> bool> WideWork for Nearest<'_, A> {
     }
 }
 
-/// The nearest point of a triangle by its seven regions (Ericson, Real-Time Collision Detection, 5.1.5).
+/// The nearest point of a triangle by its seven regions (Ericson, Real-Time Collision Detection,
+/// 5.1.5).
 #[inline(always)]
 fn nearest_on(pack: &Pack, lane: usize, p: Vec3) -> Vec3 {
     let corner = |k: usize| Vec3::new(pack.v[k][0][lane], pack.v[k][1][lane], pack.v[k][2][lane]);

@@ -1,4 +1,5 @@
-//! A part checked against limits: what the command line prints, the report shows and a batch collects.
+//! A part checked against limits: what the command line prints, the report shows and a batch
+//! collects.
 
 use glam::{DVec3, Vec3};
 use serde::Serialize;
@@ -30,7 +31,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// `scale` is millimetres per unit of the file. A part far from the origin loses no precision here.
+    /// `scale` is millimetres per unit of the file. A part far from the origin loses no precision
+    /// here.
     pub fn new(poly: &PolyMesh, scale: f64) -> Part {
         let (lo, hi) = poly
             .positions
@@ -44,8 +46,9 @@ impl Part {
         Part { mesh, counts, centre: centre * scale }
     }
 
-    /// Puts places to measure on walls that have none. `spacing` is the longest edge that stays, millimetres; without it,
-    /// a part of which more than half of the vertices lie on sharp edges gets about [`PLACES`] of them, other parts none.
+    /// Puts places to measure on walls that have none. `spacing` is the longest edge that stays,
+    /// millimetres; without it, a part of which more than half of the vertices lie on sharp edges
+    /// gets about [`PLACES`] of them, other parts none.
     pub fn refine(&mut self, spacing: Option<f32>, crease: f32) {
         let spacing = spacing.or_else(|| {
             if self.mesh.triangles.len() > PLACES {
@@ -195,7 +198,8 @@ pub fn check(
         Verdict::Fail
     } else if broken(limits.warn_below) || uneven.is_some_and(|n| n > 0) {
         Verdict::Warn
-    } else if summary.min.is_some() && limits.fail_below.or(limits.warn_below).or(limits.fail_above).is_some()
+    } else if summary.min.is_some()
+        && limits.fail_below.or(limits.warn_below).or(limits.fail_above).is_some()
     {
         Verdict::Pass
     } else {

@@ -1,5 +1,5 @@
-//! The colour map: thin is dark red, thick pale yellow, missing blue. Lightness rises all the way, so that it reads in
-//! grey print and without red-green vision.
+//! The colour map: thin is dark red, thick pale yellow, missing blue. Lightness rises all the way,
+//! so that it reads in grey print and without red-green vision.
 
 use super::Thickness;
 
@@ -27,8 +27,8 @@ pub fn colour(value: f32, low: f32, high: f32) -> [u8; 3] {
 }
 
 impl Thickness {
-    /// The scale of the map: from the smallest value, or 0 if it is far below, to the 98th percentile, so that one deep
-    /// corner does not take all the colours.
+    /// The scale of the map: from the smallest value, or 0 if it is far below, to the 98th
+    /// percentile, so that one deep corner does not take all the colours.
     pub fn scale(&self) -> (f32, f32) {
         (self.quantile(0.0).unwrap_or(0.0), self.quantile(0.98).unwrap_or(1.0))
     }

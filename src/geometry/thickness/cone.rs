@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-/// Which values of a cone are outliers and do not count. The kept values are never none: the median always stays.
+/// Which values of a cone are outliers and do not count. The kept values are never none: the median
+/// always stays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outliers {
@@ -21,11 +22,13 @@ pub enum Outliers {
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
     Plain,
-    /// The inverse of the ray's angle to the axis (Shapira, Shamir, Cohen-Or 2008); the axis itself counts as one degree.
+    /// The inverse of the ray's angle to the axis (Shapira, Shamir, Cohen-Or 2008); the axis itself
+    /// counts as one degree.
     InverseAngle,
 }
 
-/// The rays around the axis +z, the axis first, evenly over the solid angle (a golden-angle spiral).
+/// The rays around the axis +z, the axis first, evenly over the solid angle (a golden-angle
+/// spiral).
 #[derive(Debug, Clone)]
 pub struct Cone {
     pub dirs: Vec<Vec3>,
@@ -54,12 +57,16 @@ impl Cone {
     }
 }
 
-/// Two directions at right angles to `n` and to each other (Duff et al., "Building an orthonormal basis, revisited", 2017).
+/// Two directions at right angles to `n` and to each other (Duff et al., "Building an orthonormal
+/// basis, revisited", 2017).
 pub fn frame(n: Vec3) -> (Vec3, Vec3) {
     let sign = 1f32.copysign(n.z);
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;
-    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+    (
+        Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        Vec3::new(b, sign + n.y * n.y * a, -n.y),
+    )
 }
 
 /// What a cone's values come to.
@@ -77,7 +84,8 @@ pub fn fold(values: &mut [(f32, f32)], outliers: Outliers) -> Option<Folded> {
         return values.first().map(|v| Folded { value: v.0, error: 0.0 });
     }
     values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let median = if n % 2 == 1 { values[n / 2].0 } else { (values[n / 2 - 1].0 + values[n / 2].0) * 0.5 };
+    let median =
+        if n % 2 == 1 { values[n / 2].0 } else { (values[n / 2 - 1].0 + values[n / 2].0) * 0.5 };
     let mean = |v: &[(f32, f32)]| v.iter().map(|v| v.0 as f64).sum::<f64>() / v.len() as f64;
     let deviation = |v: &[(f32, f32)]| {
         let m = mean(v);
@@ -97,8 +105,9 @@ pub fn fold(values: &mut [(f32, f32)], outliers: Outliers) -> Option<Folded> {
     if kept.is_empty() {
         return Some(Folded { value: median, error: deviation(values) as f32 });
     }
-    let (sum, weight) =
-        kept.iter().fold((0.0f64, 0.0f64), |(s, w), v| (s + v.0 as f64 * v.1 as f64, w + v.1 as f64));
+    let (sum, weight) = kept
+        .iter()
+        .fold((0.0f64, 0.0f64), |(s, w), v| (s + v.0 as f64 * v.1 as f64, w + v.1 as f64));
     let error = deviation(kept) / (kept.len() as f64).sqrt();
     Some(Folded { value: (sum / weight) as f32, error: error as f32 })
 }
@@ -133,11 +142,15 @@ mod tests {
         assert!((by(Outliers::Keep) - 2.72).abs() < 1e-5);
         assert!((by(Outliers::Range(0.1)) - 1.15).abs() < 1e-5);
         assert!(
-            (by(Outliers::Range(0.9)) - 1.15).abs() < 1e-5 || (by(Outliers::Range(0.9)) - 2.72).abs() < 1e-5
+            (by(Outliers::Range(0.9)) - 1.15).abs() < 1e-5
+                || (by(Outliers::Range(0.9)) - 2.72).abs() < 1e-5
         );
         assert!((by(Outliers::SigmaMean) - 1.15).abs() < 1e-5);
         assert!((by(Outliers::SigmaMedian) - 1.15).abs() < 1e-5);
         assert_eq!(fold(&mut [], Outliers::Keep), None);
-        assert_eq!(fold(&mut [(2.0, 1.0); 25], Outliers::SigmaMean), Some(Folded { value: 2.0, error: 0.0 }));
+        assert_eq!(
+            fold(&mut [(2.0, 1.0); 25], Outliers::SigmaMean),
+            Some(Folded { value: 2.0, error: 0.0 })
+        );
     }
 }

@@ -6,24 +6,37 @@ use std::collections::BinaryHeap;
 use super::ray::{Caster, Site};
 use super::{EdgePolicy, Method, Reason, Settings, Surface, Value};
 
-/// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along the mesh is longer.
+/// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along
+/// the mesh is longer.
 const REACH: f32 = 1.5;
 
 /// Applies the policy to the values marked [`Reason::Edge`].
-pub(super) fn apply(caster: &Caster<'_>, surface: &Surface, settings: &Settings, values: &mut [Value]) {
+pub(super) fn apply(
+    caster: &Caster<'_>,
+    surface: &Surface,
+    settings: &Settings,
+    values: &mut [Value],
+) {
     mark(surface, values);
-    let marked: Vec<usize> = (0..values.len()).filter(|&v| values[v].reason == Reason::Edge).collect();
+    let marked: Vec<usize> =
+        (0..values.len()).filter(|&v| values[v].reason == Reason::Edge).collect();
     match settings.edges {
         EdgePolicy::Raw => {}
-        EdgePolicy::Neutral => marked.iter().for_each(|&v| values[v] = Value::missing(Reason::Edge)),
+        EdgePolicy::Neutral => {
+            marked.iter().for_each(|&v| values[v] = Value::missing(Reason::Edge))
+        }
         EdgePolicy::Sphere if settings.method == Method::Sphere => {}
         EdgePolicy::Sphere => {
             for v in marked {
                 let away = surface.normals[v] * caster.sign;
                 let site = Site { point: surface.positions[v], away, own: surface.around(v) };
                 if let Some(ball) = caster.ball(&site) {
-                    values[v] =
-                        Value { value: ball.diameter, error: 0.0, reason: Reason::Edge, turned: false };
+                    values[v] = Value {
+                        value: ball.diameter,
+                        error: 0.0,
+                        reason: Reason::Edge,
+                        turned: false,
+                    };
                 }
             }
         }
@@ -39,14 +52,18 @@ pub(super) fn apply(caster: &Caster<'_>, surface: &Surface, settings: &Settings,
     }
 }
 
-/// Marks what tells of an edge and not of a wall: the opposite side is turned by more than 40 degrees, and a sharp vertex
-/// is as near (along the mesh's edges) as the edge of such a wedge must be, within 1.5 times the value.
+/// Marks what tells of an edge and not of a wall: the opposite side is turned by more than 40
+/// degrees, and a sharp vertex is as near (along the mesh's edges) as the edge of such a wedge must
+/// be, within 1.5 times the value.
 fn mark(surface: &Surface, values: &mut [Value]) {
     if !values.iter().any(|v| v.turned && v.reason == Reason::Measured) {
         return;
     }
-    let longest =
-        values.iter().filter(|v| v.turned && v.value.is_finite()).map(|v| v.value).fold(0.0f32, f32::max);
+    let longest = values
+        .iter()
+        .filter(|v| v.turned && v.value.is_finite())
+        .map(|v| v.value)
+        .fold(0.0f32, f32::max);
     let mut far = vec![f32::INFINITY; values.len()];
     // Distances are not negative, so their bits are ordered as they are.
     let mut heap = BinaryHeap::new();
@@ -76,7 +93,8 @@ fn mark(surface: &Surface, values: &mut [Value]) {
     }
 }
 
-/// Each marked vertex takes the median of its neighbours that are measured or took theirs in an earlier round.
+/// Each marked vertex takes the median of its neighbours that are measured or took theirs in an
+/// earlier round.
 fn spread(surface: &Surface, values: &mut [Value], marked: &mut Vec<usize>) {
     let mut known: Vec<bool> = values.iter().map(|v| v.reason == Reason::Measured).collect();
     let (mut beside, mut near) = (Vec::new(), Vec::new());
@@ -107,17 +125,25 @@ fn spread(surface: &Surface, values: &mut [Value], marked: &mut Vec<usize>) {
     }
 }
 
-/// The smallest of the walls under the faces around `v`, each measured along its own normal from a point one per cent of
-/// the way into the face.
+/// The smallest of the walls under the faces around `v`, each measured along its own normal from a
+/// point one per cent of the way into the face.
 fn under_faces(caster: &Caster<'_>, surface: &Surface, v: usize) -> Option<Value> {
     let mut least = f32::INFINITY;
     for &t in surface.around(v) {
         let [a, b, c] = surface.corners(t as usize)?;
         let point = surface.positions[v].lerp((a + b + c) / 3.0, 0.01);
-        let site =
-            Site { point, away: surface.face_normals[t as usize] * caster.sign, own: surface.around(v) };
+        let site = Site {
+            point,
+            away: surface.face_normals[t as usize] * caster.sign,
+            own: surface.around(v),
+        };
         let found = caster.hit(&site, -site.away).map(|h| h.t);
         least = least.min(found.unwrap_or(f32::INFINITY));
     }
-    least.is_finite().then_some(Value { value: least, error: 0.0, reason: Reason::Edge, turned: false })
+    least.is_finite().then_some(Value {
+        value: least,
+        error: 0.0,
+        reason: Reason::Edge,
+        turned: false,
+    })
 }

@@ -6,9 +6,10 @@
 //! | cone of rays | the mean depth of the wall ahead (Shapira, Shamir, Cohen-Or 2008) | smooths what is narrower than itself |
 //! | inscribed sphere | the ball that fits | goes to zero in every convex edge: see [`EdgePolicy`] |
 //!
-//! Guaranteed: the same values with any number of threads, with and without AVX2; a face that touches the vertex is never
-//! hit from it; a value is missing only with a [`Reason`]. Not guaranteed: anything about the solid that the triangles
-//! stand for. The stated error is against the triangles' own surface, smoothed where it bends by less than the crease.
+//! Guaranteed: the same values with any number of threads, with and without AVX2; a face that
+//! touches the vertex is never hit from it; a value is missing only with a [`Reason`]. Not
+//! guaranteed: anything about the solid that the triangles stand for. The stated error is against
+//! the triangles' own surface, smoothed where it bends by less than the crease.
 
 pub mod ball;
 pub mod check;
@@ -30,7 +31,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::TriMesh;
-use crate::bvh::WideTree;
+use crate::bvh::Bvh8;
 use crate::job::{Cancelled, Job};
 pub use cone::{Cone, Outliers, Weights};
 pub use ray::Correction;
@@ -61,8 +62,8 @@ pub enum Side {
 pub enum EdgePolicy {
     /// Whatever was measured with the mean of the normals.
     Raw,
-    /// The median of the nearest vertices beside the edge; where there are none (a box of eight vertices), the smallest
-    /// of the walls under the faces that meet there.
+    /// The median of the nearest vertices beside the edge; where there are none (a box of eight
+    /// vertices), the smallest of the walls under the faces that meet there.
     Extrapolate,
     /// The inscribed sphere, which goes to zero there.
     Sphere,
@@ -77,11 +78,13 @@ pub enum EdgePolicy {
 pub enum Reason {
     /// Measured here.
     Measured,
-    /// On a sharp edge, or a ball held by one: the value follows the edge policy, or is missing under `Neutral`.
+    /// On a sharp edge, or a ball held by one: the value follows the edge policy, or is missing
+    /// under `Neutral`.
     Edge,
     /// Missing: no wall ahead; the mesh is open there, or nothing lies in front of it.
     NothingAhead,
-    /// Missing: the faces around the vertex cancel each other, so there is no direction to measure in.
+    /// Missing: the faces around the vertex cancel each other, so there is no direction to measure
+    /// in.
     NoNormal,
     /// Missing: the vertex belongs to no face of any area.
     NoFace,
@@ -160,7 +163,8 @@ impl Settings {
     }
 }
 
-/// The measured map. Lengths are in the mesh's unit; NaN stands for "no value", and `reasons` says why.
+/// The measured map. Lengths are in the mesh's unit; NaN stands for "no value", and `reasons` says
+/// why.
 #[derive(Debug, Clone)]
 pub struct Thickness {
     pub settings: Settings,
@@ -187,7 +191,8 @@ struct Value {
     value: f32,
     error: f32,
     reason: Reason,
-    /// The other side is not parallel enough to make a wall: near a sharp edge the value tells of the edge.
+    /// The other side is not parallel enough to make a wall: near a sharp edge the value tells of
+    /// the edge.
     turned: bool,
 }
 
@@ -201,20 +206,21 @@ impl Value {
 pub fn measure(mesh: &TriMesh, settings: &Settings, job: &Job) -> Result<Thickness, Refused> {
     settings.check()?;
     let (tree, surface) =
-        rayon::join(|| WideTree::build(mesh, job), || Surface::new(mesh, settings.crease.to_radians()));
+        rayon::join(|| Bvh8::build(mesh, job), || Surface::new(mesh, settings.crease.to_radians()));
     measure_prepared(Cow::Owned(surface), &tree?, settings, job)
 }
 
 /// The same with the tree and the surface at hand, for several measures of one mesh.
 pub fn measure_prepared(
     surface: Cow<'_, Surface>,
-    tree: &WideTree,
+    tree: &Bvh8,
     settings: &Settings,
     job: &Job,
 ) -> Result<Thickness, Refused> {
     settings.check()?;
-    let chord =
-        settings.method == Method::Ray && settings.correction == Correction::Chord && settings.rays > 1;
+    let chord = settings.method == Method::Ray
+        && settings.correction == Correction::Chord
+        && settings.rays > 1;
     let corner_normals =
         if chord { surface.corner_normals(settings.crease.to_radians()) } else { Vec::new() };
     let cone = Cone::new(settings.rays, settings.opening.to_radians(), settings.weights);
@@ -226,7 +232,8 @@ pub fn measure_prepared(
         sign: if settings.side == Side::Wall { inside_out } else { -inside_out },
         cone: &cone,
         outliers: settings.outliers,
-        // A single ray is the axis: exact along it whatever the correction, and needs no smooth normals.
+        // A single ray is the axis: exact along it whatever the correction, and needs no smooth
+        // normals.
         correction: if settings.rays == 1 { Correction::None } else { settings.correction },
     };
     let order = spatial_order(&surface, tree);
@@ -250,12 +257,19 @@ pub fn measure_prepared(
         let at_face = |t: usize, scratch: &mut Scratch| -> Value {
             let Some([a, b, c]) = surface.corners(t) else { return Value::missing(Reason::NoFace) };
             let own = [t as u32];
-            let site =
-                Site { point: (a + b + c) / 3.0, away: surface.face_normals[t] * caster.sign, own: &own };
+            let site = Site {
+                point: (a + b + c) / 3.0,
+                away: surface.face_normals[t] * caster.sign,
+                own: &own,
+            };
             one(&caster, &site, settings, false, scratch)
         };
-        let order: Vec<u32> =
-            tree.packs().iter().flat_map(|p| p.id).filter(|&t| t != crate::bvh::NO_TRIANGLE).collect();
+        let order: Vec<u32> = tree
+            .packs()
+            .iter()
+            .flat_map(|p| p.id)
+            .filter(|&t| t != crate::bvh::NO_TRIANGLE)
+            .collect();
         let faces = scattered(&order, surface.triangles.len(), job, (0.8, 0.98), at_face)?;
         face_values = faces.iter().map(|v| v.value).collect();
         face_reasons = faces.iter().map(|v| v.reason).collect();
@@ -300,12 +314,18 @@ fn one(
         .map(|(f, turned)| Value { value: f.value, error: f.error, reason: marked(sharp), turned })
         .or_else(|| {
             let b = caster.ball(site)?;
-            Some(Value { value: b.diameter, error: 0.0, reason: marked(sharp), turned: b.in_corner })
+            Some(Value {
+                value: b.diameter,
+                error: 0.0,
+                reason: marked(sharp),
+                turned: b.in_corner,
+            })
         });
     found.unwrap_or(Value::missing(Reason::NothingAhead))
 }
 
-/// `value` at each index of `order`, in parallel over spatially coherent chunks; the others have no face.
+/// `value` at each index of `order`, in parallel over spatially coherent chunks; the others have no
+/// face.
 fn scattered(
     order: &[u32],
     count: usize,
@@ -319,7 +339,8 @@ fn scattered(
         .map(|chunk| {
             job.check()?;
             let mut scratch = Scratch::default();
-            let values: Vec<Value> = chunk.iter().map(|&i| value(i as usize, &mut scratch)).collect();
+            let values: Vec<Value> =
+                chunk.iter().map(|&i| value(i as usize, &mut scratch)).collect();
             let n = done.fetch_add(chunk.len(), std::sync::atomic::Ordering::Relaxed);
             job.progress(from + (to - from) * n as f32 / order.len() as f32);
             Ok(values)
@@ -333,8 +354,9 @@ fn scattered(
     Ok(out)
 }
 
-/// Welded vertices in the order of the tree's leaves: neighbours in space are neighbours in time, and the caches stay warm.
-fn spatial_order(surface: &Surface, tree: &WideTree) -> Vec<u32> {
+/// Welded vertices in the order of the tree's leaves: neighbours in space are neighbours in time,
+/// and the caches stay warm.
+fn spatial_order(surface: &Surface, tree: &Bvh8) -> Vec<u32> {
     let mut seen = vec![false; surface.positions.len()];
     let mut order = Vec::with_capacity(seen.len());
     for &t in tree.packs().iter().flat_map(|p| &p.id) {

@@ -47,8 +47,8 @@ pub enum BadPreset {
 impl Preset {
     /// From the text of a preset file; `file` is for the error.
     pub fn parse(file: &str, text: &str) -> Result<Preset, BadPreset> {
-        let p: Preset =
-            toml::from_str(text).map_err(|e| BadPreset::Toml { file: file.into(), text: e.to_string() })?;
+        let p: Preset = toml::from_str(text)
+            .map_err(|e| BadPreset::Toml { file: file.into(), text: e.to_string() })?;
         let bad = |what| Err(BadPreset::Limits { file: file.into(), what });
         if !(p.fail_below > 0.0 && p.fail_below <= p.warn_below && p.warn_below.is_finite()) {
             return bad("expected 0 < fail_below <= warn_below");
@@ -71,7 +71,9 @@ impl Preset {
     pub fn named(name: &str) -> Result<Preset, BadPreset> {
         let all = Preset::embedded()?;
         let known = all.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
-        all.into_iter().find(|p| p.name == name).ok_or(BadPreset::Unknown { name: name.into(), known })
+        all.into_iter()
+            .find(|p| p.name == name)
+            .ok_or(BadPreset::Unknown { name: name.into(), known })
     }
 }
 

@@ -1,22 +1,25 @@
 //! Thickness by rays: a cone from the vertex itself, opposite its normal.
 //!
-//! Notation: `o` the origin, `a` the unit normal at `o` pointing away from what is measured, `h` a hit, `c = h - o`, `b`
-//! the unit normal of the hit wall turned towards `a` (so `a . b > 0` on a wall that faces the vertex).
+//! Notation: `o` the origin, `a` the unit normal at `o` pointing away from what is measured, `h` a
+//! hit, `c = h - o`, `b` the unit normal of the hit wall turned towards `a` (so `a . b > 0` on a
+//! wall that faces the vertex).
 //!
-//! - Uncorrected, a ray says `|c|`: on a slab of thickness d a cone of 120 degrees averages to about 1.3 d.
-//! - Corrected by the hit angle, it says `-c . b`, the distance of `o` from the plane of the hit face: exact on a slab,
-//!   too small on a wedge, biased by the curvature of a wall that bends.
-//! - Corrected by the chord (ours): let `h0` be where the axis ray, at the unknown depth `s`, meets the wall, and `b0` the
-//!   wall's normal there. On a plane, a sphere and a right cylinder alike the chord from `h0` to `h` is at right angles to
-//!   `b0 + b` (the tangents at both ends of an arc make the same angle with its chord). So
-//!   `s = -c . (b0 + b) / (a . (b0 + b))`: every ray of the cone gives the depth along the axis without bias, on a wedge
-//!   and on bent walls too. What is left is the tessellation's error. A hit on another wall than the axis ray's (its
-//!   normal turned by more than 60 degrees) says nothing about this wall and does not count.
+//! - Uncorrected, a ray says `|c|`: on a slab of thickness d a cone of 120 degrees averages to
+//!   about 1.3 d.
+//! - Corrected by the hit angle, it says `-c . b`, the distance of `o` from the plane of the hit
+//!   face: exact on a slab, too small on a wedge, biased by the curvature of a wall that bends.
+//! - Corrected by the chord (ours): let `h0` be where the axis ray, at the unknown depth `s`, meets
+//!   the wall, and `b0` the wall's normal there. On a plane, a sphere and a right cylinder alike
+//!   the chord from `h0` to `h` is at right angles to `b0 + b` (the tangents at both ends of an arc
+//!   make the same angle with its chord). So `s = -c . (b0 + b) / (a . (b0 + b))`: every ray of the
+//!   cone gives the depth along the axis without bias, on a wedge and on bent walls too. What is
+//!   left is the tessellation's error. A hit on another wall than the axis ray's (its normal turned
+//!   by more than 60 degrees) says nothing about this wall and does not count.
 
 use glam::Vec3;
 
 use super::cone::{Cone, Folded, Outliers, fold, frame};
-use crate::bvh::{Ray, Stack, TreeHit, WideTree};
+use crate::bvh::{Bvh8, Ray, Stack, TreeHit};
 
 /// What a ray's length is corrected by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -43,7 +46,7 @@ pub struct Site<'a> {
 /// What stays the same from site to site.
 #[derive(Debug)]
 pub struct Caster<'a> {
-    pub tree: &'a WideTree,
+    pub tree: &'a Bvh8,
     pub face_normals: &'a [Vec3],
     /// For [`Correction::Chord`]: smooth normals of each triangle's corners.
     pub corner_normals: &'a [[Vec3; 3]],
@@ -54,7 +57,8 @@ pub struct Caster<'a> {
     pub correction: Correction,
 }
 
-/// A hit on a wall turned by more than this from the axis ray's wall is another wall's: cos 60 degrees.
+/// A hit on a wall turned by more than this from the axis ray's wall is another wall's: cos 60
+/// degrees.
 const SAME_WALL: f32 = 0.5;
 
 /// What a thread reuses from site to site.
@@ -70,7 +74,8 @@ pub struct Scratch {
 const TURNED: f32 = 0.766;
 
 impl Caster<'_> {
-    /// The nearest wall ahead that faces the site: not its own triangles, none whose normal points the site's way.
+    /// The nearest wall ahead that faces the site: not its own triangles, none whose normal points
+    /// the site's way.
     pub fn hit(&self, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
         self.tree.closest_hit(Ray::new(site.point, dir), |t| self.faces(site, t))
     }
@@ -79,8 +84,8 @@ impl Caster<'_> {
         self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.own.contains(&t)
     }
 
-    /// The cone's value, and whether the wall that the axis ray meets is turned by more than [`TURNED`] from the site's;
-    /// `scratch` is reused between calls.
+    /// The cone's value, and whether the wall that the axis ray meets is turned by more than
+    /// [`TURNED`] from the site's; `scratch` is reused between calls.
     pub fn measure(&self, site: &Site<'_>, scratch: &mut Scratch) -> Option<(Folded, bool)> {
         let Scratch { values: scratch, rays, hits, stack } = scratch;
         scratch.clear();
@@ -89,7 +94,12 @@ impl Caster<'_> {
         let mut first = None::<Vec3>;
         // Turned about the axis so that +z of the cone runs into the wall.
         rays.clear();
-        rays.extend(self.cone.dirs.iter().map(|d| Ray::new(site.point, x * d.x + y * d.y - site.away * d.z)));
+        rays.extend(
+            self.cone
+                .dirs
+                .iter()
+                .map(|d| Ray::new(site.point, x * d.x + y * d.y - site.away * d.z)),
+        );
         self.tree.closest_hits(stack, rays, |_, t| self.faces(site, t), hits);
         for (i, (&Ray { dir, .. }, &hit)) in rays.iter().zip(&*hits).enumerate() {
             if i == 0 {
@@ -127,7 +137,8 @@ impl Caster<'_> {
                 }
             }
         }
-        // Where nothing met the rule of the same wall, the plain lengths still tell more than nothing.
+        // Where nothing met the rule of the same wall, the plain lengths still tell more than
+        // nothing.
         if scratch.is_empty() && self.correction == Correction::Chord {
             for ((ray, hit), &weight) in rays.iter().zip(&*hits).zip(&self.cone.weights) {
                 if let Some(hit) = hit {

@@ -7,16 +7,19 @@ use crate::TriMesh;
 /// Triangles that refinement stops at.
 const MOST: usize = 2_000_000;
 
-/// Triangles smaller than this share of the spacing's square are long only because they are thin: left as they are.
+/// Triangles smaller than this share of the spacing's square are long only because they are thin:
+/// left as they are.
 const SLIVER: f32 = 0.1;
 
-/// The same surface with every triangle that is longer than `spacing` halved across its longest edge, until none is
-/// (slivers excepted, see [`SLIVER`]) or [`MOST`] is reached. The mesh's own
-/// vertices keep their indices; both triangles of an edge are cut at the same point, so a closed mesh stays closed.
+/// The same surface with every triangle that is longer than `spacing` halved across its longest
+/// edge, until none is (slivers excepted, see [`SLIVER`]) or [`MOST`] is reached. The mesh's own
+/// vertices keep their indices; both triangles of an edge are cut at the same point, so a closed
+/// mesh stays closed.
 pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
     let mut out = TriMesh { colours: None, ..mesh.clone() };
-    let usable =
-        |t: &[u32; 3]| t.iter().all(|&v| mesh.positions.get(v as usize).is_some_and(|p| p.is_finite()));
+    let usable = |t: &[u32; 3]| {
+        t.iter().all(|&v| mesh.positions.get(v as usize).is_some_and(|p| p.is_finite()))
+    };
     if !(spacing > 0.0 && out.triangles.iter().all(usable)) {
         return out;
     }
@@ -24,7 +27,8 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
         let mut cut: BTreeMap<(u32, u32), u32> = BTreeMap::new();
         let mut next = Vec::with_capacity(out.triangles.len());
         for t in &out.triangles {
-            // Only a triangle's longest edge is cut in one round: slivers become round before they become many.
+            // Only a triangle's longest edge is cut in one round: slivers become round before they
+            // become many.
             let length = |k: usize| {
                 let (a, b) = (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]));
                 (out.positions[a as usize].distance_squared(out.positions[b as usize]), a, b)
@@ -85,7 +89,10 @@ mod tests {
         let (a, b) = (measures(&mesh), measures(&fine));
         assert!((a.volume / b.volume - 1.0).abs() < 1e-6 && (a.area / b.area - 1.0).abs() < 1e-6);
         let s = super::super::Surface::new(&fine, 0.7);
-        assert_eq!((s.faults.boundary_edges, s.faults.crowded_edges, s.faults.inverted_edges), (0, 0, 0));
+        assert_eq!(
+            (s.faults.boundary_edges, s.faults.crowded_edges, s.faults.inverted_edges),
+            (0, 0, 0)
+        );
         for t in 0..fine.triangles.len() {
             let [a, b, c] = fine.corners(t);
             let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));

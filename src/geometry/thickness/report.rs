@@ -23,11 +23,17 @@ pub struct Origin<'a> {
 
 /// FNV-1a, 64 bits.
 pub fn fnv(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
+    bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 /// The whole page.
-pub fn html(part: &Part, checked: &Checked, origin: Origin<'_>) -> Result<String, image::ImageError> {
+pub fn html(
+    part: &Part,
+    checked: &Checked,
+    origin: Origin<'_>,
+) -> Result<String, image::ImageError> {
     let a = &checked.answer;
     let scale = checked.thickness.scale();
     let colours = checked.thickness.colours(scale);
@@ -111,7 +117,12 @@ fn verdict(out: &mut String, a: &Answer) {
     }
 }
 
-fn figure(out: &mut String, picture: &Picture, alt: &str, caption: &str) -> Result<(), image::ImageError> {
+fn figure(
+    out: &mut String,
+    picture: &Picture,
+    alt: &str,
+    caption: &str,
+) -> Result<(), image::ImageError> {
     let data = base64(&picture.png()?);
     let _ = write!(
         out,
@@ -185,10 +196,16 @@ fn histogram(out: &mut String, a: &Answer) {
     for (i, &c) in counts.iter().enumerate() {
         let h = 190.0 * c as f64 / most as f64;
         let fill = if i == 0 { hex(NONE) } else { "#5b4a3f".into() };
-        let _ =
-            write!(out, "<rect x={} y={:.1} width=6 height={h:.1} fill=\"{fill}\"/>", 5 + i * 7, 200.0 - h);
+        let _ = write!(
+            out,
+            "<rect x={} y={:.1} width=6 height={h:.1} fill=\"{fill}\"/>",
+            5 + i * 7,
+            200.0 - h
+        );
     }
-    if let Some(limit) = a.limits.fail_below.or(a.limits.warn_below).filter(|l| max > 0.0 && *l < max) {
+    if let Some(limit) =
+        a.limits.fail_below.or(a.limits.warn_below).filter(|l| max > 0.0 && *l < max)
+    {
         let x = 12.0 + 700.0 * limit / max;
         let _ = write!(
             out,
@@ -236,10 +253,15 @@ fn worst(
     );
     let whole = Camera::whole(&part.mesh, 1.0).half_height;
     for (i, (spot, told)) in checked.spots.iter().zip(&checked.answer.worst).enumerate() {
-        let near = (spot.area.sqrt() as f32 * 1.5).max(spot.thickness * 6.0).clamp(whole * 0.05, whole);
+        let near =
+            (spot.area.sqrt() as f32 * 1.5).max(spot.thickness * 6.0).clamp(whole * 0.05, whole);
         let at = Vec3::from(spot.position);
-        let camera =
-            Camera { target: at, towards_eye: Vec3::from(spot.normal), up: Vec3::Z, half_height: near };
+        let camera = Camera {
+            target: at,
+            towards_eye: Vec3::from(spot.normal),
+            up: Vec3::Z,
+            half_height: near,
+        };
         let mut picture = draw(&part.mesh, Some(colours), &camera, 200, 150);
         picture.ring((100.0, 75.0), 16.0);
         let [x, y, z] = told.position;

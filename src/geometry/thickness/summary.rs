@@ -1,10 +1,12 @@
-//! What a map of thickness comes to: statistics, the histogram, the share of the area below a limit, the error bound.
+//! What a map of thickness comes to: statistics, the histogram, the share of the area below a
+//! limit, the error bound.
 
 use glam::Vec3;
 
 use super::{Correction, Method, Reason, Thickness};
 
-/// Classes of the histogram: the first counts missing values, the other hundred run from 0 to the maximum.
+/// Classes of the histogram: the first counts missing values, the other hundred run from 0 to the
+/// maximum.
 pub const CLASSES: usize = 101;
 
 #[derive(Debug, Clone, serde::Serialize)]
@@ -80,9 +82,14 @@ impl Thickness {
         Summary {
             min: known.first().map(|v| v.0),
             max,
-            mean: (n > 0).then(|| (known.iter().map(|v| v.0 as f64).sum::<f64>() / n as f64) as f32),
+            mean: (n > 0)
+                .then(|| (known.iter().map(|v| v.0 as f64).sum::<f64>() / n as f64) as f32),
             median: (n > 0).then(|| {
-                if n % 2 == 1 { known[n / 2].0 } else { (known[n / 2 - 1].0 + known[n / 2].0) * 0.5 }
+                if n % 2 == 1 {
+                    known[n / 2].0
+                } else {
+                    (known[n / 2 - 1].0 + known[n / 2].0) * 0.5
+                }
             }),
             valid: n as f32 / (n as f32 + absent as f32).max(1.0),
             histogram,
@@ -94,18 +101,24 @@ impl Thickness {
         }
     }
 
-    /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three parts are added:
-    /// single precision (1e-6 of the largest coordinate, four times over for the origin, the hit and two shears); the
-    /// normal, uncertain by half of how the faces at the vertex spread, which lengthens a ray by 1/cos of it; and, for a
-    /// cone, twice the standard error of the kept rays' mean. A cone that is not corrected also carries the bias of its
+    /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three
+    /// parts are added: single precision (1e-6 of the largest coordinate, four times over for the
+    /// origin, the hit and two shears); the normal, uncertain by half of how the faces at the
+    /// vertex spread, which lengthens a ray by 1/cos of it; and, for a cone, twice the standard
+    /// error of the kept rays' mean. A cone that is not corrected also carries the bias of its
     /// geometry, up to 32 % at 120 degrees, which is included.
     pub fn error_bound(&self) -> f32 {
         let s = &self.surface;
         let half = (self.settings.opening * 0.5).to_radians();
-        // The mean length of the cone's rays through a slab, over its thickness: (int dz / z) / (int dz).
-        let long =
-            if self.settings.rays > 1 && half > 0.0 { -half.cos().ln() / (1.0 - half.cos()) } else { 1.0 };
-        let biased = self.settings.method == Method::Ray && self.settings.correction == Correction::None;
+        // The mean length of the cone's rays through a slab, over its thickness: (int dz / z) /
+        // (int dz).
+        let long = if self.settings.rays > 1 && half > 0.0 {
+            -half.cos().ln() / (1.0 - half.cos())
+        } else {
+            1.0
+        };
+        let biased =
+            self.settings.method == Method::Ray && self.settings.correction == Correction::None;
         let mut bounds: Vec<f32> = Vec::with_capacity(self.values.len());
         for (i, &w) in s.weld.iter().enumerate() {
             let (value, v) = (self.values[i], w as usize);
@@ -118,7 +131,8 @@ impl Thickness {
                 .map(|&t| s.face_normals[t as usize].dot(s.normals[v]))
                 .fold(1.0f32, f32::min);
             let tilt = (least.clamp(-1.0, 1.0).acos() * 0.5).min(1.2);
-            let mut bound = 4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + 2.0 * self.errors[i];
+            let mut bound =
+                4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + 2.0 * self.errors[i];
             if biased {
                 bound += value * (1.0 - 1.0 / long);
             }
@@ -140,8 +154,8 @@ impl Thickness {
         out
     }
 
-    /// Area of the surface where the value, linear over each triangle, is strictly below `limit` (or, with `above`,
-    /// strictly over it), and the area that has values at all.
+    /// Area of the surface where the value, linear over each triangle, is strictly below `limit`
+    /// (or, with `above`, strictly over it), and the area that has values at all.
     pub fn area_beyond(&self, limit: f32, above: bool) -> (f64, f64) {
         let values = self.welded_values();
         let (mut out, mut all) = (0.0f64, 0.0f64);
@@ -159,11 +173,13 @@ impl Thickness {
         (out, all)
     }
 
-    /// The largest ratio, either way, between the value at a vertex and those of the vertices within `reach` times its
-    /// value along the edges (moulding: walls should change gently). 1 where nothing differs, NaN without a value.
+    /// The largest ratio, either way, between the value at a vertex and those of the vertices
+    /// within `reach` times its value along the edges (moulding: walls should change gently). 1
+    /// where nothing differs, NaN without a value.
     pub fn neighbour_ratio(&self, reach: f32) -> Vec<f32> {
         use rayon::prelude::*;
-        /// Vertices looked at around each: keeps the cost linear on dense meshes, whose neighbours differ little.
+        /// Vertices looked at around each: keeps the cost linear on dense meshes, whose neighbours
+        /// differ little.
         const MOST: usize = 64;
         let (s, values) = (&self.surface, self.welded_values());
         let ratio = |v: usize| {

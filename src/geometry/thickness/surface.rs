@@ -1,14 +1,16 @@
-//! What thickness needs to know of a mesh besides its tree: which corners are one vertex, which faces meet there, normals,
-//! sharp edges, and what is wrong with it.
+//! What thickness needs to know of a mesh besides its tree: which corners are one vertex, which
+//! faces meet there, normals, sharp edges, and what is wrong with it.
 
 use glam::Vec3;
 
 use crate::TriMesh;
 
-/// Marks a triangle that is left out: degenerate, a duplicate, or with an index or a coordinate that means nothing.
+/// Marks a triangle that is left out: degenerate, a duplicate, or with an index or a coordinate
+/// that means nothing.
 pub const DROPPED: u32 = u32::MAX;
 
-/// A welded view of a mesh. Triangle indices are the mesh's own; vertex indices are of the welded vertices.
+/// A welded view of a mesh. Triangle indices are the mesh's own; vertex indices are of the welded
+/// vertices.
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Welded vertex of each of the mesh's vertices.
@@ -18,7 +20,8 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// Of unit length, outward where the mesh is right; zero where the triangle is left out.
     pub face_normals: Vec<Vec3>,
-    /// Weighted by the corner's angle (Thuermer and Wuethrich 1998); zero where faces cancel or none meet.
+    /// Weighted by the corner's angle (Thuermer and Wuethrich 1998); zero where faces cancel or
+    /// none meet.
     pub normals: Vec<Vec3>,
     /// The triangles around vertex `v` are `around[starts[v]..starts[v + 1]]`.
     pub starts: Vec<u32>,
@@ -68,7 +71,9 @@ impl Surface {
             let welded = t.map(|v| s.weld.get(v as usize).copied().unwrap_or(DROPPED));
             let mut keep = welded;
             let mut normal = Vec3::ZERO;
-            if welded.contains(&DROPPED) || welded.iter().any(|&v| !s.positions[v as usize].is_finite()) {
+            if welded.contains(&DROPPED)
+                || welded.iter().any(|&v| !s.positions[v as usize].is_finite())
+            {
                 s.faults.broken += 1;
                 keep = [DROPPED; 3];
             } else {
@@ -172,7 +177,8 @@ impl Surface {
         let turn = crease.cos();
         let mut sharp = vec![false; self.positions.len()];
         let mut shells = Shells::new(self.positions.len());
-        // The edges at `v` that lead to a higher vertex: (other end, triangle, this triangle runs v -> other).
+        // The edges at `v` that lead to a higher vertex: (other end, triangle, this triangle runs v
+        // -> other).
         let mut out: Vec<(u32, u32, bool)> = Vec::new();
         for v in 0..self.positions.len() as u32 {
             out.clear();
@@ -190,14 +196,16 @@ impl Surface {
             out.sort_unstable();
             let mut i = 0;
             while i < out.len() {
-                let end = out[i..].iter().position(|e| e.0 != out[i].0).map_or(out.len(), |n| i + n);
+                let end =
+                    out[i..].iter().position(|e| e.0 != out[i].0).map_or(out.len(), |n| i + n);
                 let other = out[i].0;
                 shells.join(v, other);
                 match &out[i..end] {
                     [_] => self.faults.boundary_edges += 1,
                     [(_, a, along), (_, b, against)] => {
                         self.faults.inverted_edges += (along == against) as usize;
-                        let (a, b) = (self.face_normals[*a as usize], self.face_normals[*b as usize]);
+                        let (a, b) =
+                            (self.face_normals[*a as usize], self.face_normals[*b as usize]);
                         if a.dot(b) < turn {
                             sharp[v as usize] = true;
                             sharp[other as usize] = true;
@@ -218,8 +226,9 @@ impl Surface {
         self.sharp = sharp;
     }
 
-    /// One normal a corner: the mean of the faces around the vertex that turn from this one by less than `crease`
-    /// (radians), weighted by their angles there. So a curved wall is smooth and an edge stays an edge.
+    /// One normal a corner: the mean of the faces around the vertex that turn from this one by less
+    /// than `crease` (radians), weighted by their angles there. So a curved wall is smooth and an
+    /// edge stays an edge.
     pub fn corner_normals(&self, crease: f32) -> Vec<[Vec3; 3]> {
         use rayon::prelude::*;
         let turn = crease.cos();
@@ -276,7 +285,8 @@ fn weld(positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
             let p = p + 0.0;
             let key = p.to_array().map(f32::to_bits);
             let bits = key.map(u64::from);
-            let mix = (bits[0] | bits[1] << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ bits[2].rotate_left(17);
+            let mix = (bits[0] | bits[1] << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                ^ bits[2].rotate_left(17);
             let mut slot = (mix.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> shift) as usize;
             loop {
                 let at = table[slot];

@@ -3,8 +3,8 @@
 use super::Faults;
 use super::summary::Summary;
 
-/// One sentence for each fault: what was found, and what it means for the result. `size` is the largest dimension, in
-/// the unit that the values are in, millimetres as a rule.
+/// One sentence for each fault: what was found, and what it means for the result. `size` is the
+/// largest dimension, in the unit that the values are in, millimetres as a rule.
 pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
     let mut out = Vec::new();
     let mut say = |n: usize, text: &dyn Fn(usize) -> String| {
@@ -13,9 +13,13 @@ pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
         }
     };
     say(faults.broken, &|n| {
-        format!("{n} triangles name a vertex that is not there or a coordinate that is no number: left out")
+        format!(
+            "{n} triangles name a vertex that is not there or a coordinate that is no number: left out"
+        )
     });
-    say(faults.degenerate, &|n| format!("{n} triangles have no area: left out; no value changes by it"));
+    say(faults.degenerate, &|n| {
+        format!("{n} triangles have no area: left out; no value changes by it")
+    });
     say(faults.duplicate, &|n| {
         format!(
             "{n} triangles are there twice: the copies are left out, or they would hide the wall behind them"

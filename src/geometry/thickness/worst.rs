@@ -18,7 +18,8 @@ pub struct Spot {
 }
 
 impl Thickness {
-    /// At most `count` regions of values strictly below `limit` and of at least `minimum_area`, the thinnest first.
+    /// At most `count` regions of values strictly below `limit` and of at least `minimum_area`, the
+    /// thinnest first.
     pub fn worst(&self, limit: f32, minimum_area: f64, count: usize) -> Vec<Spot> {
         let (s, values) = (&self.surface, self.welded_values());
         let mut area = vec![0.0f64; s.positions.len()];
@@ -55,7 +56,8 @@ impl Thickness {
             if sum >= minimum_area {
                 spots.push(Spot {
                     position: s.positions[thinnest].to_array(),
-                    normal: (s.normals[thinnest] * if s.faults.inside_out { -1.0 } else { 1.0 }).to_array(),
+                    normal: (s.normals[thinnest] * if s.faults.inside_out { -1.0 } else { 1.0 })
+                        .to_array(),
                     thickness: values[thinnest],
                     area: sum,
                     vertices: n,
@@ -67,7 +69,8 @@ impl Thickness {
         spots
     }
 
-    /// The limit below which the thinnest `share` of the vertices lies: for the worst spots where no limit was given.
+    /// The limit below which the thinnest `share` of the vertices lies: for the worst spots where
+    /// no limit was given.
     pub fn quantile(&self, share: f32) -> Option<f32> {
         let mut known: Vec<f32> = self.values.iter().copied().filter(|v| v.is_finite()).collect();
         if known.is_empty() {

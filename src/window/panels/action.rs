@@ -1,4 +1,5 @@
-//! Everything that can be asked for by name: one table serves the keys, the search, the radial menu and the tooltips.
+//! Everything that can be asked for by name: one table serves the keys, the search, the radial menu
+//! and the tooltips.
 
 use egui::Key;
 
@@ -30,7 +31,7 @@ pub enum Action {
     Perspective,
     NextMaterial,
     Facets,
-    Shade,
+    Ssao,
     Wireframe,
     Grid,
     Thickness,
@@ -43,7 +44,7 @@ pub enum Action {
     TryAdd,
     TryCut,
     TryKeep,
-    Open,
+    WindowState,
     Export,
     Screenshot,
     Turntable,
@@ -93,7 +94,12 @@ pub struct Entry {
     pub also: &'static str,
 }
 
-const fn entry(action: Action, name: &'static str, keys: Option<Keys>, also: &'static str) -> Entry {
+const fn entry(
+    action: Action,
+    name: &'static str,
+    keys: Option<Keys>,
+    also: &'static str,
+) -> Entry {
     Entry { action, name, keys, also }
 }
 
@@ -120,7 +126,7 @@ pub const ALL: &[Entry] = &[
     entry(Action::Perspective, "Perspective or orthographic", key(Key::Num5), "camera parallel"),
     entry(Action::NextMaterial, "Next material", key(Key::M), "matcap colour"),
     entry(Action::Facets, "Smooth or flat shading", ctrl(Key::F), "facets"),
-    entry(Action::Shade, "Shade of hollows", shift(Key::H), "ambient occlusion cavity depth"),
+    entry(Action::Ssao, "Shade of hollows", shift(Key::H), "ambient occlusion cavity depth"),
     entry(Action::Wireframe, "Wireframe", key(Key::W), "edges triangles"),
     entry(Action::Grid, "Grid", key(Key::G), "floor"),
     entry(Action::Thickness, "Thickness map", key(Key::T), "wall analysis"),
@@ -131,9 +137,14 @@ pub const ALL: &[Entry] = &[
     entry(Action::Finer, "Finer level", ctrl(Key::PageUp), "subdivide multires detail"),
     entry(Action::Coarser, "Coarser level", ctrl(Key::PageDown), "multires shape"),
     entry(Action::TryAdd, "Try to add the thing", None, "boolean union preview join"),
-    entry(Action::TryCut, "Try to cut with the thing", None, "boolean difference preview join carve"),
+    entry(
+        Action::TryCut,
+        "Try to cut with the thing",
+        None,
+        "boolean difference preview join carve",
+    ),
     entry(Action::TryKeep, "Try to keep what both have", None, "boolean intersection preview join"),
-    entry(Action::Open, "Open a mesh", ctrl(Key::O), "file load import"),
+    entry(Action::WindowState, "Open a mesh", ctrl(Key::O), "file load import"),
     entry(Action::Export, "Export the mesh", ctrl(Key::E), "file save stl obj ply"),
     entry(Action::Screenshot, "Screenshot", key(Key::F12), "picture png"),
     entry(Action::Turntable, "Turntable frames", ctrl(Key::F12), "animation film pictures png"),
@@ -202,7 +213,8 @@ pub fn on_brush(action: Action, mut brush: BrushSettings) -> Option<Command> {
     Some(Command::Brush(brush.clamped()))
 }
 
-/// Actions that hold every word of a search, best first: a name that begins with it, then names, then other words.
+/// Actions that hold every word of a search, best first: a name that begins with it, then names,
+/// then other words.
 pub fn search(text: &str) -> Vec<&'static Entry> {
     let text = text.to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::action::Action;
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 use crate::viewer::look::Map;
 use sculptd_geometry::thickness::preset::Preset;
 
@@ -46,11 +46,16 @@ pub struct Walls {
 
 impl Default for Walls {
     fn default() -> Self {
-        Walls { found: None, presets: Preset::embedded().unwrap_or_default(), preset: None, limit: 1.0 }
+        Walls {
+            found: None,
+            presets: Preset::embedded().unwrap_or_default(),
+            preset: None,
+            limit: 1.0,
+        }
     }
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Wall thickness");
     let mut on = desk.look.map == Map::Thickness;
@@ -58,7 +63,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
         super::act(Action::Thickness, &ui.ctx().clone(), view, desk, out);
     }
     let walls = &mut desk.walls;
-    let title = walls.preset.and_then(|i| walls.presets.get(i)).map_or("own limit", |p| p.name.as_str());
+    let title =
+        walls.preset.and_then(|i| walls.presets.get(i)).map_or("own limit", |p| p.name.as_str());
     let mut chosen = walls.preset;
     egui::ComboBox::from_label("Process").selected_text(title).width(120.0).show_ui(ui, |ui| {
         ui.selectable_value(&mut chosen, None, "own limit");
@@ -73,7 +79,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
         }
     }
     ui.horizontal(|ui| {
-        let drag = egui::DragValue::new(&mut walls.limit).range(0.0..=1e6).speed(0.01).suffix(" mm");
+        let drag =
+            egui::DragValue::new(&mut walls.limit).range(0.0..=1e6).speed(0.01).suffix(" mm");
         let label = ui.label("Too thin below");
         if ui.add(drag).labelled_by(label.id).changed() {
             walls.preset = None;
@@ -106,14 +113,15 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     for (i, spot) in found.spots.iter().enumerate() {
         let name = format!("{}: {:.3} mm", i + 1, spot.thickness);
         if ui.button(name).on_hover_text("The camera flies there").clicked() {
-            out.push(Ask::FlyTo(spot.place));
+            out.push(UiRequest::FlyTo(spot.place));
         }
     }
 }
 
 fn histogram(ui: &mut egui::Ui, found: &Thickness, limit: f32) {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(196.0, 64.0), egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Thickness histogram"));
+    response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Thickness histogram"));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
     let most = found.histogram.iter().copied().max().unwrap_or(0).max(1) as f32;
@@ -135,5 +143,6 @@ fn histogram(ui: &mut egui::Ui, found: &Thickness, limit: f32) {
         let x = rect.left() + at * rect.width();
         painter.vline(x, rect.y_range(), egui::Stroke::new(1.5, ui.visuals().text_color()));
     }
-    response.on_hover_text(format!("{:.3} to {:.3} mm; the line is the limit", found.min, found.high));
+    response
+        .on_hover_text(format!("{:.3} to {:.3} mm; the line is the limit", found.min, found.high));
 }

@@ -3,7 +3,7 @@
 use egui::{Pos2, Sense, Stroke, vec2};
 
 use super::action::Action;
-use super::{Ask, View, theme};
+use super::{UiRequest, View, theme};
 use sculptd_clay::brush::{BrushKind, BrushSettings, Method, StampBy};
 use sculptd_engine::command::Command;
 
@@ -57,7 +57,7 @@ fn title(kind: BrushKind) -> String {
     letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let mut brush: BrushSettings = view.state.brush;
     ui.strong("Brush");
     let first = |k: &&BrushKind| FIRST.contains(&k.name());
@@ -107,9 +107,14 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
         choice(ui, "Stamp", &mut brush.stamp.by, &STAMPS);
         if brush.stamp.by != StampBy::Off {
             ui.add(
-                egui::Slider::new(&mut brush.stamp.size, 0.05..=10.0).logarithmic(true).text("Stamp's size"),
+                egui::Slider::new(&mut brush.stamp.size, 0.05..=10.0)
+                    .logarithmic(true)
+                    .text("Stamp's size"),
             );
-            ui.add(egui::Slider::new(&mut brush.stamp.turn_degrees, -180.0..=180.0).text("Stamp's turn"));
+            ui.add(
+                egui::Slider::new(&mut brush.stamp.turn_degrees, -180.0..=180.0)
+                    .text("Stamp's turn"),
+            );
             ui.checkbox(&mut brush.stamp.repeat, "Stamp repeats");
         }
         ui.checkbox(&mut brush.auto.front_faces, "Front faces only");
@@ -120,7 +125,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
         }
     });
     if brush != view.state.brush {
-        out.push(Ask::World(Command::Brush(brush.clamped())));
+        out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
 }
 
@@ -129,7 +134,9 @@ fn profile(name: &str, d: f32) -> f32 {
     let bell = (-d * d * 9.0).exp();
     let step = |edge: f32| 1.0 / (1.0 + ((d.abs() - edge) * 24.0).exp());
     match name {
-        "smooth" | "relax" | "slide-relax" => 0.25 * (-d * d * 3.0).exp() + 0.08 * (d * 22.0).sin() * d * d,
+        "smooth" | "relax" | "slide-relax" => {
+            0.25 * (-d * d * 3.0).exp() + 0.08 * (d * 22.0).sin() * d * d
+        }
         "clay" | "layer" => 0.6 * step(0.55),
         "clay-strips" | "trim" => 0.7 * step(0.42),
         "crease" => 0.35 * bell - 0.9 * (-d * d * 120.0).exp() + 0.3,

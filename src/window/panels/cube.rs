@@ -1,4 +1,5 @@
-//! The view cube's six sides as balls on their axes: how the work lies, and a click to look along an axis.
+//! The view cube's six sides as balls on their axes: how the work lies, and a click to look along
+//! an axis.
 
 use std::f32::consts::PI;
 
@@ -6,7 +7,7 @@ use egui::{Color32, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use super::action::Action;
-use super::{Ask, View};
+use super::{UiRequest, View};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::camera::MAX_PITCH;
 
@@ -36,7 +37,7 @@ pub fn side(action: Action, camera: &Camera) -> Option<(f32, f32)> {
     })
 }
 
-pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<Ask>) {
+pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<UiRequest>) {
     if free.width() < 150.0 || free.height() < 200.0 {
         return;
     }
@@ -57,8 +58,11 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<Ask>) 
         let (mut camera, mut turned) = (view.camera, false);
         for ((_, letter, action, colour), depth, at) in sides {
             let ball = Rect::from_center_size(at, vec2(BALL, BALL) * 2.0);
-            let response = ui.interact(ball, ui.scope_id().with(action.entry().name), Sense::click());
-            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name));
+            let response =
+                ui.interact(ball, ui.scope_id().with(action.entry().name), Sense::click());
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name)
+            });
             let fade = 0.55 + 0.45 * (depth * 0.5 + 0.5);
             // Letters keep their ground; the far balls fade.
             let solid = response.hovered() || !letter.is_empty();
@@ -73,15 +77,20 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<Ask>) 
                 ui.painter().circle_stroke(at, BALL * 0.7, Stroke::new(1.5, colour));
             }
             if response.has_focus() {
-                ui.painter().circle_stroke(at, BALL + 1.0, Stroke::new(1.5, ui.visuals().text_color()));
+                ui.painter().circle_stroke(
+                    at,
+                    BALL + 1.0,
+                    Stroke::new(1.5, ui.visuals().text_color()),
+                );
             }
             if response.on_hover_text(action.tip()).clicked() {
-                (camera.yaw, camera.pitch) = side(*action, &camera).unwrap_or((camera.yaw, camera.pitch));
+                (camera.yaw, camera.pitch) =
+                    side(*action, &camera).unwrap_or((camera.yaw, camera.pitch));
                 turned = true;
             }
         }
         if turned {
-            out.push(Ask::Camera(camera));
+            out.push(UiRequest::Camera(camera));
         }
     });
 }

@@ -1,13 +1,14 @@
-//! A curve that is laid by its points: shown over the clay with its handles, and what can be done with it. The pen or pointer
-//! itself lays, drags and adds them; see [`sculptd_engine::stroke::curve_stroke`].
+//! A curve that is laid by its points: shown over the clay with its handles, and what can be done
+//! with it. The pen or pointer itself lays, drags and adds them; see
+//! [`sculptd_engine::stroke::curve_stroke`].
 
 use egui::{Color32, Key, Pos2, Rect, Stroke};
 use glam::Vec2;
 
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 use sculptd_clay::brush::{Grip, Method};
 use sculptd_engine::command::Command;
-use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::stroke::CurveAction;
 
 /// Radius of a handle, points.
 const HANDLE: f32 = 5.0;
@@ -18,7 +19,13 @@ pub fn place(screen: Rect, view: Vec2) -> Pos2 {
 }
 
 /// The curve, its keys and its buttons.
-pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, free: Rect, out: &mut Vec<Ask>) {
+pub fn ui(
+    ctx: &egui::Context,
+    view: &View<'_>,
+    desk: &mut UiState,
+    free: Rect,
+    out: &mut Vec<UiRequest>,
+) {
     let (draft, brush) = (&view.state.draft, &view.state.brush);
     let lays = brush.kind.grip() == Grip::Surface && brush.path.method == Method::Curve;
     if draft.is_empty() {
@@ -38,7 +45,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, free: Rect, out
     let aspect = view.camera.aspect;
     let layer = egui::LayerId::new(egui::Order::Background, egui::Id::unique("draft"));
     let painter = ctx.layer_painter(layer).with_clip_rect(free);
-    let line: Vec<Pos2> = (0..=draft.pieces()).map(|k| place(screen, draft.at(k, aspect).view)).collect();
+    let line: Vec<Pos2> =
+        (0..=draft.pieces()).map(|k| place(screen, draft.at(k, aspect).view)).collect();
     painter.add(egui::Shape::line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(110))));
     painter.add(egui::Shape::line(line, Stroke::new(1.8, Color32::from_rgb(255, 214, 120))));
     for (i, point) in draft.points().iter().enumerate() {
@@ -57,10 +65,10 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, free: Rect, out
     if !ctx.text_edit_focused() && desk.search.is_none() && desk.modal.is_none() {
         ctx.input(|i| {
             act = match () {
-                () if i.key_pressed(Key::Enter) => Some(DraftAct::Apply),
-                () if i.key_pressed(Key::Escape) => Some(DraftAct::Cancel),
+                () if i.key_pressed(Key::Enter) => Some(CurveAction::Apply),
+                () if i.key_pressed(Key::Escape) => Some(CurveAction::Cancel),
                 () if i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace) => {
-                    desk.handle.map(DraftAct::Delete)
+                    desk.handle.map(CurveAction::Delete)
                 }
                 () => None,
             }
@@ -71,28 +79,33 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, free: Rect, out
             1 => "1 point".to_owned(),
             n => format!("{n} points"),
         });
-        if ui.button("Draw the curve").on_hover_text("The brush follows it, as one step (Enter)").clicked() {
-            act = Some(DraftAct::Apply);
+        if ui
+            .button("Draw the curve")
+            .on_hover_text("The brush follows it, as one step (Enter)")
+            .clicked()
+        {
+            act = Some(CurveAction::Apply);
         }
         let gone = ui.add_enabled(desk.handle.is_some(), egui::Button::new("Remove the point"));
         if gone.on_hover_text("Delete, or the right button upon it").clicked() {
-            act = desk.handle.map(DraftAct::Delete);
+            act = desk.handle.map(CurveAction::Delete);
         }
         if ui.button("Put it away").on_hover_text("Nothing is drawn (Esc)").clicked() {
-            act = Some(DraftAct::Cancel);
+            act = Some(CurveAction::Cancel);
         }
     });
     if let Some(act) = act {
-        if matches!(act, DraftAct::Delete(_)) {
+        if matches!(act, CurveAction::Delete(_)) {
             desk.handle = None;
         }
-        out.push(Ask::World(Command::Draft(act)));
+        out.push(UiRequest::World(Command::CurveStroke(act)));
     }
 }
 
 fn bar(ctx: &egui::Context, free: Rect, what: impl FnOnce(&mut egui::Ui)) {
     let at = free.center_top() + egui::vec2(0.0, 8.0);
-    let area = egui::Area::new(egui::Id::unique("curve")).pivot(egui::Align2::CENTER_TOP).fixed_pos(at);
+    let area =
+        egui::Area::new(egui::Id::unique("curve")).pivot(egui::Align2::CENTER_TOP).fixed_pos(at);
     area.order(egui::Order::Middle).show(ctx, |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal(what));
     });

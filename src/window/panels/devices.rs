@@ -54,7 +54,11 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace) {
             i => format!("pen {i}"),
         };
         ui.label(format!("{name}{}", if pen.inverted { ", eraser" } else { "" }));
-        ui.add(egui::ProgressBar::new(pen.pressure.clamp(0.0, 1.0)).desired_width(190.0).desired_height(8.0));
+        ui.add(
+            egui::ProgressBar::new(pen.pressure.clamp(0.0, 1.0))
+                .desired_width(190.0)
+                .desired_height(8.0),
+        );
         let tilt = pen.tilt.map_or("no tilt".to_owned(), |t| {
             format!("tilt {:.0}, {:.0} degrees", t.x.to_degrees(), t.y.to_degrees())
         });

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::action::Action;
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 
 /// What a number in a file stands for: the work itself is in millimetres.
 pub const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("cm", 0.1), ("m", 0.001), ("inch", 1.0 / 25.4)];
@@ -22,7 +22,13 @@ pub struct Files {
 
 impl Default for Files {
     fn default() -> Self {
-        Files { open: String::new(), export: "sculpture.stl".into(), scale: 1.0, unit: 0, frames: 36 }
+        Files {
+            open: String::new(),
+            export: "sculpture.stl".into(),
+            scale: 1.0,
+            unit: 0,
+            frames: 36,
+        }
     }
 }
 
@@ -34,7 +40,7 @@ impl Files {
     }
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     let field = |ui: &mut egui::Ui, text: &mut String, name: &str| {
         let label = ui.label(name);
@@ -47,18 +53,19 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     ui.horizontal(|ui| {
         let named = !desk.files.open.trim().is_empty();
         if ui.add_enabled(named, egui::Button::new("Open")).clicked() || (enter && named) {
-            out.push(Ask::Open(PathBuf::from(desk.files.open.trim())));
+            out.push(UiRequest::WindowState(PathBuf::from(desk.files.open.trim())));
         }
-        if ui.button("Browse...").on_hover_text(Action::Open.tip()).clicked() {
-            out.push(Ask::Do(Action::Open));
+        if ui.button("Browse...").on_hover_text(Action::WindowState.tip()).clicked() {
+            out.push(UiRequest::Do(Action::WindowState));
         }
     });
     if !desk.prefs.recent.is_empty() {
         ui.menu_button("Recent", |ui| {
             for path in &desk.prefs.recent {
-                let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+                let name =
+                    path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
                 if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                    out.push(Ask::Open(path.clone()));
+                    out.push(UiRequest::WindowState(path.clone()));
                     ui.close();
                 }
             }
@@ -70,12 +77,16 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     field(ui, &mut files.export, "File to write");
     ui.horizontal(|ui| {
         let label = ui.label("Scale");
-        ui.add(egui::DragValue::new(&mut files.scale).range(1e-6..=1e6).speed(0.01)).labelled_by(label.id);
-        egui::ComboBox::from_label("Unit").selected_text(files.factor().1).width(60.0).show_ui(ui, |ui| {
-            for (i, (name, _)) in UNITS.iter().enumerate() {
-                ui.selectable_value(&mut files.unit, i, *name);
-            }
-        });
+        ui.add(egui::DragValue::new(&mut files.scale).range(1e-6..=1e6).speed(0.01))
+            .labelled_by(label.id);
+        egui::ComboBox::from_label("Unit").selected_text(files.factor().1).width(60.0).show_ui(
+            ui,
+            |ui| {
+                for (i, (name, _)) in UNITS.iter().enumerate() {
+                    ui.selectable_value(&mut files.unit, i, *name);
+                }
+            },
+        );
     });
     let (lo, hi) = view.state.mesh.bounds();
     let (factor, unit) = files.factor();
@@ -84,21 +95,21 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     ui.horizontal(|ui| {
         let named = !files.export.trim().is_empty();
         if ui.add_enabled(named, egui::Button::new("Export")).clicked() {
-            out.push(Ask::Export(PathBuf::from(files.export.trim())));
+            out.push(UiRequest::Export(PathBuf::from(files.export.trim())));
         }
         if ui.button("Save as...").on_hover_text(Action::Export.tip()).clicked() {
-            out.push(Ask::Do(Action::Export));
+            out.push(UiRequest::Do(Action::Export));
         }
     });
     ui.colored_label(quiet, "stl, obj, ply, off, glb, 3mf");
     ui.add_space(8.0);
     ui.strong("Pictures");
     if ui.button("Screenshot").on_hover_text(Action::Screenshot.tip()).clicked() {
-        out.push(Ask::Do(Action::Screenshot));
+        out.push(UiRequest::Do(Action::Screenshot));
     }
     ui.horizontal(|ui| {
         if ui.button("Turntable").on_hover_text(Action::Turntable.tip()).clicked() {
-            out.push(Ask::Do(Action::Turntable));
+            out.push(UiRequest::Do(Action::Turntable));
         }
         let label = ui.label("frames");
         ui.add(egui::DragValue::new(&mut desk.files.frames).range(4..=360)).labelled_by(label.id);

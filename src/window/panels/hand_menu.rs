@@ -1,18 +1,18 @@
-//! The words of the hands' menu, at its balls, and the ring that closes while a fingertip dwells in one. The balls themselves
-//! stand in the world.
+//! The words of the hands' menu, at its balls, and the ring that closes while a fingertip dwells in
+//! one. The balls themselves stand in the world.
 
 use egui::{Color32, FontId, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use super::View;
 use sculptd_daemon::Published;
-use sculptd_engine::hand::Choice;
+use sculptd_engine::hand::MenuItem;
 use sculptd_engine::hand::menu::{Menu, RADIUS_MM, ball_mm};
 
 /// A ball of the menu as it stands now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
-    pub choice: Choice,
+    pub choice: MenuItem,
     /// In the world.
     pub place: Vec3,
     pub radius: f32,
@@ -25,7 +25,7 @@ pub fn balls(state: &Published) -> Vec<Ball> {
     if state.hands.is_none() {
         return Vec::new();
     }
-    let one = |(i, choice): (usize, &Choice)| Ball {
+    let one = |(i, choice): (usize, &MenuItem)| Ball {
         choice: *choice,
         place: state.volume.to_world(ball_mm(i)),
         radius: RADIUS_MM * state.volume.scale,
@@ -39,9 +39,11 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
     let seen = |p: Vec3| view.camera.project(p).map(|v| screen.lerp_inside(vec2(v.x, v.y)));
     let (right, up) = view.camera.axes();
     for ball in balls(view.state) {
-        let (Some(at), Some(side), Some(above)) =
-            (seen(ball.place), seen(ball.place + right * ball.radius), seen(ball.place + up * ball.radius))
-        else {
+        let (Some(at), Some(side), Some(above)) = (
+            seen(ball.place),
+            seen(ball.place + right * ball.radius),
+            seen(ball.place + up * ball.radius),
+        ) else {
             continue;
         };
         let reach = (side - at).length().max((above - at).length());
@@ -60,7 +62,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             };
             let painter = ui.painter().clone().with_clip_rect(free);
             let font = FontId::proportional(13.0);
-            let size = painter.layout_no_wrap(ball.choice.label().to_owned(), font.clone(), text).size();
+            let size =
+                painter.layout_no_wrap(ball.choice.label().to_owned(), font.clone(), text).size();
             // Wholly in view where the ball is at the side.
             let room = free.shrink2(size * 0.5 + vec2(8.0, 4.0));
             if !room.is_positive() {
@@ -76,7 +79,10 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
                     at + vec2(turn.sin(), -turn.cos()) * (reach + 4.0)
                 };
                 let arc = (0..=(ring * 48.0).round() as usize).map(corner).collect();
-                painter.add(egui::Shape::line(arc, Stroke::new(3.0, Color32::from_rgb(255, 206, 110))));
+                painter.add(egui::Shape::line(
+                    arc,
+                    Stroke::new(3.0, Color32::from_rgb(255, 206, 110)),
+                ));
             }
         });
     }

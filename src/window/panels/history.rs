@@ -1,10 +1,11 @@
-//! What was done: one step back, one forward, scrubbing through all of it, or a click on the picture of a step.
+//! What was done: one step back, one forward, scrubbing through all of it, or a click on the
+//! picture of a step.
 
 use egui::{Sense, Stroke, vec2};
 
 use super::action::Action;
-use super::{Ask, Desk, View, theme};
-use crate::panels::history_tree as places;
+use super::{UiRequest, UiState, View, theme};
+use crate::panels::history_tree;
 use sculptd_engine::command::Command;
 
 /// Steps sent at once: the loop's inbox holds a thousand commands.
@@ -29,21 +30,23 @@ impl std::fmt::Debug for Thumb {
     }
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     // Beyond what memory holds, a session's file does.
     let (first, last) = desk.places.ends();
     let (back, ahead) = (view.state.undo_steps, view.state.redo_steps);
     ui.strong("History");
     ui.horizontal(|ui| {
-        let undo =
-            ui.add_enabled(back > 0 || first, egui::Button::new("Undo")).on_hover_text(Action::Undo.tip());
-        let redo =
-            ui.add_enabled(ahead > 0 || last, egui::Button::new("Redo")).on_hover_text(Action::Redo.tip());
+        let undo = ui
+            .add_enabled(back > 0 || first, egui::Button::new("Undo"))
+            .on_hover_text(Action::Undo.tip());
+        let redo = ui
+            .add_enabled(ahead > 0 || last, egui::Button::new("Redo"))
+            .on_hover_text(Action::Redo.tip());
         if undo.clicked() {
-            out.push(Ask::World(Command::Undo));
+            out.push(UiRequest::World(Command::Undo));
         }
         if redo.clicked() {
-            out.push(Ask::World(Command::Redo));
+            out.push(UiRequest::World(Command::Redo));
         }
         let text = match desk.places.rows.len() {
             0 => format!("{back} of {}", back + ahead),
@@ -53,7 +56,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
         ui.colored_label(theme::quiet(ui), text);
     });
     if !desk.places.rows.is_empty() {
-        places::ui(ui, &mut desk.places, out);
+        history_tree::ui(ui, &mut desk.places, out);
         return;
     }
     if back + ahead == 0 {
@@ -65,12 +68,13 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     if let Some(step) = pictures(ui, desk, back, back + ahead) {
         at = step;
     }
-    let (times, command) = if at < back { (back - at, Command::Undo) } else { (at - back, Command::Redo) };
-    out.extend((0..times.min(AT_ONCE)).map(|_| Ask::World(command.clone())));
+    let (times, command) =
+        if at < back { (back - at, Command::Undo) } else { (at - back, Command::Redo) };
+    out.extend((0..times.min(AT_ONCE)).map(|_| UiRequest::World(command.clone())));
 }
 
 /// The pictures around the present step; the step of the one that was clicked.
-fn pictures(ui: &mut egui::Ui, desk: &Desk, back: usize, all: usize) -> Option<usize> {
+fn pictures(ui: &mut egui::Ui, desk: &UiState, back: usize, all: usize) -> Option<usize> {
     let mut near: Vec<&Thumb> = desk.history.iter().filter(|t| t.step <= all).collect();
     near.sort_by_key(|t| t.step.abs_diff(back));
     near.truncate(SHOWN);
@@ -83,7 +87,9 @@ fn pictures(ui: &mut egui::Ui, desk: &Desk, back: usize, all: usize) -> Option<u
                 let (rect, response) = ui.allocate_exact_size(vec2(64.0, 40.0), Sense::click());
                 let name = format!("After step {}", thumb.step);
                 let here = thumb.step == back;
-                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, here, &name));
+                response.widget_info(|| {
+                    egui::WidgetInfo::selected(egui::Role::Button, true, here, &name)
+                });
                 let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                 ui.painter().image(thumb.texture.id(), rect, whole, egui::Color32::WHITE);
                 if here || response.hovered() || response.has_focus() {

@@ -1,13 +1,13 @@
-//! Every place that the work was at, as the session keeps them, branches too: a tree with pictures. A click goes to a place, a
-//! drag along the tree or the slider goes through them.
+//! Every place that the work was at, as the session keeps them, branches too: a tree with pictures.
+//! A click goes to a place, a drag along the tree or the slider goes through them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use egui::{Color32, Pos2, Rect, Sense, Stroke, pos2, vec2};
 
-use super::{Ask, theme};
+use super::{UiRequest, theme};
 use sculptd_daemon::session::history::Tree;
-use sculptd_engine::world::Deed;
+use sculptd_engine::world::HistoryEvent;
 
 /// Points: a row, its picture, the step from lane to lane, the tree at most.
 const ROW: f32 = 40.0;
@@ -56,14 +56,16 @@ impl std::fmt::Debug for Places {
 }
 
 impl Places {
-    /// Lays the tree out: a row a place in the order in which they were made, branches beside the present line.
+    /// Lays the tree out: a row a place in the order in which they were made, branches beside the
+    /// present line.
     pub fn set(&mut self, tree: &Tree) {
         let mut present: BTreeSet<u64> = tree.line(tree.cursor).map(|n| n.id).collect();
         let mut at = tree.cursor;
         while let Some(next) = tree.latest(at).filter(|next| present.insert(*next)) {
             at = next;
         }
-        let row_of: BTreeMap<u64, usize> = tree.nodes().enumerate().map(|(i, n)| (n.id, i)).collect();
+        let row_of: BTreeMap<u64, usize> =
+            tree.nodes().enumerate().map(|(i, n)| (n.id, i)).collect();
         // The last row of each lane that is taken.
         let mut ends = vec![usize::MAX];
         let mut rows: Vec<Row> = Vec::with_capacity(tree.len());
@@ -73,7 +75,8 @@ impl Places {
                 0
             } else {
                 let goes_on = parent.filter(|p| {
-                    rows[*p].lane > 0 && n.parent.is_some_and(|p| tree.children(p).first() == Some(&n.id))
+                    rows[*p].lane > 0
+                        && n.parent.is_some_and(|p| tree.children(p).first() == Some(&n.id))
                 });
                 goes_on.map_or_else(
                     || lane(tree, n.id, parent.unwrap_or(i), &mut ends, &row_of),
@@ -81,7 +84,14 @@ impl Places {
                 )
             };
             let (tick, here) = (n.tick, n.id == tree.cursor);
-            rows.push(Row { node: n.id, parent, lane, tick, replaced: n.deed == Deed::Replace, here });
+            rows.push(Row {
+                node: n.id,
+                parent,
+                lane,
+                tick,
+                replaced: n.deed == HistoryEvent::Replace,
+                here,
+            });
         }
         self.line = (0..rows.len()).filter(|i| rows[*i].lane == 0).collect();
         self.rows = rows;
@@ -97,7 +107,13 @@ impl Places {
 }
 
 /// A free lane for the branch that begins at `id`.
-fn lane(tree: &Tree, id: u64, from: usize, ends: &mut Vec<usize>, row_of: &BTreeMap<u64, usize>) -> usize {
+fn lane(
+    tree: &Tree,
+    id: u64,
+    from: usize,
+    ends: &mut Vec<usize>,
+    row_of: &BTreeMap<u64, usize>,
+) -> usize {
     let mut end = id;
     while let Some(next) = tree.children(end).first() {
         end = *next;
@@ -118,17 +134,21 @@ fn clock(tick: u64, rate_hz: u32) -> String {
     format!("{}:{:02}", s / 60, s % 60)
 }
 
-pub fn ui(ui: &mut egui::Ui, places: &mut Places, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, places: &mut Places, out: &mut Vec<UiRequest>) {
     let here = places.rows.iter().position(|r| r.here).unwrap_or(0);
     let mut go = slider(ui, places, here);
     let width = ui.available_width();
-    let scroll = egui::ScrollArea::vertical().id_salt("places").max_height(TALL).auto_shrink([false, true]);
+    let scroll =
+        egui::ScrollArea::vertical().id_salt("places").max_height(TALL).auto_shrink([false, true]);
     let mut dragged = false;
     let visible = scroll.show_viewport(ui, |ui, seen| {
         let tall = places.rows.len() as f32 * ROW;
         let (all, _) = ui.allocate_exact_size(vec2(width - 12.0, tall), Sense::hover());
         let row_at = |i: usize| {
-            Rect::from_min_size(pos2(all.left(), all.top() + i as f32 * ROW), vec2(all.width(), ROW))
+            Rect::from_min_size(
+                pos2(all.left(), all.top() + i as f32 * ROW),
+                vec2(all.width(), ROW),
+            )
         };
         if places.shown != places.rows.get(here).map(|r| r.node) {
             places.shown = places.rows.get(here).map(|r| r.node);
@@ -163,7 +183,7 @@ pub fn ui(ui: &mut egui::Ui, places: &mut Places, out: &mut Vec<Ask>) {
         places.asked = None;
     }
     let is_here = |node: &u64| places.rows.get(here).is_some_and(|r| r.node == *node);
-    out.extend(go.filter(|node| dragged || !is_here(node)).map(Ask::Jump));
+    out.extend(go.filter(|node| dragged || !is_here(node)).map(UiRequest::Jump));
 }
 
 /// Along the present line; the place that was chosen.
@@ -180,10 +200,17 @@ fn slider(ui: &mut egui::Ui, places: &Places, here: usize) -> Option<u64> {
 }
 
 /// The lines from places to those before them, as far as they are seen.
-fn edges(ui: &egui::Ui, places: &Places, seen: std::ops::Range<usize>, dot: &dyn Fn(usize) -> Pos2) {
+fn edges(
+    ui: &egui::Ui,
+    places: &Places,
+    seen: std::ops::Range<usize>,
+    dot: &dyn Fn(usize) -> Pos2,
+) {
     let quiet = theme::quiet(ui);
     for (i, row) in places.rows.iter().enumerate() {
-        let Some(parent) = row.parent.filter(|p| *p < seen.end && i >= seen.start) else { continue };
+        let Some(parent) = row.parent.filter(|p| *p < seen.end && i >= seen.start) else {
+            continue;
+        };
         let (from, to) = (dot(parent), dot(i));
         let colour = if row.lane == 0 { theme::accent(ui) } else { quiet };
         let stroke = Stroke::new(1.5, colour);
@@ -196,7 +223,8 @@ fn edges(ui: &egui::Ui, places: &Places, seen: std::ops::Range<usize>, dot: &dyn
 
 fn row(ui: &mut egui::Ui, places: &Places, i: usize, rect: Rect, dot: Pos2) -> egui::Response {
     let r = &places.rows[i];
-    let response = ui.interact(rect, ui.scope_id().with(("place", r.node)), Sense::click_and_drag());
+    let response =
+        ui.interact(rect, ui.scope_id().with(("place", r.node)), Sense::click_and_drag());
     let time = clock(r.tick, places.rate_hz);
     let branch = if r.lane > 0 { ", on a branch" } else { "" };
     let name = format!("Place {}, at {time}{branch}", r.node);
@@ -244,8 +272,8 @@ mod tests {
                 id,
                 parent,
                 tick: id * 120,
-                deed: Deed::Step,
-                lineage: 0,
+                deed: HistoryEvent::Step,
+                object_id: 0,
                 changes: vec![],
                 pages: 1,
                 middle: Vec3::ZERO,
@@ -256,7 +284,8 @@ mod tests {
             tree.go(id);
         };
         // 0-1-2, back to 1: 3-4, back to 4's beginning 3: 5-6, and 7 after 6.
-        for (id, parent) in [(0, None), (1, Some(0)), (2, Some(1)), (3, Some(1)), (4, Some(3)), (5, Some(3))]
+        for (id, parent) in
+            [(0, None), (1, Some(0)), (2, Some(1)), (3, Some(1)), (4, Some(3)), (5, Some(3))]
         {
             add(id, parent);
         }
@@ -267,7 +296,8 @@ mod tests {
         let mut places = Places { rate_hz: 120, ..Places::default() };
         places.set(&tree);
         let lanes: Vec<usize> = places.rows.iter().map(|r| r.lane).collect();
-        // What redo leads to (7) is on the line; 2 and 4 are branches of which the first had ended when the second began.
+        // What redo leads to (7) is on the line; 2 and 4 are branches of which the first had ended
+        // when the second began.
         assert_eq!(lanes, [0, 0, 1, 0, 1, 0, 0, 0]);
         assert_eq!(places.rows[4].parent, Some(3));
         assert_eq!(places.rows.iter().filter(|r| r.here).map(|r| r.node).collect::<Vec<_>>(), [6]);

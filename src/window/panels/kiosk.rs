@@ -1,16 +1,18 @@
-//! The screen of an installation, in the place of the panels: few words, large targets, and a number that lets staff out.
+//! The screen of an installation, in the place of the panels: few words, large targets, and a
+//! number that lets staff out.
 
 use std::sync::atomic::Ordering::Relaxed;
 
 use egui::{Align2, Area, Button, Id, RichText, vec2};
 
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::Screen;
 use sculptd_daemon::kiosk::{Language, Stage};
 use sculptd_engine::command::Command;
 
-/// Smallest side of anything that is pressed, points: a fingertip on a 24-inch screen covers about half of it.
+/// Smallest side of anything that is pressed, points: a fingertip on a 24-inch screen covers about
+/// half of it.
 pub const TARGET: f32 = 64.0;
 /// Digits that are taken at most.
 const DIGITS: usize = 12;
@@ -26,7 +28,13 @@ pub struct Pad {
 }
 
 /// Everything over the clay of an installation. Call once a frame.
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, screen: &Screen, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    screen: &Screen,
+    desk: &mut UiState,
+    out: &mut Vec<UiRequest>,
+) {
     let ctx = ui.ctx().clone();
     if desk.applied.is_none() {
         theme::apply(&ctx, desk.prefs.light);
@@ -66,7 +74,13 @@ fn large(text: &str, size: f32, width: f32) -> Button<'static> {
 }
 
 /// Puts something at an edge or in the middle of the screen.
-fn place(ctx: &egui::Context, name: &str, free: egui::Rect, align: Align2, what: impl FnOnce(&mut egui::Ui)) {
+fn place(
+    ctx: &egui::Context,
+    name: &str,
+    free: egui::Rect,
+    align: Align2,
+    what: impl FnOnce(&mut egui::Ui),
+) {
     let inner = free.shrink(24.0);
     let at = align.pos_in_rect(&inner);
     let area = Area::new(Id::unique(name)).fixed_pos(at).pivot(align).constrain_to(free);
@@ -83,7 +97,12 @@ fn said(ctx: &egui::Context, free: egui::Rect, text: &str, size: f32) {
 
 /// The last visitor's work: where it is, and the code that takes it home.
 #[cfg(unix)]
-fn kept(ctx: &egui::Context, free: egui::Rect, words: &Language, link: &sculptd_daemon::kiosk::share::Link) {
+fn kept(
+    ctx: &egui::Context,
+    free: egui::Rect,
+    words: &Language,
+    link: &sculptd_daemon::kiosk::share::Link,
+) {
     place(ctx, "kept", free, Align2::RIGHT_CENTER, |ui| {
         ui.vertical_centered(|ui| {
             ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
@@ -91,8 +110,10 @@ fn kept(ctx: &egui::Context, free: egui::Rect, words: &Language, link: &sculptd_
             // Four squares of quiet on each side, as the standard asks.
             let squares = link.code.side + 8;
             let square = (360.0 / squares as f32).floor().max(4.0);
-            let (rect, _) =
-                ui.allocate_exact_size(egui::Vec2::splat(square * squares as f32), egui::Sense::hover());
+            let (rect, _) = ui.allocate_exact_size(
+                egui::Vec2::splat(square * squares as f32),
+                egui::Sense::hover(),
+            );
             let paint = ui.painter();
             paint.rect_filled(rect, 0.0, egui::Color32::WHITE);
             for (i, _) in link.code.dark.iter().enumerate().filter(|(_, dark)| **dark) {
@@ -132,7 +153,7 @@ fn tools(
     view: &View<'_>,
     words: &Language,
     screen: &Screen,
-    out: &mut Vec<Ask>,
+    out: &mut Vec<UiRequest>,
 ) {
     let now = view.state.brush;
     place(ctx, "tools", free, Align2::CENTER_BOTTOM, |ui| {
@@ -149,14 +170,14 @@ fn tools(
                 if ui.add(large(name, 24.0, 160.0).selected(chosen)).clicked() {
                     let mut brush = if alike { now } else { now.switched(kind) };
                     brush.negative = negative;
-                    out.push(Ask::World(Command::Brush(brush)));
+                    out.push(UiRequest::World(Command::Brush(brush)));
                     screen.desk.touched.store(true, Relaxed);
                 }
             }
             ui.separator();
             let undo = ui.add_enabled(view.state.undo_steps > 0, large(&words.undo, 24.0, 150.0));
             if undo.clicked() {
-                out.push(Ask::World(Command::Undo));
+                out.push(UiRequest::World(Command::Undo));
                 screen.desk.touched.store(true, Relaxed);
             }
             if ui.add(large(&words.finish, 24.0, 150.0)).clicked() {
@@ -202,8 +223,9 @@ fn door(
             for row in [["1", "2", "3"], ["4", "5", "6"], ["7", "8", "9"], ["×", "0", "OK"]] {
                 ui.horizontal(|ui| {
                     for key in row {
-                        let pressed =
-                            ui.add_enabled(key == "×" || !locked, large(key, 24.0, TARGET + 8.0)).clicked();
+                        let pressed = ui
+                            .add_enabled(key == "×" || !locked, large(key, 24.0, TARGET + 8.0))
+                            .clicked();
                         match key {
                             _ if !pressed => {}
                             "×" => close = true,

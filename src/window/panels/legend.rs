@@ -2,10 +2,10 @@
 
 use egui::{Rect, pos2, vec2};
 
-use super::{Desk, measure};
+use super::{UiState, measure};
 use crate::viewer::look::Map;
 
-pub fn ui(ctx: &egui::Context, desk: &Desk, free: Rect) {
+pub fn ui(ctx: &egui::Context, desk: &UiState, free: Rect) {
     let map = desk.look.map;
     if map == Map::None || free.width() < 120.0 {
         return;

@@ -1,18 +1,24 @@
 //! How the clay is shown.
 
 use super::action::Action;
-use super::{Ask, Desk, View};
+use super::{UiRequest, UiState, View};
 use crate::viewer::look::{MATERIALS, Map};
 
-pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_>) {
+pub fn ui(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>, view: &View<'_>) {
     let look = &mut desk.look;
     ui.strong("Material");
     ui.horizontal_wrapped(|ui| {
         for (i, m) in MATERIALS.iter().enumerate() {
             let [r, g, b] = m.base.map(|c| (c.powf(1.0 / 2.2) * 255.0) as u8);
-            let (rect, response) = ui.allocate_exact_size(egui::vec2(26.0, 26.0), egui::Sense::click());
+            let (rect, response) =
+                ui.allocate_exact_size(egui::vec2(26.0, 26.0), egui::Sense::click());
             response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::RadioButton, true, look.material == i, m.name)
+                egui::WidgetInfo::selected(
+                    egui::Role::RadioButton,
+                    true,
+                    look.material == i,
+                    m.name,
+                )
             });
             let colour = egui::Color32::from_rgb(r, g, b);
             ui.painter().circle_filled(rect.center(), 11.0, colour);
@@ -35,7 +41,7 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_
     ui.add(egui::Slider::new(&mut look.cavity, 0.0..=2.0).text("Cavity"))
         .on_hover_text("Hollows darker, ridges lighter");
     ui.add(egui::Slider::new(&mut look.shade, 0.0..=2.0).text("Shade"))
-        .on_hover_text(Action::Shade.tip() + ": forms darken their own hollows and each other");
+        .on_hover_text(Action::Ssao.tip() + ": forms darken their own hollows and each other");
     ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(Action::Wireframe.tip());
     ui.checkbox(&mut look.grid, "Grid").on_hover_text(Action::Grid.tip());
     ui.checkbox(&mut desk.prefs.smooth_edges, "Smooth edges")
@@ -57,8 +63,11 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_
     let mut camera = view.camera;
     ui.checkbox(&mut camera.orthographic, "Orthographic").on_hover_text(Action::Perspective.tip());
     let mut degrees = camera.fov_y.to_degrees();
-    ui.add_enabled(!camera.orthographic, egui::Slider::new(&mut degrees, 10.0..=100.0).text("Angle"))
-        .on_hover_text("Field of view, degrees");
+    ui.add_enabled(
+        !camera.orthographic,
+        egui::Slider::new(&mut degrees, 10.0..=100.0).text("Angle"),
+    )
+    .on_hover_text("Field of view, degrees");
     if (degrees - camera.fov_y.to_degrees()).abs() > 0.01 {
         camera.fov_y = degrees.to_radians();
     }
@@ -66,6 +75,6 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>, view: &View<'_
         super::act(Action::Frame, &ui.ctx().clone(), view, desk, out);
     }
     if camera != view.camera {
-        out.push(Ask::Camera(camera));
+        out.push(UiRequest::Camera(camera));
     }
 }

@@ -1,7 +1,7 @@
 //! The mask of the whole work.
 
 use super::action::Action;
-use super::{Ask, theme};
+use super::{UiRequest, theme};
 use sculptd_clay::brush::MaskAction;
 use sculptd_engine::command::Command;
 
@@ -16,13 +16,13 @@ const ACTIONS: [(MaskAction, &str, &str); 8] = [
     (MaskAction::Cavity(0.05), "Hollows", "Hollows are held fast"),
 ];
 
-pub fn ui(ui: &mut egui::Ui, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, out: &mut Vec<UiRequest>) {
     egui::CollapsingHeader::new("Mask").default_open(false).show(ui, |ui| {
         egui::Grid::new("masks").num_columns(3).spacing([4.0, 4.0]).show(ui, |ui| {
             for (i, (action, name, tip)) in ACTIONS.into_iter().enumerate() {
                 let button = egui::Button::new(name).min_size([62.0, 20.0].into());
                 if ui.add(button).on_hover_text(tip).clicked() {
-                    out.push(Ask::World(Command::Mask(action)));
+                    out.push(UiRequest::World(Command::Mask(action)));
                 }
                 if i % 3 == 2 {
                     ui.end_row();

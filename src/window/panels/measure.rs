@@ -4,7 +4,7 @@ use egui::{Color32, Mesh, Stroke, pos2, vec2};
 use glam::{DVec2, DVec3};
 
 use super::action::Action;
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 use crate::viewer::look::Map;
 use sculptd_geometry::projection::Polygon;
 
@@ -30,7 +30,7 @@ pub enum Against {
     #[default]
     Before,
     /// The thing in the hands, where it is.
-    Thing,
+    HeldObject,
 }
 
 /// What the distance map says.
@@ -69,7 +69,7 @@ impl Default for Sizes {
 /// Corners of the drawn outline at most: it is a picture as large as a thumb.
 const CORNERS: usize = 1500;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     measures(ui, view, &desk.sizes);
     ui.add_space(8.0);
     shadow(ui, view, &mut desk.sizes, out);
@@ -110,7 +110,7 @@ fn short(x: f64) -> String {
     format!("{x:.*}", 5usize.saturating_sub(whole).min(4))
 }
 
-fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut Sizes, out: &mut Vec<Ask>) {
+fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut Sizes, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Shadow");
     ui.horizontal(|ui| {
@@ -142,11 +142,13 @@ fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut Sizes, out: &mut Vec<A
     ui.horizontal(|ui| {
         let text = egui::TextEdit::singleline(&mut sizes.file).desired_width(126.0);
         let field = ui.add(text).on_hover_text("The drawing's file");
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Drawing to write"));
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Drawing to write")
+        });
         let named = !sizes.file.trim().is_empty();
         let tip = "The outline as a drawing to scale, millimetres";
         if ui.add_enabled(named, egui::Button::new("SVG")).on_hover_text(tip).clicked() {
-            out.push(Ask::Outline(sizes.file.trim().into()));
+            out.push(UiRequest::Outline(sizes.file.trim().into()));
         }
     });
 }
@@ -154,7 +156,9 @@ fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut Sizes, out: &mut Vec<A
 /// The outline, and the box around it.
 fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
     let (rect, response) = ui.allocate_exact_size(vec2(196.0, 120.0), egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Outline of the shadow"));
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Image, true, "Outline of the shadow")
+    });
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
     let points = m.outline.iter().flat_map(|p| &p.outer);
@@ -181,7 +185,7 @@ fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
     (lo, hi)
 }
 
-fn distance(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+fn distance(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Distance");
     let mut on = desk.look.map == Map::Distance;
@@ -193,13 +197,19 @@ fn distance(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<A
     ui.horizontal(|ui| {
         ui.radio_value(&mut sizes.against, Against::Before, "to before")
             .on_hover_text("To the work as it was opened");
-        ui.add_enabled_ui(held, |ui| ui.radio_value(&mut sizes.against, Against::Thing, "to the thing"));
+        ui.add_enabled_ui(held, |ui| {
+            ui.radio_value(&mut sizes.against, Against::HeldObject, "to the thing")
+        });
     });
-    if !held && sizes.against == Against::Thing {
+    if !held && sizes.against == Against::HeldObject {
         sizes.against = Against::Before;
     }
-    if ui.button("Compare with now").on_hover_text("Distances are to the work as it is now").clicked() {
-        out.push(Ask::Reference);
+    if ui
+        .button("Compare with now")
+        .on_hover_text("Distances are to the work as it is now")
+        .clicked()
+    {
+        out.push(UiRequest::Reference);
     }
     let Some(d) = sizes.distances.filter(|_| on) else {
         ui.colored_label(quiet, "Blue lies within, red outside.");

@@ -2,7 +2,7 @@
 
 use egui::vec2;
 
-use super::{Desk, theme};
+use super::{UiState, theme};
 
 #[derive(Debug, Clone)]
 pub struct Message {
@@ -17,7 +17,7 @@ const MOST: usize = 50;
 /// A line stays over the clay so long, seconds; bad news longer.
 const STAYS: [f64; 2] = [5.0, 12.0];
 
-impl Desk {
+impl UiState {
     pub fn say(&mut self, text: impl Into<String>, wrong: bool) {
         self.messages.push(Message { text: text.into(), wrong, since: None });
         if self.messages.len() > MOST {
@@ -26,7 +26,7 @@ impl Desk {
     }
 }
 
-pub fn ui(ui: &mut egui::Ui, desk: &Desk) {
+pub fn ui(ui: &mut egui::Ui, desk: &UiState) {
     ui.strong("Messages");
     if desk.messages.is_empty() {
         ui.colored_label(theme::quiet(ui), "none");
@@ -40,7 +40,7 @@ pub fn ui(ui: &mut egui::Ui, desk: &Desk) {
     }
 }
 
-pub fn toast(ctx: &egui::Context, desk: &mut Desk, free: egui::Rect) {
+pub fn toast(ctx: &egui::Context, desk: &mut UiState, free: egui::Rect) {
     let now = ctx.input(|i| i.time);
     let Some(last) = desk.messages.last_mut() else { return };
     let since = *last.since.get_or_insert(now);

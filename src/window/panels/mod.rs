@@ -1,4 +1,5 @@
-//! egui panels, a file each: functions from what was published to what is asked. Nothing here changes the world.
+//! egui panels, a file each: functions from what was published to what is asked. Nothing here
+//! changes the world.
 
 pub mod action;
 pub mod analysis;
@@ -38,7 +39,7 @@ use sculptd_daemon::Published;
 use sculptd_daemon::trim::Part;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
-use sculptd_engine::hand::Choice;
+use sculptd_engine::hand::MenuItem;
 
 /// What panels see.
 #[derive(Debug)]
@@ -61,17 +62,17 @@ pub struct View<'a> {
 
 /// What a panel asks for.
 #[derive(Debug, Clone)]
-pub enum Ask {
+pub enum UiRequest {
     World(Command),
     /// To a place of the session's history.
     Jump(u64),
     Camera(Camera),
     /// The camera comes to look at this place.
     FlyTo(Vec3),
-    Open(PathBuf),
+    WindowState(PathBuf),
     Export(PathBuf),
     /// The thing is joined with the work.
-    Join(Choice),
+    Join(MenuItem),
     /// What is seen in this part of the view is cut off.
     Trim(Part),
     /// The work one level finer, or coarser.
@@ -111,7 +112,7 @@ const TABS: [(Tab, &str, &str); 8] = [
 
 /// What the person has set on the window: nothing of the world.
 #[derive(Debug, Default)]
-pub struct Desk {
+pub struct UiState {
     pub look: Look,
     pub prefs: preferences::Preferences,
     pub tab: Tab,
@@ -146,7 +147,7 @@ pub const PANEL: f32 = 236.0;
 const NARROW: f32 = 760.0;
 
 /// Everything over the clay. Call once a frame, inside egui's own.
-pub fn all(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn all(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let ctx = ui.ctx().clone();
     let wanted = (desk.prefs.light, (desk.prefs.scale * 100.0).round() as u32);
     if desk.applied != Some(wanted) {
@@ -199,7 +200,7 @@ fn scrolled(ui: &mut egui::Ui, what: impl FnOnce(&mut egui::Ui)) {
     });
 }
 
-fn tools(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+fn tools(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     ui.heading("sculptd");
     ui.add_space(6.0);
     brush::ui(ui, view, out);
@@ -213,10 +214,11 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
     history::ui(ui, view, desk, out);
 }
 
-fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     egui::Grid::new("tabs").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
         for (i, (tab, name, tip)) in TABS.into_iter().enumerate() {
-            let button = egui::Button::selectable(desk.tab == tab, name).min_size([47.0, 22.0].into());
+            let button =
+                egui::Button::selectable(desk.tab == tab, name).min_size([47.0, 22.0].into());
             if ui.add(button).on_hover_text(tip).clicked() {
                 desk.tab = tab;
             }
@@ -249,21 +251,27 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>
 }
 
 /// Does what an action says, or hands it on.
-pub fn act(action: Action, ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn act(
+    action: Action,
+    ctx: &egui::Context,
+    view: &View<'_>,
+    desk: &mut UiState,
+    out: &mut Vec<UiRequest>,
+) {
     // Two keys in one frame: the second goes on from the first.
     let asked = out.iter().rev().find_map(|a| match a {
-        Ask::World(Command::Brush(b)) => Some(*b),
+        UiRequest::World(Command::Brush(b)) => Some(*b),
         _ => None,
     });
     let brush = asked.unwrap_or(view.state.brush);
     if let Some(command) = action::on_brush(action, brush) {
-        out.push(Ask::World(command));
+        out.push(UiRequest::World(command));
         return;
     }
     let mut camera = view.camera;
     if let Some((yaw, pitch)) = cube::side(action, &camera) {
         (camera.yaw, camera.pitch) = (yaw, pitch);
-        out.push(Ask::Camera(camera));
+        out.push(UiRequest::Camera(camera));
         return;
     }
     match action {
@@ -271,44 +279,49 @@ pub fn act(action: Action, ctx: &egui::Context, view: &View<'_>, desk: &mut Desk
             let (lo, hi) = view.state.mesh.bounds();
             if lo.cmple(hi).all() {
                 camera.frame(lo, hi);
-                out.push(Ask::Camera(camera));
+                out.push(UiRequest::Camera(camera));
             }
         }
         Action::Perspective => {
             camera.orthographic = !camera.orthographic;
-            out.push(Ask::Camera(camera));
+            out.push(UiRequest::Camera(camera));
         }
         Action::Undo => {
             desk.prefs.done.undone = true;
-            out.push(Ask::World(Command::Undo));
+            out.push(UiRequest::World(Command::Undo));
         }
-        Action::Redo => out.push(Ask::World(Command::Redo)),
+        Action::Redo => out.push(UiRequest::World(Command::Redo)),
         Action::DragRadius => modal::begin(ctx, view, desk, modal::What::Radius),
         Action::DragStrength => modal::begin(ctx, view, desk, modal::What::Strength),
         Action::NextMaterial => desk.look.material = (desk.look.material + 1) % MATERIALS.len(),
         Action::Facets => desk.look.flat = !desk.look.flat,
-        Action::Shade => desk.look.shade = if desk.look.shade > 0.0 { 0.0 } else { 1.0 },
+        Action::Ssao => desk.look.shade = if desk.look.shade > 0.0 { 0.0 } else { 1.0 },
         Action::Wireframe => desk.look.wireframe = !desk.look.wireframe,
         Action::Grid => desk.look.grid = !desk.look.grid,
         Action::Thickness => toggle(&mut desk.look.map, Map::Thickness),
         Action::Distance => toggle(&mut desk.look.map, Map::Distance),
         Action::TrimBox | Action::TrimLine => {
-            let shape = if action == Action::TrimBox { trim::Shape::Box } else { trim::Shape::Line };
+            let shape =
+                if action == Action::TrimBox { trim::Shape::Box } else { trim::Shape::Line };
             desk.trim = Some(trim::Trim { shape, from: None });
         }
-        Action::TryAdd => desk.trial.turn(Choice::Add),
-        Action::TryCut => desk.trial.turn(Choice::Carve),
-        Action::TryKeep => desk.trial.turn(Choice::Keep),
-        Action::Finer => out.push(Ask::Level(true)),
-        Action::Coarser => out.push(Ask::Level(false)),
+        Action::TryAdd => desk.trial.turn(MenuItem::Add),
+        Action::TryCut => desk.trial.turn(MenuItem::Carve),
+        Action::TryKeep => desk.trial.turn(MenuItem::Keep),
+        Action::Finer => out.push(UiRequest::Level(true)),
+        Action::Coarser => out.push(UiRequest::Level(false)),
         Action::Mask => toggle(&mut desk.look.map, Map::Mask),
         Action::Search => desk.search = desk.search.take().is_none().then(search::Search::default),
         Action::Panels => desk.hidden = !desk.hidden,
         Action::LightOrDark => desk.prefs.light = !desk.prefs.light,
         Action::LargerText => desk.prefs.scale = (desk.prefs.scale + 0.1).min(preferences::SCALE.1),
-        Action::SmallerText => desk.prefs.scale = (desk.prefs.scale - 0.1).max(preferences::SCALE.0),
+        Action::SmallerText => {
+            desk.prefs.scale = (desk.prefs.scale - 0.1).max(preferences::SCALE.0)
+        }
         Action::Hints => desk.prefs.done = hints::Done::default(),
-        Action::Open | Action::Export | Action::Screenshot | Action::Turntable => out.push(Ask::Do(action)),
+        Action::WindowState | Action::Export | Action::Screenshot | Action::Turntable => {
+            out.push(UiRequest::Do(action))
+        }
         // Of the brush and of the six sides: done above.
         _ => {}
     }

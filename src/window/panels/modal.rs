@@ -1,8 +1,9 @@
-//! Dragging the radius or the strength with the pointer alone: F, move, click. Escape or the other button: as it was.
+//! Dragging the radius or the strength with the pointer alone: F, move, click. Escape or the other
+//! button: as it was.
 
 use egui::{Key, PointerButton, Pos2};
 
-use super::{Ask, Desk, View};
+use super::{UiRequest, UiState, View};
 use sculptd_clay::brush::BrushSettings;
 use sculptd_engine::command::Command;
 
@@ -23,13 +24,13 @@ pub struct Modal {
 /// The pointer's way, points, that doubles the radius or moves the strength from 0 to 1.
 const WAY: [f32; 2] = [120.0, 300.0];
 
-pub fn begin(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, what: What) {
+pub fn begin(ctx: &egui::Context, view: &View<'_>, desk: &mut UiState, what: What) {
     let middle = ctx.content_rect().center();
     let from = ctx.input(|i| i.pointer.latest_pos()).unwrap_or(middle);
     desk.modal = Some(Modal { what, from, before: view.state.brush });
 }
 
-pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let Some(modal) = desk.modal else { return };
     let (to, done, cancelled) = ctx.input(|i| {
         let click = |b| i.pointer.button_pressed(b);
@@ -53,7 +54,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut Desk, out: &mut Vec<A
         desk.modal = None;
     }
     if brush != view.state.brush {
-        out.push(Ask::World(Command::Brush(brush)));
+        out.push(UiRequest::World(Command::Brush(brush)));
     }
     let text = match modal.what {
         What::Radius => format!("Radius {:.3}", brush.radius),

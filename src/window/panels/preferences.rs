@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::action::Action;
-use super::{Desk, View, hints::Done, theme};
+use super::{UiState, View, hints::Done, theme};
 use crate::viewer::look::Look;
 
 /// Smallest and largest scale of the panels.
@@ -56,7 +56,7 @@ impl Preferences {
     }
 }
 
-pub fn ui(ui: &mut egui::Ui, desk: &mut Desk, view: &View<'_>) {
+pub fn ui(ui: &mut egui::Ui, desk: &mut UiState, view: &View<'_>) {
     ui.strong("Preferences");
     let p = &mut desk.prefs;
     ui.horizontal(|ui| {

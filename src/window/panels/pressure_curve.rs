@@ -1,17 +1,19 @@
-//! How pressure becomes strength: the curve, edited by its two ends, with the pen's live trace on it.
+//! How pressure becomes strength: the curve, edited by its two ends, with the pen's live trace on
+//! it.
 
 use egui::{Pos2, Rect, Sense, Stroke, pos2, vec2};
 
 use super::devices::Trace;
-use super::{Ask, View, theme};
+use super::{UiRequest, View, theme};
 use sculptd_engine::command::Command;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<UiRequest>) {
     let mut brush = view.state.brush;
     egui::CollapsingHeader::new("Pressure").default_open(false).show(ui, |ui| {
         let curve = &mut brush.pressure_strength;
         let (rect, response) = ui.allocate_exact_size(vec2(196.0, 92.0), Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Pressure curve"));
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Pressure curve"));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
         let at = |p: f32, f: f32| place(rect, p, f);
@@ -21,7 +23,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>)
             let colour = theme::accent(ui).gamma_multiply(fade * 0.6);
             painter.circle_filled(at(p, curve.factor(p)), 2.0 + 2.0 * fade, colour);
         }
-        let line: Vec<Pos2> = (0..=48).map(|i| i as f32 / 48.0).map(|p| at(p, curve.factor(p))).collect();
+        let line: Vec<Pos2> =
+            (0..=48).map(|i| i as f32 / 48.0).map(|p| at(p, curve.factor(p))).collect();
         painter.add(egui::Shape::line(line, Stroke::new(2.0, ui.visuals().text_color())));
         if let Some(p) = trace.recent().next() {
             painter.circle_filled(at(p, curve.factor(p)), 5.0, theme::accent(ui));
@@ -33,7 +36,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>)
                 curve.at_zero = y;
             } else if x < 0.95 {
                 // The exponent that leads the curve through the pointer.
-                let share = ((y - curve.at_zero) / (1.0 - curve.at_zero).max(1e-3)).clamp(0.001, 0.999);
+                let share =
+                    ((y - curve.at_zero) / (1.0 - curve.at_zero).max(1e-3)).clamp(0.001, 0.999);
                 curve.gamma = (share.ln() / x.ln()).clamp(0.1, 10.0);
             }
         }
@@ -44,7 +48,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<Ask>)
             .on_hover_text("Share of the radius at the lightest touch");
     });
     if brush != view.state.brush {
-        out.push(Ask::World(Command::Brush(brush.clamped())));
+        out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
 }
 

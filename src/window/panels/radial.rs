@@ -2,7 +2,7 @@
 
 use egui::{Align2, FontId, Key, Pos2, Stroke, vec2};
 
-use super::Desk;
+use super::UiState;
 use super::action::Action;
 
 /// Clockwise from the top.
@@ -30,7 +30,7 @@ fn over(centre: Pos2, at: Pos2) -> Option<usize> {
 }
 
 /// Shows the ring while space is held; what it was let go over.
-pub fn ui(ctx: &egui::Context, desk: &mut Desk) -> Option<Action> {
+pub fn ui(ctx: &egui::Context, desk: &mut UiState) -> Option<Action> {
     let held = ctx.input(|i| i.key_down(Key::Space) && i.modifiers.is_none());
     let at = ctx.input(|i| i.pointer.latest_pos()).unwrap_or(ctx.content_rect().center());
     if held && desk.radial.is_none() && !ctx.egui_wants_keyboard_input() {
@@ -53,7 +53,12 @@ pub fn ui(ctx: &egui::Context, desk: &mut Desk) -> Option<Action> {
         ui.allocate_exact_size(size * 2.0, egui::Sense::hover());
         let visuals = ui.visuals().clone();
         let painter = ui.painter();
-        painter.circle(centre, OUTER + 34.0, visuals.window_fill.gamma_multiply(0.97), Stroke::NONE);
+        painter.circle(
+            centre,
+            OUTER + 34.0,
+            visuals.window_fill.gamma_multiply(0.97),
+            Stroke::NONE,
+        );
         painter.circle_stroke(centre, INNER, Stroke::new(1.5, visuals.weak_text_color()));
         for (i, (_, name)) in RING.iter().enumerate() {
             let turn = i as f32 / RING.len() as f32 * std::f32::consts::TAU;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec3, EulerRot, Quat};
 
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 use sculptd_engine::command::Command;
-use sculptd_engine::hand::Choice;
+use sculptd_engine::hand::MenuItem;
 use sculptd_geometry::{PolyMesh, shapes};
 
 type Solid = (&'static str, fn() -> PolyMesh);
@@ -18,22 +18,22 @@ const SOLIDS: [Solid; 3] = [
     ("Cylinder", || shapes::cylinder(1.0, 2.0, 48)),
 ];
 
-const JOINS: [(Choice, &str, &str); 3] = [
-    (Choice::Add, "Add", "Work and thing become one"),
-    (Choice::Carve, "Cut", "The thing is taken out of the work"),
-    (Choice::Keep, "Keep", "Only what lies in both stays"),
+const JOINS: [(MenuItem, &str, &str); 3] = [
+    (MenuItem::Add, "Add", "Work and thing become one"),
+    (MenuItem::Carve, "Cut", "The thing is taken out of the work"),
+    (MenuItem::Keep, "Keep", "Only what lies in both stays"),
 ];
 
 /// What a join would make, shown while the thing is carried.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trial {
-    pub choice: Option<Choice>,
+    pub choice: Option<MenuItem>,
     pub said: Said,
 }
 
 impl Trial {
     /// Tries this, or no more.
-    pub fn turn(&mut self, choice: Choice) {
+    pub fn turn(&mut self, choice: MenuItem) {
         self.choice = (self.choice != Some(choice)).then_some(choice);
     }
 }
@@ -48,7 +48,7 @@ pub enum Said {
     Wrong(String),
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let busy = desk.joining;
     let quiet = theme::quiet(ui);
     let s = view.state;
@@ -61,8 +61,12 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     ui.strong("Thing");
     ui.horizontal(|ui| {
         for (name, make) in SOLIDS {
-            if ui.button(name).on_hover_text("Appears beside the work, to be carried into it").clicked() {
-                out.push(Ask::World(Command::TakeUp(Arc::new(make().triangulate().0))));
+            if ui
+                .button(name)
+                .on_hover_text("Appears beside the work, to be carried into it")
+                .clicked()
+            {
+                out.push(UiRequest::World(Command::TakeUp(Arc::new(make().triangulate().0))));
             }
         }
     });
@@ -91,7 +95,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     let sizes = s.extent * 0.02..=s.extent * 3.0;
     ui.add(egui::Slider::new(&mut place.scale, sizes).logarithmic(true).text("size"));
     if place != thing.place {
-        out.push(Ask::World(Command::Place(place)));
+        out.push(UiRequest::World(Command::Place(place)));
     }
     ui.add_space(4.0);
     preview(ui, desk, out);
@@ -99,11 +103,11 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     ui.horizontal(|ui| {
         for (choice, name, tip) in JOINS {
             if ui.add_enabled(!busy, egui::Button::new(name)).on_hover_text(tip).clicked() {
-                out.push(Ask::Join(choice));
+                out.push(UiRequest::Join(choice));
             }
         }
         if ui.button("Put away").clicked() {
-            out.push(Ask::World(Command::PutDown));
+            out.push(UiRequest::World(Command::PutDown));
         }
     });
     if busy {
@@ -111,7 +115,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut Desk, out: &mut Vec<Ask
     }
 }
 
-fn preview(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>) {
+fn preview(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     let busy = desk.joining;
     let trial = &mut desk.trial;
     let title = trial.choice.map_or("off", |c| JOINS.iter().find(|j| j.0 == c).map_or("", |j| j.1));
@@ -131,7 +135,7 @@ fn preview(ui: &mut egui::Ui, desk: &mut Desk, out: &mut Vec<Ask>) {
     ui.colored_label(colour, text);
     ui.horizontal(|ui| {
         if ui.add_enabled(!busy, egui::Button::new("Apply")).on_hover_text("Make it so").clicked() {
-            out.push(Ask::Join(choice));
+            out.push(UiRequest::Join(choice));
             trial.choice = None;
         }
         if ui.button("Dismiss").on_hover_text("The work as it is; the thing stays").clicked() {

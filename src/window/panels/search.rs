@@ -3,7 +3,7 @@
 use egui::Key;
 
 use super::action::{self, Action};
-use super::{Desk, theme};
+use super::{UiState, theme};
 
 #[derive(Debug, Default)]
 pub struct Search {
@@ -15,7 +15,7 @@ pub struct Search {
 /// Shown at a time.
 const MOST: usize = 9;
 
-pub fn ui(ctx: &egui::Context, desk: &mut Desk) -> Option<Action> {
+pub fn ui(ctx: &egui::Context, desk: &mut UiState) -> Option<Action> {
     let search = desk.search.as_mut()?;
     let (up, down, enter, escape) = ctx.input(|i| {
         let p = |k| i.key_pressed(k);

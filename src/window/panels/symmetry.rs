@@ -1,10 +1,10 @@
 //! Mirrors.
 
 use super::action::Action;
-use super::{Ask, View};
+use super::{UiRequest, View};
 use sculptd_engine::command::Command;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let mut brush = view.state.brush;
     ui.horizontal(|ui| {
         ui.strong("Mirror");
@@ -17,6 +17,6 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<Ask>) {
         }
     });
     if brush != view.state.brush {
-        out.push(Ask::World(Command::Brush(brush)));
+        out.push(UiRequest::World(Command::Brush(brush)));
     }
 }

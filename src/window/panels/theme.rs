@@ -2,7 +2,8 @@
 
 use egui::{Color32, CornerRadius, Stroke, Visuals};
 
-/// Quiet greys that leave the clay the strongest colour of the screen; text at least 4.5:1 on its ground, held by a test.
+/// Quiet greys that leave the clay the strongest colour of the screen; text at least 4.5:1 on its
+/// ground, held by a test.
 pub fn apply(ctx: &egui::Context, light: bool) {
     let grey = |v: u8| Color32::from_rgb(v, v.saturating_add(1), v.saturating_add(5));
     let mut v = if light { Visuals::light() } else { Visuals::dark() };
@@ -16,7 +17,8 @@ pub fn apply(ctx: &egui::Context, light: bool) {
         if light { Color32::from_rgb(236, 190, 164) } else { Color32::from_rgb(140, 76, 48) };
     v.selection.stroke = Stroke::new(1.0, tone(250, 10));
     v.weak_text_color = Some(quiet_of(light));
-    v.hyperlink_color = if light { Color32::from_rgb(20, 80, 150) } else { Color32::from_rgb(140, 190, 255) };
+    v.hyperlink_color =
+        if light { Color32::from_rgb(20, 80, 150) } else { Color32::from_rgb(140, 190, 255) };
     let w = &mut v.widgets;
     let text = tone(226, 24);
     for (state, fill, weak) in [
@@ -51,10 +53,18 @@ pub fn quiet(ui: &egui::Ui) -> Color32 {
 
 /// Something is wrong.
 pub fn alarm(ui: &egui::Ui) -> Color32 {
-    if ui.visuals().dark_mode { Color32::from_rgb(255, 150, 120) } else { Color32::from_rgb(160, 40, 16) }
+    if ui.visuals().dark_mode {
+        Color32::from_rgb(255, 150, 120)
+    } else {
+        Color32::from_rgb(160, 40, 16)
+    }
 }
 
 /// The accent of curves and live values.
 pub fn accent(ui: &egui::Ui) -> Color32 {
-    if ui.visuals().dark_mode { Color32::from_rgb(224, 140, 96) } else { Color32::from_rgb(170, 84, 44) }
+    if ui.visuals().dark_mode {
+        Color32::from_rgb(224, 140, 96)
+    } else {
+        Color32::from_rgb(170, 84, 44)
+    }
 }

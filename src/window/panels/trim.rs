@@ -1,8 +1,9 @@
-//! Trimming: a box or a line drawn over the view, and what lies in it or to its left is cut off, all the way through.
+//! Trimming: a box or a line drawn over the view, and what lies in it or to its left is cut off,
+//! all the way through.
 
 use egui::{Color32, Key, Pos2, Rect, Sense, Stroke, vec2};
 
-use super::{Ask, Desk, View, theme};
+use super::{UiRequest, UiState, View, theme};
 use sculptd_daemon::trim::Part;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub struct Trim {
 const SLIP: f32 = 4.0;
 
 /// The buttons.
-pub fn buttons(ui: &mut egui::Ui, desk: &mut Desk) {
+pub fn buttons(ui: &mut egui::Ui, desk: &mut UiState) {
     ui.strong("Trim");
     ui.horizontal(|ui| {
         for (shape, name, tip) in [
@@ -35,7 +36,10 @@ pub fn buttons(ui: &mut egui::Ui, desk: &mut Desk) {
             (Shape::Line, "Line", "Drag a line over the work: what is to its left is cut off"),
         ] {
             let on = desk.trim.is_some_and(|t| t.shape == shape);
-            if ui.add_enabled(!desk.joining, egui::Button::selectable(on, name)).on_hover_text(tip).clicked()
+            if ui
+                .add_enabled(!desk.joining, egui::Button::selectable(on, name))
+                .on_hover_text(tip)
+                .clicked()
             {
                 desk.trim = (!on).then_some(Trim { shape, from: None });
             }
@@ -65,14 +69,15 @@ pub fn part(shape: Shape, screen: Rect, from: Pos2, to: Pos2) -> Option<Part> {
 }
 
 /// The drag itself: the clay does not feel it.
-pub fn ui(ctx: &egui::Context, desk: &mut Desk, free: Rect, out: &mut Vec<Ask>) {
+pub fn ui(ctx: &egui::Context, desk: &mut UiState, free: Rect, out: &mut Vec<UiRequest>) {
     let Some(mut trim) = desk.trim else { return };
     if ctx.input(|i| i.key_pressed(Key::Escape)) {
         desk.trim = None;
         return;
     }
     let screen = ctx.content_rect();
-    let area = egui::Area::new(egui::Id::unique("trim")).fixed_pos(free.min).order(egui::Order::Middle);
+    let area =
+        egui::Area::new(egui::Id::unique("trim")).fixed_pos(free.min).order(egui::Order::Middle);
     area.show(ctx, |ui| {
         let (_, response) = ui.allocate_exact_size(free.size(), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Trim"));
@@ -102,7 +107,7 @@ pub fn ui(ctx: &egui::Context, desk: &mut Desk, free: Rect, out: &mut Vec<Ask>) 
             if response.drag_stopped() {
                 match part(trim.shape, screen, from, to) {
                     Some(part) => {
-                        out.push(Ask::Trim(part));
+                        out.push(UiRequest::Trim(part));
                         desk.trim = None;
                         return;
                     }
@@ -115,20 +120,21 @@ pub fn ui(ctx: &egui::Context, desk: &mut Desk, free: Rect, out: &mut Vec<Ask>) 
 }
 
 /// The levels of the work: coarser to shape, finer for detail.
-pub fn levels(ui: &mut egui::Ui, view: &View<'_>, desk: &Desk, out: &mut Vec<Ask>) {
+pub fn levels(ui: &mut egui::Ui, view: &View<'_>, desk: &UiState, out: &mut Vec<UiRequest>) {
     ui.strong("Levels");
     let (at, of) = view.state.mesh.levels().map_or((0, 1), |l| l.at());
     let n = view.state.mesh.triangle_count();
     ui.colored_label(theme::quiet(ui), format!("level {} of {of}, {n} triangles", at + 1));
     ui.horizontal(|ui| {
         let coarser = ui.add_enabled(at > 0 && !desk.joining, egui::Button::new("Coarser"));
-        if coarser.on_hover_text("Shape the whole; the detail of finer levels goes along").clicked() {
-            out.push(Ask::Level(false));
+        if coarser.on_hover_text("Shape the whole; the detail of finer levels goes along").clicked()
+        {
+            out.push(UiRequest::Level(false));
         }
         let finer = ui.add_enabled(!desk.joining, egui::Button::new("Finer"));
         let tip = if at + 1 < of { "Back to the finer level" } else { "Four triangles for each" };
         if finer.on_hover_text(tip).clicked() {
-            out.push(Ask::Level(true));
+            out.push(UiRequest::Level(true));
         }
     });
 }

@@ -1,21 +1,22 @@
-//! What follows the newest clay off to the side: previews of joins, distances, measures. Each has a thread of its own, made when
-//! it is first asked for, that drops what is no longer wanted.
+//! What follows the newest clay off to the side: previews of joins, distances, measures. Each has a
+//! thread of its own, made when it is first asked for, that drops what is no longer wanted.
 
 use glam::DVec3;
 
 use super::field::{self, Field};
 use super::preview;
-use super::window::{Open, Wiring};
+use super::window::{WindowState, Wiring};
 use super::work::{Done, Work};
 use crate::panels::measure::Against;
 use crate::panels::scene::Said;
-use crate::panels::{Tab, hand_menu as balls};
+use crate::panels::{Tab, hand_menu};
 use crate::viewer::latest_wins::Newest;
 use crate::viewer::look::Map;
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 
-/// A preview that is not done after so long is given up for a newer one; before that it is shown late rather than never.
+/// A preview that is not done after so long is given up for a newer one; before that it is shown
+/// late rather than never.
 const PATIENCE_US: u64 = 300_000;
 /// The work rests once it has not changed for so long.
 const REST_US: u64 = 500_000;
@@ -74,7 +75,7 @@ impl Wishes {
     }
 }
 
-impl Open {
+impl WindowState {
     /// Asks for what the newest state makes stale. Once a frame.
     pub(super) fn wish(&mut self, state: &Published, wiring: &Wiring) {
         let now = wiring.clock.now_us();
@@ -89,10 +90,13 @@ impl Open {
         self.wish_preview(state, now);
         if self.desk.look.map == Map::Distance {
             let to = match (&state.thing, self.desk.sizes.against, &self.before) {
-                (Some(thing), Against::Thing, _) => Some(field::Reference::Thing(thing.clone())),
+                (Some(thing), Against::HeldObject, _) => {
+                    Some(field::Reference::HeldObject(thing.clone()))
+                }
                 (_, _, before) => before.clone().map(field::Reference::Before),
             };
-            let place = state.thing.as_ref().filter(|_| self.desk.sizes.against == Against::Thing);
+            let place =
+                state.thing.as_ref().filter(|_| self.desk.sizes.against == Against::HeldObject);
             let base = self.before.as_ref().map_or(0, Snapshot::revision);
             let key = (revision, base, place.map(|t| t.place));
             if let Some(to) = to.filter(|_| self.asked_distance != Some(key)) {
@@ -144,7 +148,10 @@ impl Open {
     }
 
     /// A preview has come, or why there is none.
-    pub(super) fn previewed(&mut self, done: Result<Option<std::sync::Arc<preview::Preview>>, String>) {
+    pub(super) fn previewed(
+        &mut self,
+        done: Result<Option<std::sync::Arc<preview::Preview>>, String>,
+    ) {
         match done {
             // It was dismissed while it was computed.
             _ if self.desk.trial.choice.is_none() => {}
@@ -161,8 +168,9 @@ impl Open {
 
     /// What is seen through: the thing in the hands, the balls of their menu.
     pub(super) fn ghosts(&mut self, state: &Published) {
-        let balls = balls::balls(state);
-        let thing = state.thing.as_ref().map(|t| (std::sync::Arc::as_ptr(&t.plain) as usize, t.place));
+        let balls = hand_menu::balls(state);
+        let thing =
+            state.thing.as_ref().map(|t| (std::sync::Arc::as_ptr(&t.plain) as usize, t.place));
         let trial = self.desk.trial.choice;
         let key = (thing, trial, balls.clone());
         if self.ghost_key == key {

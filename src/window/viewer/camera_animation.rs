@@ -9,15 +9,21 @@ use sculptd_engine::camera::MAX_PITCH;
 const TAKES_US: u64 = 450_000;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Flight {
+pub struct CameraAnimation {
     from: Camera,
     to: Camera,
     begun_us: u64,
 }
 
-impl Flight {
+impl CameraAnimation {
     /// To look at `place` from outside the work, whose middle and bounding radius are given.
-    pub fn to_place(from: Camera, place: Vec3, middle: Vec3, extent: f32, now_us: u64) -> Flight {
+    pub fn to_place(
+        from: Camera,
+        place: Vec3,
+        middle: Vec3,
+        extent: f32,
+        now_us: u64,
+    ) -> CameraAnimation {
         let out = (place - middle).normalize_or(from.backward());
         let tau = std::f32::consts::TAU;
         let yaw = if out.x.abs() + out.z.abs() > 1e-4 { out.x.atan2(out.z) } else { from.yaw };
@@ -30,7 +36,7 @@ impl Flight {
             distance: (extent * 1.6).max(1e-6),
             ..from
         };
-        Flight { from, to, begun_us: now_us }
+        CameraAnimation { from, to, begun_us: now_us }
     }
 
     /// The camera now, and whether it has arrived.
@@ -57,7 +63,7 @@ mod tests {
     fn a_flight_ends_looking_at_the_place_from_outside() {
         let from = Camera { yaw: 6.0, ..Camera::default() };
         let place = Vec3::new(0.9, 0.1, 0.3);
-        let flight = Flight::to_place(from, place, Vec3::ZERO, 1.0, 5);
+        let flight = CameraAnimation::to_place(from, place, Vec3::ZERO, 1.0, 5);
         let (camera, arrived) = flight.at(5 + TAKES_US);
         assert!(arrived && camera.is_sane());
         assert!((camera.target - place).length() < 1e-6);

@@ -1,4 +1,5 @@
-//! Sizes of the newest clay, off to the side: the distance of each vertex to another form, measures and shadows.
+//! Sizes of the newest clay, off to the side: the distance of each vertex to another form, measures
+//! and shadows.
 
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use super::pages::MapValues;
 use super::work::Done;
 use crate::panels::measure::{Distances, Measured};
 use sculptd_clay::Snapshot;
-use sculptd_engine::hand::{Similarity, Thing};
+use sculptd_engine::hand::{HeldObject, Similarity};
 use sculptd_geometry::distance::{Solid, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{measures, projected_area};
@@ -19,7 +20,7 @@ use sculptd_geometry::projection::{Plane, area, outline};
 #[derive(Debug, Clone)]
 pub enum Reference {
     Before(Snapshot),
-    Thing(Thing),
+    HeldObject(HeldObject),
 }
 
 impl Reference {
@@ -27,7 +28,7 @@ impl Reference {
     fn same(&self, other: &Reference) -> bool {
         match (self, other) {
             (Reference::Before(a), Reference::Before(b)) => a.revision() == b.revision(),
-            (Reference::Thing(a), Reference::Thing(b)) => Arc::ptr_eq(&a.plain, &b.plain),
+            (Reference::HeldObject(a), Reference::HeldObject(b)) => Arc::ptr_eq(&a.plain, &b.plain),
             _ => false,
         }
     }
@@ -35,7 +36,7 @@ impl Reference {
     fn place(&self) -> Similarity {
         match self {
             Reference::Before(_) => Similarity::NONE,
-            Reference::Thing(thing) => thing.place,
+            Reference::HeldObject(thing) => thing.place,
         }
     }
 }
@@ -60,18 +61,24 @@ pub struct Field {
 }
 
 impl Field {
-    /// Brings the map up to what is wanted, a batch at a time; `false` when nobody listens any more.
+    /// Brings the map up to what is wanted, a batch at a time; `false` when nobody listens any
+    /// more.
     pub fn follow(&mut self, wanted: Wanted, job: &Job, say: &cc::Sender<Done>) -> bool {
         self.bring(wanted, job, say).unwrap_or(true)
     }
 
-    fn bring(&mut self, wanted: Wanted, job: &Job, say: &cc::Sender<Done>) -> Result<bool, Cancelled> {
+    fn bring(
+        &mut self,
+        wanted: Wanted,
+        job: &Job,
+        say: &cc::Sender<Done>,
+    ) -> Result<bool, Cancelled> {
         let Wanted { mesh, to } = wanted;
         if !self.to.as_ref().is_some_and(|(old, _)| old.same(&to)) {
             self.pages.clear();
             let plain = match &to {
                 Reference::Before(before) => Arc::new(before.to_tri()),
-                Reference::Thing(thing) => thing.plain.clone(),
+                Reference::HeldObject(thing) => thing.plain.clone(),
             };
             let solid = Solid::build(&plain, job)?;
             self.to = Some((to.clone(), solid));
@@ -111,9 +118,14 @@ impl Field {
 
     fn said(&self, mesh: &Snapshot) -> Done {
         let unknown = |i: usize| -> Arc<[f32]> { vec![f32::NAN; mesh.page(i as u32).own()].into() };
-        let pages: Vec<Arc<[f32]>> =
-            self.pages.iter().enumerate().map(|(i, p)| p.clone().unwrap_or_else(|| unknown(i))).collect();
-        let (mut min, mut max, mut squares, mut known) = (f32::INFINITY, f32::NEG_INFINITY, 0.0f64, 0usize);
+        let pages: Vec<Arc<[f32]>> = self
+            .pages
+            .iter()
+            .enumerate()
+            .map(|(i, p)| p.clone().unwrap_or_else(|| unknown(i)))
+            .collect();
+        let (mut min, mut max, mut squares, mut known) =
+            (f32::INFINITY, f32::NEG_INFINITY, 0.0f64, 0usize);
         for &d in self.pages.iter().flatten().flat_map(|p| p.iter()).filter(|d| d.is_finite()) {
             (min, max) = (min.min(d), max.max(d));
             squares += f64::from(d) * f64::from(d);

@@ -7,18 +7,19 @@ use super::overlay;
 use super::pages::MapValues;
 use super::pointer::Drag;
 use super::renderer::{Beside, LineEnd, Renderer, Scene};
-use super::window::{Open, Wiring};
+use super::window::{WindowState, Wiring};
 use super::work::{Done, Purpose};
 use crate::panels::action::Action;
-use crate::panels::{self, Ask, View};
-use crate::viewer::camera_animation::Flight;
+use crate::panels::{self, UiRequest, View};
+use crate::viewer::camera_animation::CameraAnimation;
 use sculptd_daemon::Published;
 use sculptd_daemon::session::history::Want;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 
-impl Open {
-    /// The ring under the newest pointer place and under every other pen, their mirror images, ghost hands.
+impl WindowState {
+    /// The ring under the newest pointer place and under every other pen, their mirror images,
+    /// ghost hands.
     fn lines(&self, state: &Published) -> (Vec<LineEnd>, Option<(Vec3, f32)>) {
         let mut lines = Vec::new();
         let mut brush = None;
@@ -52,8 +53,11 @@ impl Open {
             let at = Vec2::new(modal.from.x, modal.from.y) * scale;
             ring_at(overlay::view_point(at, self.size()), 1.0, None, false);
         } else if p.inside && (p.drag == Drag::Sculpt || (p.drag == Drag::None && !over_panel)) {
-            let felt =
-                state.pens.iter().flatten().find(|(id, _)| *id == sculptd_daemon::adaptors::POINTER_ID);
+            let felt = state
+                .pens
+                .iter()
+                .flatten()
+                .find(|(id, _)| *id == sculptd_daemon::adaptors::POINTER_ID);
             let down = p.drag == Drag::Sculpt;
             let pressure = if down { felt.map_or(1.0, |f| f.1.pressure) } else { 1.0 };
             ring_at(overlay::view_point(p.at, self.size()), pressure, None, down);
@@ -75,7 +79,8 @@ impl Open {
 
     pub(super) fn redraw(&mut self, wiring: &Wiring) {
         let texture = match self.surface.get_current_texture() {
-            wgpu::CurrentSurfaceTexture::Success(t) | wgpu::CurrentSurfaceTexture::Suboptimal(t) => t,
+            wgpu::CurrentSurfaceTexture::Success(t)
+            | wgpu::CurrentSurfaceTexture::Suboptimal(t) => t,
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
                 self.surface.configure(&self.gpu.device, &self.config);
                 self.window.request_redraw();
@@ -102,7 +107,8 @@ impl Open {
             (self.devices, self.asked_us) = ((wiring.devices)(), now);
             self.remembered.keep(&self.desk);
         }
-        if let Some((history, rate_hz)) = wiring.history.as_ref().filter(|_| wiring.kiosk.is_none()) {
+        if let Some((history, rate_hz)) = wiring.history.as_ref().filter(|_| wiring.kiosk.is_none())
+        {
             self.places(history, *rate_hz);
         }
         let samples = self.gpu.samples(self.desk.prefs.smooth_edges);
@@ -177,10 +183,12 @@ impl Open {
                     self.distances = Some(values);
                 }
                 Done::Measured(found) => self.desk.sizes.found = Some(found),
-                Done::Chosen(Purpose::Open, path) => self.work.load(path, wiring.commands.clone()),
+                Done::Chosen(Purpose::WindowState, path) => {
+                    self.work.load(path, wiring.commands.clone())
+                }
                 Done::Chosen(Purpose::Export, path) => {
                     self.desk.files.export = path.display().to_string();
-                    self.answer(Ask::Export(path), state, wiring);
+                    self.answer(UiRequest::Export(path), state, wiring);
                 }
             }
         }
@@ -196,15 +204,16 @@ impl Open {
         if self.values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
             self.values = None;
         }
-        self.desk.look.scale = match (self.desk.look.map, &self.desk.walls.found, self.desk.sizes.distances) {
-            (Map::Thickness, Some(found), _) => (found.min, found.high),
-            // Both ends as far from nothing; a work that did not change is pale all over.
-            (Map::Distance, _, Some(d)) => {
-                let most = d.max.max(-d.min).max(state.extent * 1e-5);
-                (-most, most)
-            }
-            _ => (0.0, 1.0),
-        };
+        self.desk.look.scale =
+            match (self.desk.look.map, &self.desk.walls.found, self.desk.sizes.distances) {
+                (Map::Thickness, Some(found), _) => (found.min, found.high),
+                // Both ends as far from nothing; a work that did not change is pale all over.
+                (Map::Distance, _, Some(d)) => {
+                    let most = d.max.max(-d.min).max(state.extent * 1e-5);
+                    (-most, most)
+                }
+                _ => (0.0, 1.0),
+            };
         if self.desk.look.map == Map::Thickness {
             let wanted = (state.mesh.revision(), self.desk.walls.limit);
             if self.asked_map != Some(wanted) || self.values.is_none() && self.asked_map.is_none() {
@@ -214,55 +223,61 @@ impl Open {
         }
     }
 
-    fn answer(&mut self, ask: Ask, state: &Published, wiring: &Wiring) {
+    fn answer(&mut self, ask: UiRequest, state: &Published, wiring: &Wiring) {
         match ask {
-            Ask::World(command) => {
+            UiRequest::World(command) => {
                 self.desk.prefs.done.undone |= matches!(command, Command::Undo);
                 let _ = wiring.commands.try_send(command);
             }
-            Ask::Jump(node) => {
+            UiRequest::Jump(node) => {
                 self.desk.prefs.done.undone = true;
                 if let Some((history, _)) = &wiring.history {
                     history.want(Want::Node(node));
                 }
             }
-            Ask::Camera(camera) => {
+            UiRequest::Camera(camera) => {
                 self.flight = None;
                 self.camera = camera;
                 self.send_camera(wiring);
             }
-            Ask::FlyTo(place) => {
+            UiRequest::FlyTo(place) => {
                 let now = wiring.clock.now_us();
-                self.flight = Some(Flight::to_place(self.camera, place, state.middle, state.extent, now));
+                self.flight = Some(CameraAnimation::to_place(
+                    self.camera,
+                    place,
+                    state.middle,
+                    state.extent,
+                    now,
+                ));
             }
-            Ask::Open(path) => self.work.load(path, wiring.commands.clone()),
-            Ask::Export(path) => {
+            UiRequest::WindowState(path) => self.work.load(path, wiring.commands.clone()),
+            UiRequest::Export(path) => {
                 let (factor, unit) = self.desk.files.factor();
                 self.work.export(path, state.mesh.clone(), factor, unit);
             }
-            Ask::Join(choice) => {
+            UiRequest::Join(choice) => {
                 self.desk.joining = true;
                 self.work.join(choice, wiring.published.clone(), wiring.commands.clone());
             }
-            Ask::Trim(part) => {
+            UiRequest::Trim(part) => {
                 self.desk.joining = true;
                 self.work.trim(part, wiring.published.clone(), wiring.commands.clone());
             }
-            Ask::Level(finer) => {
+            UiRequest::Level(finer) => {
                 self.desk.joining = true;
                 self.work.level(finer, wiring.published.clone(), wiring.commands.clone());
             }
-            Ask::Reference => self.before = Some(state.mesh.clone()),
-            Ask::Outline(path) => {
+            UiRequest::Reference => self.before = Some(state.mesh.clone()),
+            UiRequest::Outline(path) => {
                 if let Some(found) = &self.desk.sizes.found {
                     self.work.outline(path, &found.outline);
                 }
             }
-            Ask::Do(Action::Open) => self.work.ask(Purpose::Open),
-            Ask::Do(Action::Export) => self.work.ask(Purpose::Export),
-            Ask::Do(Action::Screenshot) => self.screenshot = true,
-            Ask::Do(Action::Turntable) => self.begin_turntable(),
-            Ask::Do(_) => {}
+            UiRequest::Do(Action::WindowState) => self.work.ask(Purpose::WindowState),
+            UiRequest::Do(Action::Export) => self.work.ask(Purpose::Export),
+            UiRequest::Do(Action::Screenshot) => self.screenshot = true,
+            UiRequest::Do(Action::Turntable) => self.begin_turntable(),
+            UiRequest::Do(_) => {}
         }
         self.window.request_redraw();
     }
@@ -273,7 +288,7 @@ impl Open {
         wiring: &Wiring,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
-    ) -> Vec<Ask> {
+    ) -> Vec<UiRequest> {
         let mut asks = Vec::new();
         let input = self.egui.take_egui_input(&self.window);
         let view = View {
@@ -335,7 +350,7 @@ impl Open {
 
 /// The values of the map that is shown.
 pub(super) fn shown<'a>(
-    desk: &panels::Desk,
+    desk: &panels::UiState,
     thickness: &'a Option<MapValues>,
     distances: &'a Option<MapValues>,
 ) -> Option<&'a MapValues> {

@@ -29,7 +29,10 @@ pub fn instance() -> wgpu::Instance {
 
 impl Gpu {
     /// An adapter that can draw on `surface`, or with `None` into a texture.
-    pub fn new(instance: wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Gpu, NoViewer> {
+    pub fn new(
+        instance: wgpu::Instance,
+        surface: Option<&wgpu::Surface<'_>>,
+    ) -> Result<Gpu, NoViewer> {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: surface,

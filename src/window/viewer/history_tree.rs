@@ -1,11 +1,11 @@
-//! The session's history for the panel: the tree whenever it changed, and the pictures that are on the screen, which a thread of
-//! its own reads from the file.
+//! The session's history for the panel: the tree whenever it changed, and the pictures that are on
+//! the screen, which a thread of its own reads from the file.
 
 use std::collections::BTreeSet;
 
 use crossbeam_channel as cc;
 
-use super::window::Open;
+use super::window::WindowState;
 use sculptd_daemon::session::history::Handle;
 
 /// Pictures kept, of 27 KB each.
@@ -32,7 +32,10 @@ fn decode(png: &[u8]) -> Option<egui::ColorImage> {
 }
 
 /// Reads pictures until nobody asks any more.
-fn reader(history: Handle, context: egui::Context) -> Option<(cc::Sender<u64>, cc::Receiver<Found>)> {
+fn reader(
+    history: Handle,
+    context: egui::Context,
+) -> Option<(cc::Sender<u64>, cc::Receiver<Found>)> {
     let (wanted, inbox) = cc::bounded::<u64>(ASKED);
     let (outbox, found) = cc::bounded(ASKED);
     let read = move || {
@@ -48,7 +51,7 @@ fn reader(history: Handle, context: egui::Context) -> Option<(cc::Sender<u64>, c
     Some((wanted, found))
 }
 
-impl Open {
+impl WindowState {
     /// Brings the panel up to date. Once a frame, before the panels are drawn.
     pub(super) fn places(&mut self, history: &Handle, rate_hz: u32) {
         let (p, shown) = (&mut self.places, &mut self.desk.places);
@@ -65,7 +68,9 @@ impl Open {
         let Some((wanted, found)) = &p.reader else { return };
         for (node, picture) in found.try_iter() {
             if let Some(picture) = picture {
-                shown.pictures.insert(node, context.load_texture("place", picture, Default::default()));
+                shown
+                    .pictures
+                    .insert(node, context.load_texture("place", picture, Default::default()));
             }
         }
         if shown.pictures.len() > KEPT {

@@ -1,5 +1,5 @@
-//! A thread that works on the newest wish: one slot, a newer wish replaces one that still waits, and the work under way is told
-//! to stop.
+//! A thread that works on the newest wish: one slot, a newer wish replaces one that still waits,
+//! and the work under way is told to stop.
 
 use std::sync::Arc;
 
@@ -17,7 +17,8 @@ pub struct Newest<W> {
 }
 
 impl<W: Send + 'static> Newest<W> {
-    /// `each` is called with one wish after another, and ends when it says `false` or nobody can wish any more.
+    /// `each` is called with one wish after another, and ends when it says `false` or nobody can
+    /// wish any more.
     pub fn start(name: &str, mut each: impl FnMut(W, &Job) -> bool + Send + 'static) -> Newest<W> {
         let slot = cc::bounded::<Wish<W>>(1);
         let receiver = slot.1.clone();

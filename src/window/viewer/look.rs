@@ -1,4 +1,5 @@
-//! How the clay is shown: materials drawn by formula, facets, cavities. Nothing here changes the world.
+//! How the clay is shown: materials drawn by formula, facets, cavities. Nothing here changes the
+//! world.
 
 /// A material, lit from the eye's own frame. Colours are linear, 0 to 1.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +14,13 @@ pub struct Material {
     pub rim: f32,
 }
 
-const fn material(name: &'static str, base: [f32; 3], shine: f32, power: f32, rim: f32) -> Material {
+const fn material(
+    name: &'static str,
+    base: [f32; 3],
+    shine: f32,
+    power: f32,
+    rim: f32,
+) -> Material {
     Material { name, base, shine, power, rim }
 }
 
@@ -54,7 +61,9 @@ impl Map {
     /// The colour of a value between the scale's ends; sRGB.
     pub fn colour(self, value: f32, low: f32, high: f32) -> [u8; 3] {
         match self {
-            Map::None | Map::Thickness => sculptd_geometry::thickness::colour::colour(value, low, high),
+            Map::None | Map::Thickness => {
+                sculptd_geometry::thickness::colour::colour(value, low, high)
+            }
             Map::Mask => {
                 let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
                 std::array::from_fn(|k| {

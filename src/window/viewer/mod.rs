@@ -1,5 +1,5 @@
-//! The viewer: draws what was published, sends commands and pointer samples, and owns nothing of the world. A viewer that
-//! stalls or dies costs the sculpture nothing.
+//! The viewer: draws what was published, sends commands and pointer samples, and owns nothing of
+//! the world. A viewer that stalls or dies costs the sculpture nothing.
 
 mod background;
 mod camera_animation;

@@ -6,7 +6,7 @@ use super::renderer::LineEnd;
 use sculptd_clay::{Ray, Snapshot};
 use sculptd_devices::Hands;
 use sculptd_engine::camera::Camera;
-use sculptd_engine::hand::{Thing, Volume};
+use sculptd_engine::hand::{HeldObject, Volume};
 
 const RING: [u8; 4] = [255, 236, 190, 255];
 const CARVING: [u8; 4] = [150, 190, 255, 255];
@@ -33,8 +33,9 @@ pub struct Ring {
     pub down: bool,
 }
 
-/// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped along the normal onto
-/// the clay, and where there is none within reach it stays in the tangent plane.
+/// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped
+/// along the normal onto the clay, and where there is none within reach it stays in the tangent
+/// plane.
 pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3, ring: &Ring) {
     let radius = ring.radius;
     let mut colour = match (ring.mirrored, ring.carve) {
@@ -51,7 +52,9 @@ pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3,
         let flat = centre + (u * c + v * s) * radius;
         let above = Ray { origin: flat + normal * radius, dir: -normal };
         match mesh.pick(above) {
-            Some(hit) if (hit.t - radius).abs() < 0.6 * radius => hit.position + normal * (radius * 0.01),
+            Some(hit) if (hit.t - radius).abs() < 0.6 * radius => {
+                hit.position + normal * (radius * 0.01)
+            }
             _ => flat,
         }
     };
@@ -64,11 +67,12 @@ pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3,
     segment(out, centre, centre + normal * radius * 0.4, colour);
 }
 
-/// The pen itself as it leans: from its tip along its barrel. `tilt` in radians, x to the right and y towards the person.
+/// The pen itself as it leans: from its tip along its barrel. `tilt` in radians, x to the right and
+/// y towards the person.
 pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, radius: f32) {
     let (right, up) = camera.axes();
-    let along =
-        camera.backward() + right * tilt.x.clamp(-1.4, 1.4).tan() - up * tilt.y.clamp(-1.4, 1.4).tan();
+    let along = camera.backward() + right * tilt.x.clamp(-1.4, 1.4).tan()
+        - up * tilt.y.clamp(-1.4, 1.4).tan();
     segment(out, tip, tip + along.normalize_or_zero() * radius * 2.0, BONE);
 }
 
@@ -125,7 +129,9 @@ pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
         for pair in knuckles.windows(2) {
             segment(out, pair[0], pair[1], BONE);
         }
-        if let (Some(wrist), Some(first), Some(last)) = (hand.wrist, knuckles.first(), knuckles.last()) {
+        if let (Some(wrist), Some(first), Some(last)) =
+            (hand.wrist, knuckles.first(), knuckles.last())
+        {
             segment(out, volume.to_world(wrist), *first, BONE);
             segment(out, volume.to_world(wrist), *last, BONE);
         }
@@ -133,7 +139,7 @@ pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
 }
 
 /// A thing in the hands as its edges: what it would cut shows through it.
-pub fn thing(out: &mut Vec<LineEnd>, thing: &Thing) {
+pub fn thing(out: &mut Vec<LineEnd>, thing: &HeldObject) {
     // Of a large one, some: it is its place that counts.
     const MOST: usize = 2600;
     let triangles = &thing.plain.triangles;

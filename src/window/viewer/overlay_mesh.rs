@@ -1,10 +1,11 @@
-//! Triangles beside the clay: what a join would make, a thing in the hands, the balls of the hands' menu.
+//! Triangles beside the clay: what a join would make, a thing in the hands, the balls of the hands'
+//! menu.
 
 use glam::Vec3;
 
 use super::gpu::Gpu;
 use super::pages::Vertex;
-use sculptd_engine::hand::Thing;
+use sculptd_engine::hand::HeldObject;
 
 /// Triangles in the world, with a normal and a colour a vertex.
 #[derive(Debug, Clone, Default)]
@@ -46,13 +47,14 @@ impl Triangles {
     }
 
     /// A thing where it is, if it is not too large to be sent with every move.
-    pub fn thing(&mut self, thing: &Thing, colour: [u8; 4]) {
+    pub fn thing(&mut self, thing: &HeldObject, colour: [u8; 4]) {
         if thing.plain.triangles.len() > MOST {
             return;
         }
         let first = self.vertices.len() as u32;
         self.stamp += 1;
-        let places: Vec<Vec3> = thing.plain.positions.iter().map(|p| thing.place.apply(*p)).collect();
+        let places: Vec<Vec3> =
+            thing.plain.positions.iter().map(|p| thing.place.apply(*p)).collect();
         let mut normals = vec![Vec3::ZERO; places.len()];
         for t in &thing.plain.triangles {
             let [a, b, c] = t.map(|v| places[v as usize]);
@@ -66,13 +68,13 @@ impl Triangles {
 
 /// Their buffers on the card; they grow and never shrink.
 #[derive(Debug, Default)]
-pub struct Loose {
+pub struct OverlayMesh {
     buffers: Option<[wgpu::Buffer; 3]>,
     count: u32,
     stamp: Option<u64>,
 }
 
-impl Loose {
+impl OverlayMesh {
     /// Sends what was not sent yet.
     pub fn keep(&mut self, gpu: &Gpu, all: &Triangles) {
         if self.stamp != Some(all.stamp) {
@@ -86,10 +88,12 @@ impl Loose {
         if triangles.is_empty() {
             return;
         }
-        let sizes = [size_of_val(vertices), vertices.len() * size_of::<f32>(), size_of_val(triangles)];
+        let sizes =
+            [size_of_val(vertices), vertices.len() * size_of::<f32>(), size_of_val(triangles)];
         let fits = |b: &[wgpu::Buffer; 3]| b.iter().zip(sizes).all(|(b, s)| b.size() >= s as u64);
         if !self.buffers.as_ref().is_some_and(fits) {
-            let usages = [wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::INDEX];
+            let usages =
+                [wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::INDEX];
             let buffers = [0, 1, 2].map(|i| {
                 gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("loose"),
@@ -110,7 +114,9 @@ impl Loose {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if let Some([vertices, values, triangles]) = self.buffers.as_ref().filter(|_| self.count > 0) {
+        if let Some([vertices, values, triangles]) =
+            self.buffers.as_ref().filter(|_| self.count > 0)
+        {
             pass.set_vertex_buffer(0, vertices.slice(..));
             pass.set_vertex_buffer(1, values.slice(..));
             pass.set_index_buffer(triangles.slice(..), wgpu::IndexFormat::Uint32);

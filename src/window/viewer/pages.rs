@@ -1,5 +1,5 @@
-//! The clay on the card: every page has a slot of one large vertex buffer, and of the pages that changed only the rows that
-//! did are sent again.
+//! The clay on the card: every page has a slot of one large vertex buffer, and of the pages that
+//! changed only the rows that did are sent again.
 
 use std::sync::Arc;
 
@@ -21,7 +21,11 @@ pub struct Vertex {
 impl Vertex {
     pub fn new(place: Vec3, normal: Vec3, mask: f32, colour: [u8; 4]) -> Vertex {
         let n = (normal * 32767.0).to_array().map(|c| c as i16);
-        Vertex { place: place.to_array(), normal: [n[0], n[1], n[2], (mask * 32767.0) as i16], colour }
+        Vertex {
+            place: place.to_array(),
+            normal: [n[0], n[1], n[2], (mask * 32767.0) as i16],
+            colour,
+        }
     }
 }
 
@@ -38,16 +42,19 @@ pub const VALUE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLa
     attributes: &wgpu::vertex_attr_array![3 => Float32],
 };
 
-/// A number for each page's own vertices; a page that did not change is the same `Arc` as before. NaN: not known.
+/// A number for each page's own vertices; a page that did not change is the same `Arc` as before.
+/// NaN: not known.
 #[derive(Debug, Clone, Default)]
 pub struct MapValues {
     pub pages: Vec<Arc<[f32]>>,
 }
 
-/// Most bytes sent a frame; what is left follows with the next frames, so that a whole-mesh undo does not stop the window.
+/// Most bytes sent a frame; what is left follows with the next frames, so that a whole-mesh undo
+/// does not stop the window.
 const BUDGET: u64 = 24 << 20;
 
-/// Rows between two changed ones that are sent with them: a call costs about as much as so many bytes.
+/// Rows between two changed ones that are sent with them: a call costs about as much as so many
+/// bytes.
 const GAP: usize = 8;
 
 /// Which rows of each page are not on the card yet, a bit a row.
@@ -167,12 +174,15 @@ impl Pages {
         let Some(seen) = &self.seen else { return self.ranges.len() == mesh.page_count() };
         let mut same = seen.page_count() == mesh.page_count();
         if same {
-            mesh.each_changed(seen, |i, page| same &= Arc::ptr_eq(page.topology(), seen.page(i).topology()));
+            mesh.each_changed(seen, |i, page| {
+                same &= Arc::ptr_eq(page.topology(), seen.page(i).topology())
+            });
         }
         same
     }
 
-    /// Sends what changed of the pages since they were last sent, up to the budget; the first time all of them.
+    /// Sends what changed of the pages since they were last sent, up to the budget; the first time
+    /// all of them.
     pub fn update(&mut self, queue: &wgpu::Queue, mesh: &Snapshot) {
         let first = self.seen.is_none();
         if let Some(seen) = &self.seen {
@@ -195,7 +205,8 @@ impl Pages {
             self.rows.take(i, page.own(), &mut self.runs);
             for run in &self.runs {
                 self.scratch.clear();
-                let vertex = |v| Vertex::new(page.point(v), page.normal(v), page.mask(v), page.colour(v));
+                let vertex =
+                    |v| Vertex::new(page.point(v), page.normal(v), page.mask(v), page.colour(v));
                 self.scratch.extend(run.clone().map(vertex));
                 let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
                 let at = (i as usize * self.slot + run.start) * size_of::<Vertex>();
@@ -210,7 +221,9 @@ impl Pages {
     pub fn set_map(&mut self, queue: &wgpu::Queue, map: &MapValues) -> u64 {
         let mut sent = 0;
         for (i, values) in map.pages.iter().enumerate().take(self.ranges.len()) {
-            if values.len() > self.slot || self.map.get(i).is_some_and(|old| Arc::ptr_eq(old, values)) {
+            if values.len() > self.slot
+                || self.map.get(i).is_some_and(|old| Arc::ptr_eq(old, values))
+            {
                 continue;
             }
             let at = (i * self.slot * size_of::<f32>()) as u64;
@@ -231,8 +244,8 @@ impl Pages {
             for t in page.triangles() {
                 let [a, b, c] = t.map(|v| place(page, p, self.slot, v));
                 for (from, to) in [(a, b), (b, c), (c, a)] {
-                    // The other triangle has the edge the other way; a border's edge may be left out by this, which a
-                    // sculptor does not miss.
+                    // The other triangle has the edge the other way; a border's edge may be left
+                    // out by this, which a sculptor does not miss.
                     if from < to {
                         ends.extend([from, to]);
                     }
@@ -251,13 +264,21 @@ impl Pages {
     }
 
     /// Draws every page whose bounds `visible` accepts; returns how many.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(u32, &Page) -> bool) -> usize {
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        visible: impl Fn(u32, &Page) -> bool,
+    ) -> usize {
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         self.runs(pass, &self.ranges, visible)
     }
 
     /// The edges of every page whose bounds `visible` accepts, if there are edges.
-    pub fn draw_edges(&self, pass: &mut wgpu::RenderPass<'_>, visible: impl Fn(u32, &Page) -> bool) {
+    pub fn draw_edges(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        visible: impl Fn(u32, &Page) -> bool,
+    ) {
         if let Some((edges, ranges)) = &self.edges {
             pass.set_index_buffer(edges.slice(..), wgpu::IndexFormat::Uint32);
             self.runs(pass, ranges, visible);
@@ -295,7 +316,8 @@ impl Pages {
     }
 }
 
-/// Where a page's vertex lies on the card. A halo vertex is drawn from its home's slot: every vertex is there once.
+/// Where a page's vertex lies on the card. A halo vertex is drawn from its home's slot: every
+/// vertex is there once.
 fn place(page: &Page, p: usize, slot: usize, v: impl Into<u64>) -> u32 {
     let v = v.into() as usize;
     let (home, local) = match v.checked_sub(page.own()) {

@@ -37,7 +37,12 @@ impl Painter {
         &self.renderer
     }
 
-    pub fn paint(&mut self, scene: &Scene<'_>, width: u32, height: u32) -> Result<RgbaImage, NoViewer> {
+    pub fn paint(
+        &mut self,
+        scene: &Scene<'_>,
+        width: u32,
+        height: u32,
+    ) -> Result<RgbaImage, NoViewer> {
         paint(&self.gpu, &mut self.renderer, scene, width, height)
     }
 }
@@ -75,8 +80,11 @@ pub fn paint(
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         renderer.draw(gpu, &mut encoder, &view, (width, height), scene);
         if renderer.waiting == 0 {
-            let layout =
-                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(stride),
+                rows_per_image: None,
+            };
             let to = wgpu::TexelCopyBufferInfo { buffer: &bytes, layout };
             encoder.copy_texture_to_buffer(texture.as_image_copy(), to, size);
             gpu.queue.submit([encoder.finish()]);
@@ -105,7 +113,12 @@ pub fn write_png(path: &std::path::Path, picture: &RgbaImage) -> std::io::Result
     use image::ImageEncoder;
     sculptd_geometry::io::write_beside(path, |out| {
         image::codecs::png::PngEncoder::new(out)
-            .write_image(picture.as_raw(), picture.width(), picture.height(), image::ExtendedColorType::Rgba8)
+            .write_image(
+                picture.as_raw(),
+                picture.width(),
+                picture.height(),
+                image::ExtendedColorType::Rgba8,
+            )
             .map_err(std::io::Error::other)
     })
 }

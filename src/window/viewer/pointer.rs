@@ -5,11 +5,11 @@ use winit::event::MouseButton;
 use winit::keyboard::ModifiersState;
 
 use super::overlay;
-use super::window::{Open, Wiring};
+use super::window::{WindowState, Wiring};
 use sculptd_clay::brush::{BrushKind, BrushSettings};
 use sculptd_devices::{Body, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
-use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::stroke::CurveAction;
 
 /// What a pressed button drags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -35,7 +35,8 @@ pub struct Pointer {
     speed: Speed,
 }
 
-/// The speed of a pointer as a stand-in for its pressure: slow strokes press harder than quick ones, as hands do.
+/// The speed of a pointer as a stand-in for its pressure: slow strokes press harder than quick
+/// ones, as hands do.
 #[derive(Debug, Default)]
 pub struct Speed {
     last: Option<(u64, Vec2)>,
@@ -50,7 +51,8 @@ const LOST: f32 = 0.45;
 const BRISK: f32 = 1.2;
 /// Seconds over which the speed is smoothed.
 const SMOOTH_S: f32 = 0.05;
-/// Of a pointer whose speed does not count: two thirds, so that a pen can press harder and softer than it.
+/// Of a pointer whose speed does not count: two thirds, so that a pen can press harder and softer
+/// than it.
 const PLAIN: f32 = 0.66;
 
 impl Speed {
@@ -66,7 +68,7 @@ impl Speed {
     }
 }
 
-impl Open {
+impl WindowState {
     /// The pointer as a pen: it says all that a pen says.
     fn sample(&mut self, tip: bool, wiring: &mut Wiring) {
         let t_us = wiring.clock.now_us();
@@ -86,7 +88,8 @@ impl Open {
             pressure: Some(if tip { pressure.clamp(0.01, 1.0) } else { 0.0 }),
             ..Default::default()
         };
-        let sample = Sample { device: wiring.pointer_id, t_us, device_t_us: None, body: Body::Pen(pen) };
+        let sample =
+            Sample { device: wiring.pointer_id, t_us, device_t_us: None, body: Body::Pen(pen) };
         wiring.pointer.push(sample);
         wiring.pointer.flush();
         self.figures.sent += 1;
@@ -145,7 +148,7 @@ impl Open {
         let handle = draft.handle_at(view, self.camera.aspect);
         let on_clay = || handle.is_some() || state.mesh.pick(ray).is_some();
         if let (MouseButton::Right, Some(handle)) = (button, handle) {
-            let _ = wiring.commands.try_send(Command::Draft(DraftAct::Delete(handle)));
+            let _ = wiring.commands.try_send(Command::CurveStroke(CurveAction::Delete(handle)));
             return;
         }
         self.pointer.drag = match button {
@@ -173,7 +176,8 @@ impl Open {
     }
 }
 
-/// The brush for one stroke with these keys down: Shift evens, Ctrl and Alt turn it round. Slide-relax evens by itself.
+/// The brush for one stroke with these keys down: Shift evens, Ctrl and Alt turn it round.
+/// Slide-relax evens by itself.
 fn lent(brush: BrushSettings, mods: ModifiersState) -> BrushSettings {
     let mut now = match (mods.shift_key(), brush.kind) {
         (true, BrushKind::SlideRelax) => BrushSettings { negative: !brush.negative, ..brush },
@@ -203,7 +207,9 @@ mod tests {
         let run = |views_a_second: f32| {
             let mut speed = Speed::default();
             (0..60u64)
-                .map(|i| speed.pressure(i * 8000, Vec2::new(i as f32 * 0.008 * views_a_second, 0.0)))
+                .map(|i| {
+                    speed.pressure(i * 8000, Vec2::new(i as f32 * 0.008 * views_a_second, 0.0))
+                })
                 .last()
                 .unwrap_or(0.0)
         };

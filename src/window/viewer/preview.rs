@@ -1,5 +1,5 @@
-//! What a join would make of the work, shown while the thing is still being carried: computed off to the side from a snapshot,
-//! nothing of the world knows of it.
+//! What a join would make of the work, shown while the thing is still being carried: computed off
+//! to the side from a snapshot, nothing of the world knows of it.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use glam::Vec3;
 
 use super::pages::Vertex;
 use sculptd_clay::{Corner, Cut, Snapshot};
-use sculptd_daemon::boolean_jobs as joiner;
-use sculptd_engine::hand::{Choice, Similarity, Thing};
+use sculptd_daemon::boolean_jobs;
+use sculptd_engine::hand::{HeldObject, MenuItem, Similarity};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{Operation, Options};
@@ -18,8 +18,8 @@ use sculptd_geometry::job::Job;
 #[derive(Debug, Clone)]
 pub struct Wanted {
     pub mesh: Snapshot,
-    pub thing: Thing,
-    pub choice: Choice,
+    pub thing: HeldObject,
+    pub choice: MenuItem,
 }
 
 /// The clay's tone where the thing has made a surface: warm against every material.
@@ -33,7 +33,7 @@ pub struct Preview {
     pub revision: u64,
     pub pages: usize,
     pub place: Similarity,
-    pub choice: Choice,
+    pub choice: MenuItem,
     /// Pages that are not drawn, ascending; `None`: all of them.
     pub hidden: Option<Vec<u32>>,
     pub vertices: Vec<Vertex>,
@@ -42,7 +42,8 @@ pub struct Preview {
     pub made: usize,
 }
 
-/// Triangles with a tone each, joined where place and tone are the same, so that a cut has a sharp edge.
+/// Triangles with a tone each, joined where place and tone are the same, so that a cut has a sharp
+/// edge.
 #[derive(Default)]
 struct Gather {
     names: BTreeMap<([u32; 3], bool), u32>,
@@ -90,12 +91,15 @@ impl Gather {
 /// Computes it; `None` where the choice joins nothing.
 ///
 /// # Errors
-/// As a join: an open thing, or a work that cannot be cut. [`boolean::Error::Cancelled`] when a newer one is wanted.
+/// As a join: an open thing, or a work that cannot be cut. [`boolean::Error::Cancelled`] when a
+/// newer one is wanted.
 pub fn compute(wanted: &Wanted, job: &Job) -> Result<Option<Preview>, boolean::Error> {
-    let Some(operation) = joiner::operation(wanted.choice) else { return Ok(None) };
+    let Some(operation) = boolean_jobs::operation(wanted.choice) else { return Ok(None) };
     let tool = wanted.thing.placed().to_poly();
     let options = Options::default();
-    if let Some(cut) = sculptd_clay::local_boolean::local(&wanted.mesh, &tool, operation, &options, job)? {
+    if let Some(cut) =
+        sculptd_clay::local_boolean::local(&wanted.mesh, &tool, operation, &options, job)?
+    {
         return Ok(Some(of_cut(wanted, &cut)));
     }
     whole(wanted, &tool, operation, job).map(Some)
@@ -140,7 +144,8 @@ fn whole(
     job: &Job,
 ) -> Result<Preview, boolean::Error> {
     let work = wanted.mesh.to_tri().to_poly();
-    let (solids, _) = boolean::compute([&work, tool], &[operation], &Options::default(), job, || 0.0)?;
+    let (solids, _) =
+        boolean::compute([&work, tool], &[operation], &Options::default(), job, || 0.0)?;
     let mut out = Gather::default();
     for solid in &solids {
         let (plain, faces) = solid.mesh.triangulate();

@@ -1,8 +1,9 @@
-//! What the window remembers from day to day: one small file of preferences, written when something changed.
+//! What the window remembers from day to day: one small file of preferences, written when something
+//! changed.
 
 use std::path::PathBuf;
 
-use crate::panels::Desk;
+use crate::panels::UiState;
 use crate::panels::preferences::Preferences;
 use sculptd_geometry::io::write_beside;
 
@@ -14,23 +15,23 @@ pub struct Remembered {
 
 impl Remembered {
     /// A desk as the person left it.
-    pub fn load() -> (Remembered, Desk) {
-        let path =
-            directories::ProjectDirs::from("", "", "sculptd").map(|d| d.config_dir().join("viewer.toml"));
+    pub fn load() -> (Remembered, UiState) {
+        let path = directories::ProjectDirs::from("", "", "sculptd")
+            .map(|d| d.config_dir().join("viewer.toml"));
         let text = path.as_ref().and_then(|p| std::fs::read_to_string(p).ok()).unwrap_or_default();
         let prefs = Preferences::parse(&text);
-        let desk = Desk { look: prefs.look, prefs: prefs.clone(), ..Default::default() };
+        let desk = UiState { look: prefs.look, prefs: prefs.clone(), ..Default::default() };
         (Remembered { path, kept: prefs }, desk)
     }
 
     /// A desk as it comes, of which nothing will be kept.
-    pub fn nothing() -> (Remembered, Desk) {
-        let desk = Desk::default();
+    pub fn nothing() -> (Remembered, UiState) {
+        let desk = UiState::default();
         (Remembered { path: None, kept: desk.prefs.clone() }, desk)
     }
 
     /// Writes what changed; a folder that cannot be written is nobody's concern here.
-    pub fn keep(&mut self, desk: &Desk) {
+    pub fn keep(&mut self, desk: &UiState) {
         let mut now = desk.prefs.clone();
         now.look = desk.look;
         // A map is for a moment.

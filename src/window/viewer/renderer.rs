@@ -9,8 +9,8 @@ use super::gpu::Gpu;
 use super::look::{Look, Map, SCALE, linear};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
-use crate::viewer::overlay_mesh::{Loose, Triangles};
-use crate::viewer::ssao::Shade;
+use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
+use crate::viewer::ssao::Ssao;
 use sculptd_clay::{Page, Snapshot};
 use sculptd_engine::camera::Camera;
 
@@ -87,12 +87,12 @@ pub struct Renderer {
     others: Option<Targets>,
     /// The preview that was sent last.
     previewed: Option<Arc<Preview>>,
-    preview: Loose,
-    ghosts: Loose,
+    preview: OverlayMesh,
+    ghosts: OverlayMesh,
     /// Whether the depth can be read here.
     shades: bool,
     /// Made when it is first asked for.
-    shade: Option<Shade>,
+    shade: Option<Ssao>,
     /// Bytes of pages sent with the last frame, and pages that still wait.
     pub uploaded: u64,
     pub waiting: usize,
@@ -114,8 +114,11 @@ impl Renderer {
             })
         };
         let frame = buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM);
-        let line_ends =
-            buffer("lines", (MAX_LINE_ENDS * size_of::<LineEnd>()) as u64, wgpu::BufferUsages::VERTEX);
+        let line_ends = buffer(
+            "lines",
+            (MAX_LINE_ENDS * size_of::<LineEnd>()) as u64,
+            wgpu::BufferUsages::VERTEX,
+        );
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("frame"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -144,54 +147,56 @@ impl Renderer {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
         };
-        let pipeline =
-            |name: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], lines: bool, depth: bool| {
-                let ghost = name == "ghost";
-                device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                    label: Some(name),
-                    layout: Some(&pipeline_layout),
-                    vertex: wgpu::VertexState {
-                        module: &shader,
-                        entry_point: Some(&format!("{}_vertex", if ghost { "clay" } else { name })),
-                        compilation_options: Default::default(),
-                        buffers,
+        let pipeline = |name: &str,
+                        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+                        lines: bool,
+                        depth: bool| {
+            let ghost = name == "ghost";
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(name),
+                layout: Some(&pipeline_layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some(&format!("{}_vertex", if ghost { "clay" } else { name })),
+                    compilation_options: Default::default(),
+                    buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology: if lines {
+                        wgpu::PrimitiveTopology::LineList
+                    } else {
+                        wgpu::PrimitiveTopology::TriangleList
                     },
-                    primitive: wgpu::PrimitiveState {
-                        topology: if lines {
-                            wgpu::PrimitiveTopology::LineList
-                        } else {
-                            wgpu::PrimitiveTopology::TriangleList
-                        },
-                        // What is seen through shows its near side alone.
-                        cull_mode: ghost.then_some(wgpu::Face::Back),
-                        ..Default::default()
-                    },
-                    depth_stencil: Some(wgpu::DepthStencilState {
-                        format: DEPTH,
-                        depth_write_enabled: Some(depth && !lines && !ghost),
-                        depth_compare: Some(if depth {
-                            wgpu::CompareFunction::LessEqual
-                        } else {
-                            wgpu::CompareFunction::Always
-                        }),
-                        stencil: Default::default(),
-                        bias: Default::default(),
+                    // What is seen through shows its near side alone.
+                    cull_mode: ghost.then_some(wgpu::Face::Back),
+                    ..Default::default()
+                },
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(depth && !lines && !ghost),
+                    depth_compare: Some(if depth {
+                        wgpu::CompareFunction::LessEqual
+                    } else {
+                        wgpu::CompareFunction::Always
                     }),
-                    multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
-                    fragment: Some(wgpu::FragmentState {
-                        module: &shader,
-                        entry_point: Some(&format!("{name}_fragment")),
-                        compilation_options: Default::default(),
-                        targets: &[Some(wgpu::ColorTargetState {
-                            format,
-                            blend: (lines || ghost).then_some(wgpu::BlendState::ALPHA_BLENDING),
-                            write_mask: wgpu::ColorWrites::ALL,
-                        })],
-                    }),
-                    multiview_mask: None,
-                    cache: None,
-                })
-            };
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(&format!("{name}_fragment")),
+                    compilation_options: Default::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format,
+                        blend: (lines || ghost).then_some(wgpu::BlendState::ALPHA_BLENDING),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
         Renderer {
             sky: pipeline("sky", &[], false, false),
             clay: pipeline("clay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
@@ -207,8 +212,8 @@ impl Renderer {
             targets: None,
             others: None,
             previewed: None,
-            preview: Loose::default(),
-            ghosts: Loose::default(),
+            preview: OverlayMesh::default(),
+            ghosts: OverlayMesh::default(),
             // OpenGL draws nothing at all with a depth of several samples that is to be read.
             shades: samples == 1 || gpu.adapter.get_info().backend != wgpu::Backend::Gl,
             shade: None,
@@ -252,7 +257,8 @@ impl Renderer {
         if let Some(shade) = &mut self.shade {
             shade.forget();
         }
-        self.targets = Some((view(DEPTH, read), (self.samples > 1).then(|| view(self.format, none)), size));
+        self.targets =
+            Some((view(DEPTH, read), (self.samples > 1).then(|| view(self.format, none)), size));
     }
 
     /// Draws into `target`, which has `size` pixels.
@@ -284,8 +290,11 @@ impl Renderer {
         };
         let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
         // The ground: a quiet dusk, or paper.
-        let ground =
-            if scene.look.pale { [[196, 199, 205], [228, 230, 234]] } else { [[28, 29, 33], [63, 65, 71]] };
+        let ground = if scene.look.pale {
+            [[196, 199, 205], [228, 230, 234]]
+        } else {
+            [[28, 29, 33], [63, 65, 71]]
+        };
         let frame = Frame {
             view_projection: matrix.to_cols_array_2d(),
             right: right.extend(0.0).to_array(),
@@ -313,8 +322,9 @@ impl Renderer {
             }
         }
         let preview = self.beside(gpu, scene);
-        let hidden =
-            |i: u32| preview.is_some_and(|p| p.hidden.as_ref().is_none_or(|h| h.binary_search(&i).is_ok()));
+        let hidden = |i: u32| {
+            preview.is_some_and(|p| p.hidden.as_ref().is_none_or(|h| h.binary_search(&i).is_ok()))
+        };
         let shown = |i: u32, page: &Page| !hidden(i) && in_view(&matrix, page);
         let Some((depth, smooth, _)) = &self.targets else { return };
         let view = smooth.as_ref().unwrap_or(target);
@@ -349,7 +359,7 @@ impl Renderer {
         let extent = (hi - lo).length() * 0.5;
         let between = scene.camera.depth_range(radius);
         let size_of = (view, depth, size);
-        let passes = self.shade.get_or_insert_with(|| Shade::new(gpu, self.format, self.samples));
+        let passes = self.shade.get_or_insert_with(|| Ssao::new(gpu, self.format, self.samples));
         passes.draw(gpu, encoder, size_of, scene.camera, between, (extent, shade));
         if resolve.is_some() || !lines.is_empty() || scene.beside.ghosts.is_some() {
             let mut pass = begin(encoder, view, resolve, depth, (false, false));
@@ -387,7 +397,8 @@ impl Renderer {
     }
 }
 
-/// A pass over the picture and its depth; `first` clears both, `keep` leaves the depth for others to read.
+/// A pass over the picture and its depth; `first` clears both, `keep` leaves the depth for others
+/// to read.
 fn begin<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     view: &wgpu::TextureView,
@@ -415,7 +426,8 @@ fn begin<'e>(
     })
 }
 
-/// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is `b` times the share.
+/// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is
+/// `b` times the share.
 fn nearer(camera: &Camera, radius: f32) -> f32 {
     if camera.orthographic {
         return 4e-4;
@@ -433,7 +445,9 @@ fn in_view(matrix: &Mat4, page: &Page) -> bool {
         let pick = |axis: u32, lo: f32, hi: f32| if corner >> axis & 1 == 0 { lo } else { hi };
         let p = Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z));
         let c = *matrix * p.extend(1.0);
-        for (n, out) in beyond.iter_mut().zip([c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0]) {
+        for (n, out) in
+            beyond.iter_mut().zip([c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0])
+        {
             *n += u8::from(out);
         }
     }

@@ -1,11 +1,11 @@
-//! Pictures of the clay without the panels: a screenshot, or a whole turn of it, a frame at a time so that the window
-//! stays alive.
+//! Pictures of the clay without the panels: a screenshot, or a whole turn of it, a frame at a time
+//! so that the window stays alive.
 
 use std::path::PathBuf;
 
 use super::picture::paint;
 use super::renderer::Scene;
-use super::window::Open;
+use super::window::WindowState;
 use super::work::free_name;
 use sculptd_daemon::Published;
 use sculptd_engine::camera::Camera;
@@ -26,7 +26,7 @@ fn folder() -> PathBuf {
         .unwrap_or_default()
 }
 
-impl Open {
+impl WindowState {
     pub(super) fn begin_turntable(&mut self) {
         let folder = free_name(&folder(), "sculptd-turntable", "");
         match std::fs::create_dir_all(&folder) {
@@ -47,7 +47,8 @@ impl Open {
         }
         let Some(t) = &mut self.turning else { return };
         let turn = t.next as f32 / t.frames as f32 * std::f32::consts::TAU;
-        let camera = Camera { yaw: (t.from.yaw + turn).rem_euclid(std::f32::consts::TAU), ..t.from };
+        let camera =
+            Camera { yaw: (t.from.yaw + turn).rem_euclid(std::f32::consts::TAU), ..t.from };
         let path = t.folder.join(format!("frame-{:03}.png", t.next));
         t.next += 1;
         if t.next == t.frames {

@@ -1,5 +1,6 @@
-//! The shade that forms throw into their own hollows, from the depth of the picture: three small passes after the clay, none of
-//! which knows the mesh. What it costs follows the picture's size alone.
+//! The shade that forms throw into their own hollows, from the depth of the picture: three small
+//! passes after the clay, none of which knows the mesh. What it costs follows the picture's size
+//! alone.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -19,7 +20,7 @@ const SHADES: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 const REACH: f32 = 0.30;
 
 #[derive(Debug)]
-pub struct Shade {
+pub struct Ssao {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
     gather: wgpu::RenderPipeline,
@@ -38,9 +39,9 @@ struct Sized {
     groups: [wgpu::BindGroup; 3],
 }
 
-impl Shade {
+impl Ssao {
     /// `format` and `samples` are those of the picture that is shaded.
-    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Shade {
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Ssao {
         let device = &gpu.device;
         let many = samples > 1;
         // Not as a depth texture: not every backend reads single texels of one.
@@ -121,7 +122,7 @@ impl Shade {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Shade {
+        Ssao {
             gather: pipeline("gather", SHADES, 1, None),
             smooth: pipeline("smooth_out", SHADES, 1, None),
             lay: pipeline("lay", format, samples, Some(multiply)),
@@ -142,8 +143,8 @@ impl Shade {
         self.sized = None;
     }
 
-    /// Shades `picture`, which was drawn with `depth`; both have `size` pixels. `extent` is the work's bounding radius,
-    /// `(near, far)` what the depth runs between, `strength` 0 to 2.
+    /// Shades `picture`, which was drawn with `depth`; both have `size` pixels. `extent` is the
+    /// work's bounding radius, `(near, far)` what the depth runs between, `strength` 0 to 2.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -153,13 +154,15 @@ impl Shade {
         (near, far): (f32, f32),
         (extent, strength): (f32, f32),
     ) {
-        let high = if camera.orthographic { camera.distance } else { 1.0 } * (camera.fov_y * 0.5).tan();
+        let high =
+            if camera.orthographic { camera.distance } else { 1.0 } * (camera.fov_y * 0.5).tan();
         let uniform = Uniform {
             lens: [high * camera.aspect, high, near, far],
             reach: [f32::from(camera.orthographic), (extent * REACH).max(1e-9), strength, 0.0],
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        let sized = self.sized.get_or_insert_with(|| sized(gpu, &self.layout, &self.uniform, depth, size));
+        let sized =
+            self.sized.get_or_insert_with(|| sized(gpu, &self.layout, &self.uniform, depth, size));
         let steps = [
             (&self.gather, &sized.rough, wgpu::LoadOp::Clear(wgpu::Color::WHITE)),
             (&self.smooth, &sized.fine, wgpu::LoadOp::Clear(wgpu::Color::WHITE)),
@@ -211,8 +214,14 @@ fn sized(
             layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(shades) },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(depth),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::TextureView(shades),
+                },
             ],
         })
     });

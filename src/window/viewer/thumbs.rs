@@ -1,11 +1,11 @@
-//! Small pictures of the work after each step, by the window's own renderer, taken when the work rests. Nobody waits for them:
-//! the pixels are fetched some frames later.
+//! Small pictures of the work after each step, by the window's own renderer, taken when the work
+//! rests. Nobody waits for them: the pixels are fetched some frames later.
 
 use std::sync::mpsc;
 
 use super::look::{Look, Map};
 use super::renderer::Scene;
-use super::window::Open;
+use super::window::WindowState;
 use crate::panels::history::{KEPT, Thumb};
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
@@ -44,8 +44,9 @@ fn mark(mesh: &Snapshot) -> u64 {
     })
 }
 
-impl Open {
-    /// Takes a picture where one is due, and fetches the last. Once a frame, after it was handed to the card.
+impl WindowState {
+    /// Takes a picture where one is due, and fetches the last. Once a frame, after it was handed to
+    /// the card.
     pub(super) fn thumb(&mut self, state: &Published, now: u64) {
         self.fetch();
         let revision = state.mesh.revision();
@@ -106,7 +107,8 @@ impl Open {
         if lo.cmple(hi).all() {
             camera.frame(lo, hi);
         }
-        let look = Look { map: Map::None, wireframe: false, grid: false, shade: 0.0, ..self.desk.look };
+        let look =
+            Look { map: Map::None, wireframe: false, grid: false, shade: 0.0, ..self.desk.look };
         let scene = Scene {
             mesh: &state.mesh,
             camera: &camera,
@@ -123,8 +125,11 @@ impl Open {
             // Not all of the work is on the card yet: another time.
             self.thumbs.seen = None;
         }
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0 * 4), rows_per_image: None };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(SIZE.0 * 4),
+            rows_per_image: None,
+        };
         let to = wgpu::TexelCopyBufferInfo { buffer: &bytes, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), to, size);
         self.gpu.queue.submit([encoder.finish()]);
@@ -146,11 +151,14 @@ impl Open {
         let Some(pending) = self.thumbs.pending.take().filter(|_| well) else { return };
         let Ok(data) = pending.bytes.slice(..).get_mapped_range() else { return };
         let mut pixels = data.to_vec();
-        if matches!(self.config.format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb)
-        {
+        if matches!(
+            self.config.format,
+            wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb
+        ) {
             pixels.chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
-        let image = egui::ColorImage::from_rgba_unmultiplied([SIZE.0 as usize, SIZE.1 as usize], &pixels);
+        let image =
+            egui::ColorImage::from_rgba_unmultiplied([SIZE.0 as usize, SIZE.1 as usize], &pixels);
         let texture = self.egui.egui_ctx().load_texture("thumb", image, Default::default());
         let kept = &mut self.desk.history;
         kept.push(Thumb { step: pending.step, mark: pending.mark, texture });

@@ -1,4 +1,5 @@
-//! The window: our own event loop on the main thread. The pointer is an adaptor like the others; panels send commands.
+//! The window: our own event loop on the main thread. The pointer is an adaptor like the others;
+//! panels send commands.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -22,8 +23,8 @@ use super::remember::Remembered;
 use super::renderer::Renderer;
 use super::work::Work;
 use crate::panels::hand_menu::Ball;
-use crate::panels::{Desk, timing::FrameFigures};
-use crate::viewer::camera_animation::Flight;
+use crate::panels::{UiState, timing::FrameFigures};
+use crate::viewer::camera_animation::CameraAnimation;
 use crate::viewer::overlay_mesh::Triangles;
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
@@ -31,7 +32,7 @@ use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
-use sculptd_engine::hand::{Choice, Similarity};
+use sculptd_engine::hand::{MenuItem, Similarity};
 
 /// Everything that joins the window to the daemon.
 pub struct Wiring {
@@ -61,13 +62,15 @@ impl std::fmt::Debug for Wiring {
     }
 }
 
-/// How often the published state is looked at: 60 times a second on a card, 20 where a processor draws, which would
-/// otherwise starve the loop.
+/// How often the published state is looked at: 60 times a second on a card, 20 where a processor
+/// draws, which would otherwise starve the loop.
 const FRAME: [Duration; 2] = [Duration::from_micros(16_667), Duration::from_millis(50)];
 
 /// Opens the window and runs until it is closed or `stop` is raised.
 pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
-    let events = EventLoop::<Told>::with_user_event().build().map_err(|e| NoViewer::Window(e.to_string()))?;
+    let events = EventLoop::<Told>::with_user_event()
+        .build()
+        .map_err(|e| NoViewer::Window(e.to_string()))?;
     let mut app = App { wiring, told: events.create_proxy(), open: None, failed: None };
     events.run_app(&mut app).map_err(|e| NoViewer::Window(e.to_string()))?;
     if let Some(mut open) = app.open {
@@ -82,15 +85,15 @@ type Told = egui_winit::accesskit_winit::Event;
 struct App {
     wiring: Wiring,
     told: EventLoopProxy<Told>,
-    open: Option<Open>,
+    open: Option<WindowState>,
     failed: Option<NoViewer>,
 }
 
 /// What the ghosts were made from: the thing and its place, whether a join is tried, the menu.
-type GhostKey = (Option<(usize, Similarity)>, Option<Choice>, Vec<Ball>);
+type GhostKey = (Option<(usize, Similarity)>, Option<MenuItem>, Vec<Ball>);
 
 /// An open window and all that it draws with.
-pub(super) struct Open {
+pub(super) struct WindowState {
     pub(super) window: Arc<Window>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
@@ -104,8 +107,8 @@ pub(super) struct Open {
     pub(super) mods: ModifiersState,
     /// The camera as this window last wanted it; the world's own follows a tick later.
     pub(super) camera: Camera,
-    pub(super) flight: Option<Flight>,
-    pub(super) desk: Desk,
+    pub(super) flight: Option<CameraAnimation>,
+    pub(super) desk: UiState,
     pub(super) work: Work,
     pub(super) remembered: Remembered,
     pub(super) values: Option<MapValues>,
@@ -119,8 +122,9 @@ pub(super) struct Open {
     pub(super) wishes: crate::viewer::background::Wishes,
     /// The newest preview, and what was asked for, when.
     pub(super) preview: Option<Arc<Preview>>,
-    pub(super) asked_preview: Option<((u64, Similarity, Choice), u64)>,
-    /// What distances are to; the revision, its revision and the thing's place that they were last asked for.
+    pub(super) asked_preview: Option<((u64, Similarity, MenuItem), u64)>,
+    /// What distances are to; the revision, its revision and the thing's place that they were last
+    /// asked for.
     pub(super) before: Option<Snapshot>,
     pub(super) asked_distance: Option<(u64, u64, Option<Similarity>)>,
     pub(super) asked_sizes: Option<(u64, DVec3)>,
@@ -141,7 +145,7 @@ pub(super) struct Open {
 impl ApplicationHandler<Told> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_none() {
-            match Open::new(events, &self.wiring, &self.told) {
+            match WindowState::new(events, &self.wiring, &self.told) {
                 Ok(open) => self.open = Some(open),
                 Err(e) => {
                     self.failed = Some(e);
@@ -172,12 +176,14 @@ impl ApplicationHandler<Told> for App {
         // Redraw when the clay or a ghost moved, and a few times a second for the figures.
         let now = (state.mesh.revision(), state.tick / 12);
         let ghosts = self.wiring.clock.now_us() < self.wiring.ghosts_until_us;
-        if open.shown != Some(now) || ghosts || open.flight.is_some() || !open.work.done.is_empty() {
+        if open.shown != Some(now) || ghosts || open.flight.is_some() || !open.work.done.is_empty()
+        {
             open.shown = Some(now);
             open.window.request_redraw();
         }
         let frame = FRAME[usize::from(open.gpu.software)];
-        #[allow(clippy::disallowed_methods)] // winit takes its deadlines in the machine's own clock.
+        #[allow(clippy::disallowed_methods)]
+        // winit takes its deadlines in the machine's own clock.
         let next = std::time::Instant::now() + frame;
         events.set_control_flow(ControlFlow::WaitUntil(next));
     }
@@ -209,7 +215,9 @@ impl ApplicationHandler<Told> for App {
                     open.button(button, down, wiring);
                 }
             }
-            WindowEvent::Touch(touch) if !response.consumed || touch.phase != TouchPhase::Started => {
+            WindowEvent::Touch(touch)
+                if !response.consumed || touch.phase != TouchPhase::Started =>
+            {
                 open.touched(&touch, wiring);
             }
             WindowEvent::MouseWheel { delta, .. } if !response.consumed => {
@@ -232,8 +240,12 @@ impl ApplicationHandler<Told> for App {
     }
 }
 
-impl Open {
-    fn new(events: &ActiveEventLoop, wiring: &Wiring, told: &EventLoopProxy<Told>) -> Result<Open, NoViewer> {
+impl WindowState {
+    fn new(
+        events: &ActiveEventLoop,
+        wiring: &Wiring,
+        told: &EventLoopProxy<Told>,
+    ) -> Result<WindowState, NoViewer> {
         let no_window = |e: String| NoViewer::Window(e);
         let mut wanted = Window::default_attributes().with_title("sculptd").with_visible(false);
         // A window manager may be absent (a kiosk): the size is set as well as the mode.
@@ -252,7 +264,8 @@ impl Open {
         };
         let window = Arc::new(events.create_window(wanted).map_err(|e| no_window(e.to_string()))?);
         let instance = instance();
-        let surface = instance.create_surface(window.clone()).map_err(|e| no_window(e.to_string()))?;
+        let surface =
+            instance.create_surface(window.clone()).map_err(|e| no_window(e.to_string()))?;
         let gpu = Gpu::new(instance, Some(&surface))?;
         let size = window.inner_size();
         let mut config = surface
@@ -272,8 +285,14 @@ impl Open {
         let renderer = Renderer::new(&gpu, config.format, samples);
         let context = egui::Context::default();
         let scale = window.scale_factor() as f32;
-        let mut egui =
-            egui_winit::State::new(context, egui::ViewportId::ROOT, &window, Some(scale), None, None);
+        let mut egui = egui_winit::State::new(
+            context,
+            egui::ViewportId::ROOT,
+            &window,
+            Some(scale),
+            None,
+            None,
+        );
         // A screen reader meets a window that is not shown yet, else it would miss its first state.
         egui.init_accesskit(events, &window, told.clone());
         window.set_visible(true);
@@ -284,7 +303,7 @@ impl Open {
         let paint = egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
         let mut camera = wiring.published.load().camera;
         camera.aspect = size.width.max(1) as f32 / size.height.max(1) as f32;
-        let open = Open {
+        let open = WindowState {
             adapter: gpu.name(),
             window,
             surface,

@@ -1,5 +1,6 @@
-//! Slow work for the window, on threads of its own: reading and writing meshes, the live thickness map, file dialogs.
-//! The window never waits for it and the loop never hears of it, but for the command that a loaded mesh becomes.
+//! Slow work for the window, on threads of its own: reading and writing meshes, the live thickness
+//! map, file dialogs. The window never waits for it and the loop never hears of it, but for the
+//! command that a loaded mesh becomes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,9 +19,9 @@ use sculptd_clay::live_thickness::LiveMap;
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
-use sculptd_daemon::{Published, boolean_jobs as joiner, startup as rig};
+use sculptd_daemon::{Published, boolean_jobs, startup};
 use sculptd_engine::command::{Command, NewClay};
-use sculptd_engine::hand::Choice;
+use sculptd_engine::hand::MenuItem;
 use sculptd_geometry::io::{write_beside, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
@@ -47,11 +48,12 @@ pub enum Done {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    Open,
+    WindowState,
     Export,
 }
 
-/// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is too thin.
+/// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is
+/// too thin.
 #[derive(Debug, Clone)]
 struct Wanted {
     mesh: Snapshot,
@@ -85,7 +87,7 @@ impl Work {
         let say = self.say.clone();
         thread("sculptd-load", move || {
             let name = path.display().to_string();
-            let said = match rig::load(Some(&path), &Job::default()) {
+            let said = match startup::load(Some(&path), &Job::default()) {
                 Ok(loaded) => {
                     let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
                     for warning in loaded.warnings.iter().take(3) {
@@ -135,14 +137,21 @@ impl Work {
         });
     }
 
-    /// Joins the thing in the hands with the work; the result takes the work's place, and undo brings the work back.
-    pub fn join(&self, choice: Choice, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+    /// Joins the thing in the hands with the work; the result takes the work's place, and undo
+    /// brings the work back.
+    pub fn join(
+        &self,
+        choice: MenuItem,
+        shown: Arc<ArcSwap<Published>>,
+        commands: cc::Sender<Command>,
+    ) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
-            let (text, wrong) = match joiner::at_rest(&shown, choice, &Job::default(), &commands) {
-                Ok(_) => (format!("{}: done", choice.label()), false),
-                Err(e) => (e.to_string(), true),
-            };
+            let (text, wrong) =
+                match boolean_jobs::at_rest(&shown, choice, &Job::default(), &commands) {
+                    Ok(_) => (format!("{}: done", choice.label()), false),
+                    Err(e) => (e.to_string(), true),
+                };
             let _ = say.send(Done::Said(text, wrong));
             let _ = say.send(Done::Joined);
         });
@@ -171,13 +180,20 @@ impl Work {
 
     /// Cuts off what is seen in a part of the view.
     pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
-        self.change("sculptd-trim", commands, move || Ok((trim::at_rest(&shown, &part)?, "Trimmed".into())));
+        self.change("sculptd-trim", commands, move || {
+            Ok((trim::at_rest(&shown, &part)?, "Trimmed".into()))
+        });
     }
 
     /// The work one level finer or coarser.
-    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+    pub fn level(
+        &self,
+        finer: bool,
+        shown: Arc<ArcSwap<Published>>,
+        commands: cc::Sender<Command>,
+    ) {
         self.change("sculptd-level", commands, move || {
-            let (command, (at, of)) = joiner::level(&shown, finer)?;
+            let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
             Ok((vec![command], format!("Level {} of {of}", at + 1)))
         });
     }
@@ -199,7 +215,8 @@ impl Work {
         self.say.clone()
     }
 
-    /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where there is no desktop.
+    /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where
+    /// there is no desktop.
     pub fn ask(&self, purpose: Purpose) {
         if self.dialog.swap(true, Relaxed) {
             return;
@@ -209,8 +226,10 @@ impl Work {
             let dialog = rfd::AsyncFileDialog::new()
                 .add_filter("Meshes", &["stl", "obj", "ply", "off", "glb", "gltf", "3mf"]);
             let chosen = match purpose {
-                Purpose::Open => pollster::block_on(dialog.pick_file()),
-                Purpose::Export => pollster::block_on(dialog.set_file_name("sculpture.stl").save_file()),
+                Purpose::WindowState => pollster::block_on(dialog.pick_file()),
+                Purpose::Export => {
+                    pollster::block_on(dialog.set_file_name("sculpture.stl").save_file())
+                }
             };
             open.store(false, Relaxed);
             if let Some(file) = chosen {
@@ -256,7 +275,9 @@ const BATCH: usize = 40_000;
 fn follow(wishes: &cc::Receiver<Wanted>, say: &cc::Sender<Done>) {
     // One worker is left to the loop.
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).build() else { return };
+    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).build() else {
+        return;
+    };
     let job = Job::default();
     let mut map: Option<LiveMap> = None;
     let mut pages: Vec<Arc<[f32]>> = Vec::new();
@@ -289,7 +310,8 @@ fn gather(mesh: &Snapshot, values: &[f32], pages: &mut Vec<Arc<[f32]>>) {
         let ids = &page.topology().ids[..page.own()];
         let value = |id: &u32| values.get(*id as usize).copied().unwrap_or(f32::NAN);
         let same = |old: &Arc<[f32]>| {
-            old.len() == ids.len() && old.iter().zip(ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
+            old.len() == ids.len()
+                && old.iter().zip(ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
         };
         if !pages.get(i).is_some_and(same) {
             let new: Arc<[f32]> = ids.iter().map(value).collect();
@@ -306,10 +328,16 @@ const SPOTS: usize = 5;
 
 fn about(wanted: &Wanted, map: &LiveMap, left: usize) -> Thickness {
     let values = map.values();
-    let mut known: Vec<(f32, u32)> =
-        values.iter().enumerate().filter(|(_, v)| v.is_finite()).map(|(i, v)| (*v, i as u32)).collect();
+    let mut known: Vec<(f32, u32)> = values
+        .iter()
+        .enumerate()
+        .filter(|(_, v)| v.is_finite())
+        .map(|(i, v)| (*v, i as u32))
+        .collect();
     known.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let at = |share: f64| known.get(((known.len().max(1) - 1) as f64 * share) as usize).map_or(0.0, |k| k.0);
+    let at = |share: f64| {
+        known.get(((known.len().max(1) - 1) as f64 * share) as usize).map_or(0.0, |k| k.0)
+    };
     let (min, max, high) = (at(0.0), at(1.0), at(0.98));
     let mut histogram = vec![0u32; Thickness::CLASSES];
     let span = (high - min).max(1e-12);
@@ -355,5 +383,8 @@ fn about(wanted: &Wanted, map: &LiveMap, left: usize) -> Thickness {
 
 /// A name that is not taken: `sculptd-1.png`, `sculptd-2.png`, ...
 pub fn free_name(folder: &Path, stem: &str, ending: &str) -> PathBuf {
-    (1..).map(|n| folder.join(format!("{stem}-{n}{ending}"))).find(|p| !p.exists()).unwrap_or_default()
+    (1..)
+        .map(|n| folder.join(format!("{stem}-{n}{ending}")))
+        .find(|p| !p.exists())
+        .unwrap_or_default()
 }

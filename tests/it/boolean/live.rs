@@ -1,16 +1,17 @@
-//! Booleans in the running loop: cuts that write only the pages around them, made although the clay moves on elsewhere, refused
-//! where it moved there, the same in a replay; and an end to the long ones when it is asked for.
+//! Booleans in the running loop: cuts that write only the pages around them, made although the clay
+//! moves on elsewhere, refused where it moved there, the same in a replay; and an end to the long
+//! ones when it is asked for.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3};
-use sculptd_clay::brush::{Gaussian, MaskAction};
-use sculptd_clay::{Cut, Grafted, Mesh, Reach, Workers};
+use sculptd_clay::brush::{GaussianBrush, MaskAction};
+use sculptd_clay::{Clay, Cut, Grafted, Reach, Workers};
 use sculptd_daemon::boolean_jobs::{JoinError, carry_out, join};
 use sculptd_daemon::config::{Config, LoopConfig};
 use sculptd_daemon::live::Live;
-use sculptd_daemon::{Published, startup as rig};
+use sculptd_daemon::{Published, startup};
 use sculptd_devices::{Clock, queue};
 use sculptd_engine::command::{Carving, Command};
 use sculptd_engine::world::World;
@@ -19,9 +20,10 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, shapes};
 
 fn world(frequency: u32) -> World {
-    let config = Config { r#loop: LoopConfig { workers: 1, ..Default::default() }, ..Default::default() };
-    let mesh = Mesh::build(&shapes::icosphere(1.0, frequency), &Job::default()).expect("a ball");
-    rig::world(mesh, &config)
+    let config =
+        Config { r#loop: LoopConfig { workers: 1, ..Default::default() }, ..Default::default() };
+    let mesh = Clay::build(&shapes::icosphere(1.0, frequency), &Job::default()).expect("a ball");
+    startup::world(mesh, &config)
 }
 
 fn ball(radius: f64, at: DVec3) -> PolyMesh {
@@ -32,16 +34,16 @@ fn ball(radius: f64, at: DVec3) -> PolyMesh {
 
 fn sound(world: &World) -> check::Report {
     world.mesh().verify_invariants().expect("sound pages");
-    let facts =
-        check::report(&world.mesh().to_tri().to_poly(), false, &Job::default()).expect("not cancelled");
+    let facts = check::report(&world.mesh().to_tri().to_poly(), false, &Job::default())
+        .expect("not cancelled");
     assert!(facts.closed && facts.manifold && facts.oriented, "{facts:?}");
     facts
 }
 
 /// The cut that a carving tool asks for.
 fn carving(world: &mut World, tool: &PolyMesh) -> Arc<Cut> {
-    let done =
-        join(&world.snapshot(), tool, false, Operation::Difference, &Job::default()).expect("a result");
+    let done = join(&world.snapshot(), tool, false, Operation::Difference, &Job::default())
+        .expect("a result");
     match &done[..] {
         [Command::Cut(c)] => c.cut.clone(),
         other => panic!("not local: {} commands", other.len()),
@@ -60,7 +62,8 @@ fn a_cut_is_made_over_changes_elsewhere_and_refused_over_changes_there() {
     let mut w = world(40);
     let (whole, volume) = (w.mesh().hash(), sound(&w).volume.expect("closed"));
     let tool = ball(0.12, DVec3::Z);
-    let (first, beside) = (carving(&mut w, &tool), carving(&mut w, &ball(0.1, DVec3::new(0.05, 0.0, 1.0))));
+    let (first, beside) =
+        (carving(&mut w, &tool), carving(&mut w, &ball(0.1, DVec3::new(0.05, 0.0, 1.0))));
     let far = carving(&mut w, &ball(0.1, -DVec3::Z));
     let made = make(&mut w, 1, &first).expect("made");
     assert!(made.written > 0 && made.shared > made.written, "{made:?}");
@@ -70,7 +73,7 @@ fn a_cut_is_made_over_changes_elsewhere_and_refused_over_changes_there() {
     assert!(sound(&w).volume.is_some_and(|v| v < volume - 0.002));
     // A dab on the far side changes nothing for a cut here; one in the place does.
     for (centre, stands) in [(Vec3::X, true), (Vec3::Y, false)] {
-        let mut mesh = Mesh::build(&w.mesh().to_tri(), &Job::default()).expect("clay");
+        let mut mesh = Clay::build(&w.mesh().to_tri(), &Job::default()).expect("clay");
         let snapshot = mesh.snapshot();
         let tool = ball(0.12, DVec3::Y);
         let cut = match &join(&snapshot, &tool, false, Operation::Difference, &Job::default())
@@ -80,7 +83,7 @@ fn a_cut_is_made_over_changes_elsewhere_and_refused_over_changes_there() {
             _ => panic!("not local"),
         };
         let reach = Reach::Sphere { centre, radius: 0.1 };
-        mesh.dab(&reach, &Gaussian::new(centre, 0.1, centre, 0.01), &Workers::new(1));
+        mesh.dab(&reach, &GaussianBrush::new(centre, 0.1, centre, 0.01), &Workers::new(1));
         assert_eq!(mesh.graft(&cut).is_some(), stands, "{centre}");
         mesh.verify_invariants().expect("sound");
     }
@@ -114,7 +117,11 @@ fn what_is_protected_stays_so_the_long_way_too() {
     let tool = ball(0.9, DVec3::new(0.5, 0.1, 0.05));
     let done = join(&live.snapshot(), &tool, false, Operation::Intersection, &Job::default());
     let done = done.expect("a result");
-    assert!(matches!(&done[..], [Command::Remake(..)]), "not with masks: {} commands", done.len());
+    assert!(
+        matches!(&done[..], [Command::ReplaceMasked(..)]),
+        "not with masks: {} commands",
+        done.len()
+    );
     let bytes = postcard::to_allocvec(&done).expect("written");
     live.step(2, &[], &done);
     let read: Vec<Command> = postcard::from_bytes(&bytes).expect("read");
@@ -125,7 +132,8 @@ fn what_is_protected_stays_so_the_long_way_too() {
     let (at, masks) = (now.to_tri().positions, now.masks().expect("some"));
     let (mut own, mut tools) = (0, 0);
     for (p, mask) in at.iter().zip(masks) {
-        // On the unit ball are corners of the clay; well inside it are only corners that came with the tool.
+        // On the unit ball are corners of the clay; well inside it are only corners that came with
+        // the tool.
         if (p.length() - 1.0).abs() < 1e-6 {
             assert!((mask - 1.0).abs() < 1e-6, "{p}: {mask}");
             own += 1;
@@ -142,18 +150,26 @@ fn what_is_protected_stays_so_the_long_way_too() {
 #[test]
 fn in_the_running_loop_with_pages_shared_and_an_end_when_asked() {
     let w = world(100);
-    let before = check::report(&w.mesh().to_tri().to_poly(), false, &Job::default()).expect("not cancelled");
+    let before =
+        check::report(&w.mesh().to_tri().to_poly(), false, &Job::default()).expect("not cancelled");
     let (_, receiver) = queue::channel(64);
     let clock = Clock::monotonic();
-    let live = Live::start(w, receiver, clock.clone(), LoopConfig::default(), 64, None).expect("runs");
+    let live =
+        Live::start(w, receiver, clock.clone(), LoopConfig::default(), 64, None).expect("runs");
     let given = |tool: PolyMesh| move |_: &Published| Ok::<_, JoinError>(tool.clone());
     for (n, at) in [DVec3::Z, DVec3::X, DVec3::new(0.0, 0.6, 0.8)].into_iter().enumerate() {
         let tool = ball(0.1, at);
         let start = clock.now_us();
         let job = Job::default();
-        let done =
-            carry_out(&live.published, given(tool), false, Operation::Difference, &job, &live.commands)
-                .expect("joined");
+        let done = carry_out(
+            &live.published,
+            given(tool),
+            false,
+            Operation::Difference,
+            &job,
+            &live.commands,
+        )
+        .expect("joined");
         println!("{n}: {done:?} in {:.1} ms", (clock.now_us() - start) as f64 * 1e-3);
         assert!(
             done.local && done.pages_written > 0 && done.pages_shared > 10 * done.pages_written,
@@ -174,9 +190,10 @@ fn in_the_running_loop_with_pages_shared_and_an_end_when_asked() {
     };
     let mut large = shapes::icosphere(1.0, 100).to_poly();
     large.positions.iter_mut().for_each(|p| *p += DVec3::new(0.3, 0.2, 0.1));
-    let ended = carry_out(&live.published, given(large), false, Operation::Union, &job, &live.commands)
-        .err()
-        .map(|e| e.to_string());
+    let ended =
+        carry_out(&live.published, given(large), false, Operation::Union, &job, &live.commands)
+            .err()
+            .map(|e| e.to_string());
     let late = (clock.now_us() - asked.1.recv().expect("asked")) as f64 * 1e-3;
     println!("ended {late:.1} ms after it was asked to: {ended:?}");
     cancel.join().expect("ends");

@@ -1,4 +1,5 @@
-//! Convex polyhedra with small integer corners, and what a Boolean of two must give, in rational numbers of 128 bits.
+//! Convex polyhedra with small integer corners, and what a Boolean of two must give, in rational
+//! numbers of 128 bits.
 
 use glam::DVec3;
 use sculptd_geometry::PolyMesh;
@@ -73,7 +74,8 @@ pub fn polyhedron(dice: &mut Dice, side: i64) -> Option<Polyhedron> {
                 if n == [0; 3] || at.iter().any(|p| dot(n, sub(*p, at[i])) > 0) {
                     continue;
                 }
-                let mut on: Vec<usize> = (0..at.len()).filter(|&p| dot(n, sub(at[p], at[i])) == 0).collect();
+                let mut on: Vec<usize> =
+                    (0..at.len()).filter(|&p| dot(n, sub(at[p], at[i])) == 0).collect();
                 // From the lowest corner around the face; corners within or on a side are left out.
                 on.sort_by_key(|&p| at[p]);
                 let mut ring = vec![on[0]];
@@ -153,8 +155,9 @@ fn vector(ring: &[Q]) -> DVec3 {
 
 /// Volume and area of union, intersection, A - B, B - A.
 pub fn expected(a: &Polyhedron, b: &Polyhedron) -> [(f64, f64); 4] {
-    // A face's area: all of it, within the other, on the other facing the same way, facing the other way; and what the parts
-    // within and on (facing the same way) give to the volume of the intersection.
+    // A face's area: all of it, within the other, on the other facing the same way, facing the
+    // other way; and what the parts within and on (facing the same way) give to the volume of the
+    // intersection.
     let split = |s: &Polyhedron, o: &Polyhedron, own: bool| {
         let (mut sum, mut volume, mut whole) = ([0.0; 4], 0.0, 0.0);
         let planes = s.planes();

@@ -1,5 +1,5 @@
-//! Random operands: the real meshes in random places and against themselves, small integer polyhedra against exact arithmetic,
-//! long sequences on one mesh.
+//! Random operands: the real meshes in random places and against themselves, small integer
+//! polyhedra against exact arithmetic, long sequences on one mesh.
 
 use glam::{DMat3, DQuat, DVec3};
 use sculptd_geometry::boolean::{Operation, Options, compute};
@@ -36,11 +36,16 @@ fn long() -> bool {
     std::env::var_os("SCULPTD_LONG").is_some()
 }
 
-/// The corpus' closed solids that do not cross themselves, of at most `most` faces, in a box of size 1.
+/// The corpus' closed solids that do not cross themselves, of at most `most` faces, in a box of
+/// size 1.
 fn solids(most: usize) -> Vec<(String, PolyMesh)> {
     let Some(folder) = crate::corpus() else { return Vec::new() };
-    let mut files: Vec<_> =
-        std::fs::read_dir(folder.join("meshes")).into_iter().flatten().flatten().map(|e| e.path()).collect();
+    let mut files: Vec<_> = std::fs::read_dir(folder.join("meshes"))
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|e| e.path())
+        .collect();
     files.sort();
     let job = Job::default();
     files
@@ -78,10 +83,11 @@ struct Tally {
 impl Tally {
     fn pair(&mut self, name: &str, a: &PolyMesh, b: &PolyMesh) {
         let job = Job::default();
-        let (made, report) = match compute([a, b], &Operation::ALL, &Options::default(), &job, || 0.0) {
-            Ok(x) => x,
-            Err(e) => return self.faults.push(format!("{name}: {e}")),
-        };
+        let (made, report) =
+            match compute([a, b], &Operation::ALL, &Options::default(), &job, || 0.0) {
+                Ok(x) => x,
+                Err(e) => return self.faults.push(format!("{name}: {e}")),
+            };
         if report.warnings.iter().any(|w| w.contains("global")) {
             self.global += 1;
             println!("{name}: {:?}", report.warnings);
@@ -91,7 +97,8 @@ impl Tally {
         } else {
             self.good += 1;
         }
-        let volume = |m: &PolyMesh| check::report(m, false, &job).ok().and_then(|r| r.volume).unwrap_or(0.0);
+        let volume =
+            |m: &PolyMesh| check::report(m, false, &job).ok().and_then(|r| r.volume).unwrap_or(0.0);
         let (va, vb) = (volume(a), volume(b));
         let v: Vec<f64> = made.iter().map(|m| m.facts.volume).collect();
         for (off, what) in [
@@ -118,7 +125,12 @@ impl Tally {
             "{what}: {} good, {} by another tolerance, {} by the global engine",
             self.good, self.other_tolerance, self.global
         );
-        assert!(self.faults.is_empty(), "{} faults:\n{}", self.faults.len(), self.faults.join("\n"));
+        assert!(
+            self.faults.is_empty(),
+            "{} faults:\n{}",
+            self.faults.len(),
+            self.faults.join("\n")
+        );
     }
 }
 
@@ -131,8 +143,10 @@ fn real_meshes_in_random_places() {
     let mut dice = Dice(7);
     let mut tally = Tally::default();
     for n in 0..if long() { 2000 } else { 60 } {
-        let (a, b) =
-            (&all[dice.below(all.len() as u64) as usize], &all[dice.below(all.len() as u64) as usize]);
+        let (a, b) = (
+            &all[dice.below(all.len() as u64) as usize],
+            &all[dice.below(all.len() as u64) as usize],
+        );
         let (turn, other) = (dice.turn(), dice.turn());
         let shift = DVec3::new(dice.unit() - 0.5, dice.unit() - 0.5, dice.unit() - 0.5) * 0.6;
         tally.pair(
@@ -165,21 +179,27 @@ fn small_integer_polyhedra() {
     let (mut cases, mut global) = (0, 0);
     while cases < if long() { 1_000_000 } else { 10_000 } && faults.len() < 20 {
         let side = 2 + dice.below(3) as i64;
-        let (Some(a), Some(b)) = (oracle::polyhedron(&mut dice, side), oracle::polyhedron(&mut dice, side))
+        let (Some(a), Some(b)) =
+            (oracle::polyhedron(&mut dice, side), oracle::polyhedron(&mut dice, side))
         else {
             continue;
         };
         cases += 1;
         let want = oracle::expected(&a, &b);
         let (ma, mb) = (a.mesh(), b.mesh());
-        let (made, report) =
-            match compute([&ma, &mb], &Operation::ALL, &Options::default(), &Job::default(), || 0.0) {
-                Ok(x) => x,
-                Err(e) => {
-                    faults.push(format!("{a:?}\n{b:?}\n{e}"));
-                    continue;
-                }
-            };
+        let (made, report) = match compute(
+            [&ma, &mb],
+            &Operation::ALL,
+            &Options::default(),
+            &Job::default(),
+            || 0.0,
+        ) {
+            Ok(x) => x,
+            Err(e) => {
+                faults.push(format!("{a:?}\n{b:?}\n{e}"));
+                continue;
+            }
+        };
         global += usize::from(!report.warnings.is_empty());
         for (m, (volume, area)) in made.iter().zip(want) {
             let off = (m.facts.volume - volume).abs().max((m.facts.area - area).abs());

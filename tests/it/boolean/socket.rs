@@ -7,11 +7,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::DVec3;
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_daemon::config::{Config, LoopConfig};
 use sculptd_daemon::control::server::{Host, Server};
 use sculptd_daemon::live::Live;
-use sculptd_daemon::startup as rig;
+use sculptd_daemon::startup;
 use sculptd_devices::{Clock, queue};
 use sculptd_geometry::io::write_mesh;
 use sculptd_geometry::job::Job;
@@ -31,12 +31,14 @@ fn call(socket: &Path, method: &str, params: &Value) -> Value {
 
 #[test]
 fn asked_watched_and_ended_over_the_socket() {
-    let config = Config { r#loop: LoopConfig { workers: 1, ..Default::default() }, ..Default::default() };
-    let mesh = Mesh::build(&shapes::icosphere(1.0, 100), &Job::default()).expect("a ball");
+    let config =
+        Config { r#loop: LoopConfig { workers: 1, ..Default::default() }, ..Default::default() };
+    let mesh = Clay::build(&shapes::icosphere(1.0, 100), &Job::default()).expect("a ball");
     let (_, receiver) = queue::channel(64);
     let clock = Clock::monotonic();
-    let world = rig::world(mesh, &config);
-    let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 64, None).expect("runs");
+    let world = startup::world(mesh, &config);
+    let live =
+        Live::start(world, receiver, clock.clone(), LoopConfig::default(), 64, None).expect("runs");
     let host = Host {
         commands: live.commands.clone(),
         published: live.published.clone(),
@@ -55,12 +57,22 @@ fn asked_watched_and_ended_over_the_socket() {
     write_mesh(&large, &shapes::icosphere(1.0, 180).to_poly()).expect("written");
 
     // A cut in the pages around it, and what was written.
-    let cut = call(&socket, "boolean", &json!({ "operation": "difference", "path": small, "at": [0, 0, 1] }));
+    let cut = call(
+        &socket,
+        "boolean",
+        &json!({ "operation": "difference", "path": small, "at": [0, 0, 1] }),
+    );
     let done = &cut["result"];
     assert_eq!(done["local"], json!(true), "{cut}");
-    assert!(done["pages_written"].as_u64() >= Some(1) && done["pages_shared"].as_u64() > Some(50), "{cut}");
+    assert!(
+        done["pages_written"].as_u64() >= Some(1) && done["pages_shared"].as_u64() > Some(50),
+        "{cut}"
+    );
     assert!(done["seconds"].as_f64().is_some_and(|s| s > 0.0));
-    assert_eq!(call(&socket, "progress", &json!({}))["result"], json!({ "running": false, "done": null }));
+    assert_eq!(
+        call(&socket, "progress", &json!({}))["result"],
+        json!({ "running": false, "done": null })
+    );
     assert_eq!(call(&socket, "cancel", &json!({}))["result"], json!({ "cancelled": false }));
 
     // A long one: seen to run, ended, and the clay is as it was.
@@ -69,7 +81,11 @@ fn asked_watched_and_ended_over_the_socket() {
     let long = {
         let socket = socket.clone();
         std::thread::spawn(move || {
-            call(&socket, "boolean", &json!({ "operation": "union", "path": large, "at": [0.3, 0.2, 0.1] }))
+            call(
+                &socket,
+                "boolean",
+                &json!({ "operation": "union", "path": large, "at": [0.3, 0.2, 0.1] }),
+            )
         })
     };
     let never = crossbeam_channel::never::<()>();
@@ -98,7 +114,9 @@ fn asked_watched_and_ended_over_the_socket() {
     assert!(trimmed["result"]["tries"].as_u64() >= Some(1), "{trimmed}");
     let nowhere = call(&socket, "trim", &json!({ "part": { "box": [0.5, 0.5, 0.5, 0.5] } }));
     assert!(
-        nowhere["error"]["message"].as_str().is_some_and(|m| m.contains("no part") || m.contains("nothing")),
+        nowhere["error"]["message"]
+            .as_str()
+            .is_some_and(|m| m.contains("no part") || m.contains("nothing")),
         "{nowhere}"
     );
     drop(server);

@@ -1,4 +1,5 @@
-//! Solids as a mesh and as disjoint convex parts, so that volumes and areas of all four results are known without a Boolean.
+//! Solids as a mesh and as disjoint convex parts, so that volumes and areas of all four results are
+//! known without a Boolean.
 
 use glam::{DMat3, DVec3};
 use sculptd_geometry::PolyMesh;
@@ -23,7 +24,8 @@ impl Solid {
         self
     }
 
-    /// Turned and moved; each point is computed on its own, so that planes that were one differ by rounding.
+    /// Turned and moved; each point is computed on its own, so that planes that were one differ by
+    /// rounding.
     pub fn placed(mut self, turn: DMat3, shift: DVec3) -> Solid {
         for p in &mut self.mesh.positions {
             *p = turn * *p + shift;
@@ -38,7 +40,8 @@ impl Solid {
     }
 }
 
-/// A polygon (counter-clockwise from above) drawn up from z = low to high. `along`: 0, 1 or 2, the axis that z becomes.
+/// A polygon (counter-clockwise from above) drawn up from z = low to high. `along`: 0, 1 or 2, the
+/// axis that z becomes.
 pub fn prism(outline: &[(f64, f64)], low: f64, high: f64, along: usize) -> Solid {
     let put = |x: f64, y: f64, z: f64| match along {
         0 => DVec3::new(z, x, y),
@@ -76,9 +79,11 @@ pub fn prism(outline: &[(f64, f64)], low: f64, high: f64, along: usize) -> Solid
 }
 
 pub fn cuboid(lo: [f64; 3], hi: [f64; 3]) -> Solid {
-    let mut s = prism(&[(lo[0], lo[1]), (hi[0], lo[1]), (hi[0], hi[1]), (lo[0], hi[1])], lo[2], hi[2], 2);
+    let mut s =
+        prism(&[(lo[0], lo[1]), (hi[0], lo[1]), (hi[0], hi[1]), (lo[0], hi[1])], lo[2], hi[2], 2);
     let (lo, hi) = (DVec3::from(lo), DVec3::from(hi));
-    s.parts = vec![(0..3).flat_map(|k| [(DVec3::AXES[k], hi[k]), (-DVec3::AXES[k], -lo[k])]).collect()];
+    s.parts =
+        vec![(0..3).flat_map(|k| [(DVec3::AXES[k], hi[k]), (-DVec3::AXES[k], -lo[k])]).collect()];
     s
 }
 
@@ -112,8 +117,8 @@ pub fn regular(sides: u32, radius: f64, (x, y): (f64, f64), first: f64) -> Vec<(
         .collect()
 }
 
-/// A profile of (radius, height), from the axis and back to it, counter-clockwise with the radius to the right, turned about z.
-/// `quads`: convex parts of the profile, as indices into it.
+/// A profile of (radius, height), from the axis and back to it, counter-clockwise with the radius
+/// to the right, turned about z. `quads`: convex parts of the profile, as indices into it.
 pub fn revolved(profile: &[(f64, f64)], quads: &[&[usize]], around: u32) -> Solid {
     let mut mesh = PolyMesh::new();
     let angle = |i: u32| f64::from(i % around) * std::f64::consts::TAU / f64::from(around);
@@ -216,7 +221,8 @@ pub fn expected(a: &Solid, b: &Solid) -> [(f64, f64); 4] {
         }
     }
     let (va, vb) = (total(a), total(b));
-    // Area of one's surface: outside, inside, on the other's facing the same way, facing the other way.
+    // Area of one's surface: outside, inside, on the other's facing the same way, facing the other
+    // way.
     let split = |s: &Solid, o: &Solid| {
         let mut sum = [0.0; 4];
         for t in s.mesh.triangles().0 {
@@ -226,7 +232,8 @@ pub fn expected(a: &Solid, b: &Solid) -> [(f64, f64); 4] {
             let mut own = [whole, 0.0, 0.0, 0.0];
             for part in &o.parts {
                 let on = part.iter().find(|(m, d)| {
-                    n.dot(*m).abs() > 1.0 - 1e-9 && corners.iter().all(|c| (c.dot(*m) - d).abs() < 1e-9)
+                    n.dot(*m).abs() > 1.0 - 1e-9
+                        && corners.iter().all(|c| (c.dot(*m) - d).abs() < 1e-9)
                 });
                 let mut piece = corners.to_vec();
                 for &h in part.iter().filter(|h| on.is_none_or(|o| o != *h)) {

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Method};
 use sculptd_engine::command::Command;
-use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::stroke::CurveAction;
 
 use super::{Studio, form};
 
@@ -27,8 +27,8 @@ fn views(s: &Studio) -> Vec<Vec2> {
     s.world.draft().map(|d| d.points().iter().map(|p| p.view).collect()).unwrap_or_default()
 }
 
-fn act(s: &mut Studio, act: DraftAct) {
-    s.tell(Command::Draft(act));
+fn act(s: &mut Studio, act: CurveAction) {
+    s.tell(Command::CurveStroke(act));
     s.rest(3);
     s.world.verify_invariants().expect("in order");
 }
@@ -46,7 +46,7 @@ fn edited(s: &mut Studio) {
     pen(s, &[(between.x, between.y), (between.x + 0.02, between.y)]);
     assert_eq!(views(s).len(), 5);
     assert!((views(s)[2] - between - Vec2::new(0.02, 0.0)).length() < 1e-6);
-    act(s, DraftAct::Delete(4));
+    act(s, CurveAction::Delete(4));
     assert_eq!(views(s).len(), 4);
 }
 
@@ -56,18 +56,27 @@ fn points_stay_to_be_changed_and_the_curve_is_one_step() {
     let start = s.world.hash();
     edited(&mut s);
     let laid: Vec<_> = views(&s);
-    assert_eq!((s.world.hash(), s.world.undo_steps()), (start, 0), "nothing is sculpted while it is laid");
-    act(&mut s, DraftAct::Apply);
+    assert_eq!(
+        (s.world.hash(), s.world.undo_steps()),
+        (start, 0),
+        "nothing is sculpted while it is laid"
+    );
+    act(&mut s, CurveAction::Apply);
     let drawn = s.world.hash();
     assert_eq!((views(&s).len(), s.world.undo_steps()), (0, 1));
     assert_ne!(drawn, start);
     // The clay rose along the curve and nowhere else.
     let (before, aspect) = (form(20_000), s.world.camera().aspect);
-    let mut curve = sculptd_engine::stroke::Draft::default();
+    let mut curve = sculptd_engine::stroke::CurveStroke::default();
     for view in &laid {
         // At the end each time: off the curve so far.
         curve.grab(
-            &sculptd_engine::stroke::PenPoint { view: *view, pressure: 0.8, tilt: None, inverted: false },
+            &sculptd_engine::stroke::PenPoint {
+                view: *view,
+                pressure: 0.8,
+                tilt: None,
+                inverted: false,
+            },
             aspect,
         );
         curve.release();
@@ -90,7 +99,7 @@ fn points_stay_to_be_changed_and_the_curve_is_one_step() {
             let run = scope.spawn(|| {
                 let mut other = studio(workers);
                 edited(&mut other);
-                act(&mut other, DraftAct::Apply);
+                act(&mut other, CurveAction::Apply);
                 other.world.hash()
             });
             run.join().expect("no panic")
@@ -104,12 +113,12 @@ fn a_curve_that_is_put_away_leaves_nothing() {
     let mut s = studio(1);
     let start = s.world.hash();
     edited(&mut s);
-    act(&mut s, DraftAct::Cancel);
+    act(&mut s, CurveAction::Cancel);
     assert_eq!((views(&s).len(), s.world.undo_steps()), (0, 0));
     // By undo, which takes back nothing else.
     pen(&mut s, &[(0.4, 0.5), (0.45, 0.52), (0.5, 0.5), (0.6, 0.55)]);
     assert_eq!(views(&s).len(), 5, "what is drawn freely gets handles");
-    act(&mut s, DraftAct::Apply);
+    act(&mut s, CurveAction::Apply);
     let drawn = s.world.hash();
     pen(&mut s, &[(0.4, 0.6)]);
     s.tell(Command::Undo);
@@ -125,7 +134,7 @@ fn a_curve_that_is_put_away_leaves_nothing() {
     s.rest(2);
     assert_eq!((views(&s).len(), s.world.hash()), (0, start));
     // Acts with nothing laid are no matter.
-    for a in [DraftAct::Apply, DraftAct::Cancel, DraftAct::Delete(3)] {
+    for a in [CurveAction::Apply, CurveAction::Cancel, CurveAction::Delete(3)] {
         act(&mut s, a);
     }
     assert_eq!(s.world.hash(), start);
@@ -139,7 +148,7 @@ fn another_brush_may_follow_the_curve_that_is_laid() {
     paint.path.method = Method::Curve;
     s.tell(Command::Brush(paint));
     assert_eq!(views(&s).len(), 5);
-    act(&mut s, DraftAct::Apply);
+    act(&mut s, CurveAction::Apply);
     let mesh = s.world.mesh().to_tri();
     assert_eq!(mesh.positions, form(20_000).positions);
     assert!(mesh.colours.is_some_and(|c| c.iter().any(|c| *c != [255; 4])));

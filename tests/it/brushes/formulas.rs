@@ -1,9 +1,11 @@
 //! Brushes against their formulas.
 
 use glam::{Vec2, Vec3};
-use sculptd_clay::brush::elastic::Elastic;
-use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian, PressureCurve, Smooth, Topology};
-use sculptd_clay::{Mesh, Reach, Workers};
+use sculptd_clay::brush::elastic::ElasticBrush;
+use sculptd_clay::brush::{
+    BrushKind, BrushSettings, GaussianBrush, PressureCurve, SmoothBrush, Topology,
+};
+use sculptd_clay::{Clay, Reach, Workers};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -14,8 +16,8 @@ fn dense_plane(cells: u32) -> TriMesh {
     shapes::grid(2.0, 2.0, cells, cells).triangulate().0
 }
 
-fn build(mesh: &TriMesh) -> Mesh {
-    Mesh::build(mesh, &Job::default()).expect("builds")
+fn build(mesh: &TriMesh) -> Clay {
+    Clay::build(mesh, &Job::default()).expect("builds")
 }
 
 /// Height of the bell at `d` from its middle: height * exp(-(3.5 d / radius)^2 / (2 * 0.7^2)).
@@ -33,7 +35,7 @@ fn the_gaussian_is_its_formula_on_a_plane_and_on_a_sphere() {
     {
         for (radius, height) in [(0.5f32, 0.04f32), (0.3, -0.02)] {
             let mut mesh = build(&start);
-            let kernel = Gaussian::new(centre, radius, normal, height);
+            let kernel = GaussianBrush::new(centre, radius, normal, height);
             mesh.dab(&Reach::Sphere { centre, radius }, &kernel, &Workers::new(1));
             let end = mesh.to_tri();
             let mut met = [false; 6];
@@ -56,7 +58,8 @@ fn the_gaussian_is_its_formula_on_a_plane_and_on_a_sphere() {
     }
 }
 
-/// A flat sheet whose inner vertices are strewn by a fifth of a cell, each cell cut by its Delaunay diagonal.
+/// A flat sheet whose inner vertices are strewn by a fifth of a cell, each cell cut by its Delaunay
+/// diagonal.
 fn irregular(cells: u32) -> TriMesh {
     let mut dice = Dice(9);
     let n = cells + 1;
@@ -95,7 +98,7 @@ fn smooth_leaves_a_flat_irregular_sheet_as_it_is() {
     let mut dice = Dice(4);
     for _ in 0..40 {
         let centre = Vec3::new(dice.next() - 0.5, dice.next() - 0.5, 0.0);
-        mesh.dab(&Reach::Sphere { centre, radius: 0.4 }, &Smooth::new(centre, 0.4, 1.0), &one);
+        mesh.dab(&Reach::Sphere { centre, radius: 0.4 }, &SmoothBrush::new(centre, 0.4, 1.0), &one);
     }
     let end = mesh.to_tri();
     let (mut up, mut aside) = (0.0f32, 0.0f32);
@@ -119,13 +122,17 @@ fn smooth_evens_a_bump_and_keeps_a_border() {
     for _ in 0..30 {
         mesh.dab(
             &Reach::Sphere { centre: Vec3::ZERO, radius: 0.8 },
-            &Smooth::new(Vec3::ZERO, 0.8, 1.0),
+            &SmoothBrush::new(Vec3::ZERO, 0.8, 1.0),
             &one,
         );
     }
     let end = mesh.to_tri();
     let rough = |m: &TriMesh| {
-        m.positions.iter().filter(|p| p.truncate().length() < 0.3).map(|p| p.z.abs()).fold(0.0, f32::max)
+        m.positions
+            .iter()
+            .filter(|p| p.truncate().length() < 0.3)
+            .map(|p| p.z.abs())
+            .fold(0.0, f32::max)
     };
     assert!(rough(&end) < 0.1 * rough(&start), "{} of {}", rough(&end), rough(&start));
     assert!(end.positions.iter().all(|p| p.is_finite()));
@@ -150,18 +157,23 @@ fn across() -> Vec<(Vec2, f32)> {
 #[test]
 fn saturation_is_never_exceeded_and_is_reached_exactly() {
     let start = shapes::icosphere(1.0, 60);
-    for kind in [BrushKind::Gaussian, BrushKind::Draw, BrushKind::Inflate, BrushKind::Clay, BrushKind::Blob] {
+    for kind in
+        [BrushKind::Gaussian, BrushKind::Draw, BrushKind::Inflate, BrushKind::Clay, BrushKind::Blob]
+    {
         for threshold in [1.0f32, 2.5] {
             let brush = BrushSettings { saturation: threshold, ..even(kind, 0.2, 0.1) };
             let mut studio = Studio::new(&start, brush, 1);
             let limit = threshold * 0.1 * studio.world.brush_radius();
             let back_and_forth: Vec<_> = (0..8)
-                .flat_map(|i| if i % 2 == 0 { across() } else { across().into_iter().rev().collect() })
+                .flat_map(
+                    |i| if i % 2 == 0 { across() } else { across().into_iter().rev().collect() },
+                )
                 .collect();
             studio.stroke(&back_and_forth);
             let first = studio.positions();
-            let far =
-                |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (*b - *a).length()).fold(0.0, f32::max);
+            let far = |a: &[Vec3], b: &[Vec3]| {
+                a.iter().zip(b).map(|(a, b)| (*b - *a).length()).fold(0.0, f32::max)
+            };
             let most = far(&start.positions, &first);
             assert!(most <= limit * (1.0 + 1e-5), "{kind}: {most} of {limit}");
             if kind == BrushKind::Gaussian {
@@ -170,7 +182,10 @@ fn saturation_is_never_exceeded_and_is_reached_exactly() {
             // The next stroke has a budget of its own.
             studio.stroke(&back_and_forth);
             let second = far(&first, &studio.positions());
-            assert!(second <= limit * (1.0 + 1e-5) && second > 0.2 * limit, "{kind}: {second} of {limit}");
+            assert!(
+                second <= limit * (1.0 + 1e-5) && second > 0.2 * limit,
+                "{kind}: {second} of {limit}"
+            );
         }
     }
 }
@@ -201,7 +216,8 @@ fn symmetric_strokes_mirror() {
             brush.topology = Topology::default();
             let mut studio = Studio::new(&start, brush, 1);
             // From the right over the mirror to the left: images overlap half of the way.
-            let points: Vec<_> = (0..=12).map(|i| (Vec2::new(0.56 - 0.01 * i as f32, 0.46), 0.7)).collect();
+            let points: Vec<_> =
+                (0..=12).map(|i| (Vec2::new(0.56 - 0.01 * i as f32, 0.46), 0.7)).collect();
             studio.stroke(&points);
             let end = studio.world.mesh().to_tri();
             for axis in 0..3 {
@@ -266,8 +282,9 @@ fn radial_copies_and_any_plane_are_where_they_should_be() {
     assert!(here > 0.0 && (here - there).abs() < 0.05 * here, "{here} and {there}");
 }
 
-/// What the closed form of de Goes and James (2017) with three scales says of the change of volume at `r`: for one scale
-/// `-(a - 2b) (r^2 + 5/2 e^2) / r_e^5 (r . f)`; scaled so that the held point goes by `by`.
+/// What the closed form of de Goes and James (2017) with three scales says of the change of volume
+/// at `r`: for one scale `-(a - 2b) (r^2 + 5/2 e^2) / r_e^5 (r . f)`; scaled so that the held point
+/// goes by `by`.
 fn divergence(r: Vec3, by: Vec3, size: f32, nu: f32) -> f32 {
     let e = [size, size * 1.1, size * 1.21];
     let [s1, s2, s3] = e.map(|e| e * e);
@@ -286,10 +303,10 @@ fn divergence(r: Vec3, by: Vec3, size: f32, nu: f32) -> f32 {
 fn kelvinlets_hold_the_point_and_keep_the_volume_as_the_paper_says() {
     let by = Vec3::new(0.01, 0.003, -0.004);
     for nu in [0.0, 0.25, 0.5] {
-        let e = Elastic::new(by, 0.3, nu);
+        let e = ElasticBrush::new(by, 0.3, nu);
         assert!((e.at(Vec3::ZERO) - by).length() < 1e-6, "the held point goes with the pen");
-        // The divergence, by central differences, against what the formula gives: for one scale it is
-        // -(a - 2b) (r^2 + 5/2 e^2) / r_e^5 (r . f), which is zero for nu = 1/2, where a = 2b.
+        // The divergence, by central differences, against what the formula gives: for one scale it
+        // is -(a - 2b) (r^2 + 5/2 e^2) / r_e^5 (r . f), which is zero for nu = 1/2, where a = 2b.
         let h = 1e-2;
         let r = Vec3::new(0.2, -0.15, 0.1);
         let div: f32 = [Vec3::X, Vec3::Y, Vec3::Z]
@@ -319,7 +336,8 @@ fn kelvinlets_hold_the_point_and_keep_the_volume_as_the_paper_says() {
         let from = studio.view(Vec3::new(0.8, 0.0, 0.6));
         studio.stroke(&[(from, 1.0), (from + Vec2::new(0.004, 0.0), 1.0)]);
         let end = studio.positions();
-        let swept = start.positions.iter().zip(&end).map(|(a, b)| (*b - *a).length()).fold(0.0, f32::max);
+        let swept =
+            start.positions.iter().zip(&end).map(|(a, b)| (*b - *a).length()).fold(0.0, f32::max);
         // Against the volume that the same motion of a disc of the brush would sweep.
         let radius = studio.world.brush_radius();
         let disc = std::f64::consts::PI * f64::from(radius * radius * swept);
@@ -344,8 +362,11 @@ fn strength_does_not_depend_on_the_spacing_when_it_is_compensated() {
         let mut studio = Studio::new(&start, brush, 1);
         studio.stroke(&across());
         let end = studio.positions();
-        let middle =
-            start.positions.iter().zip(&end).filter(|(a, _)| a.truncate().length() < 0.05 && a.z > 0.0);
+        let middle = start
+            .positions
+            .iter()
+            .zip(&end)
+            .filter(|(a, _)| a.truncate().length() < 0.05 && a.z > 0.0);
         middle.map(|(a, b)| (*b - *a).length()).fold(0.0, f32::max)
     };
     let (wide, usual, close) = (height(0.25), height(0.2), height(0.05));

@@ -1,12 +1,13 @@
-//! One stroke of each brush and of each option on the same form: readable facts, and a hash that does not depend on the
-//! number of workers. `SCULPTD_BLESS=1` writes the facts anew.
+//! One stroke of each brush and of each option on the same form: readable facts, and a hash that
+//! does not depend on the number of workers. `SCULPTD_BLESS=1` writes the facts anew.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::{
-    Alpha, BrushKind, BrushSettings, Falloff, MaskAction, Measure, Method, Picture, PressureCurve, StampBy,
+    Alpha, BrushKind, BrushSettings, Falloff, MaskAction, Measure, Method, Picture, PressureCurve,
+    StampBy,
 };
 use sculptd_engine::command::Command;
 use sculptd_geometry::{TriMesh, shapes};
@@ -20,7 +21,8 @@ struct Facts {
     dabs: u64,
     /// Vertices that are not where they were.
     displaced: u64,
-    /// The longest way in thousandths of the form's radius, and the mean way outwards of those displaced.
+    /// The longest way in thousandths of the form's radius, and the mean way outwards of those
+    /// displaced.
     longest: f64,
     outwards: f64,
     /// Change of volume, per cent.
@@ -37,7 +39,8 @@ struct Facts {
 
 fn volume(mesh: &TriMesh) -> f64 {
     let corner = |v: u32| mesh.positions[v as usize].as_dvec3();
-    mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum::<f64>() / 6.0
+    mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum::<f64>()
+        / 6.0
 }
 
 /// What is drawn, with so many workers.
@@ -67,8 +70,9 @@ fn facts_on(
     let hash = studio.world.hash();
     for workers in [2, 3, 7, 16] {
         // A thread of its own: it takes part in the work of its pool.
-        let other =
-            std::thread::scope(|s| s.spawn(|| draw(start, brush, act, workers).1.world.hash()).join());
+        let other = std::thread::scope(|s| {
+            s.spawn(|| draw(start, brush, act, workers).1.world.hash()).join()
+        });
         assert_eq!(other.expect("no panic"), hash, "{about}: with {workers} workers");
     }
     let end = studio.world.mesh().to_tri();
@@ -100,17 +104,24 @@ fn facts_on(
         },
         masked: round(masked),
         coloured: end.colours.map_or(0, |c| c.iter().filter(|c| **c != [255; 4]).count() as u64),
-        vertices: (end.positions.len() != start.positions.len()).then_some(end.positions.len() as u64),
+        vertices: (end.positions.len() != start.positions.len())
+            .then_some(end.positions.len() as u64),
         hash: format!("{hash:016x}"),
     }
 }
 
 fn near(name: &str, what: &str, now: f64, then: f64, tolerance: f64) {
-    assert!((now - then).abs() <= tolerance, "{name}, {what}: {now} now, {then} in the golden facts");
+    assert!(
+        (now - then).abs() <= tolerance,
+        "{name}, {what}: {now} now, {then} in the golden facts"
+    );
 }
 
 fn hold(name: &str, now: &Facts) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name).join("facts.toml");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/golden")
+        .join(name)
+        .join("facts.toml");
     if std::env::var_os("SCULPTD_BLESS").is_some() {
         std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
         #[allow(clippy::disallowed_methods)] // Under version control: a torn file is seen.
@@ -122,14 +133,26 @@ fn hold(name: &str, now: &Facts) {
     println!("{name}: hash {} now, {} when it was written", now.hash, then.hash);
     let share = |v: f64, least: f64| least + v.abs() * 0.02;
     near(name, "dabs", now.dabs as f64, then.dabs as f64, 2.0 + then.dabs as f64 * 0.02);
-    near(name, "displaced", now.displaced as f64, then.displaced as f64, share(then.displaced as f64, 20.0));
+    near(
+        name,
+        "displaced",
+        now.displaced as f64,
+        then.displaced as f64,
+        share(then.displaced as f64, 20.0),
+    );
     near(name, "longest", now.longest, then.longest, share(then.longest, 0.2));
     near(name, "outwards", now.outwards, then.outwards, share(then.outwards, 0.2));
     near(name, "volume", now.volume, then.volume, share(then.volume, 0.01));
     near(name, "masked", now.masked, then.masked, share(then.masked, 5.0));
     let vertices = |f: &Facts| f.vertices.unwrap_or(0) as f64;
     near(name, "vertices", vertices(now), vertices(&then), share(vertices(&then), 0.0));
-    near(name, "coloured", now.coloured as f64, then.coloured as f64, share(then.coloured as f64, 20.0));
+    near(
+        name,
+        "coloured",
+        now.coloured as f64,
+        then.coloured as f64,
+        share(then.coloured as f64, 20.0),
+    );
 }
 
 #[test]
@@ -236,9 +259,10 @@ fn every_option_draws_as_it_did() {
     for falloff in Falloff::ALL {
         let name = serde_json::to_value(falloff).expect("a name");
         let name = name.as_str().expect("a name").to_string();
-        let now = facts(&format!("draw, falloff {name}"), &BrushSettings { falloff, ..draw }, &|s| {
-            s.stroke(&s_curve())
-        });
+        let now =
+            facts(&format!("draw, falloff {name}"), &BrushSettings { falloff, ..draw }, &|s| {
+                s.stroke(&s_curve())
+            });
         hold(&format!("falloff-{name}"), &now);
     }
 }
@@ -295,12 +319,14 @@ fn every_measure_alpha_and_stamp_draws_as_it_did() {
     for alpha in Alpha::MADE.into_iter().chain([Alpha::Picture]) {
         let name = serde_json::to_value(alpha).expect("a name");
         let name = name.as_str().expect("a name").to_string();
-        let now = facts(&format!("texture, alpha {name}"), &of(Texture, &|b| b.alpha = alpha), &|s| {
-            // A ramp along and a step across.
-            let heights = (0..64u16).map(|i| (i % 8) * 6000 + if i < 32 { 9000 } else { 0 }).collect();
-            s.tell(Command::Picture(Arc::new(Picture { width: 8, height: 8, heights })));
-            s.stroke(&s_curve())
-        });
+        let now =
+            facts(&format!("texture, alpha {name}"), &of(Texture, &|b| b.alpha = alpha), &|s| {
+                // A ramp along and a step across.
+                let heights =
+                    (0..64u16).map(|i| (i % 8) * 6000 + if i < 32 { 9000 } else { 0 }).collect();
+                s.tell(Command::Picture(Arc::new(Picture { width: 8, height: 8, heights })));
+                s.stroke(&s_curve())
+            });
         assert!(now.displaced > 0, "{name} does nothing");
         hold(&format!("alpha-{name}"), &now);
     }

@@ -4,7 +4,7 @@ use arc_swap::ArcSwap;
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::{BrushKind, BrushSettings, MaskAction, Measure};
 use sculptd_daemon::published::{Published, PublishedFigures};
-use sculptd_daemon::{boolean_jobs as joiner, trim};
+use sculptd_daemon::{boolean_jobs, trim};
 use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, check, shapes};
@@ -16,7 +16,7 @@ fn shown(studio: &mut Studio) -> ArcSwap<Published> {
 }
 
 fn go(studio: &mut Studio, finer: bool) -> (usize, usize) {
-    let (command, at) = joiner::level(&shown(studio), finer).expect("there is such a level");
+    let (command, at) = boolean_jobs::level(&shown(studio), finer).expect("there is such a level");
     studio.tell(command);
     studio.world.verify_invariants().expect("in order");
     at
@@ -64,8 +64,10 @@ fn detail_survives_strokes_on_a_coarser_level() {
         go(&mut bare, true);
         bare.world.mesh().to_tri()
     };
-    let (before, after) =
-        (heights(&bare(&followed), &detailed), heights(&bare(&pulled), &studio.world.mesh().to_tri()));
+    let (before, after) = (
+        heights(&bare(&followed), &detailed),
+        heights(&bare(&pulled), &studio.world.mesh().to_tri()),
+    );
     let detail = before.iter().copied().fold(0.0, f32::max);
     let off = before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     println!(
@@ -96,7 +98,12 @@ fn mask_and_colour_go_up_and_down_with_the_level() {
     let low = all(&mut studio);
     assert_eq!(go(&mut studio, true), (1, 2));
     let high = all(&mut studio);
-    assert!(sum(&low) > 0.01 && (sum(&high) / sum(&low) - 1.0).abs() < 0.02, "{} {}", sum(&low), sum(&high));
+    assert!(
+        sum(&low) > 0.01 && (sum(&high) / sum(&low) - 1.0).abs() < 0.02,
+        "{} {}",
+        sum(&low),
+        sum(&high)
+    );
     assert_eq!((go(&mut studio, false), all(&mut studio) == low), ((0, 2), true));
     assert_eq!((go(&mut studio, true), all(&mut studio) == high), ((1, 2), true));
     // Painted and masked on the finer one: down, and up again.
@@ -130,7 +137,7 @@ fn cut_triangles_end_the_levels() {
     let mut studio = Studio::new(&shapes::icosphere(1.0, 16), brush, 1);
     go(&mut studio, true);
     studio.stroke(&s_curve());
-    assert!(joiner::level(&shown(&mut studio), false).is_err());
+    assert!(boolean_jobs::level(&shown(&mut studio), false).is_err());
     assert_eq!(go(&mut studio, true), (1, 2), "what is there is the lowest of new ones");
 }
 

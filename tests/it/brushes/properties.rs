@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_clay::brush::{
-    BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, StampBy, Topology,
+    BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, StampBy,
+    Topology,
 };
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_geometry::job::Job;
@@ -40,7 +41,8 @@ fn any_brush(dice: &mut Dice) -> BrushSettings {
         Method::Curve,
     ];
     b.path.method = methods[pick(7)];
-    let stamps = [StampBy::Off, StampBy::Off, StampBy::Off, StampBy::Dab, StampBy::View, StampBy::Stencil];
+    let stamps =
+        [StampBy::Off, StampBy::Off, StampBy::Off, StampBy::Dab, StampBy::View, StampBy::Stencil];
     b.stamp.by = stamps[pick(6)];
     b.stamp.repeat = pick(2) == 0;
     b.plane_trim = if pick(4) == 0 { 0.3 } else { 0.0 };
@@ -75,9 +77,10 @@ fn random_strokes_leave_all_in_order_undo_takes_them_back_and_a_second_run_is_eq
         let mut cut = false;
         for round in 0..rounds {
             if round % 60 == 59 {
-                // A new work, so that cuts do not pile up, and all steps of one stroke are kept by undo.
+                // A new work, so that cuts do not pile up, and all steps of one stroke are kept by
+                // undo.
                 let plain = form(12_000);
-                let built = Mesh::build(&plain, &Job::default()).expect("builds");
+                let built = Clay::build(&plain, &Job::default()).expect("builds");
                 studio.tell(Command::Replace(NewClay::new(Arc::new(plain), built, false)));
                 cut = false;
             }
@@ -93,19 +96,28 @@ fn random_strokes_leave_all_in_order_undo_takes_them_back_and_a_second_run_is_eq
             }
             studio.world.verify_invariants().unwrap_or_else(|e| panic!("{round}: {e}\n{brush:?}"));
             cut |= brush.topology.by != Measure::Off;
-            assert!(cut || studio.world.mesh().to_tri().triangles == triangles, "{round}: other triangles");
+            assert!(
+                cut || studio.world.mesh().to_tri().triangles == triangles,
+                "{round}: other triangles"
+            );
             let after = (studio.world.hash(), studio.world.mesh().undo_steps());
             let steps = after.1.saturating_sub(before.1);
             for _ in 0..steps {
                 studio.tell(Command::Undo);
             }
             assert_eq!(studio.world.hash(), before.0, "{round}: undo\n{brush:?}");
-            studio.world.verify_invariants().unwrap_or_else(|e| panic!("{round}, undone: {e}\n{brush:?}"));
+            studio
+                .world
+                .verify_invariants()
+                .unwrap_or_else(|e| panic!("{round}, undone: {e}\n{brush:?}"));
             for _ in 0..steps {
                 studio.tell(Command::Redo);
             }
             assert_eq!(studio.world.hash(), after.0, "{round}: redo\n{brush:?}");
-            studio.world.verify_invariants().unwrap_or_else(|e| panic!("{round}, redone: {e}\n{brush:?}"));
+            studio
+                .world
+                .verify_invariants()
+                .unwrap_or_else(|e| panic!("{round}, redone: {e}\n{brush:?}"));
         }
         (studio.world.hash(), studio.told)
     };
@@ -170,7 +182,7 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
 
 /// Where a view point lies on a ball as it was.
 fn hit(start: &TriMesh, studio: &Studio, view: Vec2) -> Vec3 {
-    let mesh = Mesh::build(start, &Job::default()).expect("builds");
+    let mesh = Clay::build(start, &Job::default()).expect("builds");
     mesh.pick(studio.world.camera().ray(view)).expect("on the ball").position
 }
 
@@ -206,8 +218,9 @@ fn no_brush_allocates_in_the_steady_state_of_a_stroke() {
                 studio.sample(Vec2::new(x, 0.5), 0.7, true);
             }
         };
-        // The first rounds touch each page once and fill the pools; a brush that carries the surface along may come upon
-        // one more page later. Three rounds in a row must then need nothing.
+        // The first rounds touch each page once and fill the pools; a brush that carries the
+        // surface along may come upon one more page later. Three rounds in a row must then need
+        // nothing.
         let (mut quiet, mut rounds) = (0, 0);
         while quiet < 3 {
             let calls = crate::allocations::counted(|| there_and_back(&mut studio));
@@ -285,7 +298,10 @@ fn the_method_may_change_in_the_middle_of_a_stroke() {
                 }
                 studio.tell(Command::Brush(of(second)));
                 studio.stroke(&points[8..]);
-                studio.world.verify_invariants().unwrap_or_else(|e| panic!("{first:?}, {second:?}: {e}"));
+                studio
+                    .world
+                    .verify_invariants()
+                    .unwrap_or_else(|e| panic!("{first:?}, {second:?}: {e}"));
                 while studio.world.mesh().undo_steps() > 0 {
                     studio.tell(Command::Undo);
                 }

@@ -1,5 +1,5 @@
-//! The contact sheet: the same stroke of each brush on the same form, as a picture. `SCULPTD_BLESS=1` draws it anew: look at
-//! it before it is kept.
+//! The contact sheet: the same stroke of each brush on the same form, as a picture.
+//! `SCULPTD_BLESS=1` draws it anew: look at it before it is kept.
 
 use std::path::PathBuf;
 
@@ -32,18 +32,25 @@ fn cell(kind: BrushKind) -> Picture {
         brush.alpha = Alpha::Rope;
         brush.strength = 0.35;
     }
-    // What evens takes more than one stroke to be seen; what only moves or cuts triangles is seen by their size.
+    // What evens takes more than one stroke to be seen; what only moves or cuts triangles is seen
+    // by their size.
     let cuts = matches!(kind, BrushKind::Density | BrushKind::Simplify);
     let sizes = cuts || matches!(kind, BrushKind::Relax | BrushKind::SlideRelax);
     let evens = matches!(
         kind,
-        BrushKind::Smooth | BrushKind::Flatten | BrushKind::Fill | BrushKind::Scrape | BrushKind::Relax
+        BrushKind::Smooth
+            | BrushKind::Flatten
+            | BrushKind::Fill
+            | BrushKind::Scrape
+            | BrushKind::Relax
     );
     if evens {
         (brush.radius, brush.strength) = (0.2, 1.0);
     }
-    let coarse =
-        matches!(kind, BrushKind::Smooth | BrushKind::Relax | BrushKind::SlideRelax | BrushKind::Density);
+    let coarse = matches!(
+        kind,
+        BrushKind::Smooth | BrushKind::Relax | BrushKind::SlideRelax | BrushKind::Density
+    );
     let mut start = form(if coarse { 8_000 } else { 60_000 });
     if kind == BrushKind::Simplify {
         brush.topology.edge = 0.4;
@@ -55,8 +62,11 @@ fn cell(kind: BrushKind) -> Picture {
     let mut studio = Studio::new(&start, brush, 2);
     if kind == BrushKind::MaskBlur {
         // Half of a masked stroke is blurred.
-        let mask =
-            BrushSettings { radius: 0.14, falloff: Falloff::Constant, ..BrushSettings::of(BrushKind::Mask) };
+        let mask = BrushSettings {
+            radius: 0.14,
+            falloff: Falloff::Constant,
+            ..BrushSettings::of(BrushKind::Mask)
+        };
         studio.tell(Command::Brush(mask));
         studio.stroke(&stroke());
         studio.tell(Command::Brush(BrushSettings { radius: 0.3, strength: 1.0, ..brush }));
@@ -69,8 +79,9 @@ fn cell(kind: BrushKind) -> Picture {
         }
     } else {
         // Held: a short pull to the upper right.
-        let pull: Vec<_> =
-            (0..=12).map(|i| (Vec2::new(0.53, 0.5) + Vec2::new(0.012, -0.012) * i as f32, 0.8)).collect();
+        let pull: Vec<_> = (0..=12)
+            .map(|i| (Vec2::new(0.53, 0.5) + Vec2::new(0.012, -0.012) * i as f32, 0.8))
+            .collect();
         studio.stroke(&pull);
     }
     let mesh = studio.world.mesh().to_tri();

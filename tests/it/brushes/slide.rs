@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::{BrushKind, BrushSettings};
-use sculptd_clay::{Mesh, Ray};
+use sculptd_clay::{Clay, Ray};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -24,7 +24,7 @@ fn drawn(start: &TriMesh, negative: bool, times: usize) -> TriMesh {
 
 /// How far the vertices lie off a surface about the middle, along the way outwards.
 fn off(surface: &TriMesh, mesh: &TriMesh) -> f32 {
-    let surface = Mesh::build(surface, &Job::default()).expect("builds");
+    let surface = Clay::build(surface, &Job::default()).expect("builds");
     let off = |p: &Vec3| {
         let out = p.normalize();
         let hit = surface.pick(Ray { origin: out * 3.0, dir: -out }).expect("a closed form");
@@ -35,7 +35,10 @@ fn off(surface: &TriMesh, mesh: &TriMesh) -> f32 {
 
 fn edges(mesh: &TriMesh) -> Vec<f32> {
     let at = |v: u32| mesh.positions[v as usize];
-    mesh.triangles.iter().flat_map(|t| [0, 1, 2].map(|i| (at(t[i]) - at(t[(i + 1) % 3])).length())).collect()
+    mesh.triangles
+        .iter()
+        .flat_map(|t| [0, 1, 2].map(|i| (at(t[i]) - at(t[(i + 1) % 3])).length()))
+        .collect()
 }
 
 fn turned(a: &TriMesh, b: &TriMesh) -> usize {
@@ -59,7 +62,8 @@ fn triangles_slide_with_the_stroke_and_the_form_stays() {
         .filter(|w| *w != Vec3::ZERO)
         .collect();
     let furthest = ways.iter().map(|w| w.length()).fold(0.0, f32::max) / edge;
-    let along = ways.iter().map(|w| w.x).sum::<f32>() / ways.iter().map(|w| w.length()).sum::<f32>();
+    let along =
+        ways.iter().map(|w| w.x).sum::<f32>() / ways.iter().map(|w| w.length()).sum::<f32>();
     let off = off(&start, &end) / edge;
     println!(
         "slid up to {furthest:.2} edges, {along:.2} of it along the stroke; {off:.4} edges off the form"

@@ -1,9 +1,9 @@
-//! Strokes without gaps: over forms of all kinds, seen from everywhere, in one frame or in many, on clay that stays as it is and
-//! on clay that the stroke itself raises.
+//! Strokes without gaps: over forms of all kinds, seen from everywhere, in one frame or in many, on
+//! clay that stays as it is and on clay that the stroke itself raises.
 
 use glam::{Vec2, Vec3};
-use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian};
-use sculptd_clay::{Hit, Mesh, Ray, Reach, Workers};
+use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush};
+use sculptd_clay::{Clay, Hit, Ray, Reach, Workers};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::stroke::spacer::BRIDGED;
 use sculptd_engine::stroke::{Flow, Laid, PenPoint, Spacer, Surface};
@@ -18,7 +18,7 @@ const WIDEST: f32 = 1.05;
 
 /// Clay that writes down where dabs were laid.
 struct Bench<'a> {
-    mesh: &'a mut Mesh,
+    mesh: &'a mut Clay,
     camera: Camera,
     radius: f32,
     /// Height of one dab over the radius; 0 leaves the clay as it is.
@@ -36,7 +36,7 @@ struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(mesh: &'a mut Mesh, camera: Camera, radius: f32, strength: f32) -> Bench<'a> {
+    fn new(mesh: &'a mut Clay, camera: Camera, radius: f32, strength: f32) -> Bench<'a> {
         Bench {
             mesh,
             camera,
@@ -71,13 +71,14 @@ impl<'a> Bench<'a> {
                 let mut share = 0.0;
                 while share < 1.0 {
                     self.left = most;
-                    share = spacer.walk(&at(f), &at(f + 1), share, self);
+                    share = spacer.advance(&at(f), &at(f + 1), share, self);
                 }
             }
         }
     }
 
-    /// Why a run may end between two places of the view: nothing is seen there, or the surface leaps so far (mesh units).
+    /// Why a run may end between two places of the view: nothing is seen there, or the surface
+    /// leaps so far (mesh units).
     fn breach(&mut self, way: &[Vec2]) -> Option<f32> {
         let mut last: Option<Vec3> = None;
         let mut widest = 0.0f32;
@@ -111,10 +112,12 @@ impl Surface for Bench<'_> {
 
     fn dab(&mut self, at: &PenPoint, hit: &Hit, laid: Laid) -> Flow {
         let apart = self.laid.last().copied().map(|(pen, was, _)| {
-            let to_now = self.pick(pen.view).map_or(f32::INFINITY, |h| (hit.position - h.position).length());
+            let to_now =
+                self.pick(pen.view).map_or(f32::INFINITY, |h| (hit.position - h.position).length());
             let to_was = (hit.position - was).length();
             let to_clay = self.clay().map_or(f32::INFINITY, |p| (hit.position - p).length());
-            // On clay that is raised the last dab is where its place is seen now; what was laid out of sight, where its clay is.
+            // On clay that is raised the last dab is where its place is seen now; what was laid out
+            // of sight, where its clay is.
             let apart = if self.strength > 0.0 { to_now.min(to_was).min(to_clay) } else { to_was };
             apart / self.spacing(at)
         });
@@ -122,8 +125,12 @@ impl Surface for Bench<'_> {
         if self.strength > 0.0 {
             let radius = self.radius * (0.5 + 0.5 * at.pressure);
             let height = self.strength * laid.share * radius;
-            let kernel = Gaussian::new(hit.position, radius, hit.normal, height);
-            self.mesh.dab(&Reach::Sphere { centre: hit.position, radius }, &kernel, &Workers::new(1));
+            let kernel = GaussianBrush::new(hit.position, radius, hit.normal, height);
+            self.mesh.dab(
+                &Reach::Sphere { centre: hit.position, radius },
+                &kernel,
+                &Workers::new(1),
+            );
         }
         self.laid.push((*at, hit.position, laid));
         self.pieces.push(self.piece);
@@ -141,13 +148,14 @@ fn point(view: Vec2, pressure: f32) -> PenPoint {
 fn waves() -> TriMesh {
     let mut sheet = shapes::grid(2.0, 2.0, 200, 200).triangulate().0;
     for p in &mut sheet.positions {
-        p.z += 0.06 * (p.x * 14.0).sin() * (p.y * 11.0 + 0.4).cos() + 0.02 * (p.x * 41.0 + p.y * 37.0).sin();
+        p.z += 0.06 * (p.x * 14.0).sin() * (p.y * 11.0 + 0.4).cos()
+            + 0.02 * (p.x * 41.0 + p.y * 37.0).sin();
     }
     sheet
 }
 
-fn forms() -> Vec<(&'static str, Mesh)> {
-    let built = |mesh: &TriMesh| Mesh::build(mesh, &Job::default()).expect("builds");
+fn forms() -> Vec<(&'static str, Clay)> {
+    let built = |mesh: &TriMesh| Clay::build(mesh, &Job::default()).expect("builds");
     vec![
         ("plane", built(&shapes::grid(2.0, 2.0, 60, 60).triangulate().0)),
         ("sphere", built(&shapes::icosphere(1.0, 60))),
@@ -157,7 +165,7 @@ fn forms() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-fn camera(dice: &mut Dice, mesh: &Mesh) -> Camera {
+fn camera(dice: &mut Dice, mesh: &Clay) -> Camera {
     let (lo, hi) = mesh.bounds();
     let mut camera = Camera {
         yaw: dice.next() * std::f32::consts::TAU,
@@ -174,7 +182,8 @@ fn path(dice: &mut Dice, camera: &Camera, pieces: usize) -> Vec<PenPoint> {
     let scale = Vec2::new(1.0 / camera.aspect, 1.0);
     (0..=pieces)
         .map(|_| {
-            let at = Vec2::from_angle(dice.next() * std::f32::consts::TAU) * dice.next().sqrt() * 0.42;
+            let at =
+                Vec2::from_angle(dice.next() * std::f32::consts::TAU) * dice.next().sqrt() * 0.42;
             point(Vec2::splat(0.5) + at * scale, 0.3 + 0.7 * dice.next())
         })
         .collect()
@@ -191,14 +200,18 @@ fn a_pen_at_any_speed_over_any_form_leaves_no_gap() {
             let points = path(&mut dice, &camera, 1 + round % 3);
             let radius = 0.04 + 0.3 * dice.next() * dice.next();
             // In one frame, in a few, in very many; whole, or a few dabs a tick.
-            let (frames, most) = ([1, 1, 3, 90][round % 4], [usize::MAX, 3][usize::from(round % 5 == 4)]);
+            let (frames, most) =
+                ([1, 1, 3, 90][round % 4], [usize::MAX, 3][usize::from(round % 5 == 4)]);
             let mut bench = Bench::new(&mut mesh, camera, radius, 0.0);
             bench.draw(&points, frames, most);
             dabs += bench.apart.len();
             for i in 1..bench.apart.len() {
                 let ((from, was, _), (to, now, _)) = (bench.laid[i - 1], bench.laid[i]);
                 if let Some(apart) = bench.apart[i] {
-                    assert!(apart <= WIDEST, "{name} {round}: {apart} of the spacing between dabs {i}");
+                    assert!(
+                        apart <= WIDEST,
+                        "{name} {round}: {apart} of the spacing between dabs {i}"
+                    );
                     widest = widest.max(apart);
                     continue;
                 }
@@ -208,8 +221,10 @@ fn a_pen_at_any_speed_over_any_form_leaves_no_gap() {
                     continue;
                 }
                 // Round the corners of the path.
-                let corners = points[bench.pieces[i - 1] + 1..=bench.pieces[i]].iter().map(|p| p.view);
-                let way: Vec<Vec2> = [from.view].into_iter().chain(corners).chain([to.view]).collect();
+                let corners =
+                    points[bench.pieces[i - 1] + 1..=bench.pieces[i]].iter().map(|p| p.view);
+                let way: Vec<Vec2> =
+                    [from.view].into_iter().chain(corners).chain([to.view]).collect();
                 match bench.breach(&way) {
                     None => seen += 1,
                     Some(leap) if leap > 0.9 * BRIDGED * spacing => leaps += 1,
@@ -232,15 +247,18 @@ fn clay_that_a_stroke_raises_is_crossed_without_a_gap_too() {
     let (mut dabs, mut widest, mut runs) = (0, 0.0f32, 0);
     for round in 0..24 {
         let work = if round % 2 == 0 { shapes::icosphere(1.0, 60) } else { form(40_000) };
-        let mut mesh = Mesh::build(&work, &Job::default()).expect("builds");
+        let mut mesh = Clay::build(&work, &Job::default()).expect("builds");
         let (lo, hi) = mesh.bounds();
         let mut camera = Camera { orthographic: round % 3 == 0, ..Camera::default() };
         camera.frame(lo, hi);
-        // From one side to the other, near the rim where a step over the view is a long way over the clay.
+        // From one side to the other, near the rim where a step over the view is a long way over
+        // the clay.
         let along = Vec2::from_angle(dice.next() * std::f32::consts::TAU);
         let aside = along.perp() * (dice.next() - 0.5) * 0.3;
         let scale = Vec2::new(1.0 / camera.aspect, 1.0);
-        let at = |t: f32| point(Vec2::splat(0.5) + (along * (t - 0.5) * 0.55 + aside) * scale, 0.3 + 0.7 * t);
+        let at = |t: f32| {
+            point(Vec2::splat(0.5) + (along * (t - 0.5) * 0.55 + aside) * scale, 0.3 + 0.7 * t)
+        };
         let strength = [0.02, 0.08, -0.05][round % 3];
         let mut bench = Bench::new(&mut mesh, camera, 0.05 + 0.15 * dice.next(), strength);
         bench.draw(
@@ -293,7 +311,8 @@ fn the_cut_into_frames_changes_nothing_of_what_is_laid_down() {
 #[test]
 fn a_stroke_drawn_fast_and_one_drawn_slowly_raise_the_same_clay() {
     let start = form(40_000);
-    let brush = BrushSettings { radius: 0.12, strength: 0.05, ..BrushSettings::of(BrushKind::Gaussian) };
+    let brush =
+        BrushSettings { radius: 0.12, strength: 0.05, ..BrushSettings::of(BrushKind::Gaussian) };
     let volume = |studio: &Studio| -> f64 {
         let mesh = studio.world.mesh().to_tri();
         let c = |v: u32| mesh.positions[v as usize].as_dvec3();
@@ -302,7 +321,8 @@ fn a_stroke_drawn_fast_and_one_drawn_slowly_raise_the_same_clay() {
     let raised = |frames: usize| -> f64 {
         let mut studio = Studio::new(&start, brush, 1);
         let before = volume(&studio);
-        let at = |k: usize| Vec2::new(0.35, 0.3).lerp(Vec2::new(0.62, 0.7), k as f32 / frames as f32);
+        let at =
+            |k: usize| Vec2::new(0.35, 0.3).lerp(Vec2::new(0.62, 0.7), k as f32 / frames as f32);
         let points: Vec<_> = (0..=frames).map(|k| (at(k), 0.8)).collect();
         studio.stroke(&points);
         volume(&studio) - before

@@ -1,7 +1,7 @@
 //! The coordinates of a stroke against the exact ones, and the relief that they carry.
 
 use glam::{Vec2, Vec3};
-use sculptd_clay::Mesh;
+use sculptd_clay::Clay;
 use sculptd_clay::brush::stroke_param::{Sample, Unroll};
 use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, PressureCurve};
 use sculptd_geometry::TriMesh;
@@ -37,12 +37,12 @@ fn sheet(nx: u32, ny: u32, strewn: f32, at: impl Fn(f32, f32) -> Vec3) -> TriMes
     mesh
 }
 
-fn build(mesh: &TriMesh) -> Mesh {
-    Mesh::build(mesh, &Job::default()).expect("builds")
+fn build(mesh: &TriMesh) -> Clay {
+    Clay::build(mesh, &Job::default()).expect("builds")
 }
 
 /// Calls `visit` with each vertex that has coordinates: where it is, and they.
-fn each_place(mesh: &Mesh, unroll: &Unroll, mut visit: impl FnMut(Vec3, Vec2)) -> usize {
+fn each_place(mesh: &Clay, unroll: &Unroll, mut visit: impl FnMut(Vec3, Vec2)) -> usize {
     let mut count = 0;
     for p in 0..mesh.page_count() as u32 {
         for v in 0..mesh.page(p).own() {
@@ -103,8 +103,12 @@ fn a_cone_unrolls_to_its_development() {
     };
     let exact = move |p: Vec3| flat(p) - flat(point);
     for strewn in [0.0, 0.4] {
-        let worst =
-            worst_about(&sheet(160, 70, strewn, cone), Sample { point, normal, along, u: 0.0 }, 0.4, exact);
+        let worst = worst_about(
+            &sheet(160, 70, strewn, cone),
+            Sample { point, normal, along, u: 0.0 },
+            0.4,
+            exact,
+        );
         println!("cone, strewn {strewn}: {:.2} % of the radius", worst * 100.0);
         assert!(worst < 0.02, "{worst}");
     }
@@ -122,7 +126,8 @@ fn a_sphere_gets_its_exponential_map() {
             * p.normalize().dot(normal).clamp(-1.0, 1.0).acos()
     };
     for radius in [0.25, 0.5] {
-        let worst = worst_about(&mesh, Sample { point: normal, normal, along, u: 0.0 }, radius, exact);
+        let worst =
+            worst_about(&mesh, Sample { point: normal, normal, along, u: 0.0 }, radius, exact);
         println!("sphere, radius {radius}: {:.2} % of the radius", worst * 100.0);
         assert!(worst < 0.02, "{worst}");
     }
@@ -174,7 +179,8 @@ fn an_alpha_becomes_relief_of_its_height_and_carves_the_other_way_round() {
             ..BrushSettings::of(BrushKind::Texture)
         };
         let mut studio = Studio::new(&flat, brush, 2);
-        let (a, b) = (studio.view(Vec3::new(-0.6, 0.0, 0.0)), studio.view(Vec3::new(0.6, 0.0, 0.0)));
+        let (a, b) =
+            (studio.view(Vec3::new(-0.6, 0.0, 0.0)), studio.view(Vec3::new(0.6, 0.0, 0.0)));
         let points: Vec<_> = (0..=20).map(|i| (a.lerp(b, i as f32 / 20.0), 1.0)).collect();
         studio.stroke(&points);
         studio.stroke(&[(Vec2::new(0.02, 0.02), 1.0)]);
@@ -182,10 +188,12 @@ fn an_alpha_becomes_relief_of_its_height_and_carves_the_other_way_round() {
         let sign = if negative { -1.0 } else { 1.0 };
         let (mut worst, mut top) = (0.0f32, 0.0f32);
         for p in studio.positions() {
-            // On the axis, away from the ends, the relief is the alpha: two waves a brush's width, from the first dab on.
+            // On the axis, away from the ends, the relief is the alpha: two waves a brush's width,
+            // from the first dab on.
             if p.y.abs() < 0.1 * radius && p.x.abs() < 0.4 {
                 let s = (p.x + 0.6) / (2.0 * radius);
-                let want = sign * 0.2 * radius * (0.5 - 0.5 * (s * 2.0 * std::f32::consts::TAU).cos());
+                let want =
+                    sign * 0.2 * radius * (0.5 - 0.5 * (s * 2.0 * std::f32::consts::TAU).cos());
                 worst = worst.max((p.z - want).abs());
                 top = top.max(p.z * sign);
             }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use sculptd_clay::brush::{BrushKind, BrushSettings, Gaussian, Measure, Smooth};
-use sculptd_clay::{Detail, Mesh, Ray, Reach, Workers};
+use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush, Measure, SmoothBrush};
+use sculptd_clay::{Clay, Detail, Ray, Reach, Workers};
 use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
@@ -47,7 +47,8 @@ fn checked(mesh: &TriMesh) -> (i64, f64) {
         }
         assert_eq!(steps, about[v as usize], "vertex {v} has several fans");
     }
-    let least = (0..mesh.triangles.len()).map(|t| least_angle(mesh.corners(t))).fold(180.0, f64::min);
+    let least =
+        (0..mesh.triangles.len()).map(|t| least_angle(mesh.corners(t))).fold(180.0, f64::min);
     assert!(about.iter().all(|n| *n > 0), "a vertex without triangles");
     (mesh.positions.len() as i64 - edges.len() as i64 / 2 + mesh.triangles.len() as i64, least)
 }
@@ -58,7 +59,7 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
     for (start, euler) in
         [(shapes::icosphere(1.0, 24), 2), (shapes::torus(0.8, 0.3, 48, 24).triangulate().0, 0)]
     {
-        let mut mesh = Mesh::build(&start, &Job::default()).expect("builds");
+        let mut mesh = Clay::build(&start, &Job::default()).expect("builds");
         mesh.set_undo_bytes(64 << 20);
         let one = Workers::new(1);
         let mut dice = Dice(31);
@@ -71,18 +72,28 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
                 let radius = 0.08 + 0.25 * dice.next();
                 let edge = 0.03 + 0.09 * dice.next();
                 mesh.begin_step();
-                let detail =
-                    Detail { centre: hit.position, radius, edge, split: true, collapse: true, most: 500 };
+                let detail = Detail {
+                    centre: hit.position,
+                    radius,
+                    edge,
+                    split: true,
+                    collapse: true,
+                    most: 500,
+                };
                 let cuts = mesh.remodel(&detail);
                 splits += cuts.splits;
                 collapses += cuts.collapses;
                 flips += cuts.flips;
                 let reach = Reach::Sphere { centre: hit.position, radius };
                 if dice.next() < 0.4 {
-                    mesh.dab(&reach, &Smooth::new(hit.position, radius, 0.5), &one);
+                    mesh.dab(&reach, &SmoothBrush::new(hit.position, radius, 0.5), &one);
                 } else {
                     let height = radius * (dice.next() - 0.5) * 0.06;
-                    mesh.dab(&reach, &Gaussian::new(hit.position, radius, hit.normal, height), &one);
+                    mesh.dab(
+                        &reach,
+                        &GaussianBrush::new(hit.position, radius, hit.normal, height),
+                        &one,
+                    );
                 }
                 mesh.end_step();
             }
@@ -144,9 +155,15 @@ fn cuts_are_taken_back_by_undo_and_done_again_by_redo() {
 #[test]
 fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     let start = shapes::icosphere(1.0, 16);
-    let mut mesh = Mesh::build(&start, &Job::default()).expect("builds");
-    let detail =
-        Detail { centre: Vec3::Z, radius: 0.6, edge: 0.04, split: true, collapse: true, most: 100_000 };
+    let mut mesh = Clay::build(&start, &Job::default()).expect("builds");
+    let detail = Detail {
+        centre: Vec3::Z,
+        radius: 0.6,
+        edge: 0.04,
+        split: true,
+        collapse: true,
+        most: 100_000,
+    };
     for _ in 0..3 {
         mesh.remodel(&detail);
     }
@@ -177,7 +194,8 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
         mesh.remodel(&coarse);
     }
     mesh.verify_invariants().expect("in order");
-    let within = |m: &TriMesh| m.positions.iter().filter(|p| (**p - Vec3::Z).length() < 0.5).count();
+    let within =
+        |m: &TriMesh| m.positions.iter().filter(|p| (**p - Vec3::Z).length() < 0.5).count();
     let coarse = mesh.to_tri();
     assert!(within(&coarse) * 4 < within(&end), "{} of {}", within(&coarse), within(&end));
     checked(&coarse);

@@ -14,7 +14,8 @@ use super::{Random, bounds, long, meshes};
 
 /// The distance to the nearest of all triangles.
 fn exhaustive(mesh: &TriMesh, p: DVec3) -> f64 {
-    let each = |t| p.distance_squared(nearest_on_triangle(p, mesh.corners(t).map(Vec3::as_dvec3)).0);
+    let each =
+        |t| p.distance_squared(nearest_on_triangle(p, mesh.corners(t).map(Vec3::as_dvec3)).0);
     (0..mesh.triangles.len()).map(each).fold(f64::INFINITY, f64::min).sqrt()
 }
 
@@ -23,7 +24,8 @@ fn turns(mesh: &TriMesh, p: DVec3) -> f64 {
     (0..mesh.triangles.len()).map(|t| solid_angle(mesh.corners(t).map(|c| c.as_dvec3() - p))).sum()
 }
 
-/// In the box, twice as far, on vertices, on edges, on faces, and next to all three by a ten-millionth of the size.
+/// In the box, twice as far, on vertices, on edges, on faces, and next to all three by a
+/// ten-millionth of the size.
 fn points(mesh: &TriMesh, count: usize) -> Vec<DVec3> {
     let (lo, hi) = bounds(mesh);
     let size = (hi - lo).length();
@@ -61,8 +63,8 @@ fn distances_and_signs_equal_an_exhaustive_search() {
         let by_normal = solid.clone().with_sign(Sign::Pseudonormal);
         let (lo, hi) = bounds(mesh);
         let size = (hi - lo).length();
-        // A solid angle takes four times as long as a distance: on large meshes only some points get the whole sum, the
-        // others the tree's.
+        // A solid angle takes four times as long as a distance: on large meshes only some points
+        // get the whole sum, the others the tree's.
         let summed = 60_000_000 / mesh.triangles.len();
         let wrong: Vec<String> = points(mesh, count)
             .into_par_iter()
@@ -72,13 +74,21 @@ fn distances_and_signs_equal_an_exhaustive_search() {
                 let w = if i < summed { turns(mesh, p) } else { solid.winding(p) };
                 let found = solid.tree.nearest(p, f64::INFINITY).unwrap();
                 let error = (found.distance() - d).abs();
-                assert!(error <= 1e-6 * d.max(1e-9 * size), "{name} at {p}: {} not {d}", found.distance());
+                assert!(
+                    error <= 1e-6 * d.max(1e-9 * size),
+                    "{name} at {p}: {} not {d}",
+                    found.distance()
+                );
                 let fast = solid.winding(p);
                 assert!((fast - w).abs() < 0.1, "{name} at {p}: winding {fast} not {w}");
                 let mut wrong = None;
                 if solid.topology.closed && d > 1e-9 * size {
                     let inside = w.abs() > 0.5;
-                    assert_eq!(solid.signed_distance(p) < 0.0, inside, "{name} at {p}: winding {w}");
+                    assert_eq!(
+                        solid.signed_distance(p) < 0.0,
+                        inside,
+                        "{name} at {p}: winding {w}"
+                    );
                     if (by_normal.signed_distance(p) < 0.0) != inside {
                         wrong = Some(format!("{name} {p} {d} {w} {:?}", found.feature));
                     }
@@ -104,7 +114,10 @@ fn distances_and_signs_equal_an_exhaustive_search() {
             assert!(wrong.is_empty(), "{wrong:?}");
         }
     }
-    println!("{} meshes ({closed} closed), {checked} points, worst relative error {worst:e}", all.len());
+    println!(
+        "{} meshes ({closed} closed), {checked} points, worst relative error {worst:e}",
+        all.len()
+    );
 }
 
 #[test]
@@ -120,8 +133,13 @@ fn a_box_is_exact() {
         assert!((found - truth).abs() < 1e-14, "{p}: {found} not {truth}");
     }
     // Out of range is no panic.
-    for p in [DVec3::NAN, DVec3::NEG_INFINITY, DVec3::splat(-1e300), DVec3::splat(1e38), DVec3::splat(-1e16)]
-    {
+    for p in [
+        DVec3::NAN,
+        DVec3::NEG_INFINITY,
+        DVec3::splat(-1e300),
+        DVec3::splat(1e38),
+        DVec3::splat(-1e16),
+    ] {
         assert!(solid.signed_distance(p).is_infinite(), "{p}");
         assert_eq!(solid.winding(p), 0.0);
     }
@@ -147,7 +165,9 @@ fn grids_hold_the_same_distances_and_survive_the_file() {
     }
     let p = DVec3::new(0.9, 0.5, 0.1);
     assert!((grid.interpolate(p) as f64 - solid.signed_distance(p)).abs() < 0.02);
-    let slope = (grid.interpolate(p + DVec3::X * 1e-3) - grid.interpolate(p - DVec3::X * 1e-3)) as f64 / 2e-3;
+    let slope = (grid.interpolate(p + DVec3::X * 1e-3) - grid.interpolate(p - DVec3::X * 1e-3))
+        as f64
+        / 2e-3;
     assert!((grid.gradient(p).x - slope).abs() < 1e-3);
     let file = tempfile::tempdir().unwrap().path().join("grid.npy");
     std::fs::create_dir_all(file.parent().unwrap()).unwrap();

@@ -10,7 +10,8 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::march::default_epsilon;
 use sculptd_geometry::measure::projected_area;
 use sculptd_geometry::projection::{
-    By, Plane, area, classify, outline, png, rectangle, sample, shadow_areas, spread_directions, svg,
+    By, Plane, area, classify, outline, png, rectangle, sample, shadow_areas, spread_directions,
+    svg,
 };
 use sculptd_geometry::shapes::{cuboid, cylinder, icosphere, torus};
 
@@ -31,7 +32,9 @@ fn known_shadows_with_holes_and_disjoint_parts() {
     assert!((shadow(&block, DVec3::NEG_Z) - 2.0).abs() < 1e-7);
     // Cauchy: of a box, the sum of the faces' areas by the direction's components.
     let d = DVec3::new(1.0, -2.0, 0.5).normalize();
-    assert!((shadow(&block, d) - (6.0 * d.x.abs() + 3.0 * d.y.abs() + 2.0 * d.z.abs())).abs() < 1e-7);
+    assert!(
+        (shadow(&block, d) - (6.0 * d.x.abs() + 3.0 * d.y.abs() + 2.0 * d.z.abs())).abs() < 1e-7
+    );
 
     let ring = solid(&torus(2.0, 0.5, 100, 50).triangulate().0);
     let down = outline(&ring.topology, &Plane::along(DVec3::NEG_Z, 0.0).unwrap());
@@ -90,10 +93,12 @@ fn marching_agrees_with_rays_but_next_to_the_outline() {
     let plane = Plane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
     let (lo, hi) = rectangle(&solid, &plane).unwrap();
     let mut r = Random(3);
-    let points: Vec<DVec2> = (0..50_000).map(|_| lo + (hi - lo) * DVec2::new(r.unit(), r.unit())).collect();
+    let points: Vec<DVec2> =
+        (0..50_000).map(|_| lo + (hi - lo) * DVec2::new(r.unit(), r.unit())).collect();
     let by_ray = classify(&solid, &plane, &points, By::Rays, &job).unwrap();
     let by_step =
-        classify(&solid, &plane, &points, By::Marching(&grid, default_epsilon(&grid)), &job).unwrap();
+        classify(&solid, &plane, &points, By::Marching(&grid, default_epsilon(&grid)), &job)
+            .unwrap();
     let outline = outline(&solid.topology, &plane);
     let mut differ = 0;
     for (i, p) in points.iter().enumerate() {
@@ -146,5 +151,9 @@ fn every_direction_of_every_mesh_has_a_shadow() {
             assert!(error < 2e-3, "{name} {:?}: {} by strips {strips}", directions[i], areas[i]);
         }
     }
-    println!("{} meshes, {} directions; worst against strips {worst:?}", all.len(), directions.len());
+    println!(
+        "{} meshes, {} directions; worst against strips {worst:?}",
+        all.len(),
+        directions.len()
+    );
 }

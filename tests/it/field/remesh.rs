@@ -37,7 +37,8 @@ fn noise_gives_a_closed_manifold() {
     for seed in 0..4 {
         let mut r = Random(seed);
         let n = 24;
-        let mut grid = Grid { origin: DVec3::ZERO, spacing: 1.0, size: [n; 3], values: vec![1.0; n * n * n] };
+        let mut grid =
+            Grid { origin: DVec3::ZERO, spacing: 1.0, size: [n; 3], values: vec![1.0; n * n * n] };
         for k in 1..n - 1 {
             for j in 1..n - 1 {
                 for i in 1..n - 1 {
@@ -100,7 +101,8 @@ fn shapes_are_remeshed_within_half_a_voxel() {
             .map(|p| if p.x > 0.0 { [200, 0, 0, 255] } else { [0, 0, 90, 255] })
             .collect(),
     );
-    let new = remesh(&coloured, &solid(&coloured), Settings { side: 32, sharp: false }, &job).unwrap();
+    let new =
+        remesh(&coloured, &solid(&coloured), Settings { side: 32, sharp: false }, &job).unwrap();
     for (p, c) in new.positions.iter().zip(new.colours.as_ref().unwrap()) {
         assert!(p.x.abs() < 0.15 || (c[0] == 200) == (p.x > 0.0), "{p} {c:?}");
     }
@@ -166,24 +168,29 @@ fn solids_grow_shrink_hollow_and_melt() {
     let wall = volume(10.0) - volume(8.0);
     assert!((measures(&hollowed.mesh).volume / wall - 1.0).abs() < 0.02);
 
-    let moved = TriMesh { positions: ball.positions.iter().map(|p| *p + Vec3::X * 15.0).collect(), ..ball };
+    let moved =
+        TriMesh { positions: ball.positions.iter().map(|p| *p + Vec3::X * 15.0).collect(), ..ball };
     let other = solid(&moved);
     let plain = smooth_union(&old, &other, 0.0, 64, &job).unwrap();
     let melted = smooth_union(&old, &other, 3.0, 64, &job).unwrap();
     assert!(manifold(&plain) && manifold(&melted));
-    let overlap = PI * (20.0 - 15.0f64).powi(2) * (15.0f64.powi(2) + 4.0 * 15.0 * 10.0) / (12.0 * 15.0);
+    let overlap =
+        PI * (20.0 - 15.0f64).powi(2) * (15.0f64.powi(2) + 4.0 * 15.0 * 10.0) / (12.0 * 15.0);
     let truth = 2.0 * volume(10.0) - overlap;
     assert!((measures(&plain).volume / truth - 1.0).abs() < 0.01);
     assert!(measures(&melted).volume > measures(&plain).volume * 1.002);
 }
 
-/// Two balls that melt into each other, and a block with edges: their cavities have ridges and points.
+/// Two balls that melt into each other, and a block with edges: their cavities have ridges and
+/// points.
 #[test]
 fn a_cavity_folds_nowhere_and_keeps_its_depth() {
     let job = Job::default();
     let ball = icosphere(10.0, 24);
-    let moved =
-        TriMesh { positions: ball.positions.iter().map(|p| *p + Vec3::X * 18.0).collect(), ..ball.clone() };
+    let moved = TriMesh {
+        positions: ball.positions.iter().map(|p| *p + Vec3::X * 18.0).collect(),
+        ..ball.clone()
+    };
     let melted = smooth_union(&solid(&ball), &solid(&moved), 1.0, 96, &job).unwrap();
     let block = cuboid(DVec3::splat(-10.0), DVec3::new(10.0, 8.0, 25.0)).triangulate().0;
     for (mesh, wall) in [(melted, 3.0), (block, 2.0)] {

@@ -55,11 +55,13 @@ fn a_history_keeps_within_its_bound_and_the_oldest_places_go_first() {
     let first = tree.nodes().next().expect("a place");
     assert!(first.parent.is_none() && first.tick > 0);
     // Everything that is left can be gone to, and is what it was.
-    let left: Vec<(u64, u64)> = all.iter().copied().filter(|(n, _)| tree.node(*n).is_some()).collect();
+    let left: Vec<(u64, u64)> =
+        all.iter().copied().filter(|(n, _)| tree.node(*n).is_some()).collect();
     assert_eq!(left.len() + 1, tree.len() + usize::from(first.id != 0));
     let mut went = 0;
-    // Going to and fro makes checkpoints, for which older places go. At the very oldest none could, and the pages of the first
-    // jumps would go instead: a replay from the start would miss them, as opening the session does not.
+    // Going to and fro makes checkpoints, for which older places go. At the very oldest none could,
+    // and the pages of the first jumps would go instead: a replay from the start would miss them,
+    // as opening the session does not.
     for &(node, hash) in left.iter().skip(6).step_by(3).chain([&left[6], &all[57], &all[59]]) {
         if s.history.tree().node(node).is_some() {
             s.history.want(Want::Node(node));

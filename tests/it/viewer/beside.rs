@@ -1,13 +1,13 @@
-//! What is drawn beside the clay: shaded hollows, what a join would make, the hands' balls; and what follows the clay off to
-//! the side.
+//! What is drawn beside the clay: shaded hollows, what a join would make, the hands' balls; and
+//! what follows the clay off to the side.
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use image::RgbaImage;
-use sculptd_clay::{Mesh, Snapshot};
+use sculptd_clay::{Clay, Snapshot};
 use sculptd_engine::camera::Camera;
-use sculptd_engine::hand::{Choice, Similarity, Thing};
+use sculptd_engine::hand::{HeldObject, MenuItem, Similarity};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection::svg;
 use sculptd_geometry::{TriMesh, shapes};
@@ -40,7 +40,7 @@ fn light(p: &RgbaImage, x: u32, y: u32) -> f32 {
 }
 
 /// Two balls that run into each other, side by side.
-fn two_balls() -> Mesh {
+fn two_balls() -> Clay {
     let one = shapes::sphere_of_about(6_000);
     let mut both = TriMesh::default();
     for x in [-0.8f32, 0.8] {
@@ -48,7 +48,7 @@ fn two_balls() -> Mesh {
         both.positions.extend(one.positions.iter().map(|p| *p + Vec3::X * x));
         both.triangles.extend(one.triangles.iter().map(|t| t.map(|v| v + first)));
     }
-    Mesh::build(&both, &Job::default()).expect("two balls build")
+    Clay::build(&both, &Job::default()).expect("two balls build")
 }
 
 #[test]
@@ -72,12 +72,12 @@ fn a_fold_is_shaded_and_an_open_form_is_not() {
     }
 }
 
-fn thing(at: Vec3) -> Thing {
+fn thing(at: Vec3) -> HeldObject {
     let place = Similarity { shift: at, scale: 0.5, ..Similarity::NONE };
-    Thing { plain: Arc::new(shapes::sphere_of_about(2_000)), place }
+    HeldObject { plain: Arc::new(shapes::sphere_of_about(2_000)), place }
 }
 
-fn tried(mesh: &mut Mesh, at: Vec3, choice: Choice) -> Arc<Preview> {
+fn tried(mesh: &mut Clay, at: Vec3, choice: MenuItem) -> Arc<Preview> {
     let wanted = Wanted { mesh: mesh.snapshot(), thing: thing(at), choice };
     let found = preview::compute(&wanted, &Job::default()).expect("a join");
     Arc::new(found.expect("the choice joins"))
@@ -90,7 +90,8 @@ fn what_a_join_would_make_is_drawn_where_it_is_and_nowhere_else() {
     let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
     let look = Look { shade: 0.0, ..Look::default() };
     let clay = drawn(&mut painter, &mesh.snapshot(), &camera, look, Beside::default());
-    for (choice, local) in [(Choice::Add, true), (Choice::Carve, true), (Choice::Keep, false)] {
+    for (choice, local) in [(MenuItem::Add, true), (MenuItem::Carve, true), (MenuItem::Keep, false)]
+    {
         let preview = tried(&mut mesh, Vec3::Z, choice);
         assert_eq!(preview.hidden.is_some(), local, "{choice:?}");
         assert!(preview.made > 100, "{choice:?}: {} triangles of the thing", preview.made);
@@ -100,7 +101,7 @@ fn what_a_join_would_make_is_drawn_where_it_is_and_nowhere_else() {
         // Where only what both have stays, the clay's own surface is in front.
         assert_eq!(
             before == now,
-            choice == Choice::Keep,
+            choice == MenuItem::Keep,
             "{choice:?}: the thing's own surface, in another tone"
         );
         // Up at the rim: the clay as it was, or nothing of it where only what both have stays.
@@ -118,7 +119,7 @@ fn a_preview_that_is_no_longer_wanted_ends() {
     let mut mesh = sphere(20_000);
     let job = Job::default();
     job.cancel();
-    let wanted = Wanted { mesh: mesh.snapshot(), thing: thing(Vec3::Z), choice: Choice::Keep };
+    let wanted = Wanted { mesh: mesh.snapshot(), thing: thing(Vec3::Z), choice: MenuItem::Keep };
     let ended = preview::compute(&wanted, &job);
     assert!(matches!(ended, Err(sculptd_geometry::boolean::Error::Cancelled(_))), "{ended:?}");
 }
@@ -146,12 +147,16 @@ fn balls_are_seen_through_and_the_one_in_use_stands_out() {
 #[test]
 fn measures_and_the_shadow_of_a_box_are_exact() {
     let solid = shapes::cuboid(DVec3::ZERO, DVec3::new(2.0, 3.0, 4.0));
-    let mut mesh = Mesh::build(&solid.triangulate().0, &Job::default()).expect("a box builds");
+    let mut mesh = Clay::build(&solid.triangulate().0, &Job::default()).expect("a box builds");
     let found = measure(&mesh.snapshot(), DVec3::NEG_Y, &Job::default()).expect("not cancelled");
     assert!((found.volume - 24.0).abs() < 1e-9 && (found.area - 52.0).abs() < 1e-9, "{found:?}");
     assert_eq!(found.dimensions, [2.0, 3.0, 4.0]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
-    assert!(found.projected.iter().zip([12.0, 8.0, 6.0]).all(|(a, b)| near(*a, b)), "{:?}", found.projected);
+    assert!(
+        found.projected.iter().zip([12.0, 8.0, 6.0]).all(|(a, b)| near(*a, b)),
+        "{:?}",
+        found.projected
+    );
     assert!(near(found.shadow, 8.0), "{}", found.shadow);
     let drawing = svg(&found.outline);
     assert!(drawing.starts_with("<svg") && drawing.matches("<path").count() == 1, "{drawing}");
@@ -187,8 +192,8 @@ fn distances_follow_where_the_clay_changed_and_a_thing_where_it_goes() {
         assert_eq!(same, !changed.contains(&i), "page {i}");
     }
     // A ball of half the size in the middle: as far everywhere, but for what was raised.
-    let (_, about) = last(&after, Reference::Thing(thing(Vec3::ZERO)));
+    let (_, about) = last(&after, Reference::HeldObject(thing(Vec3::ZERO)));
     assert!((about.min - 0.5).abs() < 2e-3 && (about.rms - 0.5).abs() < 0.02, "{about:?}");
-    let (_, about) = last(&after, Reference::Thing(thing(Vec3::X * 0.5)));
+    let (_, about) = last(&after, Reference::HeldObject(thing(Vec3::X * 0.5)));
     assert!(about.min.abs() < 5e-3 && (about.max - 1.0).abs() < 0.02, "{about:?}");
 }

@@ -1,4 +1,5 @@
-//! The screen of an installation: every word in every language, every target large, nothing of one visitor for the next.
+//! The screen of an installation: every word in every language, every target large, nothing of one
+//! visitor for the next.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -9,7 +10,7 @@ use sculptd_daemon::kiosk::keeper::{Desk, Screen};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
 use sculptd_window::panels::timing::FrameFigures;
-use sculptd_window::panels::{Ask, Tab, kiosk};
+use sculptd_window::panels::{Tab, UiRequest, kiosk};
 
 use super::panels::{State, state};
 
@@ -38,7 +39,10 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
         };
         kiosk::ui(ui, &view, &screen, &mut s.desk, &mut s.asked);
     };
-    let mut h = Harness::builder().with_size(size).with_max_steps(64).build_ui_state(show, state(Tab::Look));
+    let mut h = Harness::builder()
+        .with_size(size)
+        .with_max_steps(64)
+        .build_ui_state(show, state(Tab::Look));
     h.run_steps(4);
     h
 }
@@ -49,8 +53,17 @@ fn a_visit_by_large_targets_in_any_language() {
     for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
         at(&screen, Stage::Working, 0);
         let mut h = harness(&screen, size);
-        let names =
-            ["Add", "Carve", "Smooth", "Undo", "Finished", "English", "Italiano", "Ελληνικά", "Staff"];
+        let names = [
+            "Add",
+            "Carve",
+            "Smooth",
+            "Undo",
+            "Finished",
+            "English",
+            "Italiano",
+            "Ελληνικά",
+            "Staff",
+        ];
         let inside = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         let rects: Vec<egui::Rect> = names.iter().map(|n| h.get_by_label(n).rect()).collect();
         for (i, rect) in rects.iter().enumerate() {
@@ -60,14 +73,18 @@ fn a_visit_by_large_targets_in_any_language() {
                 names[i]
             );
             assert!(inside.contains_rect(*rect), "{} is cut: {rect:?}", names[i]);
-            assert!(rects[..i].iter().all(|r| !r.shrink(1.0).intersects(*rect)), "{} overlaps", names[i]);
+            assert!(
+                rects[..i].iter().all(|r| !r.shrink(1.0).intersects(*rect)),
+                "{} overlaps",
+                names[i]
+            );
         }
         h.get_by_label("Ελληνικά").click();
         h.run_steps(3);
         assert!(screen.desk.touched.swap(false, Relaxed), "a press counts as a touch");
         h.get_by_label("Σκάψιμο").click();
         h.run_steps(3);
-        let carves = |a: &Ask| matches!(a, Ask::World(Command::Brush(b)) if b.negative);
+        let carves = |a: &UiRequest| matches!(a, UiRequest::World(Command::Brush(b)) if b.negative);
         assert!(h.state().asked.iter().any(carves));
         h.get_by_label("Τέλος").click();
         h.run_steps(3);
@@ -111,7 +128,8 @@ fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
     let screen = screen();
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");
-    *screen.desk.link.lock().expect("a desk") = Some(Link { url: url.clone(), code, until_us: u64::MAX });
+    *screen.desk.link.lock().expect("a desk") =
+        Some(Link { url: url.clone(), code, until_us: u64::MAX });
     for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
         at(&screen, Stage::Attract, 0);
         let mut h = harness(&screen, size);

@@ -1,4 +1,5 @@
-//! Every page on every screen: nothing cut at its sides, no text on another, text at least 4.5:1 on what lies under it.
+//! Every page on every screen: nothing cut at its sides, no text on another, text at least 4.5:1 on
+//! what lies under it.
 //!
 //! Read from the shapes that the panels paint, so it needs no adapter.
 
@@ -6,7 +7,7 @@ use egui::epaint::{ClippedShape, Shape};
 use egui::{Color32, Rect};
 use egui_kittest::Harness;
 use sculptd_engine::command::Command;
-use sculptd_engine::hand::Choice;
+use sculptd_engine::hand::MenuItem;
 use sculptd_window::panels::Tab;
 use sculptd_window::panels::measure::Distances;
 use sculptd_window::panels::scene::Said;
@@ -15,8 +16,16 @@ use sculptd_window::viewer::look::Map;
 use super::panels::{State, show, state};
 
 const SCREENS: [(f32, f32); 3] = [(1280.0, 720.0), (1920.0, 1080.0), (3840.0, 2160.0)];
-const TABS: [Tab; 8] =
-    [Tab::Look, Tab::Scene, Tab::Walls, Tab::Measure, Tab::Files, Tab::Devices, Tab::Loop, Tab::More];
+const TABS: [Tab; 8] = [
+    Tab::Look,
+    Tab::Scene,
+    Tab::Walls,
+    Tab::Measure,
+    Tab::Files,
+    Tab::Devices,
+    Tab::Loop,
+    Tab::More,
+];
 
 /// A piece of text as it is painted.
 #[derive(Debug)]
@@ -49,7 +58,13 @@ fn blend(over: Color32, under: Color32) -> Color32 {
     Color32::from_rgb(mix(over.r(), under.r()), mix(over.g(), under.g()), mix(over.b(), under.b()))
 }
 
-fn walk(shape: &Shape, clip: Rect, opaque: &mut Vec<(Rect, Color32)>, out: &mut Vec<Text>, clay: Color32) {
+fn walk(
+    shape: &Shape,
+    clip: Rect,
+    opaque: &mut Vec<(Rect, Color32)>,
+    out: &mut Vec<Text>,
+    clay: Color32,
+) {
     match shape {
         Shape::Vec(all) => all.iter().for_each(|s| walk(s, clip, opaque, out, clay)),
         Shape::Rect(r) if r.fill.a() > 0 && r.blur_width == 0.0 => {
@@ -66,7 +81,8 @@ fn walk(shape: &Shape, clip: Rect, opaque: &mut Vec<(Rect, Color32)>, out: &mut 
             let under = opaque.iter().filter(|(r, _)| r.contains(centre));
             let ground = under.fold(clay, |ground, (_, fill)| blend(*fill, ground));
             let written = t.override_text_color.unwrap_or_else(|| {
-                let colour = t.galley.job.sections.first().map_or(Color32::PLACEHOLDER, |s| s.format.color);
+                let colour =
+                    t.galley.job.sections.first().map_or(Color32::PLACEHOLDER, |s| s.format.color);
                 if colour == Color32::PLACEHOLDER { t.fallback_color } else { colour }
             });
             let colour = blend(written.gamma_multiply(t.opacity_factor), ground);
@@ -101,10 +117,15 @@ fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<Str
         }
         let ratio = contrast(t.colour, t.ground);
         // A button that cannot be pressed says so by being faint (WCAG 2 asks nothing of it).
-        if !(disabled_ok && ["Undo", "Redo", "Open", "Coarser", "to the thing"].contains(&t.what.as_str())) {
+        if !(disabled_ok
+            && ["Undo", "Redo", "Open", "Coarser", "to the thing"].contains(&t.what.as_str()))
+        {
             least = least.min(ratio);
             if ratio < 4.5 {
-                wrong.push(format!("'{}' has {ratio:.2}:1, {:?} on {:?}", t.what, t.colour, t.ground));
+                wrong.push(format!(
+                    "'{}' has {ratio:.2}:1, {:?} on {:?}",
+                    t.what, t.colour, t.ground
+                ));
             }
         }
         for other in &all[i + 1..] {
@@ -126,8 +147,9 @@ fn fill(s: &mut State, tab: Tab) {
             let plain = sculptd_geometry::shapes::sphere_of_about(200);
             world.step(1, &[], &[Command::TakeUp(std::sync::Arc::new(plain))]);
             s.published = super::published(&mut world);
-            s.desk.trial.choice = Some(Choice::Carve);
-            s.desk.trial.said = Said::Wrong("B is open: 1234 edges lack a partner; mend it first".into());
+            s.desk.trial.choice = Some(MenuItem::Carve);
+            s.desk.trial.said =
+                Said::Wrong("B is open: 1234 edges lack a partner; mend it first".into());
         }
         Tab::Measure => {
             let found = sculptd_window::viewer::field::measure(
@@ -139,7 +161,8 @@ fn fill(s: &mut State, tab: Tab) {
             s.desk.sizes.found = Some(Box::new(found));
             s.desk.look.map = Map::Distance;
             s.desk.look.scale = (-123.25, 123.25);
-            s.desk.sizes.distances = Some(Distances { min: -123.25, max: 99.5, rms: 0.1, known: (50, 100) });
+            s.desk.sizes.distances =
+                Some(Distances { min: -123.25, max: 99.5, rms: 0.1, known: (50, 100) });
         }
         Tab::Look => {
             s.published.hands = Some(Default::default());
@@ -172,8 +195,9 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                         .with_pixels_per_point(scale)
                         .build_ui_state(show, s);
                     harness.run_steps(4);
-                    // The dimmest and the palest clay that a cursor's text may lie on does not matter: text over the clay
-                    // has a ground of its own; this is what would be under it.
+                    // The dimmest and the palest clay that a cursor's text may lie on does not
+                    // matter: text over the clay has a ground of its own; this is what would be
+                    // under it.
                     let clay = Color32::from_rgb(150, 100, 80);
                     let (wrong, ratio) = look_at(&harness, clay, true);
                     let where_ = format!("{w}x{h} at {scale}, light {light}, {tab:?}");
@@ -219,7 +243,12 @@ fn the_search_the_ring_and_a_message_fit_the_smallest_screen() {
             let screen = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(640.0, 360.0));
             for t in all.iter().filter(|t| t.clip.contains(t.rect.center())) {
                 let inside = screen.expand(0.5).contains_rect(t.rect);
-                assert!(inside || t.rect.bottom() > 340.0, "'{}' leaves the screen: {:?}", t.what, t.rect);
+                assert!(
+                    inside || t.rect.bottom() > 340.0,
+                    "'{}' leaves the screen: {:?}",
+                    t.what,
+                    t.rect
+                );
             }
         }
     }

@@ -9,8 +9,8 @@ use sculptd_daemon::Published;
 use sculptd_daemon::trim::Part;
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_engine::command::Command;
-use sculptd_engine::hand::Choice;
-use sculptd_engine::stroke::DraftAct;
+use sculptd_engine::hand::MenuItem;
+use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::Polygon;
 use sculptd_window::panels::action::Action;
 use sculptd_window::panels::history::Thumb;
@@ -18,13 +18,13 @@ use sculptd_window::panels::measure::{Distances, Measured};
 use sculptd_window::panels::scene::Said;
 use sculptd_window::panels::timing::FrameFigures;
 use sculptd_window::panels::trim::{Shape, Trim};
-use sculptd_window::panels::{Ask, Desk, Tab, View, all};
+use sculptd_window::panels::{Tab, UiRequest, UiState, View, all};
 use sculptd_window::viewer::look::Map;
 
 pub(super) struct State {
     pub published: Published,
-    pub desk: Desk,
-    pub asked: Vec<Ask>,
+    pub desk: UiState,
+    pub asked: Vec<UiRequest>,
     pub devices: Vec<String>,
     pub ghosts: bool,
 }
@@ -33,7 +33,7 @@ pub(super) fn state(tab: Tab) -> State {
     let mut world = super::world(2_000);
     State {
         published: super::published(&mut world),
-        desk: Desk { tab, ..Default::default() },
+        desk: UiState { tab, ..Default::default() },
         asked: Vec::new(),
         devices: Vec::new(),
         ghosts: false,
@@ -55,15 +55,17 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
 }
 
 fn harness(tab: Tab) -> Harness<'static, State> {
-    let mut h =
-        Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).build_ui_state(show, state(tab));
+    let mut h = Harness::builder()
+        .with_size([1280.0, 720.0])
+        .with_max_steps(64)
+        .build_ui_state(show, state(tab));
     h.run_steps(3);
     h
 }
 
 fn brushes(h: &Harness<'_, State>) -> Vec<sculptd_clay::brush::BrushSettings> {
-    let of = |a: &Ask| match a {
-        Ask::World(Command::Brush(b)) => Some(*b),
+    let of = |a: &UiRequest| match a {
+        UiRequest::World(Command::Brush(b)) => Some(*b),
         _ => None,
     };
     h.state().asked.iter().filter_map(of).collect()
@@ -88,7 +90,8 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     let pen = |x: f32, tip: bool, tick: u64| {
         let area_mm = glam::Vec2::new(1600.0, 1000.0);
         let pos_mm = area_mm * glam::Vec2::new(x, 0.5);
-        let pen = Pen { in_range: true, tip, pos_mm, area_mm, pressure: Some(0.7), ..Pen::default() };
+        let pen =
+            Pen { in_range: true, tip, pos_mm, area_mm, pressure: Some(0.7), ..Pen::default() };
         Sample { device: DeviceId(1), t_us: tick * 8000, device_t_us: None, body: Body::Pen(pen) }
     };
     world.step(1, &[], &[Command::Brush(brush)]);
@@ -101,9 +104,9 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     h.state_mut().published = super::published(&mut world);
     h.run_steps(2);
     assert_eq!(h.state().published.draft.points().len(), 3);
-    let acts = |h: &mut Harness<'_, State>| -> Vec<DraftAct> {
-        let of = |a: &Ask| match a {
-            Ask::World(Command::Draft(act)) => Some(*act),
+    let acts = |h: &mut Harness<'_, State>| -> Vec<CurveAction> {
+        let of = |a: &UiRequest| match a {
+            UiRequest::World(Command::CurveStroke(act)) => Some(*act),
             _ => None,
         };
         h.state_mut().asked.drain(..).filter_map(|a| of(&a)).collect()
@@ -116,7 +119,7 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     // Which one is not known before one was held.
     h.key_press(Key::Delete);
     h.run_steps(2);
-    assert_eq!(acts(&mut h), [DraftAct::Apply, DraftAct::Cancel]);
+    assert_eq!(acts(&mut h), [CurveAction::Apply, CurveAction::Cancel]);
     // The pen holds the middle one.
     world.step(20, &[pen(0.5, true, 20)], &[]);
     h.state_mut().published = super::published(&mut world);
@@ -129,10 +132,10 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     h.get_by_label("Draw the curve").click();
     h.run_steps(2);
     let asked = acts(&mut h);
-    assert_eq!(asked, [DraftAct::Delete(1), DraftAct::Apply]);
+    assert_eq!(asked, [CurveAction::Delete(1), CurveAction::Apply]);
     // What was asked for is what the world does.
     for (i, act) in asked.into_iter().enumerate() {
-        world.step(30 + i as u64, &[], &[Command::Draft(act)]);
+        world.step(30 + i as u64, &[], &[Command::CurveStroke(act)]);
     }
     assert!(world.draft().is_none() && world.undo_steps() == 1);
     h.state_mut().published = super::published(&mut world);
@@ -150,7 +153,11 @@ fn undo_waits_until_there_is_something_to_take_back() {
     h.run_steps(2);
     h.get_by_label("Undo").click();
     h.run_steps(2);
-    assert!(matches!(h.state().asked[..], [Ask::World(Command::Undo)]), "{:?}", h.state().asked);
+    assert!(
+        matches!(h.state().asked[..], [UiRequest::World(Command::Undo)]),
+        "{:?}",
+        h.state().asked
+    );
 }
 
 #[test]
@@ -161,7 +168,11 @@ fn keys_do_what_the_tooltips_say() {
     h.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     h.run_steps(2);
     let s = h.state();
-    assert!(matches!(s.asked[..], [Ask::World(Command::Undo), Ask::World(Command::Redo)]), "{:?}", s.asked);
+    assert!(
+        matches!(s.asked[..], [UiRequest::World(Command::Undo), UiRequest::World(Command::Redo)]),
+        "{:?}",
+        s.asked
+    );
     assert!(s.desk.prefs.done.undone);
     h.state_mut().asked.clear();
     h.key_press(Key::CloseBracket);
@@ -265,7 +276,9 @@ fn hints_are_gone_for_good_once_followed() {
 #[test]
 fn the_device_page_says_what_is_there() {
     let mut h = harness(Tab::Devices);
-    assert!(h.query_by_label_contains("No tablet found: plug one in, nothing to restart").is_some());
+    assert!(
+        h.query_by_label_contains("No tablet found: plug one in, nothing to restart").is_some()
+    );
     h.state_mut().devices = vec!["A tablet on /dev/hidraw0: connected".into()];
     h.run_steps(2);
     assert!(h.query_by_label_contains("No tablet found").is_none());
@@ -286,8 +299,8 @@ fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
     h.get_by_role_and_label(Role::Button, "Export").click();
     h.run_steps(2);
     let asked = &h.state().asked;
-    assert!(matches!(&asked[0], Ask::Open(p) if p.ends_with("mesh.obj")), "{asked:?}");
-    assert!(matches!(&asked[1], Ask::Export(p) if p.ends_with("sculpture.stl")), "{asked:?}");
+    assert!(matches!(&asked[0], UiRequest::WindowState(p) if p.ends_with("mesh.obj")), "{asked:?}");
+    assert!(matches!(&asked[1], UiRequest::Export(p) if p.ends_with("sculpture.stl")), "{asked:?}");
 }
 
 #[test]
@@ -297,14 +310,14 @@ fn a_thing_is_taken_up_placed_and_joined() {
     h.get_by_label("Ball").click();
     h.run_steps(2);
     let asked = std::mem::take(&mut h.state_mut().asked);
-    let [Ask::World(take)] = &asked[..] else { panic!("{asked:?}") };
+    let [UiRequest::World(take)] = &asked[..] else { panic!("{asked:?}") };
     world.step(1, &[], std::slice::from_ref(take));
     h.state_mut().published = super::published(&mut world);
     assert!(h.state().published.thing.is_some());
     h.run_steps(2);
     h.get_by_label("Cut").click();
     h.run_steps(2);
-    assert!(matches!(h.state().asked[..], [Ask::Join(_)]), "{:?}", h.state().asked);
+    assert!(matches!(h.state().asked[..], [UiRequest::Join(_)]), "{:?}", h.state().asked);
 }
 
 #[test]
@@ -326,7 +339,11 @@ fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
     h.run_steps(2);
     h.get_by_label("1: 0.400 mm").click();
     h.run_steps(2);
-    assert!(matches!(h.state().asked[..], [Ask::FlyTo(p)] if p == place), "{:?}", h.state().asked);
+    assert!(
+        matches!(h.state().asked[..], [UiRequest::FlyTo(p)] if p == place),
+        "{:?}",
+        h.state().asked
+    );
 }
 
 #[test]
@@ -334,7 +351,9 @@ fn the_cube_looks_along_an_axis() {
     let mut h = harness(Tab::Look);
     h.get_by_label(Action::Front.entry().name).click();
     h.run_steps(2);
-    let Some(Ask::Camera(c)) = h.state().asked.last() else { panic!("{:?}", h.state().asked) };
+    let Some(UiRequest::Camera(c)) = h.state().asked.last() else {
+        panic!("{:?}", h.state().asked)
+    };
     assert_eq!((c.yaw, c.pitch), (0.0, 0.0));
 }
 
@@ -354,22 +373,27 @@ fn a_join_is_tried_then_applied_or_dismissed() {
     h.run_steps(3);
     h.key_press(Key::Enter);
     h.run_steps(3);
-    assert_eq!(h.state().desk.trial.choice, Some(Choice::Carve));
+    assert_eq!(h.state().desk.trial.choice, Some(MenuItem::Carve));
     h.state_mut().desk.trial.said = Said::Shown(321);
     h.run_steps(2);
     assert!(h.query_by_label("321 triangles of the thing").is_some());
-    h.state_mut().desk.trial.said = Said::Wrong("B is open: 3 edges lack a partner; mend it first".into());
+    h.state_mut().desk.trial.said =
+        Said::Wrong("B is open: 3 edges lack a partner; mend it first".into());
     h.run_steps(2);
     assert!(h.query_by_label_contains("B is open").is_some());
     h.get_by_label("Dismiss").click();
     h.run_steps(2);
     assert_eq!(h.state().desk.trial.choice, None);
     assert!(h.state().asked.is_empty());
-    h.state_mut().desk.trial.choice = Some(Choice::Add);
+    h.state_mut().desk.trial.choice = Some(MenuItem::Add);
     h.run_steps(2);
     h.get_by_label("Apply").click();
     h.run_steps(2);
-    assert!(matches!(h.state().asked[..], [Ask::Join(Choice::Add)]), "{:?}", h.state().asked);
+    assert!(
+        matches!(h.state().asked[..], [UiRequest::Join(MenuItem::Add)]),
+        "{:?}",
+        h.state().asked
+    );
 }
 
 #[test]
@@ -381,7 +405,7 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     assert!(h.state().asked.is_empty(), "there is no coarser one");
     h.get_by_label("Finer").click();
     h.run_steps(2);
-    assert!(matches!(h.state().asked[..], [Ask::Level(true)]), "{:?}", h.state().asked);
+    assert!(matches!(h.state().asked[..], [UiRequest::Level(true)]), "{:?}", h.state().asked);
     h.state_mut().asked.clear();
     // The solid "Box" stands above the trim's.
     h.get_all_by_label("Box").last().expect("a button").click();
@@ -393,7 +417,9 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     h.run_steps(2);
     h.drop_at(egui::pos2(640.0, 360.0));
     h.run_steps(3);
-    let [Ask::Trim(Part::Box(part))] = h.state().asked[..] else { panic!("{:?}", h.state().asked) };
+    let [UiRequest::Trim(Part::Box(part))] = h.state().asked[..] else {
+        panic!("{:?}", h.state().asked)
+    };
     let want = [480.0 / 1280.0, 0.25, 0.5, 0.5];
     assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-3), "{part:?}");
     assert!(h.state().desk.trim.is_none());
@@ -435,7 +461,10 @@ fn sizes_are_told_with_their_units_and_the_outline_is_written() {
     h.get_by_label("SVG").click();
     h.run_steps(2);
     let asked = &h.state().asked;
-    assert!(matches!(&asked[..], [Ask::Outline(p)] if p.ends_with("outline.svg")), "{asked:?}");
+    assert!(
+        matches!(&asked[..], [UiRequest::Outline(p)] if p.ends_with("outline.svg")),
+        "{asked:?}"
+    );
 }
 
 #[test]
@@ -455,7 +484,7 @@ fn distances_have_a_map_a_legend_and_a_reference() {
     assert!(shown.contains("+0.250 mm") && shown.contains("-0.250 mm"), "the legend has its ends");
     h.get_by_label("Compare with now").click();
     h.run_steps(2);
-    assert!(matches!(h.state().asked[..], [Ask::Reference]), "{:?}", h.state().asked);
+    assert!(matches!(h.state().asked[..], [UiRequest::Reference]), "{:?}", h.state().asked);
 }
 
 #[test]
@@ -469,11 +498,14 @@ fn the_hands_menu_has_its_words_at_its_balls() {
     s.published.camera.distance = 20.0;
     (s.published.camera.yaw, s.published.camera.pitch) = (0.0, 0.0);
     h.run_steps(4);
-    for choice in Choice::EMPTY {
+    for choice in MenuItem::EMPTY {
         assert!(h.query_by_label(choice.label()).is_some(), "{}", choice.label());
     }
     let balls = sculptd_window::panels::hand_menu::balls(&h.state().published);
-    assert_eq!(balls.iter().map(|b| b.ring).collect::<Vec<_>>(), [None, Some(0.4), None, None, None]);
+    assert_eq!(
+        balls.iter().map(|b| b.ring).collect::<Vec<_>>(),
+        [None, Some(0.4), None, None, None]
+    );
     assert!(balls.windows(2).all(|b| b[1].place.y > b[0].place.y), "one over the other");
 }
 
@@ -484,16 +516,25 @@ fn a_step_is_gone_to_by_its_picture() {
     let texture = h.ctx.load_texture("thumb", image, Default::default());
     let s = h.state_mut();
     (s.published.undo_steps, s.published.redo_steps) = (4, 2);
-    s.desk.history = (0..=8).map(|step| Thumb { step, mark: 0, texture: texture.clone() }).collect();
+    s.desk.history =
+        (0..=8).map(|step| Thumb { step, mark: 0, texture: texture.clone() }).collect();
     h.run_steps(2);
     assert!(h.query_by_label("After step 7").is_none(), "there is no such step any more");
     h.get_by_label("After step 1").click();
     h.run_steps(2);
-    let undone = |a: &Ask| matches!(a, Ask::World(Command::Undo));
-    assert!(h.state().asked.len() == 3 && h.state().asked.iter().all(undone), "{:?}", h.state().asked);
+    let undone = |a: &UiRequest| matches!(a, UiRequest::World(Command::Undo));
+    assert!(
+        h.state().asked.len() == 3 && h.state().asked.iter().all(undone),
+        "{:?}",
+        h.state().asked
+    );
     h.state_mut().asked.clear();
     h.get_by_label("After step 6").click();
     h.run_steps(2);
-    let redone = |a: &Ask| matches!(a, Ask::World(Command::Redo));
-    assert!(h.state().asked.len() == 2 && h.state().asked.iter().all(redone), "{:?}", h.state().asked);
+    let redone = |a: &UiRequest| matches!(a, UiRequest::World(Command::Redo));
+    assert!(
+        h.state().asked.len() == 2 && h.state().asked.iter().all(redone),
+        "{:?}",
+        h.state().asked
+    );
 }

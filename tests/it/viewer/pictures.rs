@@ -1,8 +1,8 @@
 //! Pictures by the renderer on whatever adapter there is, and what is sent to it.
 
 use glam::Vec3;
-use sculptd_clay::brush::Gaussian;
-use sculptd_clay::{Mesh, Ray, Reach, Workers};
+use sculptd_clay::brush::GaussianBrush;
+use sculptd_clay::{Clay, Ray, Reach, Workers};
 use sculptd_devices::Clock;
 use sculptd_engine::camera::Camera;
 use sculptd_window::viewer::look::{Look, MATERIALS, Map};
@@ -25,18 +25,18 @@ pub(super) fn painter() -> Option<Painter> {
     }
 }
 
-pub(super) fn framed(mesh: &Mesh, aspect: f32) -> Camera {
+pub(super) fn framed(mesh: &Clay, aspect: f32) -> Camera {
     let (lo, hi) = mesh.bounds();
     let mut camera = Camera { aspect, ..Camera::default() };
     camera.frame(lo, hi);
     camera
 }
 
-pub(super) fn dab(mesh: &mut Mesh, radius: f32) -> usize {
+pub(super) fn dab(mesh: &mut Clay, radius: f32) -> usize {
     let from = Vec3::new(0.3, 0.5, 0.8).normalize();
     let hit = mesh.pick(Ray { origin: from * 5.0, dir: -from }).expect("the ball is there");
     let reach = Reach::Sphere { centre: hit.position, radius };
-    let kernel = Gaussian::new(hit.position, radius, hit.normal, radius * 0.2);
+    let kernel = GaussianBrush::new(hit.position, radius, hit.normal, radius * 0.2);
     mesh.dab(&reach, &kernel, &Workers::new(1)).affected
 }
 
@@ -104,7 +104,7 @@ fn only_changed_rows_are_sent_and_the_picture_is_right_afterwards() {
     let mut mesh = sphere(500_000);
     assert!(mesh.triangle_count() >= 990_000);
     let camera = framed(&mesh, 1.0);
-    let draw = |painter: &mut Painter, mesh: &mut Mesh| {
+    let draw = |painter: &mut Painter, mesh: &mut Clay| {
         let snapshot = mesh.snapshot();
         let look = Look::default();
         let scene = Scene {
@@ -149,7 +149,8 @@ fn only_changed_rows_are_sent_and_the_picture_is_right_afterwards() {
     assert!(picture == draw(&mut fresh, &mut mesh).0, "the picture differs from one drawn afresh");
 }
 
-/// Time of our own work a frame, outside the driver as far as it can be told apart: everything but the submission.
+/// Time of our own work a frame, outside the driver as far as it can be told apart: everything but
+/// the submission.
 #[test]
 fn an_idle_frame_of_a_million_triangles_costs_little() {
     let Some(painter) = painter() else { return };
@@ -228,7 +229,8 @@ fn large_works_are_drawn_at_interactive_rates() {
         let mut mesh = sphere(vertices);
         let camera = framed(&mesh, 16.0 / 9.0);
         let format = wgpu::TextureFormat::Rgba8UnormSrgb;
-        let mut renderer = sculptd_window::viewer::renderer::Renderer::new(gpu, format, gpu.samples(false));
+        let mut renderer =
+            sculptd_window::viewer::renderer::Renderer::new(gpu, format, gpu.samples(false));
         let size = wgpu::Extent3d { width: 1920, height: 1080, depth_or_array_layers: 1 };
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,

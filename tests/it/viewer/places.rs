@@ -1,12 +1,13 @@
-//! The session's history in the panel: places on branches by a click, places of the line by a drag and by the slider.
+//! The session's history in the panel: places on branches by a click, places of the line by a drag
+//! and by the slider.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use sculptd_daemon::session::history::{Node, Tree};
 use sculptd_engine::command::Command;
-use sculptd_engine::world::Deed;
-use sculptd_window::panels::{Ask, Tab};
+use sculptd_engine::world::HistoryEvent;
+use sculptd_window::panels::{Tab, UiRequest};
 
 use super::panels::{State, show, state};
 
@@ -19,8 +20,8 @@ fn tree(count: u64, branches: &[(u64, u64)], cursor: u64) -> Tree {
             id,
             parent,
             tick: id * 120,
-            deed: Deed::Step,
-            lineage: 0,
+            deed: HistoryEvent::Step,
+            object_id: 0,
             changes: vec![],
             pages: 1,
             middle: Vec3::ZERO,
@@ -39,14 +40,15 @@ fn harness(tree: &Tree) -> Harness<'static, State> {
     s.desk.places.rate_hz = 120;
     s.desk.places.set(tree);
     // Tall enough for the whole panel: what is out of sight is not pressed.
-    let mut h = Harness::builder().with_size([1280.0, 1200.0]).with_max_steps(64).build_ui_state(show, s);
+    let mut h =
+        Harness::builder().with_size([1280.0, 1200.0]).with_max_steps(64).build_ui_state(show, s);
     h.run_steps(6);
     h
 }
 
 fn jumps(h: &Harness<'_, State>) -> Vec<u64> {
-    let of = |a: &Ask| match a {
-        Ask::Jump(node) => Some(*node),
+    let of = |a: &UiRequest| match a {
+        UiRequest::Jump(node) => Some(*node),
         _ => None,
     };
     h.state().asked.iter().filter_map(of).collect()
@@ -69,14 +71,19 @@ fn a_place_on_a_branch_is_gone_to_by_a_click() {
     // Memory holds nothing to take back, the file does.
     h.get_by_label("Undo").click();
     h.run_steps(3);
-    assert!(matches!(h.state().asked[..], [Ask::World(Command::Undo)]), "{:?}", h.state().asked);
+    assert!(
+        matches!(h.state().asked[..], [UiRequest::World(Command::Undo)]),
+        "{:?}",
+        h.state().asked
+    );
 }
 
 #[test]
 fn a_drag_goes_through_the_places_and_asks_for_each_once() {
     let mut h = harness(&tree(5, &[], 4));
-    let at =
-        |h: &Harness<'_, State>, n: u64| h.get_by_label(&format!("Place {n}, at 0:0{n}")).rect().center();
+    let at = |h: &Harness<'_, State>, n: u64| {
+        h.get_by_label(&format!("Place {n}, at 0:0{n}")).rect().center()
+    };
     let press = |pos: egui::Pos2, pressed: bool| egui::Event::PointerButton {
         pos,
         button: egui::PointerButton::Primary,
@@ -123,7 +130,8 @@ fn a_long_history_shows_where_the_work_is_and_costs_what_is_seen() {
     assert_eq!(jumps(&h).len(), 1);
 }
 
-/// A session in the real window: three strokes, two taken back, one more; then every place by a click on its row.
+/// A session in the real window: three strokes, two taken back, one more; then every place by a
+/// click on its row.
 #[cfg(unix)]
 #[test]
 fn the_places_of_a_session_in_a_real_window() {
@@ -151,7 +159,8 @@ fn the_places_of_a_session_in_a_real_window() {
     }
     stroke(&mut s, (0, -120), (0, 120), 5);
     s.seen("places-1-branch");
-    // The rows lie in the left panel, the oldest first; the line's are brighter. From the lowest up: each that is hit once.
+    // The rows lie in the left panel, the oldest first; the line's are brighter. From the lowest
+    // up: each that is hit once.
     let mut met = vec![4u64];
     for y in (560..720).rev().step_by(10) {
         s.drive(&["mousemove", "120", &y.to_string()]);

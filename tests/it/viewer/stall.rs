@@ -26,7 +26,8 @@ fn pen(t_us: u64, at: Vec2, tip: bool) -> Sample {
     Sample { device: DeviceId(0), t_us, device_t_us: None, body: Body::Pen(pen) }
 }
 
-/// The viewer holds one state and looks at nothing more, while a stroke goes on: one second, or ten with `SCULPTD_LONG=1`.
+/// The viewer holds one state and looks at nothing more, while a stroke goes on: one second, or ten
+/// with `SCULPTD_LONG=1`.
 #[test]
 fn a_viewer_that_stalls_costs_no_sample_and_no_memory() {
     let long = std::env::var_os("SCULPTD_LONG").is_some_and(|v| v == "1");
@@ -34,8 +35,15 @@ fn a_viewer_that_stalls_costs_no_sample_and_no_memory() {
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(4096);
     let mut sender = factory.sender();
-    let live = Live::start(super::world(40_000), receiver, clock.clone(), LoopConfig::default(), 1024, None)
-        .expect("the loop starts");
+    let live = Live::start(
+        super::world(40_000),
+        receiver,
+        clock.clone(),
+        LoopConfig::default(),
+        1024,
+        None,
+    )
+    .expect("the loop starts");
     let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
     let wait = |ms| {
         let _ = quiet.recv_timeout(Duration::from_millis(ms));
@@ -71,7 +79,8 @@ fn a_viewer_that_stalls_costs_no_sample_and_no_memory() {
     assert!(now.mesh.revision() > held.mesh.revision());
     // The held state is whole still.
     assert_eq!(held.mesh.vertex_count(), now.mesh.vertex_count());
-    // What a stroke itself keeps for undo is bounded by the clay's own size; published states do not pile up.
+    // What a stroke itself keeps for undo is bounded by the clay's own size; published states do
+    // not pile up.
     assert!(grown < 64 << 20, "{grown} bytes");
     sender_lifts(&factory, &clock);
     wait(60);

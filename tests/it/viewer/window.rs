@@ -1,7 +1,9 @@
-//! The real window on a screen of its own (Xvfb, software Vulkan), driven by a synthetic pointer and keys: what a sculptor
-//! does in the first minutes, each step seen on the screen and heard from the daemon.
+//! The real window on a screen of its own (Xvfb, software Vulkan), driven by a synthetic pointer
+//! and keys: what a sculptor does in the first minutes, each step seen on the screen and heard from
+//! the daemon.
 //!
-//! `SCULPTD_SHOTS=folder` keeps the pictures; `SCULPTD_BLESS=1` writes the kept references anew: look at them first.
+//! `SCULPTD_SHOTS=folder` keeps the pictures; `SCULPTD_BLESS=1` writes the kept references anew:
+//! look at them first.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -22,7 +24,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const KEPT: (u32, u32) = (160, 90);
 /// Mean difference of a kept picture, of 255.
 const TOLERANCE: f64 = 10.0;
-/// Pictures that differ by less than this, of 255 in the mean, show the same: a light stroke of smoothing is twice as much.
+/// Pictures that differ by less than this, of 255 in the mean, show the same: a light stroke of
+/// smoothing is twice as much.
 const STILL: f64 = 0.02;
 
 struct Ended(Child);
@@ -101,10 +104,12 @@ impl Stage {
             .stderr(std::fs::File::create(dir.path().join("log")).expect("a file"))
             .spawn()
             .expect("the daemon starts");
-        let mut stage = Stage { dir, display, _daemon: Some(Ended(daemon)), _screen: screen, last: None };
+        let mut stage =
+            Stage { dir, display, _daemon: Some(Ended(daemon)), _screen: screen, last: None };
         stage.until("the daemon answers", |s| s.asked("status", &Value::Null).is_some());
         let log = stage.dir.path().join("log");
-        let none = || std::fs::read_to_string(&log).unwrap_or_default().contains("without a window");
+        let none =
+            || std::fs::read_to_string(&log).unwrap_or_default().contains("without a window");
         for _ in 0..600 {
             if none() {
                 println!("skipped: {}", std::fs::read_to_string(&log).unwrap_or_default().trim());
@@ -118,8 +123,9 @@ impl Stage {
             }
             pause(50);
         }
-        let id =
-            stage.tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"]).unwrap_or_default();
+        let id = stage
+            .tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"])
+            .unwrap_or_default();
         let id = id.lines().next().expect("a window").to_owned();
         stage.drive(&["windowfocus", &id]);
         Some(stage)
@@ -184,7 +190,8 @@ impl Stage {
         image::open(&path).expect("a PNG").to_rgba8()
     }
 
-    /// The next picture, once it is another than the last one: what was asked for is on the screen, and stands still.
+    /// The next picture, once it is another than the last one: what was asked for is on the screen,
+    /// and stands still.
     pub(super) fn seen(&mut self, name: &str) -> RgbaImage {
         for _ in 0..100 {
             let now = self.look(name);
@@ -209,7 +216,8 @@ fn differs(a: &RgbaImage, b: &RgbaImage) -> f64 {
 
 /// Against the small picture that is kept.
 fn as_kept(name: &str, now: &RgbaImage) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/window/{name}.png"));
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/window/{name}.png"));
     let small = image::imageops::resize(now, KEPT.0, KEPT.1, FilterType::Triangle);
     if std::env::var_os("SCULPTD_BLESS").is_some() {
         std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
@@ -278,7 +286,8 @@ fn the_first_minutes_in_a_real_window() {
 
     let out = s.dir.path().join("work.stl");
     s.ask("export", &json!({ "path": out }));
-    let read = sculptd_geometry::io::read_mesh(&out, &Default::default()).expect("the export is read back");
+    let read = sculptd_geometry::io::read_mesh(&out, &Default::default())
+        .expect("the export is read back");
     assert_eq!(read.mesh.triangulate().0.triangles.len() as u64, s.figure("triangles"));
 }
 
@@ -309,7 +318,10 @@ fn a_curve_is_laid_changed_and_drawn_with_the_pointer() {
     s.drive(&["mousemove", &x, &y, "click", "3"]);
     s.until("there is one less", points(5));
     s.seen("c5-changed");
-    assert_eq!((s.figure("undo_steps"), s.ask("hash", &Value::Null)["hash"].clone()), (0, smooth.clone()));
+    assert_eq!(
+        (s.figure("undo_steps"), s.ask("hash", &Value::Null)["hash"].clone()),
+        (0, smooth.clone())
+    );
     s.drive(&["key", "Return"]);
     s.until("it is drawn", |s| s.figure("undo_steps") == 1);
     s.until("nothing is laid", points(0));
@@ -384,8 +396,10 @@ fn the_installation_s_screen() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("kiosk.toml");
     #[allow(clippy::disallowed_methods)]
-    std::fs::write(&path, "idle_s = 3.0\ncountdown_s = 8.0\nstaff_pin = \"4711\"\n").expect("written");
-    let Some(mut s) = Stage::open(&["--kiosk", "--kiosk-config", path.to_str().expect("UTF-8")]) else {
+    std::fs::write(&path, "idle_s = 3.0\ncountdown_s = 8.0\nstaff_pin = \"4711\"\n")
+        .expect("written");
+    let Some(mut s) = Stage::open(&["--kiosk", "--kiosk-config", path.to_str().expect("UTF-8")])
+    else {
         return;
     };
     s.until("the film sculpts", |s| s.figure("dabs") > 30);

@@ -49,7 +49,13 @@ pub struct SerialPenConfig {
 
 impl SerialPenConfig {
     pub fn new(protocol: Protocol, area_mm: Vec2) -> Self {
-        SerialPenConfig { protocol, area_mm, rate: 133.0, repeat_us: None, faults: Faults::default() }
+        SerialPenConfig {
+            protocol,
+            area_mm,
+            rate: 133.0,
+            repeat_us: None,
+            faults: Faults::default(),
+        }
     }
 }
 
@@ -82,7 +88,8 @@ impl SerialPen {
     /// If there is no pseudo-terminal to be had, or no thread.
     pub fn new(script: PenScript, config: SerialPenConfig) -> io::Result<Self> {
         let (master, slave) = TTYPort::pair()?;
-        let name = slave.name().ok_or_else(|| io::Error::other("a pseudo-terminal without a name"))?;
+        let name =
+            slave.name().ok_or_else(|| io::Error::other("a pseudo-terminal without a name"))?;
         let model = Model::new(config.protocol, config.area_mm);
         let streaming = Arc::new(AtomicBool::new(false));
         let mut ears = master.try_clone_native()?;

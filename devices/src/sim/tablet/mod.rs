@@ -36,7 +36,12 @@ pub struct TabletConfig {
 
 impl Default for TabletConfig {
     fn default() -> Self {
-        TabletConfig { rate: 200.0, repeat_us: None, keeps: KERNEL_KEEPS, faults: Faults::default() }
+        TabletConfig {
+            rate: 200.0,
+            repeat_us: None,
+            keeps: KERNEL_KEEPS,
+            faults: Faults::default(),
+        }
     }
 }
 

@@ -19,7 +19,10 @@ fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
     let mut node = Command::new("node");
     let node = node.arg("check.cjs").args([&port, "500"]).current_dir(dir);
     let child = node.stdout(std::process::Stdio::piped()).spawn().unwrap();
-    assert!(tracker.wait_for_client(std::time::Duration::from_secs(20)), "leapjs has not connected");
+    assert!(
+        tracker.wait_for_client(std::time::Duration::from_secs(20)),
+        "leapjs has not connected"
+    );
     let (_hold, leash) = crate::lifeline::pair();
     let mut us = 10_400_000;
     while tracker.clients() > 0 && us < 20_000_000 {
@@ -33,7 +36,10 @@ fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
     let seen: Value = serde_json::from_str(text.lines().last().unwrap_or_default()).unwrap();
     assert!(out.status.success() && seen["faults"] == serde_json::json!([]), "{seen}");
     assert_eq!(seen["frames"], 500);
-    assert!(seen["both"].as_u64() > Some(200) && seen["types"]["left"].as_u64() > Some(200), "{seen}");
+    assert!(
+        seen["both"].as_u64() > Some(200) && seen["types"]["left"].as_u64() > Some(200),
+        "{seen}"
+    );
     assert_eq!(seen["bones"].as_u64(), seen["hands"].as_u64().map(|h| 20 * h));
     assert!(tracker.wishes().iter().any(|w| w.contains("background")), "{:?}", tracker.wishes());
 }

@@ -176,7 +176,8 @@ impl Tracker {
             let at = self.next_us;
             self.next_us += step;
             self.frame += 1;
-            let stamp = (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
+            let stamp =
+                (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
             let hands = self.hands_at(at);
             let text = frame_json(&hands, stamp, self.config.rate);
             let packet = Packet { text, frame: self.frame, stamp, hands: hands.count };

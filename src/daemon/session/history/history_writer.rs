@@ -6,16 +6,16 @@ use std::sync::Arc;
 use super::store::{Checkpoint, Name, Store, StoreError};
 use super::tree::{Change, NOTHING, Node, Tree};
 use crate::session::history::retention::{Freed, High, Pin, bound};
-use crate::session::history::thumbnail as sight;
+use crate::session::history::thumbnail;
 use sculptd_clay::{Page, Snapshot};
-use sculptd_engine::world::{Deed, Moment, Saved, Side};
+use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, Side};
 
 /// Bytes of one transaction: the journal's own rows wait for no longer than that takes.
 const CHUNK: usize = 4 << 20;
 
 /// The file and the tree, and the work at the cursor.
 #[derive(Debug)]
-pub struct Ledger {
+pub struct HistoryWriter {
     pub store: Store,
     pub tree: Tree,
     /// The work at the cursor.
@@ -42,16 +42,22 @@ fn version(page: &Page) -> u64 {
 
 fn same(a: &Side, b: &Side) -> bool {
     match (a, b) {
-        (Side::Thing(a), Side::Thing(b)) => Arc::ptr_eq(a, b),
+        (Side::HeldObject(a), Side::HeldObject(b)) => Arc::ptr_eq(a, b),
         (Side::Picture(a), Side::Picture(b)) => Arc::ptr_eq(a, b),
         (Side::Levels(a), Side::Levels(b)) => Arc::ptr_eq(a, b),
         _ => false,
     }
 }
 
-impl Ledger {
-    /// What the file holds, without the nodes after `purge` and without pages that belong to no node.
-    pub fn open(store: Store, purge: u64, now: Snapshot, most: u64) -> Result<Ledger, StoreError> {
+impl HistoryWriter {
+    /// What the file holds, without the nodes after `purge` and without pages that belong to no
+    /// node.
+    pub fn open(
+        store: Store,
+        purge: u64,
+        now: Snapshot,
+        most: u64,
+    ) -> Result<HistoryWriter, StoreError> {
         let mut tree = Tree::default();
         store.db.execute_batch("BEGIN IMMEDIATE")?;
         for node in store.tree()?.nodes() {
@@ -66,12 +72,14 @@ impl Ledger {
         store.db.execute("DELETE FROM checkpoint WHERE tick > ?1", [until])?;
         let mut used: BTreeSet<Name> = BTreeSet::new();
         for n in tree.nodes() {
-            used.extend(n.changes.iter().flat_map(|c| [(n.lineage, c.0, c.1), (n.lineage, c.0, c.2)]));
+            used.extend(
+                n.changes.iter().flat_map(|c| [(n.object_id, c.0, c.1), (n.object_id, c.0, c.2)]),
+            );
         }
         // What the log's jumps name stays, whatever became of the places.
         store.settle_pins(purge)?;
         for (_, _, pin) in store.pins()? {
-            used.extend(pin.pages.iter().map(|&(i, revision)| (pin.lineage, i, revision)));
+            used.extend(pin.pages.iter().map(|&(i, revision)| (pin.object_id, i, revision)));
         }
         let mut names = store.names()?;
         for name in names.keys().filter(|n| !used.contains(*n)) {
@@ -94,7 +102,7 @@ impl Ledger {
         store.db.execute_batch("COMMIT")?;
         let next_side = store.next_side()?;
         let bytes = store.total()?;
-        Ok(Ledger {
+        Ok(HistoryWriter {
             store,
             tree,
             now,
@@ -111,12 +119,17 @@ impl Ledger {
     }
 
     /// Puts the cursor where the world is: at `at`, or at a node of its own below it.
-    pub fn begin(&mut self, tick: u64, first: &Moment, at: Option<u64>) -> Result<(), StoreError> {
+    pub fn begin(
+        &mut self,
+        tick: u64,
+        first: &HistoryEntry,
+        at: Option<u64>,
+    ) -> Result<(), StoreError> {
         let work = &first.work;
         let parent = at.filter(|id| self.tree.node(*id).is_some());
         let known = parent.map(|id| self.tree.versions(id)).unwrap_or_default();
-        let lineage = parent.and_then(|id| self.tree.node(id)).map_or(0, |n| n.lineage);
-        let other = lineage != work.lineage();
+        let object_id = parent.and_then(|id| self.tree.node(id)).map_or(0, |n| n.object_id);
+        let other = object_id != work.object_id();
         let changed: Vec<(u32, u64)> = (0..work.page_count() as u32)
             .map(|i| (i, if other { NOTHING } else { known.get(&i).copied().unwrap_or(0) }))
             .filter(|(i, before)| {
@@ -127,14 +140,19 @@ impl Ledger {
         self.topology = if other {
             BTreeMap::new()
         } else {
-            let of = |(i, rev): (&u32, &u64)| Some((*i, *self.names.get(&(lineage, *i, *rev))?));
+            let of = |(i, rev): (&u32, &u64)| Some((*i, *self.names.get(&(object_id, *i, *rev))?));
             known.iter().filter_map(of).filter(|(_, t)| *t != 0).collect()
         };
         if parent.is_some() && changed.is_empty() {
             self.tree.go(parent.unwrap_or_default());
             return Ok(());
         }
-        let node = self.node(tick, first, parent, if other { Deed::Replace } else { Deed::Step });
+        let node = self.node(
+            tick,
+            first,
+            parent,
+            if other { HistoryEvent::Replace } else { HistoryEvent::Step },
+        );
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         self.open = 0;
         let mut changes: Vec<Change> = Vec::with_capacity(changed.len());
@@ -146,14 +164,15 @@ impl Ledger {
             }
             // What it is made of is not known to be stored: so it is stored.
             self.topology.insert(i, page.revision());
-            self.keep_topology((work.lineage(), i, page.revision()), page)?;
-            self.keep_page((work.lineage(), i, page.revision()), page.revision(), page)?;
+            self.keep_topology((work.object_id(), i, page.revision()), page)?;
+            self.keep_page((work.object_id(), i, page.revision()), page.revision(), page)?;
             changes.push((i, before, page.revision()));
         }
         self.finish_node(Node { changes, ..node }, work)
     }
 
-    /// After an error: what the file holds is read again, for a part of it may not have been written.
+    /// After an error: what the file holds is read again, for a part of it may not have been
+    /// written.
     pub fn recover(&mut self) {
         let _ = self.store.db.execute_batch("ROLLBACK");
         if let (Ok(names), Ok(topologies)) = (self.store.names(), self.store.topologies()) {
@@ -165,14 +184,20 @@ impl Ledger {
         self.sides.clear();
     }
 
-    fn node(&mut self, tick: u64, moment: &Moment, parent: Option<u64>, deed: Deed) -> Node {
+    fn node(
+        &mut self,
+        tick: u64,
+        moment: &HistoryEntry,
+        parent: Option<u64>,
+        deed: HistoryEvent,
+    ) -> Node {
         let levels = moment.work.levels().map(|l| Side::Levels(l.clone()));
         Node {
             id: self.tree.next_id(),
             parent,
             tick,
             deed,
-            lineage: moment.work.lineage(),
+            object_id: moment.work.object_id(),
             changes: Vec::new(),
             pages: moment.work.page_count() as u32,
             middle: moment.middle,
@@ -191,14 +216,15 @@ impl Ledger {
         self.bytes += self.store.put_side(id, &side)? as u64;
         self.next_side += 1;
         // One of each kind is remembered: the next one of it is seldom an older one.
-        self.sides.retain(|(known, _)| std::mem::discriminant(known) != std::mem::discriminant(&side));
+        self.sides
+            .retain(|(known, _)| std::mem::discriminant(known) != std::mem::discriminant(&side));
         self.sides.push((side, id));
         Ok(id)
     }
 
     /// The pages that differ from the work at the cursor; `None` for another work.
     fn differences(&self, work: &Snapshot) -> Option<Vec<Change>> {
-        if work.lineage() != self.now.lineage() {
+        if work.object_id() != self.now.object_id() {
             return None;
         }
         let mut changes = Vec::new();
@@ -214,36 +240,38 @@ impl Ledger {
     }
 
     /// Goes where a deed led, or writes a node for it.
-    pub fn moment(&mut self, tick: u64, moment: &Moment) -> Result<(), StoreError> {
+    pub fn moment(&mut self, tick: u64, moment: &HistoryEntry) -> Result<(), StoreError> {
         let work = &moment.work;
         // Visitors come and go: nothing of one is kept for the next.
-        if self.closed || moment.deed == Deed::Begin {
+        if self.closed || moment.deed == HistoryEvent::Begin {
             self.closed = true;
             self.now = work.clone();
             return Ok(());
         }
         let changes = self.differences(work);
         let known = match moment.deed {
-            Deed::Jump(id) => self.tree.node(id).map(|n| n.id),
+            HistoryEvent::Jump(id) => self.tree.node(id).map(|n| n.id),
             _ if changes.as_ref().is_some_and(|c| c.is_empty()) => Some(self.tree.cursor),
-            Deed::Undo => self.tree.here().and_then(|here| {
+            HistoryEvent::Undo => self.tree.here().and_then(|here| {
                 let back = |c: &Change| (c.0, c.2, c.1);
                 let fits = match &changes {
                     Some(changes) => {
-                        here.deed != Deed::Replace
+                        here.deed != HistoryEvent::Replace
                             && here.changes.iter().map(back).eq(changes.iter().copied())
                     }
-                    None => here.deed == Deed::Replace,
+                    None => here.deed == HistoryEvent::Replace,
                 };
-                here.parent
-                    .filter(|p| fits && self.tree.node(*p).is_some_and(|p| p.lineage == work.lineage()))
-            }),
-            Deed::Redo => self.tree.children(self.tree.cursor).iter().copied().find(|id| {
-                self.tree.node(*id).is_some_and(|n| {
-                    n.lineage == work.lineage() && changes.as_ref().is_none_or(|c| *c == n.changes)
+                here.parent.filter(|p| {
+                    fits && self.tree.node(*p).is_some_and(|p| p.object_id == work.object_id())
                 })
             }),
-            Deed::Step | Deed::Replace | Deed::Begin => None,
+            HistoryEvent::Redo => self.tree.children(self.tree.cursor).iter().copied().find(|id| {
+                self.tree.node(*id).is_some_and(|n| {
+                    n.object_id == work.object_id()
+                        && changes.as_ref().is_none_or(|c| *c == n.changes)
+                })
+            }),
+            HistoryEvent::Step | HistoryEvent::Replace | HistoryEvent::Begin => None,
         };
         if let Some(id) = known {
             self.tree.go(id);
@@ -251,11 +279,11 @@ impl Ledger {
             return Ok(());
         }
         let parent = Some(self.tree.cursor);
-        let deed = if changes.is_none() { Deed::Replace } else { Deed::Step };
+        let deed = if changes.is_none() { HistoryEvent::Replace } else { HistoryEvent::Step };
         let mut node = self.node(tick, moment, parent, deed);
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         self.open = 0;
-        node.changes = match changes.filter(|_| deed == Deed::Step) {
+        node.changes = match changes.filter(|_| deed == HistoryEvent::Step) {
             Some(changes) => {
                 for &(i, before, after) in &changes {
                     self.step_page(work, i, before, after)?;
@@ -268,8 +296,14 @@ impl Ledger {
     }
 
     /// A page that a step changed: before, if it was never stored, and after.
-    fn step_page(&mut self, work: &Snapshot, i: u32, before: u64, after: u64) -> Result<(), StoreError> {
-        let lineage = work.lineage();
+    fn step_page(
+        &mut self,
+        work: &Snapshot,
+        i: u32,
+        before: u64,
+        after: u64,
+    ) -> Result<(), StoreError> {
+        let object_id = work.object_id();
         let page = work.page(i).clone();
         let had = self.topology.get(&i).copied().unwrap_or(0);
         let mut topology = after;
@@ -279,22 +313,22 @@ impl Ledger {
             if stays {
                 topology = had;
             } else {
-                self.keep_topology((lineage, i, had), &old)?;
+                self.keep_topology((object_id, i, had), &old)?;
             }
-            self.keep_page((lineage, i, before), had, &old)?;
+            self.keep_page((object_id, i, before), had, &old)?;
         }
         if after == NOTHING {
             return Ok(());
         }
         if topology == after {
-            self.keep_topology((lineage, i, after), &page)?;
+            self.keep_topology((object_id, i, after), &page)?;
         }
-        self.keep_page((lineage, i, after), topology, &page)
+        self.keep_page((object_id, i, after), topology, &page)
     }
 
     /// Another work, with all its pages.
     fn whole(&mut self, work: &Snapshot) -> Result<Vec<Change>, StoreError> {
-        let lineage = work.lineage();
+        let object_id = work.object_id();
         (0..work.page_count() as u32)
             .map(|i| {
                 let page = work.page(i).clone();
@@ -303,9 +337,9 @@ impl Ledger {
                     return Ok((i, NOTHING, NOTHING));
                 }
                 // Where the work comes back by undo, it is stored already.
-                if !self.names.contains_key(&(lineage, i, revision)) {
-                    self.keep_topology((lineage, i, revision), &page)?;
-                    self.keep_page((lineage, i, revision), revision, &page)?;
+                if !self.names.contains_key(&(object_id, i, revision)) {
+                    self.keep_topology((object_id, i, revision), &page)?;
+                    self.keep_page((object_id, i, revision), revision, &page)?;
                 }
                 Ok((i, NOTHING, revision))
             })
@@ -342,7 +376,7 @@ impl Ledger {
 
     fn finish_node(&mut self, node: Node, work: &Snapshot) -> Result<(), StoreError> {
         self.bytes += self.store.put_node(&node)? as u64;
-        if let Some(png) = sight::png(work) {
+        if let Some(png) = thumbnail::png(work) {
             self.bytes += self.store.put_sight(node.id, &png)? as u64;
         }
         self.store.db.execute_batch("COMMIT")?;
@@ -355,17 +389,19 @@ impl Ledger {
 
     /// The work at the cursor is this one.
     fn stand(&mut self, work: &Snapshot) {
-        let lineage = work.lineage();
+        let object_id = work.object_id();
         match self.differences(work) {
             Some(changes) => {
                 for (i, _, after) in changes {
-                    let t = self.names.get(&(lineage, i, after)).copied().unwrap_or(0);
+                    let t = self.names.get(&(object_id, i, after)).copied().unwrap_or(0);
                     self.topology.insert(i, t);
                 }
             }
             None => {
                 self.topology = (0..work.page_count() as u32)
-                    .filter_map(|i| Some((i, *self.names.get(&(lineage, i, work.page(i).revision()))?)))
+                    .filter_map(|i| {
+                        Some((i, *self.names.get(&(object_id, i, work.page(i).revision()))?))
+                    })
                     .collect();
             }
         }
@@ -375,13 +411,13 @@ impl Ledger {
     /// Writes a checkpoint.
     pub fn state(&mut self, saved: &Saved) -> Result<(), StoreError> {
         // After moments that were left out, this is not the work at the cursor.
-        let now = (self.now.lineage(), self.now.revision());
-        if self.closed || (saved.rest.lineage, saved.rest.revision) != now {
+        let now = (self.now.object_id(), self.now.revision());
+        if self.closed || (saved.rest.object_id, saved.rest.revision) != now {
             return Ok(());
         }
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         let sides = [
-            saved.thing.clone().map(Side::Thing),
+            saved.thing.clone().map(Side::HeldObject),
             saved.picture.clone().map(Side::Picture),
             saved.levels.clone().map(Side::Levels),
         ];
@@ -402,7 +438,8 @@ impl Ledger {
         Ok(())
     }
 
-    /// Lets the oldest places go where the history takes more than it may, so many at once that it is seldom done.
+    /// Lets the oldest places go where the history takes more than it may, so many at once that it
+    /// is seldom done.
     pub fn keep_within(&mut self) -> Result<Option<Freed>, StoreError> {
         if self.bytes <= self.most {
             return Ok(None);
@@ -417,15 +454,20 @@ impl Ledger {
     }
 
     /// A jump to a node will stand in the log: what it names stays as long as it can.
-    pub fn pin(&mut self, node: u64, pages: &[(u32, u64)], levels: Option<u64>) -> Result<(), StoreError> {
-        let Some(lineage) = self.tree.node(node).map(|n| n.lineage) else { return Ok(()) };
-        self.bytes += self.store.put_pin(&Pin { lineage, pages: pages.to_vec(), levels })? as u64;
+    pub fn pin(
+        &mut self,
+        node: u64,
+        pages: &[(u32, u64)],
+        levels: Option<u64>,
+    ) -> Result<(), StoreError> {
+        let Some(object_id) = self.tree.node(node).map(|n| n.object_id) else { return Ok(()) };
+        self.bytes += self.store.put_pin(&Pin { object_id, pages: pages.to_vec(), levels })? as u64;
         Ok(())
     }
 
     /// The highest numbers that a lineage ever had.
-    pub fn high(&self, lineage: u32) -> Result<High, StoreError> {
-        let first = self.store.high(lineage)?;
-        Ok(self.tree.nodes().filter(|n| n.lineage == lineage).fold(first, High::over))
+    pub fn high(&self, object_id: u32) -> Result<High, StoreError> {
+        let first = self.store.high(object_id)?;
+        Ok(self.tree.nodes().filter(|n| n.object_id == object_id).fold(first, High::over))
     }
 }

@@ -1,7 +1,8 @@
-//! The thread that keeps the history: it writes a node for every step, and fetches what undo asks for beyond memory.
+//! The thread that keeps the history: it writes a node for every step, and fetches what undo asks
+//! for beyond memory.
 //!
-//! The tick thread hands it moments and never waits; where the disk is far behind, moments are left out and the next one that
-//! is kept stands for all of them.
+//! The tick thread hands it moments and never waits; where the disk is far behind, moments are left
+//! out and the next one that is kept stands for all of them.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -14,11 +15,11 @@ use crossbeam_channel as cc;
 
 use super::store::{Store, StoreError};
 use super::tree::{Node, Tree, Way};
-use crate::session::history::history_writer::Ledger;
-use sculptd_clay::{Levels, Mesh, Rest, Snapshot};
+use crate::session::history::history_writer::HistoryWriter;
+use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, Fetched, Jump, OtherWork};
-use sculptd_engine::world::{Deed, Moment, Saved, World};
+use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, World};
 use sculptd_geometry::job::Job;
 
 /// Moments that may wait for the disk, each holding the pages of its time.
@@ -40,7 +41,7 @@ pub enum Want {
 
 #[derive(Debug)]
 enum Message {
-    Moment { tick: u64, moment: Moment },
+    HistoryEntry { tick: u64, moment: HistoryEntry },
     State(Box<Saved>),
     Want(Want),
     End,
@@ -72,12 +73,12 @@ impl Handle {
         for moment in world.moments() {
             owed = true;
             if self.inbox.len() < WAITING {
-                self.send(Message::Moment { tick, moment: moment.clone() });
+                self.send(Message::HistoryEntry { tick, moment: moment.clone() });
             }
         }
         match world.report().missed {
-            Some(Deed::Undo) => self.want(Want::Undo),
-            Some(Deed::Redo) => self.want(Want::Redo),
+            Some(HistoryEvent::Undo) => self.want(Want::Undo),
+            Some(HistoryEvent::Redo) => self.want(Want::Redo),
             _ => {}
         }
         owed
@@ -136,9 +137,9 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// Begins or goes on with the history of a session that the world was made of. `purge`: nodes after this tick are no part
-    /// of what was recovered. `at`: the node that the world was at, before what was replayed. `most`: bytes in the file, beyond
-    /// which the oldest places go.
+    /// Begins or goes on with the history of a session that the world was made of. `purge`: nodes
+    /// after this tick are no part of what was recovered. `at`: the node that the world was at,
+    /// before what was replayed. `most`: bytes in the file, beyond which the oldest places go.
     ///
     /// # Errors
     /// Where the file cannot be written.
@@ -150,8 +151,8 @@ impl Keeper {
         most: u64,
     ) -> Result<Keeper, StoreError> {
         world.keep_moments();
-        let first = world.moment(Deed::Step);
-        let mut ledger = Ledger::open(Store::write(path)?, purge, first.work.clone(), most)?;
+        let first = world.moment(HistoryEvent::Step);
+        let mut ledger = HistoryWriter::open(Store::write(path)?, purge, first.work.clone(), most)?;
         ledger.begin(world.tick(), &first, at)?;
         let keeping = Keeping {
             shown: Arc::new(Mutex::new(ledger.tree.clone())),
@@ -172,8 +173,12 @@ impl Keeper {
             ending: Arc::default(),
             busy: Arc::default(),
         };
-        let (fault, commands, ending, busy) =
-            (handle.fault.clone(), handle.commands.clone(), handle.ending.clone(), handle.busy.clone());
+        let (fault, commands, ending, busy) = (
+            handle.fault.clone(),
+            handle.commands.clone(),
+            handle.ending.clone(),
+            handle.busy.clone(),
+        );
         let thread = std::thread::Builder::new()
             .name("sculptd-history".into())
             .spawn(move || keeping.run(&inbox, &fault, &commands, &ending, &busy))
@@ -191,7 +196,7 @@ impl Keeper {
 }
 
 struct Keeping {
-    ledger: Ledger,
+    ledger: HistoryWriter,
     path: PathBuf,
     shown: Arc<Mutex<Tree>>,
     wants: VecDeque<Want>,
@@ -232,10 +237,11 @@ impl Keeping {
                         self.wants.push_back(*want);
                     }
                 }
-                Message::Moment { .. } | Message::State(_) => {
+                Message::HistoryEntry { .. } | Message::State(_) => {
                     // A disk that takes nothing now may later: the moment is kept till then.
                     while let Err(e) = self.take(&message) {
-                        let first = fault.lock().is_ok_and(|mut f| f.replace(e.to_string()).is_none());
+                        let first =
+                            fault.lock().is_ok_and(|mut f| f.replace(e.to_string()).is_none());
                         if first {
                             tracing::error!("history: {e}");
                         }
@@ -262,10 +268,10 @@ impl Keeping {
 
     fn take(&mut self, message: &Message) -> Result<(), StoreError> {
         match message {
-            Message::Moment { tick, moment } => {
+            Message::HistoryEntry { tick, moment } => {
                 self.ledger.moment(*tick, moment)?;
                 self.sent = None;
-                if matches!(moment.deed, Deed::Jump(_)) {
+                if matches!(moment.deed, HistoryEvent::Jump(_)) {
                     self.ledger.store.settle_pins(*tick)?;
                 }
                 self.show();
@@ -276,15 +282,23 @@ impl Keeping {
         }
     }
 
-    /// The bound on the file. Where it cannot be kept, the history goes on growing, and that is said once.
+    /// The bound on the file. Where it cannot be kept, the history goes on growing, and that is
+    /// said once.
     fn keep_within(&mut self) {
         match self.ledger.keep_within() {
             Ok(None) => self.full = false,
             Ok(Some(freed)) => {
                 let left = self.ledger.bytes;
-                tracing::info!("history: {} oldest places went, {} KiB are left", freed.places, left >> 10);
+                tracing::info!(
+                    "history: {} oldest places went, {} KiB are left",
+                    freed.places,
+                    left >> 10
+                );
                 if left > self.ledger.most && !std::mem::replace(&mut self.full, true) {
-                    tracing::warn!("history: what must stay takes {} KiB, more than it may", left >> 10);
+                    tracing::warn!(
+                        "history: what must stay takes {} KiB, more than it may",
+                        left >> 10
+                    );
                 }
                 self.show();
             }
@@ -336,11 +350,11 @@ impl Keeping {
         let (Some(way), Some(node)) = (self.ledger.tree.way(to), self.ledger.tree.node(to)) else {
             return Ok(None);
         };
-        let from = (self.ledger.now.lineage(), self.ledger.now.revision());
+        let from = (self.ledger.now.object_id(), self.ledger.now.revision());
         let jump = |pages, other, fetched| Jump {
             node: to,
             from,
-            lineage: node.lineage,
+            object_id: node.object_id,
             pages,
             other,
             fetched: Arc::new(Mutex::new(Some(fetched))),
@@ -350,9 +364,9 @@ impl Keeping {
                 let mut got = Vec::with_capacity(pages.len());
                 for &(i, revision) in &pages {
                     let t = self.ledger.topology.get(&i).copied().unwrap_or(0);
-                    let near =
-                        ((i as usize) < self.ledger.now.page_count()).then(|| (self.ledger.now.page(i), t));
-                    got.push((i, self.ledger.store.page((node.lineage, i, revision), near)?.0));
+                    let near = ((i as usize) < self.ledger.now.page_count())
+                        .then(|| (self.ledger.now.page(i), t));
+                    got.push((i, self.ledger.store.page((node.object_id, i, revision), near)?.0));
                 }
                 let jump = jump(pages, None, Fetched::Pages(got));
                 self.ledger.pin(to, &jump.pages, None)?;
@@ -362,8 +376,14 @@ impl Keeping {
                 let base = base(&self.path)?;
                 let (rest, names) = describe(&self.ledger, node, base.page_count())?;
                 let mesh = assemble(&self.ledger.store, &base, &rest, &names, node.levels)?;
-                let other = OtherWork { rest, middle: node.middle, extent: node.extent, levels: node.levels };
-                let (levels, jump) = (node.levels, jump(names, Some(other), Fetched::Work(Box::new(mesh))));
+                let other = OtherWork {
+                    rest,
+                    middle: node.middle,
+                    extent: node.extent,
+                    levels: node.levels,
+                };
+                let (levels, jump) =
+                    (node.levels, jump(names, Some(other), Fetched::Work(Box::new(mesh))));
                 self.ledger.pin(to, &jump.pages, levels)?;
                 Ok(Some(jump))
             }
@@ -371,11 +391,22 @@ impl Keeping {
     }
 }
 
-/// A work's pages by name, and what it is besides: revisions go on above all that its lineage ever had.
-fn describe(ledger: &Ledger, node: &Node, first: usize) -> Result<(Rest, Vec<(u32, u64)>), StoreError> {
-    let high = ledger.high(node.lineage)?.over(node);
+/// A work's pages by name, and what it is besides: revisions go on above all that its lineage ever
+/// had.
+fn describe(
+    ledger: &HistoryWriter,
+    node: &Node,
+    first: usize,
+) -> Result<(ObjectState, Vec<(u32, u64)>), StoreError> {
+    let high = ledger.high(node.object_id)?.over(node);
     let (revision, next) = (high.revision.saturating_add(1), high.next);
-    let rest = Rest { pages: node.pages, revision, lineage: node.lineage, next, empty: Vec::new() };
+    let rest = ObjectState {
+        pages: node.pages,
+        revision,
+        object_id: node.object_id,
+        next,
+        empty: Vec::new(),
+    };
     Ok((rest, ledger.tree.names(node, node.pages, first)))
 }
 
@@ -383,7 +414,7 @@ fn describe(ledger: &Ledger, node: &Node, first: usize) -> Result<(Rest, Vec<(u3
 fn base(path: &Path) -> Result<Snapshot, StoreError> {
     let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
     let opened = crate::session::open(path).map_err(|e| damaged(&e))?;
-    let mut mesh = Mesh::build(&opened.start, &Job::default()).map_err(|e| damaged(&e))?;
+    let mut mesh = Clay::build(&opened.start, &Job::default()).map_err(|e| damaged(&e))?;
     Ok(mesh.snapshot())
 }
 
@@ -391,23 +422,23 @@ fn base(path: &Path) -> Result<Snapshot, StoreError> {
 pub(in crate::session) fn assemble(
     store: &Store,
     base: &Snapshot,
-    rest: &Rest,
+    rest: &ObjectState,
     names: &[(u32, u64)],
     levels: Option<u64>,
-) -> Result<Mesh, StoreError> {
+) -> Result<Clay, StoreError> {
     let mut pages = Vec::with_capacity(names.len());
     for &(i, revision) in names {
-        let first =
-            (rest.lineage == base.lineage() && (i as usize) < base.page_count()).then(|| base.page(i));
+        let first = (rest.object_id == base.object_id() && (i as usize) < base.page_count())
+            .then(|| base.page(i));
         pages.push(match first {
             Some(page) if revision == page.revision() => page.clone(),
-            _ => store.page((rest.lineage, i, revision), first.map(|p| (p, 0)))?.0,
+            _ => store.page((rest.object_id, i, revision), first.map(|p| (p, 0)))?.0,
         });
     }
     let empty = (0u32..).zip(&pages).filter(|(_, p)| p.own() == 0).map(|(i, _)| i).collect();
-    let rest = Rest { empty, ..rest.clone() };
-    let mut mesh =
-        Mesh::of_stored(pages, &rest).map_err(|_| StoreError::Damaged("the pages of a work".into()))?;
+    let rest = ObjectState { empty, ..rest.clone() };
+    let mut mesh = Clay::of_stored(pages, &rest)
+        .map_err(|_| StoreError::Damaged("the pages of a work".into()))?;
     mesh.set_levels(levels.map(|id| store.side::<Levels>(id)).transpose()?.map(Arc::new));
     Ok(mesh)
 }

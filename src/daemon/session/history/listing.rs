@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::store::{Store, StoreError};
 use super::tree::Tree;
-use sculptd_engine::world::Deed;
+use sculptd_engine::world::HistoryEvent;
 
 /// One place of the history.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -15,7 +15,7 @@ pub struct Place {
     /// The place before; none where a work begins.
     pub parent: Option<u64>,
     pub tick: u64,
-    pub deed: Deed,
+    pub deed: HistoryEvent,
     /// Pages that the step changed, of all.
     pub changed: usize,
     pub pages: u32,
@@ -61,7 +61,13 @@ pub fn places(tree: &Tree) -> Vec<Place> {
 pub fn read(path: &Path) -> Result<History, StoreError> {
     let store = Store::read(path)?;
     if !store.has_tables() {
-        return Ok(History { places: Vec::new(), bytes: 0, total_bytes: 0, dropped: 0, checkpoints: 0 });
+        return Ok(History {
+            places: Vec::new(),
+            bytes: 0,
+            total_bytes: 0,
+            dropped: 0,
+            checkpoints: 0,
+        });
     }
     let mut tree = store.tree()?;
     let all = store.checkpoints(u64::MAX)?;

@@ -1,8 +1,10 @@
-//! Opening a session at its newest checkpoint: the pages that were stored, the state, and the replay of what follows.
+//! Opening a session at its newest checkpoint: the pages that were stored, the state, and the
+//! replay of what follows.
 //!
-//! Guaranteed: the world is, to the bit, the one that a replay from the start gives, but for undo, which a reopened session
-//! keeps in the file. Where that cannot be known (a damaged page, an undo that went back beyond the checkpoint in memory),
-//! there is no answer, and the caller replays from the start.
+//! Guaranteed: the world is, to the bit, the one that a replay from the start gives, but for undo,
+//! which a reopened session keeps in the file. Where that cannot be known (a damaged page, an undo
+//! that went back beyond the checkpoint in memory), there is no answer, and the caller replays from
+//! the start.
 
 use std::path::Path;
 
@@ -10,8 +12,8 @@ use super::super::reader::Opened;
 use super::super::replay::{Replayed, Run};
 use super::keeper::assemble;
 use super::store::{Store, StoreError};
-use sculptd_clay::{Mesh, Workers};
-use sculptd_engine::world::{Deed, World, WorldOptions};
+use sculptd_clay::{Clay, Workers};
+use sculptd_engine::world::{HistoryEvent, World, WorldOptions};
 use sculptd_geometry::job::Job;
 
 /// Checkpoints that are tried, from the newest back.
@@ -37,7 +39,7 @@ pub fn reopen(
     // A checkpoint of ticks that the log does not hold is no part of what is there.
     let last = opened.input.last().map_or(0, |t| t.tick).min(until.unwrap_or(u64::MAX));
     let tree = store.tree().ok()?;
-    let mut base = Mesh::build(&opened.start, job).ok()?;
+    let mut base = Clay::build(&opened.start, job).ok()?;
     let base = base.snapshot();
     for id in store.checkpoints(last).ok()?.into_iter().take(TRIED) {
         let made = || -> Result<Option<Reopened>, StoreError> {
@@ -51,14 +53,16 @@ pub fn reopen(
             let saved = store.saved(c)?;
             let steps = saved.steps;
             let s = &opened.settings;
-            let options = WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
+            let options =
+                WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
             let damaged = |_| StoreError::Damaged("a checkpoint's state".into());
-            let world = World::restore(mesh, saved, Workers::new(workers), options).map_err(damaged)?;
+            let world =
+                World::restore(mesh, saved, Workers::new(workers), options).map_err(damaged)?;
             let mut odd = false;
             let mut see = |_: u64, world: &mut World| {
                 odd |= match world.report().missed {
-                    Some(Deed::Undo) => steps.0 > 0,
-                    Some(Deed::Redo) => steps.1 > 0,
+                    Some(HistoryEvent::Undo) => steps.0 > 0,
+                    Some(HistoryEvent::Redo) => steps.1 > 0,
                     _ => false,
                 };
             };

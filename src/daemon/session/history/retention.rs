@@ -1,10 +1,12 @@
 //! A history of bounded size: what goes, and in which order.
 //!
-//! * The oldest places go first: the branches that hang on the first place, then that place itself. The place after it then
-//!   says of every page which version it has, so that all that is left can be gone to as before.
+//! * The oldest places go first: the branches that hang on the first place, then that place itself.
+//!   The place after it then says of every page which version it has, so that all that is left can
+//!   be gone to as before.
 //! * What the work is at, the newest checkpoints and the way to them stay, whatever they take.
-//! * A jump that the log holds names pages; those stay ("pinned") as long as anything else can go, so that a replay from the
-//!   start finds them. They go only once a checkpoint lies after the jump: opening the session needs them no more.
+//! * A jump that the log holds names pages; those stay ("pinned") as long as anything else can go,
+//!   so that a replay from the start finds them. They go only once a checkpoint lies after the
+//!   jump: opening the session needs them no more.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,12 +28,13 @@ const UNDER_WAY: i64 = i64::MAX;
 /// The pages and levels that a jump names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pin {
-    pub lineage: u32,
+    pub object_id: u32,
     pub pages: Vec<(u32, u64)>,
     pub levels: Option<u64>,
 }
 
-/// The highest numbers that a lineage had in places that went: new ones go on above them, so that no name means two things.
+/// The highest numbers that a lineage had in places that went: new ones go on above them, so that
+/// no name means two things.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct High {
     pub revision: u64,
@@ -40,7 +43,8 @@ pub struct High {
 
 impl High {
     pub fn over(self, node: &Node) -> High {
-        let revision = node.changes.iter().map(|c| c.2).filter(|r| *r != NOTHING).max().unwrap_or(0);
+        let revision =
+            node.changes.iter().map(|c| c.2).filter(|r| *r != NOTHING).max().unwrap_or(0);
         High {
             revision: self.revision.max(revision),
             next: [self.next[0].max(node.next[0]), self.next[1].max(node.next[1])],
@@ -55,8 +59,8 @@ pub struct Freed {
     pub bytes: u64,
 }
 
-/// Lets the oldest go until the history takes `most` bytes, or no more can go. `had`: what it takes now, see
-/// [`Store::total`]. The second answer: what it takes afterwards.
+/// Lets the oldest go until the history takes `most` bytes, or no more can go. `had`: what it takes
+/// now, see [`Store::total`]. The second answer: what it takes afterwards.
 ///
 /// # Errors
 /// Where the file cannot be written; what was done so far is done, and the file is whole.
@@ -101,7 +105,7 @@ struct Cut<'a> {
 }
 
 fn named(node: &Node) -> impl Iterator<Item = Name> + '_ {
-    let both = |c: &(u32, u64, u64)| [(node.lineage, c.0, c.1), (node.lineage, c.0, c.2)];
+    let both = |c: &(u32, u64, u64)| [(node.object_id, c.0, c.1), (node.object_id, c.0, c.2)];
     node.changes.iter().flat_map(both).filter(|n| n.2 != NOTHING)
 }
 
@@ -109,7 +113,8 @@ impl<'a> Cut<'a> {
     fn new(store: &'a Store, tree: &Tree, had: u64) -> Result<Cut<'a>, StoreError> {
         let mut uses: BTreeMap<Name, u32> = BTreeMap::new();
         let pins = store.pins()?;
-        let of_pins = pins.iter().flat_map(|p| p.2.pages.iter().map(|&(i, rev)| (p.2.lineage, i, rev)));
+        let of_pins =
+            pins.iter().flat_map(|p| p.2.pages.iter().map(|&(i, rev)| (p.2.object_id, i, rev)));
         for name in tree.nodes().flat_map(named).chain(of_pins) {
             *uses.entry(name).or_default() += 1;
         }
@@ -126,20 +131,40 @@ impl<'a> Cut<'a> {
             checkpoints.entry(c.node).or_default().push((id as i64, sides));
         }
         let way: BTreeSet<u64> = stay.iter().flat_map(|id| tree.line(*id)).map(|n| n.id).collect();
-        let strange = tree.nodes().filter(|n| n.parent.is_none() && !way.contains(&n.id)).map(|n| n.id);
+        let strange =
+            tree.nodes().filter(|n| n.parent.is_none() && !way.contains(&n.id)).map(|n| n.id);
         let strange = strange.collect();
         let (freed, left, open, began) = (Freed::default(), had, 0, false);
-        Ok(Cut { store, freed, left, open, uses, pins, checkpoints, stay, way, strange, safe, began })
+        Ok(Cut {
+            store,
+            freed,
+            left,
+            open,
+            uses,
+            pins,
+            checkpoints,
+            stay,
+            way,
+            strange,
+            safe,
+            began,
+        })
     }
 
     /// Lets one place go. False: none can.
-    fn place(&mut self, tree: &mut Tree, names: &mut BTreeMap<Name, u64>) -> Result<bool, StoreError> {
+    fn place(
+        &mut self,
+        tree: &mut Tree,
+        names: &mut BTreeMap<Name, u64>,
+    ) -> Result<bool, StoreError> {
         let Some(root) = tree.line(tree.cursor).last().map(|n| n.id) else { return Ok(false) };
         self.strange.retain(|id| tree.node(*id).is_some());
         let loose = |id: &u64| !self.way.contains(id);
         let of_root = tree.children(root);
-        let may_merge = !self.stay.contains(&root) && of_root.iter().filter(|id| !loose(id)).count() == 1;
-        let mut branch = self.strange.first().copied().or_else(|| of_root.iter().copied().find(loose));
+        let may_merge =
+            !self.stay.contains(&root) && of_root.iter().filter(|id| !loose(id)).count() == 1;
+        let mut branch =
+            self.strange.first().copied().or_else(|| of_root.iter().copied().find(loose));
         if branch.is_none() && !may_merge {
             // The first place must stay: the oldest of what hangs anywhere.
             branch = tree.nodes().map(|n| n.id).find(loose);
@@ -175,7 +200,8 @@ impl<'a> Cut<'a> {
         }
         self.begin()?;
         let sql = "SELECT length(data) FROM node WHERE id = ?1";
-        let before: Option<i64> = self.store.db.query_row(sql, [next.id as i64], |r| r.get(0)).optional()?;
+        let before: Option<i64> =
+            self.store.db.query_row(sql, [next.id as i64], |r| r.get(0)).optional()?;
         let after = self.store.put_node(&first)? as u64;
         self.left = (self.left + after).saturating_sub(before.unwrap_or(0) as u64);
         // First what names pages, then the pages: between two transactions the file is whole.
@@ -199,17 +225,20 @@ impl<'a> Cut<'a> {
     fn gone(&mut self, node: &Node, names: &mut BTreeMap<Name, u64>) -> Result<(), StoreError> {
         let id = node.id as i64;
         let db = &self.store.db;
-        self.store.raise(node.lineage, node)?;
+        self.store.raise(node.object_id, node)?;
         let mut bytes = 0u64;
         for sql in [
             "DELETE FROM node WHERE id = ?1 RETURNING length(data)",
             "DELETE FROM sight WHERE node = ?1 RETURNING length(png)",
         ] {
-            bytes += db.query_row(sql, [id], |r| r.get::<_, i64>(0)).optional()?.unwrap_or(0) as u64;
+            bytes +=
+                db.query_row(sql, [id], |r| r.get::<_, i64>(0)).optional()?.unwrap_or(0) as u64;
         }
         for (checkpoint, _) in self.checkpoints.remove(&node.id).unwrap_or_default() {
             let sql = "DELETE FROM checkpoint WHERE id = ?1 RETURNING length(data)";
-            bytes += db.query_row(sql, [checkpoint], |r| r.get::<_, i64>(0)).optional()?.unwrap_or(0) as u64;
+            bytes +=
+                db.query_row(sql, [checkpoint], |r| r.get::<_, i64>(0)).optional()?.unwrap_or(0)
+                    as u64;
         }
         self.freed.places += 1;
         self.open += PLACE;
@@ -218,7 +247,11 @@ impl<'a> Cut<'a> {
     }
 
     /// Pages that one place or pin fewer names.
-    fn forget(&mut self, all: Vec<Name>, names: &mut BTreeMap<Name, u64>) -> Result<(), StoreError> {
+    fn forget(
+        &mut self,
+        all: Vec<Name>,
+        names: &mut BTreeMap<Name, u64>,
+    ) -> Result<(), StoreError> {
         for name in all {
             let Some(uses) = self.uses.get_mut(&name) else { continue };
             *uses -= 1;
@@ -245,7 +278,7 @@ impl<'a> Cut<'a> {
         let sql = "DELETE FROM pin WHERE id = ?1 RETURNING length(data)";
         let bytes: i64 = self.store.db.query_row(sql, [id], |r| r.get(0))?;
         self.free(bytes as u64)?;
-        self.forget(pin.pages.iter().map(|&(i, rev)| (pin.lineage, i, rev)).collect(), names)?;
+        self.forget(pin.pages.iter().map(|&(i, rev)| (pin.object_id, i, rev)).collect(), names)?;
         Ok(true)
     }
 
@@ -265,9 +298,14 @@ impl<'a> Cut<'a> {
     }
 
     /// Topologies that no page has any more; those of the beginning stay.
-    fn shapes(&mut self, names: &BTreeMap<Name, u64>, all: &mut BTreeSet<Name>) -> Result<(), StoreError> {
+    fn shapes(
+        &mut self,
+        names: &BTreeMap<Name, u64>,
+        all: &mut BTreeSet<Name>,
+    ) -> Result<(), StoreError> {
         let used: BTreeSet<Name> = names.iter().map(|(n, t)| (n.0, n.1, *t)).collect();
-        let spare: Vec<Name> = all.iter().filter(|n| n.2 != 0 && !used.contains(*n)).copied().collect();
+        let spare: Vec<Name> =
+            all.iter().filter(|n| n.2 != 0 && !used.contains(*n)).copied().collect();
         for name in spare {
             let sql = "DELETE FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = ?3 RETURNING length(data)";
             let key = (name.0, name.1, name.2 as i64);
@@ -286,7 +324,8 @@ impl<'a> Cut<'a> {
         Ok(())
     }
 
-    /// Counts what went. A kill between two transactions leaves pages that nothing names; the next opening removes them.
+    /// Counts what went. A kill between two transactions leaves pages that nothing names; the next
+    /// opening removes them.
     fn free(&mut self, bytes: u64) -> Result<(), StoreError> {
         self.freed.bytes += bytes;
         self.left = self.left.saturating_sub(bytes);
@@ -330,18 +369,18 @@ impl Store {
     }
 
     /// The highest numbers of a lineage among the places that went.
-    pub fn high(&self, lineage: u32) -> Result<High, StoreError> {
+    pub fn high(&self, object_id: u32) -> Result<High, StoreError> {
         let sql = "SELECT revision, vertex, triangle FROM high WHERE lineage = ?1";
-        let row = self.db.query_row(sql, [lineage], |r| {
+        let row = self.db.query_row(sql, [object_id], |r| {
             Ok(High { revision: r.get::<_, i64>(0)? as u64, next: [r.get(1)?, r.get(2)?] })
         });
         Ok(row.optional()?.unwrap_or_default())
     }
 
-    fn raise(&self, lineage: u32, node: &Node) -> Result<(), StoreError> {
-        let h = self.high(lineage)?.over(node);
+    fn raise(&self, object_id: u32, node: &Node) -> Result<(), StoreError> {
+        let h = self.high(object_id)?.over(node);
         let sql = "INSERT OR REPLACE INTO high (lineage, revision, vertex, triangle) VALUES (?1, ?2, ?3, ?4)";
-        self.db.execute(sql, (lineage, h.revision as i64, h.next[0], h.next[1]))?;
+        self.db.execute(sql, (object_id, h.revision as i64, h.next[0], h.next[1]))?;
         Ok(())
     }
 

@@ -1,4 +1,5 @@
-//! The history's tables: nodes, pages, checkpoints, pictures. Every row carries the checksum of its bytes.
+//! The history's tables: nodes, pages, checkpoints, pictures. Every row carries the checksum of its
+//! bytes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use super::tree::{NOTHING, Node, Tree};
 use sculptd_clay::brush::Picture;
-use sculptd_clay::page::Topology;
-use sculptd_clay::{Levels, Page, Rest};
+use sculptd_clay::page::PageTopology;
+use sculptd_clay::{Levels, ObjectState, Page};
 use sculptd_engine::world::{Saved, Side};
 use sculptd_geometry::TriMesh;
 
@@ -68,7 +69,7 @@ pub type Name = (u32, u32, u64);
 pub struct Checkpoint {
     pub tick: u64,
     pub node: u64,
-    pub rest: Rest,
+    pub rest: ObjectState,
     pub core: Vec<u8>,
     /// The sides: thing, picture, levels.
     pub sides: [Option<u64>; 3],
@@ -135,7 +136,11 @@ impl Store {
         Ok(tree)
     }
 
-    fn checked<T: DeserializeOwned>(&self, what: &str, row: Option<(u32, Vec<u8>)>) -> Result<T, StoreError> {
+    fn checked<T: DeserializeOwned>(
+        &self,
+        what: &str,
+        row: Option<(u32, Vec<u8>)>,
+    ) -> Result<T, StoreError> {
         let damaged = || StoreError::Damaged(what.into());
         let (crc, data) = row.ok_or_else(damaged)?;
         if crc32fast::hash(&data) != crc {
@@ -146,8 +151,9 @@ impl Store {
 
     /// The checkpoints at or before a tick, the newest first.
     pub fn checkpoints(&self, until: u64) -> Result<Vec<u64>, StoreError> {
-        let mut query =
-            self.db.prepare("SELECT id FROM checkpoint WHERE tick <= ?1 ORDER BY tick DESC, id DESC")?;
+        let mut query = self
+            .db
+            .prepare("SELECT id FROM checkpoint WHERE tick <= ?1 ORDER BY tick DESC, id DESC")?;
         let until = i64::try_from(until).unwrap_or(i64::MAX);
         let all = query.query_map([until], |r| r.get::<_, i64>(0))?;
         all.map(|id| Ok(id? as u64)).collect()
@@ -189,7 +195,7 @@ impl Store {
 
     pub fn put_side(&self, id: u64, side: &Side) -> Result<usize, StoreError> {
         let data = plain(match side {
-            Side::Thing(t) => postcard::to_stdvec(t.as_ref()),
+            Side::HeldObject(t) => postcard::to_stdvec(t.as_ref()),
             Side::Picture(p) => postcard::to_stdvec(p.as_ref()),
             Side::Levels(l) => postcard::to_stdvec(l.as_ref()),
         })?;
@@ -211,7 +217,10 @@ impl Store {
     }
 
     pub fn put_sight(&self, node: u64, png: &[u8]) -> Result<usize, StoreError> {
-        self.db.execute("INSERT OR REPLACE INTO sight (node, png) VALUES (?1, ?2)", (node as i64, png))?;
+        self.db.execute(
+            "INSERT OR REPLACE INTO sight (node, png) VALUES (?1, ?2)",
+            (node as i64, png),
+        )?;
         Ok(png.len())
     }
 
@@ -244,7 +253,8 @@ impl Store {
     /// The topologies that are stored.
     pub fn topologies(&self) -> Result<std::collections::BTreeSet<Name>, StoreError> {
         let mut query = self.db.prepare("SELECT lineage, number, revision FROM topology")?;
-        let rows = query.query_map([], |r| Ok((r.get(0)?, r.get(1)?, r.get::<_, i64>(2)? as u64)))?;
+        let rows =
+            query.query_map([], |r| Ok((r.get(0)?, r.get(1)?, r.get::<_, i64>(2)? as u64)))?;
         rows.map(|r| Ok(r?)).collect()
     }
 
@@ -254,11 +264,18 @@ impl Store {
             "INSERT OR IGNORE INTO page (lineage, number, revision, topology, crc, data)
              VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
         )?;
-        put.execute((name.0, name.1, name.2 as i64, topology as i64, crc32fast::hash(&data), &data))?;
+        put.execute((
+            name.0,
+            name.1,
+            name.2 as i64,
+            topology as i64,
+            crc32fast::hash(&data),
+            &data,
+        ))?;
         Ok(data.len())
     }
 
-    pub fn put_topology(&self, name: Name, topology: &Topology) -> Result<usize, StoreError> {
+    pub fn put_topology(&self, name: Name, topology: &PageTopology) -> Result<usize, StoreError> {
         let data = topology.to_bytes();
         let mut put = self.db.prepare_cached(
             "INSERT OR IGNORE INTO topology (lineage, number, revision, crc, data) VALUES (?1, ?2, ?3, ?4, ?5)",
@@ -267,7 +284,7 @@ impl Store {
         Ok(data.len())
     }
 
-    fn topology(&self, name: Name) -> Result<Arc<Topology>, StoreError> {
+    fn topology(&self, name: Name) -> Result<Arc<PageTopology>, StoreError> {
         let damaged = || StoreError::Damaged(format!("the topology of page {}", name.1));
         let row: Option<(u32, Vec<u8>)> = self
             .db
@@ -280,11 +297,16 @@ impl Store {
         if crc32fast::hash(&data) != crc {
             return Err(damaged());
         }
-        Ok(Arc::new(Topology::from_bytes(&data).map_err(|_| damaged())?))
+        Ok(Arc::new(PageTopology::from_bytes(&data).map_err(|_| damaged())?))
     }
 
-    /// A page's version. `near`: the page of that number in a work at hand and the revision of its topology, to share it.
-    pub fn page(&self, name: Name, near: Option<(&Arc<Page>, u64)>) -> Result<(Arc<Page>, u64), StoreError> {
+    /// A page's version. `near`: the page of that number in a work at hand and the revision of its
+    /// topology, to share it.
+    pub fn page(
+        &self,
+        name: Name,
+        near: Option<(&Arc<Page>, u64)>,
+    ) -> Result<(Arc<Page>, u64), StoreError> {
         if name.2 == NOTHING {
             return Ok((Arc::new(Page::nothing()), 0));
         }
@@ -319,8 +341,8 @@ impl Store {
         Ok(sum as u64)
     }
 
-    /// Bytes of all that is kept for the history: pages, topologies, pictures, checkpoints, nodes and what they name. A session
-    /// from before there was a table has nothing in it.
+    /// Bytes of all that is kept for the history: pages, topologies, pictures, checkpoints, nodes
+    /// and what they name. A session from before there was a table has nothing in it.
     pub fn total(&self) -> Result<u64, StoreError> {
         let columns = [
             ("page", "data"),

@@ -1,4 +1,5 @@
-//! A small picture of the work at a node, drawn on the CPU: some ten thousand of its vertices as dots, whatever its size.
+//! A small picture of the work at a node, drawn on the CPU: some ten thousand of its vertices as
+//! dots, whatever its size.
 
 use glam::{Quat, Vec3};
 
@@ -12,7 +13,8 @@ const DOTS: usize = 40_000;
 /// Seen from a little to the right and above.
 const YAW: f32 = 0.5;
 const PITCH: f32 = -0.35;
-/// How much of the half diagonal of its box a work reaches from its middle: a ball 0.58, a cube seen so 0.81.
+/// How much of the half diagonal of its box a work reaches from its middle: a ball 0.58, a cube
+/// seen so 0.81.
 const REACH: f32 = 0.82;
 const PAPER: [u8; 3] = [38, 40, 43];
 
@@ -27,7 +29,8 @@ pub fn png(work: &Snapshot) -> Option<Vec<u8>> {
     let light = Vec3::new(0.3, 0.5, 0.8).normalize();
     let scale = HEIGHT as f32 * 0.5 / (size * REACH);
     let every = work.vertex_count().div_ceil(DOTS).max(1);
-    // Dots so large that they close up: a square of a side that covers each one's share of the surface, twice over.
+    // Dots so large that they close up: a square of a side that covers each one's share of the
+    // surface, twice over.
     let dots = (work.vertex_count() / every).max(1) as f32;
     let reach = ((HEIGHT * HEIGHT) as f32 * 2.0 / dots).sqrt().ceil().clamp(1.0, 6.0) as i32;
     let mut depth = vec![f32::NEG_INFINITY; WIDTH * HEIGHT];

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use sculptd_engine::world::Deed;
+use sculptd_engine::world::HistoryEvent;
 
 /// The revision of a page that was not there yet.
 pub const NOTHING: u64 = u64::MAX;
@@ -20,8 +20,8 @@ pub struct Node {
     pub id: u64,
     pub parent: Option<u64>,
     pub tick: u64,
-    pub deed: Deed,
-    pub lineage: u32,
+    pub deed: HistoryEvent,
+    pub object_id: u32,
     /// Against the parent; of a work that took another's place, all pages, from [`NOTHING`].
     pub changes: Vec<Change>,
     /// All pages of the work.
@@ -169,8 +169,10 @@ impl Tree {
             down.push(node);
         }
         let up = &up[..meet?];
-        let lineage = self.here()?.lineage;
-        if target.lineage != lineage || up.iter().chain(&down).any(|n| n.deed == Deed::Replace) {
+        let object_id = self.here()?.object_id;
+        if target.object_id != object_id
+            || up.iter().chain(&down).any(|n| n.deed == HistoryEvent::Replace)
+        {
             return Some(Way::Other);
         }
         let mut pages = BTreeMap::new();
@@ -183,22 +185,25 @@ impl Tree {
         Some(Way::Pages(pages.into_iter().collect()))
     }
 
-    /// The version of every page of the work at a node. `first`: pages of the work that the session began with.
+    /// The version of every page of the work at a node. `first`: pages of the work that the session
+    /// began with.
     pub fn names(&self, node: &Node, pages: u32, first: usize) -> Vec<(u32, u64)> {
         let versions = self.versions(node.id);
         // A page that no step speaks of is as it was in the beginning, or was not there.
-        let unspoken = |i: u32| if node.lineage == 0 && (i as usize) < first { 0 } else { NOTHING };
+        let unspoken =
+            |i: u32| if node.object_id == 0 && (i as usize) < first { 0 } else { NOTHING };
         (0..pages).map(|i| (i, versions.get(&i).copied().unwrap_or_else(|| unspoken(i)))).collect()
     }
 
-    /// The revision of every page that any step changed since the work was put in place; the others are as they were then.
+    /// The revision of every page that any step changed since the work was put in place; the others
+    /// are as they were then.
     pub fn versions(&self, id: u64) -> BTreeMap<u32, u64> {
         let mut found = BTreeMap::new();
         for node in self.line(id) {
             for (page, _, after) in &node.changes {
                 found.entry(*page).or_insert(*after);
             }
-            if node.deed == Deed::Replace {
+            if node.deed == HistoryEvent::Replace {
                 break;
             }
         }
@@ -215,8 +220,8 @@ mod tests {
             id,
             parent,
             tick: id * 10,
-            deed: Deed::Step,
-            lineage: 0,
+            deed: HistoryEvent::Step,
+            object_id: 0,
             changes: changes.to_vec(),
             pages: 9,
             middle: Vec3::ZERO,

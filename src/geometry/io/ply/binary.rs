@@ -69,7 +69,9 @@ pub(super) fn read<O: Order>(
     made.mesh.face_starts.push(0);
     for element in &header.elements {
         at = match element.role {
-            Role::Vertex if element.fixed() => vertices::<O>(bytes, at, element, header, made, job)?,
+            Role::Vertex if element.fixed() => {
+                vertices::<O>(bytes, at, element, header, made, job)?
+            }
             _ if element.fixed() => fixed_end(bytes, at, element)?,
             _ => rows::<O>(bytes, at, element, header, made, job)?,
         };
@@ -92,7 +94,12 @@ fn fixed_end(bytes: &[u8], at: usize, element: &Element) -> Result<usize, Stop> 
         .ok_or_else(|| {
             ended(
                 bytes,
-                &format!("{} of \"{}\" with {} bytes each", element.count, element.name, element.least()),
+                &format!(
+                    "{} of \"{}\" with {} bytes each",
+                    element.count,
+                    element.name,
+                    element.least()
+                ),
             )
         })
 }
@@ -120,9 +127,13 @@ fn vertices<O: Order>(
     let (coloured, scale) = (header.coloured(), header.colour_scale());
     made.mesh.positions.resize(element.count, glam::DVec3::ZERO);
     made.colours.resize(if coloured { element.count } else { 0 }, [255; 4]);
-    let mut none: Vec<[u8; 4]> = vec![[0; 4]; if coloured { 0 } else { element.count.div_ceil(BLOCK) }];
-    let colours: Vec<&mut [[u8; 4]]> =
-        if coloured { made.colours.chunks_mut(BLOCK).collect() } else { none.chunks_mut(1).collect() };
+    let mut none: Vec<[u8; 4]> =
+        vec![[0; 4]; if coloured { 0 } else { element.count.div_ceil(BLOCK) }];
+    let colours: Vec<&mut [[u8; 4]]> = if coloured {
+        made.colours.chunks_mut(BLOCK).collect()
+    } else {
+        none.chunks_mut(1).collect()
+    };
     let bad = made
         .mesh
         .positions
@@ -134,7 +145,9 @@ fn vertices<O: Order>(
             if job.cancelled() {
                 return Some(None);
             }
-            for (n, (position, row)) in positions.iter_mut().zip(rows.chunks_exact(stride)).enumerate() {
+            for (n, (position, row)) in
+                positions.iter_mut().zip(rows.chunks_exact(stride)).enumerate()
+            {
                 let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
                 for (value, step) in values.iter_mut().zip(&plan) {
                     if let Some((offset, kind)) = *step
@@ -195,7 +208,8 @@ fn rows<O: Order>(
         let first = made.mesh.corners.len();
         if fast.is_some() {
             let n = *bytes.get(at).ok_or_else(|| row_ended(bytes, element, row))? as usize;
-            let indices = bytes.get(at + 1..at + 1 + n * 4).ok_or_else(|| row_ended(bytes, element, row))?;
+            let indices =
+                bytes.get(at + 1..at + 1 + n * 4).ok_or_else(|| row_ended(bytes, element, row))?;
             made.mesh.corners.extend(indices.as_chunks::<4>().0.iter().map(|&b| O::u32(b)));
             at += 1 + n * 4;
         } else {
@@ -211,7 +225,8 @@ fn rows<O: Order>(
                     }
                     continue;
                 };
-                let n = number::<O>(bytes, at, count_kind).ok_or_else(|| row_ended(bytes, element, row))?;
+                let n = number::<O>(bytes, at, count_kind)
+                    .ok_or_else(|| row_ended(bytes, element, row))?;
                 if n < 0.0 {
                     let found = n.to_string();
                     return Err(Problem::new(At::Byte(at as u64), "a list's length", found).into());
@@ -239,7 +254,9 @@ fn rows<O: Order>(
             }
             if element.role == Role::Vertex {
                 if let Some(found) = place(&values) {
-                    return Err(Problem::new(At::Byte(start as u64), "a finite coordinate", found).into());
+                    return Err(
+                        Problem::new(At::Byte(start as u64), "a finite coordinate", found).into()
+                    );
                 }
                 made.vertex(&values, coloured, scale);
             }
@@ -250,7 +267,8 @@ fn rows<O: Order>(
         let here = At::Byte(start as u64);
         match element.role {
             Role::Face if corners.is_some() => {
-                made.face(first, count).map_err(|bad| index_problem(here, bad as i32 as i64, count))?;
+                made.face(first, count)
+                    .map_err(|bad| index_problem(here, bad as i32 as i64, count))?;
             }
             Role::Strips if corners.is_some() => {
                 made.strip(&list, count).map_err(|bad| index_problem(here, bad, count))?;

@@ -212,10 +212,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
     loop {
         number += 1;
         let rest = &bytes[at..];
-        // Old writers end lines with CR alone; data starts after the first line end of "end_header".
+        // Old writers end lines with CR alone; data starts after the first line end of
+        // "end_header".
         let end = memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
         let line = rest[..end].trim_ascii();
-        let problem = |expected: &str| Problem::new(At::Line(number), expected.to_string(), excerpt(line));
+        let problem =
+            |expected: &str| Problem::new(At::Line(number), expected.to_string(), excerpt(line));
         at = (at + end + 1).min(bytes.len());
         if rest.get(end) == Some(&b'\r') && bytes.get(at) == Some(&b'\n') {
             at += 1;
@@ -243,7 +245,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
                     "ascii" => Encoding::Ascii,
                     "binary_little_endian" => Encoding::Little,
                     "binary_big_endian" => Encoding::Big,
-                    _ => return Err(problem("format ascii, binary_little_endian or binary_big_endian")),
+                    _ => {
+                        return Err(problem(
+                            "format ascii, binary_little_endian or binary_big_endian",
+                        ));
+                    }
                 });
             }
             ["element", name, count] => {
@@ -259,18 +265,29 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
                 if role != Role::Other && elements.iter().any(|e| e.role == role) {
                     return Err(problem("each element once"));
                 }
-                elements.push(Element { name: name.to_string(), role, count, properties: Vec::new() });
+                elements.push(Element {
+                    name: name.to_string(),
+                    role,
+                    count,
+                    properties: Vec::new(),
+                });
             }
             ["property", "list", count, kind, name] => {
                 let (Some(count), Some(kind)) =
                     (Scalar::named(count).filter(|s| s.whole()), Scalar::named(kind))
                 else {
-                    return Err(problem("\"property list\", a whole type for the count, a type, a name"));
+                    return Err(problem(
+                        "\"property list\", a whole type for the count, a type, a name",
+                    ));
                 };
                 let Some(element) = elements.last_mut() else {
                     return Err(problem("an element before its properties"));
                 };
-                element.properties.push(Property { name: name.to_string(), list: Some(count), kind });
+                element.properties.push(Property {
+                    name: name.to_string(),
+                    list: Some(count),
+                    kind,
+                });
             }
             ["property", kind, name] => {
                 let Some(kind) = Scalar::named(kind) else {

@@ -1,8 +1,9 @@
-//! PLY: text, little-endian and big-endian; any elements and properties in any order; lists; colours.
+//! PLY: text, little-endian and big-endian; any elements and properties in any order; lists;
+//! colours.
 //!
-//! Own code, so that errors name their byte or line, counts are checked before memory is taken, and double precision and
-//! polygons are kept. The header becomes a plan (offset and type of the few properties that matter), and rows are read by it; rows of one length on all
-//! cores.
+//! Own code, so that errors name their byte or line, counts are checked before memory is taken, and
+//! double precision and polygons are kept. The header becomes a plan (offset and type of the few
+//! properties that matter), and rows are read by it; rows of one length on all cores.
 
 mod binary;
 mod header;
@@ -16,7 +17,11 @@ use crate::PolyMesh;
 use crate::job::Job;
 use header::{Encoding, Header};
 
-pub(super) fn parse(bytes: &[u8], warnings: &mut Vec<String>, job: &Job) -> Result<(PolyMesh, Format), Stop> {
+pub(super) fn parse(
+    bytes: &[u8],
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<(PolyMesh, Format), Stop> {
     let header = header::parse(bytes)?;
     header.check(bytes.len())?;
     let mut made = Making::default();
@@ -55,7 +60,8 @@ struct Making {
 const ROLES: [&str; 7] = ["x", "y", "z", "red", "green", "blue", "alpha"];
 
 impl Making {
-    /// One vertex of the values of [`ROLES`]. `scale`: 1 where colours are bytes, 255 where they are 0 to 1, and so on.
+    /// One vertex of the values of [`ROLES`]. `scale`: 1 where colours are bytes, 255 where they
+    /// are 0 to 1, and so on.
     #[inline]
     fn vertex(&mut self, values: &[f64; 7], coloured: bool, scale: f64) {
         self.mesh.positions.push(DVec3::new(values[0], values[1], values[2]));
@@ -64,7 +70,8 @@ impl Making {
         }
     }
 
-    /// Closes the face whose corners were pushed from `first` on. `Err` with an index that is out of range.
+    /// Closes the face whose corners were pushed from `first` on. `Err` with an index that is out
+    /// of range.
     #[inline]
     fn face(&mut self, first: usize, vertices: usize) -> Result<(), u32> {
         let corners = &self.mesh.corners[first..];

@@ -6,7 +6,12 @@ use super::header::{Header, Role};
 use super::{Making, index_problem, place, too_many};
 use crate::job::Job;
 
-pub(super) fn read(bytes: &[u8], header: &Header, made: &mut Making, job: &Job) -> Result<(), Stop> {
+pub(super) fn read(
+    bytes: &[u8],
+    header: &Header,
+    made: &mut Making,
+    job: &Job,
+) -> Result<(), Stop> {
     let text = &bytes[header.data..];
     let shift = |mut p: Problem| {
         if let At::Line(n) = &mut p.at {
@@ -47,8 +52,10 @@ pub(super) fn read(bytes: &[u8], header: &Header, made: &mut Making, job: &Job) 
                     cursor.word_anywhere(false).and_then(float).ok_or_else(|| {
                         let expected =
                             format!("a number for \"{}\" of {} {row}", property.name, element.name);
-                        // Past the blanks and line ends, so that the line named is that of the word.
-                        let skip = text[at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
+                        // Past the blanks and line ends, so that the line named is that of the
+                        // word.
+                        let skip =
+                            text[at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
                         shift(unexpected(text, at + skip, expected))
                     })
                 };
@@ -99,7 +106,8 @@ pub(super) fn read(bytes: &[u8], header: &Header, made: &mut Making, job: &Job) 
                         .map_err(|bad| shift(index_problem(line(), bad as i64, vertices)))?;
                 }
                 Role::Strips if corners.is_some() => {
-                    made.strip(&list, vertices).map_err(|bad| shift(index_problem(line(), bad, vertices)))?;
+                    made.strip(&list, vertices)
+                        .map_err(|bad| shift(index_problem(line(), bad, vertices)))?;
                 }
                 _ => {}
             }
