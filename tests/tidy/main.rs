@@ -1,6 +1,21 @@
-//! The walls that the compiler does not guard, and the style that keeps the house small.
+//! What the compiler does not guard: circles inside a crate, the words, the style, the map.
+
+mod map;
+mod use_graph;
+mod words;
 
 use std::path::{Path, PathBuf};
+
+/// The crates of the workspace, and where their sources lie.
+const CRATES: [(&str, &str); 7] = [
+    ("sculptd-geometry", "src/geometry"),
+    ("sculptd-devices", "devices/src"),
+    ("sculptd-clay", "src/clay"),
+    ("sculptd-engine", "src/engine"),
+    ("sculptd-daemon", "src/daemon"),
+    ("sculptd-window", "src/window"),
+    ("sculptd", "src"),
+];
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
