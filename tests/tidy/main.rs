@@ -1,6 +1,7 @@
 //! What the compiler does not guard: circles inside a crate, the words, the style, the map.
 
 mod map;
+mod picture;
 mod use_graph;
 mod words;
 
