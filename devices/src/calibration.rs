@@ -1,6 +1,8 @@
-//! What a person sets for one tablet: which part of it counts, how it lies, and how hard their hand is.
+//! What a person sets for one tablet: which part of it counts, how it lies, and how hard their hand
+//! is.
 //!
-//! Kept by the device's serial number, so that two tablets alike keep apart; where a device has none, by its name.
+//! Kept by the device's serial number, so that two tablets alike keep apart; where a device has
+//! none, by its name.
 
 use std::collections::BTreeMap;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -10,25 +12,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::sample::{Body, Pen, Sample};
 
-/// The smallest side of an active area, in mm: less than a fingertip is a slip of the hand in a config file.
+/// The smallest side of an active area, in mm: less than a fingertip is a slip of the hand in a
+/// config file.
 const LEAST_SIDE: f32 = 5.0;
 
 /// Everything a person may set for one tablet. The default changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Calibration {
-    /// The part of the tablet that counts: left, top, width, height in mm. Beyond it the pen is at its edge.
+    /// The part of the tablet that counts: left, top, width, height in mm. Beyond it the pen is at
+    /// its edge.
     pub area_mm: Option<[f32; 4]>,
     /// Quarter turns clockwise by which the tablet lies turned, 0 to 3.
     pub quarter_turns: u8,
     /// The tablet lies with its keys to the right: half a turn, on top of `quarter_turns`.
     pub left_handed: bool,
-    /// Width over height of what is drawn on. The area is cut to it, about its middle, so that a circle stays a circle.
+    /// Width over height of what is drawn on. The area is cut to it, about its middle, so that a
+    /// circle stays a circle.
     pub lock_aspect: Option<f32>,
     pub pressure: PressureCurve,
 }
 
-/// From the pen's pressure to the hand's intent: nothing up to `start`, all from `full` on, bent by `gamma` in between.
+/// From the pen's pressure to the hand's intent: nothing up to `start`, all from `full` on, bent by
+/// `gamma` in between.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PressureCurve {
@@ -49,7 +55,8 @@ impl Default for PressureCurve {
 /// All tablets' settings, by serial number, ids, model or port.
 pub type Calibrations = BTreeMap<String, Calibration>;
 
-/// The setting of the first of a tablet's names that has one: its serial number first, what it shares with others last.
+/// The setting of the first of a tablet's names that has one: its serial number first, what it
+/// shares with others last.
 pub fn find<'a>(all: &Calibrations, names: impl IntoIterator<Item = &'a str>) -> Calibration {
     names.into_iter().find_map(|n| all.get(n)).copied().unwrap_or_default()
 }
@@ -102,7 +109,8 @@ impl Calibration {
         *self == Calibration::default()
     }
 
-    /// Brings a sample from the tablet's own frame to the person's. Hands and keys are left as they are.
+    /// Brings a sample from the tablet's own frame to the person's. Hands and keys are left as they
+    /// are.
     pub fn apply(&self, sample: &mut Sample) {
         if let Body::Pen(pen) = &mut sample.body {
             self.pen(pen);
@@ -113,7 +121,8 @@ impl Calibration {
         let (origin, size) = self.part(pen.area_mm);
         let local = (pen.pos_mm - origin).clamp(Vec2::ZERO, size);
         let turns = (self.quarter_turns + if self.left_handed { 2 } else { 0 }) % 4;
-        // The tablet lies turned clockwise, so what it calls right is the person's down: each place turns along.
+        // The tablet lies turned clockwise, so what it calls right is the person's down: each place
+        // turns along.
         let turn = |v: Vec2| match turns {
             0 => v,
             1 => vec2(-v.y, v.x),
@@ -128,7 +137,8 @@ impl Calibration {
         pen.pressure = pen.pressure.map(|p| self.pressure.apply(p));
     }
 
-    /// The part of the tablet that counts: its top left corner and its size, in the tablet's own frame.
+    /// The part of the tablet that counts: its top left corner and its size, in the tablet's own
+    /// frame.
     fn part(&self, whole: Vec2) -> (Vec2, Vec2) {
         let (mut origin, mut size) = (Vec2::ZERO, whole);
         if let Some([x, y, w, h]) = self.area_mm {
@@ -137,7 +147,8 @@ impl Calibration {
             origin = origin.min(whole - size);
         }
         if let Some(aspect) = self.lock_aspect {
-            // What is drawn on stands upright; on a tablet that lies turned its width is the tablet's height.
+            // What is drawn on stands upright; on a tablet that lies turned its width is the
+            // tablet's height.
             let aspect = if self.quarter_turns % 2 == 1 { 1.0 / aspect } else { aspect };
             let cut = vec2(size.x.min(size.y * aspect), size.y.min(size.x / aspect));
             origin += (size - cut) * 0.5;
@@ -163,7 +174,8 @@ mod tests {
             twist: Some(3.0),
             ..Pen::default()
         };
-        let mut s = Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
+        let mut s =
+            Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
         c.apply(&mut s);
         let Body::Pen(pen) = s.body else { panic!() };
         pen
@@ -193,7 +205,11 @@ mod tests {
         let left = Calibration { left_handed: true, ..Calibration::default() };
         assert_eq!(at(&left, 10.0, 20.0).pos_mm, vec2(190.0, 80.0));
         let both = Calibration { quarter_turns: 3, left_handed: true, ..Calibration::default() };
-        assert_eq!(at(&both, 10.0, 20.0).pos_mm, at(&c, 10.0, 20.0).pos_mm, "three and two quarters are one");
+        assert_eq!(
+            at(&both, 10.0, 20.0).pos_mm,
+            at(&c, 10.0, 20.0).pos_mm,
+            "three and two quarters are one"
+        );
     }
 
     #[test]

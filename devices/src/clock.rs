@@ -1,5 +1,5 @@
-//! The daemon's monotonic clock, in microseconds. It can be held and moved by hand, so that tests, replays and the
-//! stepped demo see the same stamps on every run.
+//! The daemon's monotonic clock, in microseconds. It can be held and moved by hand, so that tests,
+//! replays and the stepped demo see the same stamps on every run.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};

@@ -1,8 +1,8 @@
-//! Steady hands: the One-Euro filter (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens stay raw; their strokes are
-//! smoothed where strokes are.
+//! Steady hands: the One-Euro filter (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens
+//! stay raw; their strokes are smoothed where strokes are.
 //!
-//! A low pass whose cutoff rises with speed: at rest it takes the tremble away, in motion it hardly lags. Units matter: speed
-//! is in mm a second, so `beta` is in Hz for each of them.
+//! A low pass whose cutoff rises with speed: at rest it takes the tremble away, in motion it hardly
+//! lags. Units matter: speed is in mm a second, so `beta` is in Hz for each of them.
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -31,8 +31,8 @@ pub struct OneEuro {
 }
 
 impl Default for OneEuro {
-    /// At 90 frames a second and 0.2 mm of noise these leave 0.04 mm at rest and lag 23 ms at 50 mm/s, 12 ms at 150 and 5 ms
-    /// at 500; the test prints the table.
+    /// At 90 frames a second and 0.2 mm of noise these leave 0.04 mm at rest and lag 23 ms at 50
+    /// mm/s, 12 ms at 150 and 5 ms at 500; the test prints the table.
     fn default() -> Self {
         OneEuro { min_cutoff: 1.0, beta: 0.04, speed_cutoff: 1.0 }
     }
@@ -82,7 +82,8 @@ struct HandFilter {
     turn: Option<(Quat, f32)>,
 }
 
-/// Filters every hand of a tracker. A hand that appears, or comes back with another id, starts afresh.
+/// Filters every hand of a tracker. A hand that appears, or comes back with another id, starts
+/// afresh.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct HandsFilter {
     /// May be changed at any time.
@@ -162,7 +163,8 @@ impl HandFilter {
             *orientation = Some(old);
             return;
         }
-        let speed = speed + (old.angle_between(new) * LEVER / dt - speed) * alpha(f.speed_cutoff, dt);
+        let speed =
+            speed + (old.angle_between(new) * LEVER / dt - speed) * alpha(f.speed_cutoff, dt);
         let turned = old.slerp(new, alpha(f.min_cutoff + f.beta * speed, dt)).normalize();
         self.turn = Some((turned, speed));
         *orientation = Some(turned);
@@ -240,14 +242,16 @@ mod tests {
         let pose = HandKey::flat(0, Vec3::new(0.0, 200.0, 0.0)).turned(0.3, 0.1, 0.2);
         let (mut spread, mut n) = ([0.0f32; 2], 0);
         for i in 0..400u64 {
-            let mut hand = skeleton(&HandKey { palm: pose.palm + noise(&mut rng, 0.2), ..pose }, false);
+            let mut hand =
+                skeleton(&HandKey { palm: pose.palm + noise(&mut rng, 0.2), ..pose }, false);
             hand.id = 1;
             let mut hands = Hands { count: 1, ..Hands::default() };
             hands.hands[0] = hand;
             filter.apply(&mut hands, i * 11_111);
             if i > 200 {
-                let at =
-                    |h: &Hand| h.fingers[1].unwrap().tip - skeleton(&pose, false).fingers[1].unwrap().tip;
+                let at = |h: &Hand| {
+                    h.fingers[1].unwrap().tip - skeleton(&pose, false).fingers[1].unwrap().tip
+                };
                 spread[0] += at(&hand).length_squared();
                 spread[1] += at(&hands.hands[0]).length_squared();
                 n += 1;
@@ -262,7 +266,10 @@ mod tests {
         let want = jump;
         filter.apply(&mut jump, 400 * 11_111);
         assert_eq!(jump.hands[0].palm, want.hands[0].palm, "another id is another hand");
-        assert_eq!(jump.hands[0].fingers[4].unwrap().joints, want.hands[0].fingers[4].unwrap().joints);
+        assert_eq!(
+            jump.hands[0].fingers[4].unwrap().joints,
+            want.hands[0].fingers[4].unwrap().joints
+        );
         jump.hands[0].fingers[1] = None;
         filter.apply(&mut jump, 401 * 11_111);
         assert_eq!(jump.hands[0].fingers[1], None);

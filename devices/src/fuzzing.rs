@@ -1,5 +1,5 @@
-//! What must hold for any bytes at all. `cargo fuzz` (in `devices/fuzz`) looks for bytes that break it; a test runs the kept
-//! ones.
+//! What must hold for any bytes at all. `cargo fuzz` (in `devices/fuzz`) looks for bytes that break
+//! it; a test runs the kept ones.
 
 use std::sync::OnceLock;
 
@@ -74,12 +74,19 @@ pub fn report_bytes(data: &[u8]) {
         let catalogue = Catalogue::builtin().unwrap_or_default();
         let ways = |t: &std::sync::Arc<crate::tablet::Tablet>| {
             let tablet = t.clone();
-            (0..t.id.len()).map(move |at| Found { tablet: tablet.clone(), at, note: None, described: false })
+            (0..t.id.len()).map(move |at| Found {
+                tablet: tablet.clone(),
+                at,
+                note: None,
+                described: false,
+            })
         };
         catalogue.tablets().iter().flat_map(ways).collect()
     });
     let [low, high, rest @ ..] = data else { return };
-    let Some(found) = models.get(usize::from(u16::from_le_bytes([*low, *high])) % models.len().max(1)) else {
+    let Some(found) =
+        models.get(usize::from(u16::from_le_bytes([*low, *high])) % models.len().max(1))
+    else {
         return;
     };
     let (mut decoder, mut visit) = (Decoder::new(found, &[], DeviceId(0)), Visit::default());
@@ -105,10 +112,15 @@ struct Visit {
 impl Visit {
     fn see(&mut self, s: &Sample) {
         let Body::Pen(p) = s.body else { return };
-        assert!(p.pos_mm.cmpge(Vec2::ZERO).all() && p.pos_mm.cmple(p.area_mm).all(), "off the tablet: {p:?}");
+        assert!(
+            p.pos_mm.cmpge(Vec2::ZERO).all() && p.pos_mm.cmple(p.area_mm).all(),
+            "off the tablet: {p:?}"
+        );
         assert!(p.pressure.is_none_or(|v| (0.0..=1.0).contains(&v)), "pressure: {p:?}");
         assert!(
-            p.tilt.is_none_or(|t| t.is_finite() && t.abs().max_element() <= std::f32::consts::FRAC_PI_2),
+            p.tilt.is_none_or(
+                |t| t.is_finite() && t.abs().max_element() <= std::f32::consts::FRAC_PI_2
+            ),
             "tilt: {p:?}"
         );
         assert!(p.twist.is_none_or(f32::is_finite), "twist: {p:?}");
@@ -131,7 +143,8 @@ fn check_hands(hands: &Hands) {
         assert!(ratio(h.grab) && ratio(h.pinch) && ratio(h.confidence), "{h:?}");
         assert!(h.orientation.is_none_or(|q| q.is_normalized()), "{h:?}");
         let places = [h.palm_velocity, h.wrist, h.elbow];
-        let joints = h.fingers.iter().flatten().flat_map(|f| f.joints.into_iter().chain([Some(f.tip)]));
+        let joints =
+            h.fingers.iter().flatten().flat_map(|f| f.joints.into_iter().chain([Some(f.tip)]));
         assert!(places.into_iter().chain(joints).flatten().all(Vec3::is_finite), "{h:?}");
         assert!(h.fingers.iter().flatten().all(|f| unit(f.direction)), "{h:?}");
     }
@@ -152,8 +165,10 @@ mod tests {
     #[test]
     fn the_kept_bytes_break_nothing_whole_cut_or_changed() {
         for (name, run) in TARGETS {
-            let mut paths: Vec<_> =
-                std::fs::read_dir(corpus().join(name)).unwrap().map(|e| e.unwrap().path()).collect();
+            let mut paths: Vec<_> = std::fs::read_dir(corpus().join(name))
+                .unwrap()
+                .map(|e| e.unwrap().path())
+                .collect();
             paths.sort();
             assert!(paths.len() >= 3, "{name}: {} files", paths.len());
             for path in &paths {
@@ -174,7 +189,8 @@ mod tests {
         }
     }
 
-    /// Run by hand to make the seeds anew: `cargo test -p sculptd-devices --lib write_seeds -- --ignored`.
+    /// Run by hand to make the seeds anew: `cargo test -p sculptd-devices --lib write_seeds --
+    /// --ignored`.
     #[test]
     #[ignore = "writes devices/fuzz/corpus"]
     #[allow(clippy::disallowed_methods)] // Seeds need no care against a crash.
@@ -216,8 +232,8 @@ mod tests {
             "descriptor",
             "keyboard",
             &[
-                5, 1, 9, 6, 0xa1, 1, 5, 7, 0x19, 0xe0, 0x29, 0xe7, 0x15, 0, 0x25, 1, 0x75, 1, 0x95, 8, 0x81,
-                2, 0xc0,
+                5, 1, 9, 6, 0xa1, 1, 5, 7, 0x19, 0xe0, 0x29, 0xe7, 0x15, 0, 0x25, 1, 0x75, 1, 0x95,
+                8, 0x81, 2, 0xc0,
             ],
         );
         put(
@@ -235,7 +251,8 @@ mod tests {
                 if families.insert(family) {
                     let area = Vec2::new(model.area.width_mm as f32, model.area.height_mm as f32);
                     let script = j.pen.fitted(j.area_mm, area);
-                    let config = TabletConfig { rate: 40.0, keeps: 1000, ..TabletConfig::default() };
+                    let config =
+                        TabletConfig { rate: 40.0, keeps: 1000, ..TabletConfig::default() };
                     let (mut sim, mut end) = Tablet::new(&found, script, config);
                     sim.skip_to(2_100_000);
                     sim.advance(2_900_000);

@@ -1,4 +1,5 @@
-//! How long something takes, as quantiles: four steps an octave, so a figure is at most a quarter too high.
+//! How long something takes, as quantiles: four steps an octave, so a figure is at most a quarter
+//! too high.
 
 use serde::Serialize;
 

@@ -45,7 +45,8 @@ impl Leash {
 
     /// Waits; true if the thread is to stop, and then at once.
     pub(crate) fn wait(&self, time: Duration) -> bool {
-        matches!(self.released.recv_timeout(time), Err(cc::RecvTimeoutError::Disconnected)) || self.stopped()
+        matches!(self.released.recv_timeout(time), Err(cc::RecvTimeoutError::Disconnected))
+            || self.stopped()
     }
 
     pub(crate) fn flag(&self) -> Arc<AtomicBool> {

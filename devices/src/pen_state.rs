@@ -1,9 +1,12 @@
 //! What a pen means, the same for every family: proximity, contact, tool, buttons.
 //!
 //! Laws:
-//! * Every visit ends: by the device's word, by silence (where the family never says it), by unplug.
-//! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen leaves.
-//! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins another.
+//! * Every visit ends: by the device's word, by silence (where the family never says it), by
+//!   unplug.
+//! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen
+//!   leaves.
+//! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins
+//!   another.
 //! * Pressure is clamped to 0..1; nothing wraps.
 
 use glam::Vec2;
@@ -11,7 +14,8 @@ use glam::Vec2;
 use crate::hid::report::PenReport;
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 
-/// Contact begins at this share of the pressure range where there is no tip switch (libinput's figures).
+/// Contact begins at this share of the pressure range where there is no tip switch (libinput's
+/// figures).
 const DOWN: f32 = 0.05;
 /// ... and ends below this one.
 const UP: f32 = 0.01;
@@ -48,7 +52,8 @@ pub struct PenState {
     cfg: PenConfig,
     pen: Pen,
     last_us: u64,
-    /// The first report of a visit is held back from pressing: its pressure is often the last visit's.
+    /// The first report of a visit is held back from pressing: its pressure is often the last
+    /// visit's.
     fresh: bool,
     /// The rest pressure of a worn pen, as a share.
     offset: f32,
@@ -73,7 +78,8 @@ impl PenState {
         self.cfg.silence_us = silence_us;
     }
 
-    /// Another report of the same device has other ranges; a visit does not go from one to the other.
+    /// Another report of the same device has other ranges; a visit does not go from one to the
+    /// other.
     pub fn set_scale(&mut self, scale: PenScale, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         if scale != self.cfg.scale {
             self.leave(t_us, emit);
@@ -85,10 +91,15 @@ impl PenState {
 
     /// When silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
-        if self.pen.in_range { self.cfg.silence_us.map(|s| self.last_us.saturating_add(s)) } else { None }
+        if self.pen.in_range {
+            self.cfg.silence_us.map(|s| self.last_us.saturating_add(s))
+        } else {
+            None
+        }
     }
 
-    /// Ends the visit if the pen has been silent for too long. The sample's time is when the silence was over.
+    /// Ends the visit if the pen has been silent for too long. The sample's time is when the
+    /// silence was over.
     pub fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {
         if let Some(due) = self.due_us().filter(|&due| due <= now_us) {
             self.leave(due, emit);
@@ -150,8 +161,8 @@ impl PenState {
         if let Some(pos) = r.pos {
             p.raw = pos;
             let axis = |i: usize| {
-                let span =
-                    (i64::from(self.cfg.scale.max[i]) - i64::from(self.cfg.scale.min[i])).max(1) as f64;
+                let span = (i64::from(self.cfg.scale.max[i]) - i64::from(self.cfg.scale.min[i]))
+                    .max(1) as f64;
                 let share = (i64::from(pos[i]) - i64::from(self.cfg.scale.min[i])) as f64 / span;
                 (share.clamp(0.0, 1.0) * f64::from(self.cfg.scale.area_mm[i])) as f32
             };
@@ -168,13 +179,15 @@ impl PenState {
 
     fn press(&mut self, r: &PenReport, entering: bool) {
         if let (Some(counts), true) = (r.pressure, self.cfg.scale.max_pressure > 0) {
-            let share = (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
+            let share =
+                (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
             if entering {
                 self.learn_offset(r, share);
             } else if share < self.offset {
                 self.offset = share;
             }
-            // Pressure is told as it is sensed, also in the air: whether it counts is `tip`'s to say.
+            // Pressure is told as it is sensed, also in the air: whether it counts is `tip`'s to
+            // say.
             self.pen.pressure = Some(if self.pen.tool == Tool::Mouse { 0.0 } else { share });
         }
         let felt = self.pen.pressure.map(|p| ((p - self.offset) / (1.0 - self.offset)).max(0.0));
@@ -191,7 +204,8 @@ impl PenState {
         };
     }
 
-    /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip switch.
+    /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip
+    /// switch.
     fn learn_offset(&mut self, r: &PenReport, share: f32) {
         let high = match (r.distance, self.cfg.scale.max_distance) {
             (Some(d), max) if max > 0 => d * 2 >= max,
@@ -203,7 +217,12 @@ impl PenState {
     }
 
     fn emit(&self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
-        emit(Sample { device: self.cfg.device, t_us, device_t_us: None, body: Body::Pen(self.pen) });
+        emit(Sample {
+            device: self.cfg.device,
+            t_us,
+            device_t_us: None,
+            body: Body::Pen(self.pen),
+        });
     }
 }
 

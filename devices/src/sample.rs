@@ -12,16 +12,20 @@ use serde::{Deserialize, Serialize};
 /// Four: two people over one tracker. A Leap tracks two reliably.
 pub const MAX_HANDS: usize = 4;
 
-/// A device as the daemon knows it while it runs. Dense, small, reused after a replug of the *same* device.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default)]
+/// A device as the daemon knows it while it runs. Dense, small, reused after a replug of the *same*
+/// device.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default,
+)]
 pub struct DeviceId(pub u16);
 
 /// What a device said at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     pub device: DeviceId,
-    /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a tracker that stamps its frames:
-    /// when the frame was taken, brought onto our clock ([`crate::leap::ClockMap`]); never later than the read.
+    /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a
+    /// tracker that stamps its frames: when the frame was taken, brought onto our clock
+    /// ([`crate::leap::ClockMap`]); never later than the read.
     pub t_us: u64,
     /// Microseconds on the device's own clock, where it has one (its origin is unknown).
     pub device_t_us: Option<u64>,
@@ -78,14 +82,15 @@ pub struct Pen {
 pub struct Pad {
     /// Pressed keys, bit 0 the first.
     pub keys: u32,
-    /// Steps turned since the device appeared, clockwise positive, one counter a wheel. A counter and not a step, so that
-    /// a coalesced sample loses nothing.
+    /// Steps turned since the device appeared, clockwise positive, one counter a wheel. A counter
+    /// and not a step, so that a coalesced sample loses nothing.
     pub wheels: [i32; 2],
     /// Position along each touch strip or ring, 0 to 1; `None` while not touched.
     pub strips: [Option<f32>; 2],
 }
 
-/// Every hand that a tracker saw in one frame. mm, right-handed, origin on the tracker, +y up, +z toward the user.
+/// Every hand that a tracker saw in one frame. mm, right-handed, origin on the tracker, +y up, +z
+/// toward the user.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hands {
     /// The tracker's own frame number.
@@ -129,7 +134,8 @@ pub struct Hand {
     pub time_visible: Option<f32>,
     /// Width over the knuckles.
     pub palm_width: Option<f32>,
-    /// Of the palm, from the tracker's axes to the hand's; absent where neither basis nor normal came.
+    /// Of the palm, from the tracker's axes to the hand's; absent where neither basis nor normal
+    /// came.
     pub orientation: Option<Quat>,
     pub wrist: Option<Vec3>,
     pub elbow: Option<Vec3>,
@@ -139,7 +145,8 @@ pub struct Hand {
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Finger {
-    /// Carpal-metacarpal, knuckle, first and second joint, and the end of the last bone; absent joints are `None`.
+    /// Carpal-metacarpal, knuckle, first and second joint, and the end of the last bone; absent
+    /// joints are `None`.
     pub joints: [Option<Vec3>; 5],
     pub tip: Vec3,
     /// Unit length, along the last bone.
@@ -150,21 +157,26 @@ pub struct Finger {
 }
 
 impl Sample {
-    /// Two samples of one device differ in nothing but motion: the older may be dropped when the channel is full.
-    /// Contact, proximity, tool, buttons, keys, the set of hands: a change of any is a **transition** and is never dropped.
+    /// Two samples of one device differ in nothing but motion: the older may be dropped when the
+    /// channel is full. Contact, proximity, tool, buttons, keys, the set of hands: a change of any
+    /// is a **transition** and is never dropped.
     pub fn only_moved_since(&self, older: &Sample) -> bool {
         if self.device != older.device {
             return false;
         }
         match (&self.body, &older.body) {
             (Body::Pen(a), Body::Pen(b)) => {
-                a.tool == b.tool && a.in_range == b.in_range && a.tip == b.tip && a.buttons == b.buttons
+                a.tool == b.tool
+                    && a.in_range == b.in_range
+                    && a.tip == b.tip
+                    && a.buttons == b.buttons
             }
             (Body::Pad(a), Body::Pad(b)) => {
                 a.keys == b.keys && a.strips.map(|s| s.is_some()) == b.strips.map(|s| s.is_some())
             }
             (Body::Hands(a), Body::Hands(b)) => {
-                a.count == b.count && a.as_slice().iter().zip(b.as_slice()).all(|(x, y)| x.id == y.id)
+                a.count == b.count
+                    && a.as_slice().iter().zip(b.as_slice()).all(|(x, y)| x.id == y.id)
             }
             _ => false,
         }

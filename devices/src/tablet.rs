@@ -1,7 +1,7 @@
 //! A tablet is data: one TOML file a model, in `devices/tablets/` or in a folder of the user's.
 //!
-//! Strict: an unknown key is an error that names it. Every number is a fact with a source; what a driver must *do* is in
-//! the parser that `parser` names.
+//! Strict: an unknown key is an error that names it. Every number is a fact with a source; what a
+//! driver must *do* is in the parser that `parser` names.
 
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +66,8 @@ pub struct Pad {
 pub struct Id {
     pub vid: u16,
     pub pid: u16,
-    /// Longest input report of the pen's interface in bytes, its id included; 0 where the product id alone decides.
+    /// Longest input report of the pen's interface in bytes, its id included; 0 where the product
+    /// id alone decides.
     pub length: u16,
     pub parser: Family,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -74,7 +75,8 @@ pub struct Id {
     /// Bytes put before each report by the maker's Windows driver.
     #[serde(default, skip_serializing_if = "is_zero_u8")]
     pub skip: u8,
-    /// USB strings that tell models of one id apart, `INDEX=PATTERN`; one of them must match. See [`StringIs`].
+    /// USB strings that tell models of one id apart, `INDEX=PATTERN`; one of them must match. See
+    /// [`StringIs`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub strings: Vec<String>,
     /// Bytes to send before the pen speaks its own protocol, hexadecimal.
@@ -89,7 +91,8 @@ pub struct Id {
     pub quirks: Vec<Quirk>,
 }
 
-/// A pattern on one USB string: found anywhere, unless `^` holds it to the start or `$` to the end; `#` is any digit.
+/// A pattern on one USB string: found anywhere, unless `^` holds it to the start or `$` to the end;
+/// `#` is any digit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StringIs<'a> {
     pub index: u8,
@@ -104,9 +107,11 @@ impl<'a> StringIs<'a> {
     }
 
     pub fn matches(&self, text: &str) -> bool {
-        let (pattern, start) = self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
+        let (pattern, start) =
+            self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
         let (pattern, end) = pattern.strip_suffix('$').map_or((pattern, false), |p| (p, true));
-        let (pattern, text): (Vec<char>, Vec<char>) = (pattern.chars().collect(), text.chars().collect());
+        let (pattern, text): (Vec<char>, Vec<char>) =
+            (pattern.chars().collect(), text.chars().collect());
         let fits = |i: usize| {
             let alike = |(p, t): (&char, &char)| p == t || *p == '#' && t.is_ascii_digit();
             i + pattern.len() <= text.len()
@@ -220,7 +225,10 @@ impl Tablet {
             return Err("area: max_x and max_y must exceed min_x and min_y".to_owned());
         }
         if self.pen.max_pressure > 1 << 20 {
-            return Err(format!("pen.max_pressure = {}: more than any pen has", self.pen.max_pressure));
+            return Err(format!(
+                "pen.max_pressure = {}: more than any pen has",
+                self.pen.max_pressure
+            ));
         }
         if self.id.is_empty() {
             return Err("no [[id]]: the model could never be found".to_owned());
@@ -231,7 +239,9 @@ impl Tablet {
             }
             for hex in id.init_feature.iter().chain(&id.init_output) {
                 if hex_bytes(hex).is_none_or(|b| b.is_empty()) {
-                    return Err(format!("init report `{hex}`: expected pairs of hexadecimal digits"));
+                    return Err(format!(
+                        "init report `{hex}`: expected pairs of hexadecimal digits"
+                    ));
                 }
             }
         }
@@ -290,11 +300,14 @@ mod tests {
 
     #[test]
     fn patterns_match_as_written() {
-        let like =
-            |pattern: &str, text: &str| StringIs::parse(&format!("201={pattern}")).unwrap().matches(text);
+        let like = |pattern: &str, text: &str| {
+            StringIs::parse(&format!("201={pattern}")).unwrap().matches(text)
+        };
         assert!(like("HUION_T173_######$", "HUION_T173_190124"));
         assert!(!like("HUION_T173_######$", "HUION_T173_19012x"));
-        assert!(like("M508", "xM508y") && like("^$", "") && !like("^$", "a") && like("^420$", "420"));
+        assert!(
+            like("M508", "xM508y") && like("^$", "") && !like("^$", "a") && like("^420$", "420")
+        );
         assert!(!like("^420$", "H420") && like("", "anything"));
         assert_eq!(StringIs::parse("no index"), None);
     }

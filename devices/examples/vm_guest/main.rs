@@ -1,6 +1,8 @@
-//! Runs inside the virtual machine of `tests/vm/run.sh`: a uhid tablet is plugged in, the daemon's own binary records it from
-//! /dev/hidraw*, the kernel's wacom driver decodes it, and both are compared with what was sent and with our decoder. Then the
-//! plug is pulled in mid-stroke and put back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing shown.
+//! Runs inside the virtual machine of `tests/vm/run.sh`: a uhid tablet is plugged in, the daemon's
+//! own binary records it from /dev/hidraw*, the kernel's wacom driver decodes it, and both are
+//! compared with what was sent and with our decoder. Then the plug is pulled in mid-stroke and put
+//! back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing
+//! shown.
 #![cfg(target_os = "linux")]
 #![allow(clippy::print_stdout, clippy::disallowed_methods)] // A test program: it prints its findings and waits for a kernel.
 
@@ -23,10 +25,11 @@ use sculptd_devices::sim::{Tablet, TabletConfig, journal};
 use sculptd_devices::{Body, DeviceId, Pen, Tool};
 
 const MODEL: &str = "Wacom PTK-440";
-/// What such a tablet says of itself, as far as the drivers need it: report 2 in nine opaque bytes, feature 2 in one.
+/// What such a tablet says of itself, as far as the drivers need it: report 2 in nine opaque bytes,
+/// feature 2 in one.
 const DESCRIPTOR: &[u8] = &[
-    0x05, 0x0d, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x09, 0x00, 0x75, 0x08, 0x95, 0x09, 0x15, 0x00, 0x26,
-    0xff, 0x00, 0x81, 0x02, 0x09, 0x00, 0x95, 0x01, 0xb1, 0x02, 0xc0,
+    0x05, 0x0d, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x09, 0x00, 0x75, 0x08, 0x95, 0x09, 0x15, 0x00,
+    0x26, 0xff, 0x00, 0x81, 0x02, 0x09, 0x00, 0x95, 0x01, 0xb1, 0x02, 0xc0,
 ];
 /// `O_NONBLOCK` on Linux.
 const NONBLOCK: i32 = 0o4000;
@@ -37,7 +40,8 @@ struct Uhid(File);
 
 impl Uhid {
     fn plug() -> io::Result<Uhid> {
-        let file = OpenOptions::new().read(true).write(true).custom_flags(NONBLOCK).open("/dev/uhid")?;
+        let file =
+            OpenOptions::new().read(true).write(true).custom_flags(NONBLOCK).open("/dev/uhid")?;
         let mut event = vec![0u8; 4 + 128 + 64 + 64];
         event[..4].copy_from_slice(&11u32.to_le_bytes());
         event[4..4 + 7].copy_from_slice(b"PTK-440");
@@ -127,7 +131,9 @@ impl Kernel {
 
 fn nodes(dir: &str, start: &str) -> BTreeSet<PathBuf> {
     let entries = std::fs::read_dir(dir).into_iter().flatten().flatten().map(|e| e.path());
-    entries.filter(|p| p.file_name().is_some_and(|n| n.to_string_lossy().starts_with(start))).collect()
+    entries
+        .filter(|p| p.file_name().is_some_and(|n| n.to_string_lossy().starts_with(start)))
+        .collect()
 }
 
 /// The evdev node of the pen, which the driver names.
@@ -141,7 +147,8 @@ fn pen_node() -> Option<PathBuf> {
 
 fn found() -> (Found, Identity) {
     let catalogue = Catalogue::builtin().expect("the built-in models");
-    let who = Identity { vid: 0x056a, pid: 0xb8, descriptor: DESCRIPTOR.to_vec(), ..Identity::default() };
+    let who =
+        Identity { vid: 0x056a, pid: 0xb8, descriptor: DESCRIPTOR.to_vec(), ..Identity::default() };
     match catalogue.identify(&who) {
         Identification::Identified(found) if found.tablet.name == MODEL => (found, who),
         other => panic!("{other:?}"),
@@ -151,7 +158,8 @@ fn found() -> (Found, Identity) {
 /// Reports of the journal's strokes, as the tablet would send them.
 fn reports(found: &Found) -> Vec<Vec<u8>> {
     let (journal, a) = (journal(), found.tablet.area);
-    let script = journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
+    let script =
+        journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
     let (mut tablet, mut end) =
         Tablet::new(found, script, TabletConfig { keeps: 100_000, ..TabletConfig::default() });
     tablet.advance(journal.pen.end_us());
@@ -254,26 +262,34 @@ fn run() -> io::Result<bool> {
         pipe.read_to_string(&mut out)?;
     }
     println!("   {}", out.trim());
-    let recording =
-        raw::parse(&std::fs::read_to_string("/tmp/vm.rec")?).map_err(|e| io::Error::other(e.what))?;
-    let of =
-        |n: usize| recording.reports.iter().filter(|r| r.interface == n).map(|r| r.bytes.clone()).collect();
+    let recording = raw::parse(&std::fs::read_to_string("/tmp/vm.rec")?)
+        .map_err(|e| io::Error::other(e.what))?;
+    let of = |n: usize| {
+        recording.reports.iter().filter(|r| r.interface == n).map(|r| r.bytes.clone()).collect()
+    };
     let first: Vec<Vec<u8>> = of(0);
     let again: Vec<Vec<u8>> = of(1);
     let same = first.len() > sent.len() && first[..sent.len()] == sent[..];
-    let what = format!("the daemon read {} reports through /dev/hidraw, byte for byte as sent", first.len());
+    let what = format!(
+        "the daemon read {} reports through /dev/hidraw, byte for byte as sent",
+        first.len()
+    );
     good &= tell(same, &what);
     let tail = again.len().min(sent.len());
-    let what =
-        format!("after the replug, with nothing asked of anyone, {} of {} more", again.len(), sent.len());
+    let what = format!(
+        "after the replug, with nothing asked of anyone, {} of {} more",
+        again.len(),
+        sent.len()
+    );
     good &= tell(
         recording.interfaces.len() == 2
             && tail * 10 > sent.len() * 9
             && again[..] == sent[sent.len() - tail..],
         &what,
     );
-    let contacts =
-        out.split_once("\"contacts\":").and_then(|(_, r)| r.split([',', '}']).next()?.parse::<u32>().ok());
+    let contacts = out
+        .split_once("\"contacts\":")
+        .and_then(|(_, r)| r.split([',', '}']).next()?.parse::<u32>().ok());
     good &= tell(
         contacts.is_some_and(|c| c > 1) && out.contains("\"lost_transitions\":0"),
         "contacts came, and no transition was lost",

@@ -1,5 +1,6 @@
-//! Serial pens: the same simulated pen twice, each on a pseudo-terminal of its own. The kernel's driver reads one (attached by
-//! `inputattach`), our adaptor the other; after every packet both must say the same.
+//! Serial pens: the same simulated pen twice, each on a pseudo-terminal of its own. The kernel's
+//! driver reads one (attached by `inputattach`), our adaptor the other; after every packet both
+//! must say the same.
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
@@ -30,7 +31,8 @@ pub fn compare(protocol: Protocol, flag: &str, levels: f32) -> io::Result<bool> 
     let mut theirs = SerialPen::new(journal.serial_pen.clone(), config)?;
     let mut ours = SerialPen::new(journal.serial_pen, config)?;
     let before = events();
-    let mut attached = Command::new("/bin/inputattach").args(["--always", flag, theirs.port()]).spawn()?;
+    let mut attached =
+        Command::new("/bin/inputattach").args(["--always", flag, theirs.port()]).spawn()?;
     let clock = Clock::manual();
     let (factory, mut samples) = queue::channel(1024);
     let config = serial::Config {
@@ -77,8 +79,9 @@ fn follow(
         clock.set_us(t);
         theirs.advance(t);
         for _ in 0..ours.advance(t) {
-            let sample =
-                samples.next_within(PATIENCE).ok_or_else(|| io::Error::other("a sample did not come"))?;
+            let sample = samples
+                .next_within(PATIENCE)
+                .ok_or_else(|| io::Error::other("a sample did not come"))?;
             if let Body::Pen(pen) = sample.body {
                 last = Some(pen);
             }
@@ -93,13 +96,15 @@ fn follow(
         placed += 1;
         touched += usize::from(p.tip);
         let pressure = (p.pressure.unwrap_or(0.0) * levels).round() as i32;
-        let same =
-            there && kernel.rubber == (p.tool == Tool::Eraser) && (kernel.pressure - pressure).abs() <= 1;
+        let same = there
+            && kernel.rubber == (p.tool == Tool::Eraser)
+            && (kernel.pressure - pressure).abs() <= 1;
         if !same && differ < 3 {
             println!("   at {t} us: kernel {kernel:?}, ours {p:?}");
         }
         differ += usize::from(!same);
-        worst = worst.max(i64::from(kernel.x - p.raw[0]).abs().max(i64::from(kernel.y - p.raw[1]).abs()));
+        worst = worst
+            .max(i64::from(kernel.x - p.raw[0]).abs().max(i64::from(kernel.y - p.raw[1]).abs()));
     }
     let what = format!(
         "{flag}: the kernel's driver agrees on {placed} placed packets ({touched} pressed): {differ} differ, x and y within {worst} counts"

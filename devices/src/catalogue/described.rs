@@ -6,7 +6,8 @@ use super::{Found, Identification, Identity, Params};
 use crate::hid::descriptor::{Bits, Descriptor, Kind, PenLayout};
 use crate::tablet::{Area, Family, Id, Pad, PenFacts, Tablet};
 
-/// Makers whose reports are UC-Logic's whatever their descriptors say: those label the second button an eraser.
+/// Makers whose reports are UC-Logic's whatever their descriptors say: those label the second
+/// button an eraser.
 pub(super) const UC_LOGIC: [u16; 3] = [0x5543, 0x256c, 0x28bd];
 
 /// The last resort.
@@ -52,7 +53,14 @@ fn by_params(who: &Identity, d: &Descriptor, params: Params) -> Found {
     Found { described: false, ..found(who, d, area, pen, family, "by its parameter string") }
 }
 
-fn found(who: &Identity, d: &Descriptor, area: Area, pen: PenFacts, parser: Family, note: &str) -> Found {
+fn found(
+    who: &Identity,
+    d: &Descriptor,
+    area: Area,
+    pen: PenFacts,
+    parser: Family,
+    note: &str,
+) -> Found {
     let name = if who.name.is_empty() {
         format!("digitiser {:04x}:{:04x}", who.vid, who.pid)
     } else {
@@ -71,8 +79,14 @@ fn found(who: &Identity, d: &Descriptor, area: Area, pen: PenFacts, parser: Fami
         init_strings: Vec::new(),
         quirks: Vec::new(),
     };
-    let tablet =
-        Tablet { name, source: "the device itself".to_owned(), area, pen, pad: Pad::default(), id: vec![id] };
+    let tablet = Tablet {
+        name,
+        source: "the device itself".to_owned(),
+        area,
+        pen,
+        pad: Pad::default(),
+        id: vec![id],
+    };
     Found { tablet: Arc::new(tablet), at: 0, note: Some(note.to_owned()), described: true }
 }
 
@@ -92,15 +106,19 @@ impl Scale {
             return None;
         }
         // Without a physical size, 5080 lines an inch is the commonest resolution by far.
-        let guess = |b: &Bits| ((f64::from(b.max) - f64::from(b.min)) * 25.4 / 5080.0).clamp(5.0, 5000.0);
+        let guess =
+            |b: &Bits| ((f64::from(b.max) - f64::from(b.min)) * 25.4 / 5080.0).clamp(5.0, 5000.0);
         let (width_mm, height_mm) = stated_size(x, y).unwrap_or_else(|| (guess(x), guess(y)));
-        let span = |b: &Option<Bits>| b.as_ref().map_or(0, |b| b.max.saturating_sub(b.min).max(0) as u32);
-        let area = Area { width_mm, height_mm, min_x: x.min, min_y: y.min, max_x: x.max, max_y: y.max };
+        let span =
+            |b: &Option<Bits>| b.as_ref().map_or(0, |b| b.max.saturating_sub(b.min).max(0) as u32);
+        let area =
+            Area { width_mm, height_mm, min_x: x.min, min_y: y.min, max_x: x.max, max_y: y.max };
         Some(Scale { area, max_pressure: span(&pen.pressure), max_distance: span(&pen.distance) })
     }
 }
 
-/// The physical size that the descriptor states. Huion's default form states 2.048 inches square for every tablet: not believed.
+/// The physical size that the descriptor states. Huion's default form states 2.048 inches square
+/// for every tablet: not believed.
 fn stated_size(x: &Bits, y: &Bits) -> Option<(f64, f64)> {
     let size = x.span_mm().zip(y.span_mm())?;
     (x.physical != Some((0, 0x800)) || y.physical != x.physical).then_some(size)

@@ -18,11 +18,16 @@ impl Catalogue {
         let mut best: Vec<Found> = Vec::new();
         let mut most = i32::MIN;
         for (i, tablet) in self.tablets.iter().enumerate() {
-            for (at, id) in
-                tablet.id.iter().enumerate().filter(|(_, id)| id.vid == who.vid && id.pid == who.pid)
+            for (at, id) in tablet
+                .id
+                .iter()
+                .enumerate()
+                .filter(|(_, id)| id.vid == who.vid && id.pid == who.pid)
             {
                 let own = if i < self.added { STRING * 10 } else { 0 };
-                let Some(score) = standing(tablet, id, who, descriptor.as_ref().ok()) else { continue };
+                let Some(score) = standing(tablet, id, who, descriptor.as_ref().ok()) else {
+                    continue;
+                };
                 let score = score + own;
                 if score > most {
                     best.clear();
@@ -69,7 +74,9 @@ fn standing(tablet: &Tablet, id: &Id, who: &Identity, d: Option<&Descriptor>) ->
         return None;
     }
     if n == 0
-        && d.is_some_and(|d| d.kinds.contains(&crate::hid::descriptor::Kind::Touch) && d.pens.is_empty())
+        && d.is_some_and(|d| {
+            d.kinds.contains(&crate::hid::descriptor::Kind::Touch) && d.pens.is_empty()
+        })
     {
         return None;
     }
@@ -90,7 +97,8 @@ fn standing(tablet: &Tablet, id: &Id, who: &Identity, d: Option<&Descriptor>) ->
     if let Some(p) = Params::of(who) {
         let same = tablet.area.max_x == p.max_x as i32 && tablet.area.max_y == p.max_y as i32;
         let near = |a: i32, b: u32| (f64::from(a) - f64::from(b)).abs() <= 0.01 * f64::from(a);
-        score += match (same, near(tablet.area.max_x, p.max_x) && near(tablet.area.max_y, p.max_y)) {
+        score += match (same, near(tablet.area.max_x, p.max_x) && near(tablet.area.max_y, p.max_y))
+        {
             (true, _) if tablet.pen.max_pressure == p.max_pressure => PARAMS,
             (true, _) => PARAMS / 2,
             (_, true) => 0,
@@ -102,8 +110,9 @@ fn standing(tablet: &Tablet, id: &Id, who: &Identity, d: Option<&Descriptor>) ->
 
 /// The device's name holds the model's: its last word, letters and digits only.
 fn named(model: &str, device: &str) -> bool {
-    let plain =
-        |s: &str| s.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let plain = |s: &str| {
+        s.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase()
+    };
     let without_maker = model.split_once(' ').map_or(model, |(_, rest)| rest);
     let (full, device) = (plain(without_maker), plain(device));
     full.len() >= 3 && full.chars().any(|c| c.is_ascii_digit()) && device.ends_with(&full)

@@ -1,8 +1,8 @@
 //! Every known model, and which of them a device is.
 //!
-//! One id often stands for many models (256c:006d for 59). They are told apart by what can be read: report lengths, USB
-//! strings, the parameters that some of those strings hold, names. What remains ambiguous is said to be; nothing is guessed
-//! in silence.
+//! One id often stands for many models (256c:006d for 59). They are told apart by what can be read:
+//! report lengths, USB strings, the parameters that some of those strings hold, names. What remains
+//! ambiguous is said to be; nothing is guessed in silence.
 
 mod described;
 mod identify;
@@ -26,7 +26,8 @@ pub(crate) fn by_descriptor(vid: u16, pid: u16, descriptor: &[u8]) -> Option<Fou
     }
 }
 
-/// What can be read of one interface of a device before it speaks, and for recordings what it then sent.
+/// What can be read of one interface of a device before it speaks, and for recordings what it then
+/// sent.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Identity {
     pub vid: u16,
@@ -66,7 +67,8 @@ impl Found {
         &self.tablet.id[self.at]
     }
 
-    /// A described interface of a device whose model is known by another of its interfaces: that model's size and name.
+    /// A described interface of a device whose model is known by another of its interfaces: that
+    /// model's size and name.
     pub fn sized_like(&mut self, known: &Found) {
         let tablet = Arc::make_mut(&mut self.tablet);
         tablet.name.clone_from(&known.tablet.name);
@@ -107,7 +109,8 @@ impl Catalogue {
         Ok(all)
     }
 
-    /// Adds every `.toml` of a folder; they come before the built-in ones, so that a user's facts win.
+    /// Adds every `.toml` of a folder; they come before the built-in ones, so that a user's facts
+    /// win.
     pub fn with_dir(mut self, dir: &Path) -> Result<Catalogue, TabletError> {
         let fail = |what: String| TabletError { file: dir.display().to_string(), what };
         let mut paths: Vec<_> = std::fs::read_dir(dir)

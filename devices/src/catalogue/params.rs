@@ -1,4 +1,5 @@
-//! The parameters that UC-Logic's tablets keep in USB strings 200 and 100. Layout: Linux `hid-uclogic-params.c`.
+//! The parameters that UC-Logic's tablets keep in USB strings 200 and 100. Layout: Linux
+//! `hid-uclogic-params.c`.
 
 use super::Identity;
 
@@ -12,17 +13,26 @@ pub struct Params {
 }
 
 impl Params {
-    /// From string 200 where there is one, else 100. `None` where they are absent, too short or say nothing.
+    /// From string 200 where there is one, else 100. `None` where they are absent, too short or say
+    /// nothing.
     pub fn of(who: &Identity) -> Option<Params> {
-        let raw = |index: u8| who.strings.iter().find(|(i, _)| *i == index).map(|(_, b)| b.as_slice());
+        let raw =
+            |index: u8| who.strings.iter().find(|(i, _)| *i == index).map(|(_, b)| b.as_slice());
         raw(200).and_then(Params::long).or_else(|| raw(100).and_then(Params::short))
     }
 
     fn long(b: &[u8]) -> Option<Params> {
         (b.len() >= 12)
             .then(|| {
-                let u24 = |i: usize| u32::from(b[i]) | u32::from(b[i + 1]) << 8 | u32::from(b[i + 2]) << 16;
-                Params { max_x: u24(2), max_y: u24(5), max_pressure: u16(b, 8), resolution: u16(b, 10) }
+                let u24 = |i: usize| {
+                    u32::from(b[i]) | u32::from(b[i + 1]) << 8 | u32::from(b[i + 2]) << 16
+                };
+                Params {
+                    max_x: u24(2),
+                    max_y: u24(5),
+                    max_pressure: u16(b, 8),
+                    resolution: u16(b, 10),
+                }
             })?
             .checked()
     }
@@ -65,9 +75,14 @@ mod tests {
 
     #[test]
     fn both_strings_are_read_and_text_is_not() {
-        let who = |index, b: &[u8]| Identity { strings: vec![(index, b.to_vec())], ..Identity::default() };
-        let long =
-            [0x13, 3, 0x70, 0xc6, 0, 6, 0x7c, 0, 0xff, 0x1f, 0xd8, 0x13, 3, 0x0d, 0x10, 1, 4, 0x3c, 0x3e];
+        let who = |index, b: &[u8]| Identity {
+            strings: vec![(index, b.to_vec())],
+            ..Identity::default()
+        };
+        let long = [
+            0x13, 3, 0x70, 0xc6, 0, 6, 0x7c, 0, 0xff, 0x1f, 0xd8, 0x13, 3, 0x0d, 0x10, 1, 4, 0x3c,
+            0x3e,
+        ];
         let p = Params::of(&who(200, &long)).unwrap();
         assert_eq!((p.max_x, p.max_y, p.max_pressure, p.resolution), (50_800, 31_750, 8191, 5080));
         assert_eq!(p.size_mm().0.round(), 254.0);

@@ -20,7 +20,8 @@ pub struct Node {
     /// Empty where the device has none.
     pub serial: String,
     pub who: Identity,
-    /// It may hold a pen: a digitiser, a maker's own usage, or an absolute pointer. The others are not even opened.
+    /// It may hold a pen: a digitiser, a maker's own usage, or an absolute pointer. The others are
+    /// not even opened.
     pub may_be_pen: bool,
 }
 
@@ -84,8 +85,8 @@ impl Bus for HidApiBus {
     }
 
     fn open(&mut self, node: &Node) -> io::Result<Box<dyn Transport>> {
-        let path =
-            CString::new(node.path.clone()).map_err(|_| io::Error::from(io::ErrorKind::InvalidInput))?;
+        let path = CString::new(node.path.clone())
+            .map_err(|_| io::Error::from(io::ErrorKind::InvalidInput))?;
         let device = self.api.open_path(&path).map_err(to_io)?;
         Ok(Box::new(HidApiTransport { device }))
     }

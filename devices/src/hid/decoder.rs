@@ -1,5 +1,5 @@
-//! One interface of one device: parser, its memory, the pen's and the pad's state. The same object reads live, recorded and
-//! simulated bytes.
+//! One interface of one device: parser, its memory, the pen's and the pad's state. The same object
+//! reads live, recorded and simulated bytes.
 
 use glam::Vec2;
 
@@ -35,7 +35,8 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// `descriptor`: of the interface; empty where it is unknown. Only the digitiser cannot do without it.
+    /// `descriptor`: of the interface; empty where it is unknown. Only the digitiser cannot do
+    /// without it.
     pub fn new(found: &Found, descriptor: &[u8], device: DeviceId) -> Decoder {
         let (tablet, id) = (&found.tablet, found.id());
         let engine = Engine::new(tablet, id, descriptor);
@@ -57,13 +58,22 @@ impl Decoder {
             let d = Descriptor::parse(descriptor).unwrap_or_default();
             // Counts are the report's own; the size is the model's, where the model is known.
             let size = Vec2::new(area.width_mm as f32, area.height_mm as f32);
-            scales = d.pens.iter().filter_map(|p| Some((p.report_id, scale_of(p, size)?))).collect();
+            scales =
+                d.pens.iter().filter_map(|p| Some((p.report_id, scale_of(p, size)?))).collect();
         } else if let Some(mut other) = by_descriptor(id.vid, id.pid, descriptor) {
             other.sized_like(found);
             plain = Some(Box::new(Decoder::new(&other, descriptor, device)));
         }
         let pad = PadState::new(device);
-        Decoder { engine, pen, pad, skip: usize::from(id.skip), scales, plain, counts: Counts::default() }
+        Decoder {
+            engine,
+            pen,
+            pad,
+            skip: usize::from(id.skip),
+            scales,
+            plain,
+            counts: Counts::default(),
+        }
     }
 
     /// One report, its id first where it has one.
@@ -92,7 +102,8 @@ impl Decoder {
         }
     }
 
-    /// The feature report that names the pen that is near, in families whose reports name it only as it enters.
+    /// The feature report that names the pen that is near, in families whose reports name it only
+    /// as it enters.
     pub fn names_tool(&self) -> Option<u8> {
         self.engine.names_tool()
     }

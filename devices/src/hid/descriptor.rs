@@ -1,9 +1,9 @@
 //! Report descriptors: what an interface is, and where its pen fields lie.
 //!
-//! Parsing is by `hidreport`, with the mends that real descriptors need: stray zero bytes at the end are stripped, absurd
-//! sizes are refused before anything is allocated for them, and bits are read here, so that a report shorter than its
-//! descriptor says is survived. Usages: HID Usage Tables 1.4, page 0x0D; Wacom's own page 0xFF0D mirrors it (Linux
-//! `wacom_wac.h`).
+//! Parsing is by `hidreport`, with the mends that real descriptors need: stray zero bytes at the
+//! end are stripped, absurd sizes are refused before anything is allocated for them, and bits are
+//! read here, so that a report shorter than its descriptor says is survived. Usages: HID Usage
+//! Tables 1.4, page 0x0D; Wacom's own page 0xFF0D mirrors it (Linux `wacom_wac.h`).
 
 use hidreport::{Field, FieldAttributes, Report as _, ReportDescriptor, VariableField};
 
@@ -153,7 +153,8 @@ impl Descriptor {
     }
 }
 
-/// The library's reading. It panics on some nonsense; to us that is one more descriptor that cannot be read.
+/// The library's reading. It panics on some nonsense; to us that is one more descriptor that cannot
+/// be read.
 fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
     match std::panic::catch_unwind(|| ReportDescriptor::try_from(bytes)) {
         Ok(read) => read.map_err(|e| DescriptorError::Bad(e.to_string())),
@@ -161,9 +162,10 @@ fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
     }
 }
 
-/// Refuses sizes that would make a reader allocate without bound. Writes out each usage with its page, and what a pop restores.
-/// Rewrites maxima that were written in too few bytes: after a minimum that is not negative a maximum is unsigned, whatever its
-/// top bit (Linux reads it so). Items: HID 1.11 section 6.2.2.
+/// Refuses sizes that would make a reader allocate without bound. Writes out each usage with its
+/// page, and what a pop restores. Rewrites maxima that were written in too few bytes: after a
+/// minimum that is not negative a maximum is unsigned, whatever its top bit (Linux reads it so).
+/// Items: HID 1.11 section 6.2.2.
 fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     let mut out = Vec::with_capacity(bytes.len() + 16);
     let mut globals = Globals::default();
@@ -180,12 +182,14 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
             return Err(DescriptorError::Bad(format!("a long item at byte {at}")));
         }
         let n = [0, 1, 2, 4][usize::from(prefix & 3)];
-        let value =
-            (0..n).fold(0u64, |v, k| v | u64::from(bytes.get(i + 1 + k).copied().unwrap_or(0)) << (8 * k));
+        let value = (0..n).fold(0u64, |v, k| {
+            v | u64::from(bytes.get(i + 1 + k).copied().unwrap_or(0)) << (8 * k)
+        });
         i = (i + 1 + n).min(bytes.len());
         let tag = prefix & 0xfc;
         match tag {
-            // A usage belongs to the page before it, also when the page changes before the field it names.
+            // A usage belongs to the page before it, also when the page changes before the field it
+            // names.
             0x08 if (1..=2).contains(&n) => item(&mut out, tag, globals.of(0x04) << 16 | value),
             0x24 | 0x44 if n < 4 && globals.of(tag - 0x10) & NEGATIVE == 0 => {
                 globals.set(tag, value);
@@ -218,8 +222,8 @@ fn mended(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
                 // A collection has usages, and no bits.
                 let field = tag != 0xa0;
                 total = total.saturating_add(if field { size.saturating_mul(count) } else { 0 });
-                let wide =
-                    field && (size > 4096 * 8 || count > MAX_REPORT_BITS) || total > 8 * MAX_REPORT_BITS;
+                let wide = field && (size > 4096 * 8 || count > MAX_REPORT_BITS)
+                    || total > 8 * MAX_REPORT_BITS;
                 // A range of usages is listed one by one.
                 listed += high.saturating_sub(low);
                 if wide || listed > MAX_USAGES {
@@ -283,7 +287,8 @@ fn kind_of(field: &Field) -> Option<Kind> {
                 _ => None,
             };
             kind = match (kind, this) {
-                // A finger inside a digitiser is a finger; a stylus inside a touch screen is a stylus.
+                // A finger inside a digitiser is a finger; a stylus inside a touch screen is a
+                // stylus.
                 (_, Some(Kind::Touch)) => Some(Kind::Touch),
                 (Some(Kind::Touch), Some(Kind::Pen)) if id == 0x20 => Some(Kind::Pen),
                 (None, this) => this,
@@ -337,8 +342,8 @@ impl Bits {
         self.read(report).map(|v| v != 0)
     }
 
-    /// Length of the logical range in mm, where the unit is a length. A wrong power in the unit code (`0x33` is a common
-    /// slip for inches) is read as length.
+    /// Length of the logical range in mm, where the unit is a length. A wrong power in the unit
+    /// code (`0x33` is a common slip for inches) is read as length.
     pub fn span_mm(&self) -> Option<f64> {
         let (lo, hi) = self.physical?;
         let unit = match self.unit & 0xf {
@@ -353,12 +358,13 @@ impl Bits {
         Some(mm).filter(|mm| (5.0..5000.0).contains(mm))
     }
 
-    /// The value in degrees: by the stated unit, else taken as degrees when the range fits them, else scaled to `full`.
+    /// The value in degrees: by the stated unit, else taken as degrees when the range fits them,
+    /// else scaled to `full`.
     pub fn degrees(&self, v: i32, full: f64) -> f64 {
         let span = (f64::from(self.max) - f64::from(self.min)).max(1.0);
         if let Some((lo, hi)) = self.physical {
-            let p =
-                f64::from(lo) + (f64::from(v) - f64::from(self.min)) * (f64::from(hi) - f64::from(lo)) / span;
+            let p = f64::from(lo)
+                + (f64::from(v) - f64::from(self.min)) * (f64::from(hi) - f64::from(lo)) / span;
             let p = p * 10f64.powi(self.exponent);
             match self.unit & 0xff {
                 0x14 => return p,
@@ -404,7 +410,8 @@ impl PenLayout {
     }
 }
 
-/// Old tablets describe their pen as a mouse with absolute axes and a pressure or an in-range bit: button 1 is the tip.
+/// Old tablets describe their pen as a mouse with absolute axes and a pressure or an in-range bit:
+/// button 1 is the tip.
 #[derive(Debug, Default)]
 struct Placed(PenLayout);
 
@@ -430,19 +437,26 @@ impl Placed {
 mod tests {
     use super::*;
 
-    /// Nine bytes that name three thousand million usages: a reader that lists them needs gigabytes.
+    /// Nine bytes that name three thousand million usages: a reader that lists them needs
+    /// gigabytes.
     #[test]
     fn a_range_of_usages_without_end_is_refused_wherever_it_is_used() {
         for main in [0xa0u8, 0x80, 0x90, 0xb0] {
             let bytes = [0x1a, 0x20, 0xab, 0x2b, 0xab, 0xab, 0xab, 0xab, main];
-            assert_eq!(Descriptor::parse(&bytes).err(), Some(DescriptorError::Absurd(8)), "{main:#x}");
+            assert_eq!(
+                Descriptor::parse(&bytes).err(),
+                Some(DescriptorError::Absurd(8)),
+                "{main:#x}"
+            );
         }
         // What a collection or its end has used up counts no more.
         let whole = [0x05, 0x0d, 0x1a, 0, 0, 0x2a, 0xff, 0xff];
         let kept = [&whole[..], &[0xa1, 0x01, 0xc0]].concat().repeat(3);
         assert!(Descriptor::parse(&kept).is_ok());
         assert_eq!(
-            Descriptor::parse(&kept.repeat(2)).err().map(|e| matches!(e, DescriptorError::Absurd(_))),
+            Descriptor::parse(&kept.repeat(2))
+                .err()
+                .map(|e| matches!(e, DescriptorError::Absurd(_))),
             Some(true)
         );
     }

@@ -4,8 +4,8 @@ use super::descriptor::Descriptor;
 use super::report::{PadReport, Parsed};
 use super::uclogic::Packing;
 use super::{
-    digitiser, makers, uclogic, wacom_bamboo, wacom_display, wacom_graphire, wacom_intuos, wacom_pad,
-    wacom_pro,
+    digitiser, makers, uclogic, wacom_bamboo, wacom_display, wacom_graphire, wacom_intuos,
+    wacom_pad, wacom_pro,
 };
 use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 
@@ -43,14 +43,18 @@ impl Engine {
         let described = Descriptor::parse(descriptor).unwrap_or_default();
         let uclogic = |packing| {
             let range = described.pens.iter().find_map(|p| p.in_range.as_ref());
-            let range_bit = range.and_then(|b| b.start.checked_sub(8)).filter(|b| *b < 8).map(|b| b as u8);
-            let untilted = described.pens.iter().filter(|p| p.tilt[0].is_none()).filter_map(|p| p.report_id);
+            let range_bit =
+                range.and_then(|b| b.start.checked_sub(8)).filter(|b| *b < 8).map(|b| b as u8);
+            let untilted =
+                described.pens.iter().filter(|p| p.tilt[0].is_none()).filter_map(|p| p.report_id);
             let untilted = untilted.filter(|id| *id < 32).fold(0, |bits, id| bits | 1 << id);
-            let traits = uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt), untilted };
+            let traits =
+                uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt), untilted };
             Engine::UcLogic(traits, uclogic::Memory::default())
         };
         let maker = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Maker { parse, leaves };
-        let display = |kind| Engine::Display(kind, tablet.pen.max_pressure, wacom_display::Memory::default());
+        let display =
+            |kind| Engine::Display(kind, tablet.pen.max_pressure, wacom_display::Memory::default());
         match id.parser {
             Family::WacomIntuosV1 => Engine::Intuos(
                 wacom_intuos::Traits {
@@ -104,17 +108,20 @@ impl Engine {
     /// What a report says of the pen, and of the pad where they share it.
     pub fn parse(&mut self, b: &[u8]) -> (Parsed, Option<PadReport>, Option<PadReport>) {
         match self {
-            Engine::Intuos(traits, memory, pad) => match pad.and_then(|layout| wacom_pad::parse(b, layout)) {
-                Some([first, second]) => (Parsed::Nothing, Some(first), Some(second)),
-                None => (wacom_intuos::parse(b, traits, memory), None, None),
-            },
+            Engine::Intuos(traits, memory, pad) => {
+                match pad.and_then(|layout| wacom_pad::parse(b, layout)) {
+                    Some([first, second]) => (Parsed::Nothing, Some(first), Some(second)),
+                    None => (wacom_intuos::parse(b, traits, memory), None, None),
+                }
+            }
             Engine::Simple { max_distance, memory } => {
                 (wacom_bamboo::parse(b, *max_distance, memory), None, None)
             }
             Engine::BambooPad => (wacom_bamboo::bamboo_pad(b), None, None),
             Engine::Graphire(kind) => {
                 let parsed = wacom_graphire::parse(b, *kind);
-                let pad = if parsed == Parsed::Nothing { None } else { wacom_graphire::pad(b, *kind) };
+                let pad =
+                    if parsed == Parsed::Nothing { None } else { wacom_graphire::pad(b, *kind) };
                 (parsed, pad, None)
             }
             Engine::PenPartner { leaves } => {
@@ -122,7 +129,9 @@ impl Engine {
                 *leaves |= parsed == Parsed::Away;
                 (parsed, None, None)
             }
-            Engine::Display(kind, max, memory) => (wacom_display::parse(b, *kind, *max, memory), None, None),
+            Engine::Display(kind, max, memory) => {
+                (wacom_display::parse(b, *kind, *max, memory), None, None)
+            }
             Engine::Pro(kind) => (wacom_pro::parse(b, *kind), None, None),
             Engine::UcLogic(traits, memory) => (uclogic::parse(b, traits, memory), None, None),
             Engine::Maker { parse, .. } => (parse(b), None, None),
@@ -138,7 +147,8 @@ impl Engine {
         }
     }
 
-    /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says, in the same layout.
+    /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says,
+    /// in the same layout.
     pub fn follows_descriptor(&self) -> bool {
         matches!(self, Engine::UcLogic(..))
     }

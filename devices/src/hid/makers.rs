@@ -1,4 +1,5 @@
-//! Smaller families, one function each. Layouts from OpenTabletDriver (facts) unless a line says otherwise.
+//! Smaller families, one function each. Layouts from OpenTabletDriver (facts) unless a line says
+//! otherwise.
 
 use super::report::{PadReport, Parsed, PenReport, be16_at, byte, s8_at, u16_at, u24_at};
 use crate::Tool;

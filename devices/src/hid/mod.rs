@@ -4,8 +4,9 @@
 //! transport (hidapi, a recording, a simulator) -> bytes -> parser (pure, one file a family) -> Parsed -> PenState -> Sample
 //! ```
 //!
-//! A parser sees one report and a few bytes of memory; it never indexes by a declared size. A [`decoder::Decoder`] binds a
-//! parser to a model's facts and to a [`crate::pen_state::PenState`]; live reading, recordings and tests all use it.
+//! A parser sees one report and a few bytes of memory; it never indexes by a declared size. A
+//! [`decoder::Decoder`] binds a parser to a model's facts and to a [`crate::pen_state::PenState`];
+//! live reading, recordings and tests all use it.
 
 pub mod bus;
 pub mod decoder;

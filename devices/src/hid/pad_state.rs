@@ -3,7 +3,8 @@
 use super::report::PadReport;
 use crate::sample::{Body, DeviceId, Pad, Sample};
 
-/// One pad on one device. A sample is made only when something changed: most reports repeat the last.
+/// One pad on one device. A sample is made only when something changed: most reports repeat the
+/// last.
 #[derive(Debug, Clone)]
 pub struct PadState {
     device: DeviceId,

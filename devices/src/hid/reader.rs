@@ -1,5 +1,5 @@
-//! A dedicated thread that reads one interface. The kernel keeps the oldest 63 reports of a stalled reader and drops the
-//! newest, a pen-up among them: so nothing else is done here, ever.
+//! A dedicated thread that reads one interface. The kernel keeps the oldest 63 reports of a stalled
+//! reader and drops the newest, a pen-up among them: so nothing else is done here, ever.
 
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,7 +15,8 @@ use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// How long one read waits: so often is silence looked at, and what the channel did not take offered again.
+/// How long one read waits: so often is silence looked at, and what the channel did not take
+/// offered again.
 const READ_MS: i32 = 10;
 /// Longest report; hidraw's own limit is 4096.
 const MAX_REPORT: usize = 4096;
@@ -131,7 +132,8 @@ impl Reader {
             shared.to_channel.record(us);
         }
         let status = &mut shared.status;
-        (status.reports, status.broken, status.ignored) = (counts.reports, counts.broken, counts.ignored);
+        (status.reports, status.broken, status.ignored) =
+            (counts.reports, counts.broken, counts.ignored);
         status.samples += n;
     }
 }

@@ -1,5 +1,6 @@
-//! What a family's parser makes of one report: facts in device counts, before any judgement. Judgement (contact, proximity,
-//! stuck buttons, spikes) belongs to [`crate::pen_state`], so that every family is judged alike.
+//! What a family's parser makes of one report: facts in device counts, before any judgement.
+//! Judgement (contact, proximity, stuck buttons, spikes) belongs to [`crate::pen_state`], so that
+//! every family is judged alike.
 
 use crate::Tool;
 
@@ -47,7 +48,8 @@ pub struct PadReport {
     pub strip: Option<(u8, Option<f32>)>,
 }
 
-/// Little-endian 16 bits at `i`; 0 past the end, because real reports contradict their declared size.
+/// Little-endian 16 bits at `i`; 0 past the end, because real reports contradict their declared
+/// size.
 pub fn u16_at(b: &[u8], i: usize) -> u32 {
     u32::from(byte(b, i)) | u32::from(byte(b, i + 1)) << 8
 }

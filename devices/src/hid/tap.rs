@@ -1,4 +1,5 @@
-//! Copies what is read from a bus, byte for byte, without standing in its way: how recordings are made of the live path.
+//! Copies what is read from a bus, byte for byte, without standing in its way: how recordings are
+//! made of the live path.
 
 use std::io;
 
@@ -25,7 +26,8 @@ pub enum Tapped {
     },
 }
 
-/// A bus whose every report is also sent to `out`. When nobody takes them they are dropped: reading comes first.
+/// A bus whose every report is also sent to `out`. When nobody takes them they are dropped: reading
+/// comes first.
 #[derive(Debug)]
 pub struct TapBus<B> {
     pub bus: B,
@@ -71,8 +73,11 @@ impl Transport for Tap {
         let n = self.inner.read(buf, timeout_ms)?;
         if n > 0 {
             let bytes = buf[..n.min(buf.len())].to_vec();
-            let _ =
-                self.out.try_send(Tapped::Report { number: self.number, t_us: self.clock.now_us(), bytes });
+            let _ = self.out.try_send(Tapped::Report {
+                number: self.number,
+                t_us: self.clock.now_us(),
+                bytes,
+            });
         }
         Ok(n)
     }

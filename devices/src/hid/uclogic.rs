@@ -1,5 +1,6 @@
-//! UC-Logic and its many names: XP-Pen, UGEE, Huion, Gaomon, Parblo, Artisul, Yiynova. One layout, 8 to 14 bytes; what
-//! differs is which bit says "in range", and how pressure and high coordinate bits are packed.
+//! UC-Logic and its many names: XP-Pen, UGEE, Huion, Gaomon, Parblo, Artisul, Yiynova. One layout,
+//! 8 to 14 bytes; what differs is which bit says "in range", and how pressure and high coordinate
+//! bits are packed.
 //!
 //! | report id | in range | out |
 //! |---|---|---|
@@ -10,8 +11,9 @@
 //! | 07 once its keys are switched on (UC-Logic v1) | `80` | `C0` |
 //! | 09 of a plain mouse form | `80` or none | `00` or silence |
 //!
-//! The last three share ids, so the bit is learned: a pressed tip proves that its report's bits mean "in range". Sources: Linux
-//! `hid-uclogic-params.c`, OpenTabletDriver, and the real recordings of all of these.
+//! The last three share ids, so the bit is learned: a pressed tip proves that its report's bits
+//! mean "in range". Sources: Linux `hid-uclogic-params.c`, OpenTabletDriver, and the real
+//! recordings of all of these.
 
 use super::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
 use crate::Tool;
@@ -93,7 +95,10 @@ fn in_range(id: u8, flags: u8, pen: &PenReport, traits: &Traits, memory: &mut Me
             _ => !memory.ranged,
         },
         0x80 => {
-            let moved = memory.last.replace(pen.pos.unwrap_or_default()).is_some_and(|p| Some(p) != pen.pos);
+            let moved = memory
+                .last
+                .replace(pen.pos.unwrap_or_default())
+                .is_some_and(|p| Some(p) != pen.pos);
             let plain = memory.plain || matches!(traits.range_bit, Some(5 | 6));
             match id {
                 0x08 => true,
@@ -107,7 +112,8 @@ fn in_range(id: u8, flags: u8, pen: &PenReport, traits: &Traits, memory: &mut Me
         // C0
         _ => {
             memory.last = None;
-            let out = memory.classic || memory.inverted || traits.range_bit == Some(5) || id == 0x02;
+            let out =
+                memory.classic || memory.inverted || traits.range_bit == Some(5) || id == 0x02;
             memory.plain |= pressed;
             id == 0x0a || pressed || !out
         }
@@ -206,7 +212,9 @@ fn pad(b: &[u8], memory: &mut Memory) -> Parsed {
             Parsed::Pad(PadReport { turned: Some((b[3].min(1), step)), ..none })
         }
         (_, 0xf2) => Parsed::Nothing,
-        (0x02, _) => Parsed::Pad(PadReport { keys: Some(u16_at(b, 2) | u32::from(b[4]) << 16), ..none }),
+        (0x02, _) => {
+            Parsed::Pad(PadReport { keys: Some(u16_at(b, 2) | u32::from(b[4]) << 16), ..none })
+        }
         (_, 0xe0) if byte(b, 3) == 0x10 => Parsed::Nothing,
         _ => Parsed::Pad(PadReport { keys: Some(u16_at(b, 4) | u32::from(b[6]) << 16), ..none }),
     }
@@ -228,17 +236,37 @@ mod tests {
     #[test]
     fn each_firmware_leaves_in_its_own_way() {
         let t = |range_bit| Traits { range_bit, ..Traits::default() };
-        assert_eq!(away(0x02, &[0xa0, 0xa1, 0xa0, 0xc0], t(None)), [false, false, false, true], "XP-Pen");
-        assert_eq!(away(0x07, &[0xa0, 0xa1, 0xc0], t(Some(5))), [false, false, true], "UC-Logic v1");
-        assert_eq!(away(0x07, &[0xc0, 0xc1, 0x80], t(Some(6))), [false, false, true], "plain digitiser");
-        assert_eq!(away(0x07, &[0x81, 0x80, 0xc0], t(Some(6))), [false, false, true], "v1 with keys on");
+        assert_eq!(
+            away(0x02, &[0xa0, 0xa1, 0xa0, 0xc0], t(None)),
+            [false, false, false, true],
+            "XP-Pen"
+        );
+        assert_eq!(
+            away(0x07, &[0xa0, 0xa1, 0xc0], t(Some(5))),
+            [false, false, true],
+            "UC-Logic v1"
+        );
+        assert_eq!(
+            away(0x07, &[0xc0, 0xc1, 0x80], t(Some(6))),
+            [false, false, true],
+            "plain digitiser"
+        );
+        assert_eq!(
+            away(0x07, &[0x81, 0x80, 0xc0], t(Some(6))),
+            [false, false, true],
+            "v1 with keys on"
+        );
         assert_eq!(
             away(0x0a, &[0xc0, 0xc1, 0x00, 0x80], t(Some(6))),
             [false, false, true, true],
             "Huion default"
         );
         assert_eq!(away(0x08, &[0x80, 0x81, 0x00], t(None)), [false, false, true], "Huion v2");
-        assert_eq!(away(0x09, &[0x00, 0x01, 0x00], t(None)), [false, false, false], "never says it");
+        assert_eq!(
+            away(0x09, &[0x00, 0x01, 0x00], t(None)),
+            [false, false, false],
+            "never says it"
+        );
         assert_eq!(away(0x09, &[0x80, 0x81, 0x00], t(Some(7))), [false, false, true], "bit 7");
     }
 

@@ -1,5 +1,6 @@
-//! Wacom's simple reports: Bamboo Pen, Pen & Touch, One by Wacom, Intuos (2013), and the Bamboo Pad. Layouts from Linux
-//! `wacom_wac.c` (`wacom_bpt_pen`); agrees with its decode of real recordings. Bamboo Pad: OpenTabletDriver.
+//! Wacom's simple reports: Bamboo Pen, Pen & Touch, One by Wacom, Intuos (2013), and the Bamboo
+//! Pad. Layouts from Linux `wacom_wac.c` (`wacom_bpt_pen`); agrees with its decode of real
+//! recordings. Bamboo Pad: OpenTabletDriver.
 
 use super::report::{Parsed, PenReport, byte, u16_at};
 use crate::Tool;
@@ -70,7 +71,9 @@ mod tests {
         let mut m = Memory::default();
         let sensed = [2, 0x80, 0, 0, 0, 0, 0, 0, 0];
         assert_eq!(parse(&sensed, 31, &mut m), Parsed::Nothing, "sensed, never placed");
-        let Parsed::Pen(p) = parse(&[2, 0xf1, 0x10, 0x27, 1, 0, 0xff, 3, 30], 31, &mut m) else { panic!() };
+        let Parsed::Pen(p) = parse(&[2, 0xf1, 0x10, 0x27, 1, 0, 0xff, 3, 30], 31, &mut m) else {
+            panic!()
+        };
         assert_eq!(
             (p.pos, p.pressure, p.distance, p.tip),
             (Some([10_000, 1]), Some(1023), Some(1), Some(true))

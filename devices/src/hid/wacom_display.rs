@@ -1,5 +1,6 @@
-//! Wacom's older pen displays and tablet PCs: PL, PTU, DTU, DTUS and the USB form of ISDV4. Layouts from Linux
-//! `wacom_wac.c` (`wacom_pl_irq`, `wacom_ptu_irq`, `wacom_dtu_irq`, `wacom_dtus_irq`, `wacom_tpc_pen`).
+//! Wacom's older pen displays and tablet PCs: PL, PTU, DTU, DTUS and the USB form of ISDV4. Layouts
+//! from Linux `wacom_wac.c` (`wacom_pl_irq`, `wacom_ptu_irq`, `wacom_dtu_irq`, `wacom_dtus_irq`,
+//! `wacom_tpc_pen`).
 
 use super::report::{PadReport, Parsed, PenReport, be16_at, byte, u16_at};
 use crate::Tool;
@@ -52,7 +53,8 @@ fn pl(b: &[u8], max_pressure: u32, memory: &mut Memory) -> Parsed {
         p = p << 1 | i32::from(b[4] >> 6 & 1);
     }
     p += (max_pressure as i32 + 1) / 2;
-    let axis = |hi: u8, mid: u8, low: u8| i32::from(hi & 3) << 14 | i32::from(mid) << 7 | i32::from(low);
+    let axis =
+        |hi: u8, mid: u8, low: u8| i32::from(hi & 3) << 14 | i32::from(mid) << 7 | i32::from(low);
     let second = tool == Tool::Pen && both;
     Parsed::Pen(PenReport {
         tool: Some(tool),

@@ -1,5 +1,6 @@
-//! Wacom Graphire, the first Bamboos, Volito, PenStation and PenPartner. Layouts from Linux `wacom_wac.c`
-//! (`wacom_graphire_irq`, `wacom_penpartner_irq`); agrees with its decode of real recordings.
+//! Wacom Graphire, the first Bamboos, Volito, PenStation and PenPartner. Layouts from Linux
+//! `wacom_wac.c` (`wacom_graphire_irq`, `wacom_penpartner_irq`); agrees with its decode of real
+//! recordings.
 
 use super::report::{PadReport, Parsed, PenReport, byte, u16_at};
 use crate::Tool;
@@ -77,7 +78,9 @@ pub fn pad(b: &[u8], kind: Kind) -> Option<PadReport> {
                 strip: Some((0, place.map(|p| p.min(1.0)))),
             })
         }
-        Kind::Bluetooth => Some(PadReport { keys: Some(u32::from(b[7] & 3)), ..PadReport::default() }),
+        Kind::Bluetooth => {
+            Some(PadReport { keys: Some(u32::from(b[7] & 3)), ..PadReport::default() })
+        }
     }
 }
 

@@ -1,5 +1,6 @@
-//! Wacom's 10-byte reports, ids 02 and 10: Intuos 1 to 5, Intuos Pro, most Cintiqs. Layout and tool numbers from Linux
-//! `wacom_wac.c` (`wacom_intuos_general`, `wacom_intuos_inout`); agrees with its decode of real recordings.
+//! Wacom's 10-byte reports, ids 02 and 10: Intuos 1 to 5, Intuos Pro, most Cintiqs. Layout and tool
+//! numbers from Linux `wacom_wac.c` (`wacom_intuos_general`, `wacom_intuos_inout`); agrees with its
+//! decode of real recordings.
 
 use super::report::{Parsed, PenReport, be16_at};
 use crate::Tool;
@@ -24,7 +25,8 @@ pub struct Traits {
 /// What must be remembered between reports: the tool is named once, when it enters.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Memory {
-    /// A first-generation Intuos follows two tools at once (bit 0 of byte 1 tells them apart); one is enough for a hand.
+    /// A first-generation Intuos follows two tools at once (bit 0 of byte 1 tells them apart); one
+    /// is enough for a hand.
     tool: Option<Tool>,
     reporting: bool,
     noise: bool,
@@ -32,7 +34,11 @@ pub struct Memory {
 
 pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
     if b.len() < 10 {
-        return if matches!(b.first(), Some(0x02 | 0x10)) { Parsed::Broken } else { Parsed::Nothing };
+        return if matches!(b.first(), Some(0x02 | 0x10)) {
+            Parsed::Broken
+        } else {
+            Parsed::Nothing
+        };
     }
     // 05, 06 and 08 answer the question which tool is near.
     if !matches!(b[0], 0x02 | 0x10 | 0x05 | 0x06 | 0x08) {
@@ -62,12 +68,13 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
         memory.reporting = false;
         return if known.is_some() { Parsed::Away } else { Parsed::Nothing };
     }
-    // A puck's packets are its own. A pen's are an eraser's too: without its name an eraser would draw, so the name is
-    // waited for; it comes with the next entry, or answers the reader's query.
+    // A puck's packets are its own. A pen's are an eraser's too: without its name an eraser would
+    // draw, so the name is waited for; it comes with the next entry, or answers the reader's query.
     let puck = matches!(flags >> 1 & 0x0f, 4 | 6 | 8).then_some(Tool::Mouse);
     let Some(tool) = memory.tool.or(puck) else { return Parsed::Nothing };
     memory.tool = Some(tool);
-    if matches!(b[0], 0x05 | 0x06 | 0x08) || memory.noise || traits.needs_ready && flags & 0x40 == 0 {
+    if matches!(b[0], 0x05 | 0x06 | 0x08) || memory.noise || traits.needs_ready && flags & 0x40 == 0
+    {
         return Parsed::Nothing;
     }
     memory.reporting = true;
@@ -149,14 +156,18 @@ mod tests {
 
     #[test]
     fn a_visit_names_its_tool_then_moves_then_leaves() {
-        let (traits, mut memory) = (Traits { max_distance: 63, ..Traits::default() }, Memory::default());
+        let (traits, mut memory) =
+            (Traits { max_distance: 63, ..Traits::default() }, Memory::default());
         assert_eq!(parse(&ENTER, &traits, &mut memory), Parsed::Nothing);
         let moved = [0x02, 0xe0, 0x10, 0x00, 0x08, 0x00, 0x01, 0xc0, 0x00, 0x2b];
         let Parsed::Pen(pen) = parse(&moved, &traits, &mut memory) else { panic!("no pen") };
         assert_eq!(pen.pos, Some([0x2001, 0x1001]));
         assert_eq!((pen.pressure, pen.distance), (Some(0b1110), Some(10)));
         assert_eq!(pen.tilt, Some([-64.0, -64.0]));
-        assert_eq!(parse(&[0x02, 0x80, 0, 0, 0, 0, 0, 0, 0, 0], &traits, &mut memory), Parsed::Away);
+        assert_eq!(
+            parse(&[0x02, 0x80, 0, 0, 0, 0, 0, 0, 0, 0], &traits, &mut memory),
+            Parsed::Away
+        );
         assert_eq!(
             parse(&moved, &traits, &mut memory),
             Parsed::Nothing,

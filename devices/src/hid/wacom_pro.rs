@@ -1,5 +1,6 @@
-//! Wacom's current pens: Intuos Pro 2 and Intuos 2018 (report 10, "V2"), Intuos Pro 2025 (report 1E, "V3"), Wacom One (report
-//! 1F). Layouts from OpenTabletDriver and from these tablets' own report descriptors.
+//! Wacom's current pens: Intuos Pro 2 and Intuos 2018 (report 10, "V2"), Intuos Pro 2025 (report
+//! 1E, "V3"), Wacom One (report 1F). Layouts from OpenTabletDriver and from these tablets' own
+//! report descriptors.
 
 use super::report::{Parsed, PenReport, byte, s8_at, s16_at, u16_at, u24_at};
 use crate::Tool;

@@ -1,7 +1,8 @@
 //! Finds tablets, sets them up, reads each on its own thread, and finds them again after a replug.
 //!
-//! There is no hot-plug call in hidapi: what is plugged in is looked at again when the device folder changed or a reader
-//! ended, every 200 ms at first and less often while nothing happens, two seconds at most.
+//! There is no hot-plug call in hidapi: what is plugged in is looked at again when the device
+//! folder changed or a reader ended, every 200 ms at first and less often while nothing happens,
+//! two seconds at most.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -155,7 +156,11 @@ pub fn start_on(
 ///
 /// # Errors
 /// The bus cannot be looked at.
-pub fn list(bus: &mut dyn Bus, config: &HidConfig, catalogue: &Catalogue) -> io::Result<Vec<NodeStatus>> {
+pub fn list(
+    bus: &mut dyn Bus,
+    config: &HidConfig,
+    catalogue: &Catalogue,
+) -> io::Result<Vec<NodeStatus>> {
     let nodes = bus.nodes()?;
     let one = |node: &Node| {
         let mut status = NodeStatus::of(node);
@@ -294,8 +299,9 @@ impl Watcher {
         (status.usable, status.device) = (true, Some(number.0));
         let mut sender = self.factory.sender();
         sender.calibrate(number, self.calibration(node, &found));
-        let handle = reader::start(device, &found, &who.descriptor, number, self.clock.clone(), sender)
-            .map_err(|e| Refusal::Later(e.to_string()))?;
+        let handle =
+            reader::start(device, &found, &who.descriptor, number, self.clock.clone(), sender)
+                .map_err(|e| Refusal::Later(e.to_string()))?;
         tracing::info!("{}: {}", node.path, found.in_words());
         Ok(Open { path: node.path.clone(), handle, status })
     }
@@ -305,7 +311,8 @@ impl Watcher {
         calibration::find(&self.config.calibration, [&own, &shared, found.tablet.name.as_str()])
     }
 
-    /// The id of an interface: the one it had, while nothing else holds it. Two tablets alike get one each.
+    /// The id of an interface: the one it had, while nothing else holds it. Two tablets alike get
+    /// one each.
     fn number(&mut self, node: &Node) -> DeviceId {
         let key = format!("{}:{:?}", key(node, true), node.who.interface);
         let held: Vec<u16> = self.with(|s| s.open.iter().filter_map(|o| o.status.device).collect());
@@ -352,13 +359,18 @@ fn choose(
         }
         (_, Some(name)) => match catalogue.named(name, who) {
             Some(found) => Ok((found, Vec::new())),
-            None => Err(format!("the configuration names it `{name}`, and no such model has these ids")),
+            None => {
+                Err(format!("the configuration names it `{name}`, and no such model has these ids"))
+            }
         },
         (Identification::Ambiguous(mut many), None) => {
             let mut names: Vec<String> = many.iter().map(|f| f.tablet.name.clone()).collect();
             names.sort();
             let mut found = many.swap_remove(0);
-            found.note = Some(format!("one of {} models alike: say which in the configuration", names.len()));
+            found.note = Some(format!(
+                "one of {} models alike: say which in the configuration",
+                names.len()
+            ));
             Ok((found, names))
         }
     }

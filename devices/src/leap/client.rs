@@ -16,12 +16,13 @@ use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{Body, DeviceId, Hands, Sample};
 
-/// How long one read waits. Short: between reads, samples that are kept back go out and the stop flag is looked at.
+/// How long one read waits. Short: between reads, samples that are kept back go out and the stop
+/// flag is looked at.
 const READ_SLICE: Duration = Duration::from_millis(10);
 /// For the connection, and for each read of the handshake.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Silence, on our clock, after which hands that were there are held to be gone. A tracker that works sends a frame at
-/// least each 52 ms (the longest gap in real recordings).
+/// Silence, on our clock, after which hands that were there are held to be gone. A tracker that
+/// works sends a frame at least each 52 ms (the longest gap in real recordings).
 const SILENCE_US: u64 = 300_000;
 /// Silence after which the server is asked whether it lives; after twice as much it is given up.
 const PING_US: u64 = 3_000_000;
@@ -42,8 +43,8 @@ pub struct Config {
     pub background: bool,
     /// The tracker is worn on the head and looks down the fingers.
     pub optimize_hmd: bool,
-    /// Frames a second beyond which motion is dropped and counted; transitions never are. The fastest tracker known
-    /// gives 200.
+    /// Frames a second beyond which motion is dropped and counted; transitions never are. The
+    /// fastest tracker known gives 200.
     pub max_rate: f32,
     /// Under which id its samples go out.
     #[serde(skip)]
@@ -243,7 +244,8 @@ impl Client {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).version
     }
 
-    /// One wish a message, each under 32 bytes: one known server copies them into a buffer of that size.
+    /// One wish a message, each under 32 bytes: one known server copies them into a buffer of that
+    /// size.
     fn greet(&self, socket: &mut WebSocket<TcpStream>) -> Result<(), WsError> {
         let (background, hmd) = (self.config.background, self.config.optimize_hmd);
         for wish in [
@@ -261,7 +263,10 @@ impl Client {
             Ok(Message::Frame(frame)) => self.frame(&frame),
             Ok(Message::Version(version)) => {
                 if version.is_some_and(|v| v != 6 && v != 7) {
-                    return Err(format!("the server speaks version {}, not 6 or 7", version.unwrap_or(0)));
+                    return Err(format!(
+                        "the server speaks version {}, not 6 or 7",
+                        version.unwrap_or(0)
+                    ));
                 }
                 self.note(|s| s.version = version);
             }
@@ -314,10 +319,12 @@ impl Client {
         });
     }
 
-    /// A frame that came twice or out of order adds nothing: each holds the whole state, and the newer one is here. A
-    /// number far back is a tracker that started again.
+    /// A frame that came twice or out of order adds nothing: each holds the whole state, and the
+    /// newer one is here. A number far back is a tracker that started again.
     fn is_stale(&self, frame: &Frame) -> bool {
-        let Some(Sample { body: Body::Hands(last), device_t_us, .. }) = self.last else { return false };
+        let Some(Sample { body: Body::Hands(last), device_t_us, .. }) = self.last else {
+            return false;
+        };
         let back = last.frame.saturating_sub(frame.hands.frame);
         let older = frame.device_t_us.zip(device_t_us).is_none_or(|(new, old)| new <= old);
         (0..100).contains(&back) && frame.hands.frame != 0 && older
@@ -353,13 +360,16 @@ impl Client {
 fn waited(e: &std::io::Error) -> bool {
     matches!(
         e.kind(),
-        std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut | std::io::ErrorKind::Interrupted
+        std::io::ErrorKind::WouldBlock
+            | std::io::ErrorKind::TimedOut
+            | std::io::ErrorKind::Interrupted
     )
 }
 
 /// Connects and shakes hands, every step with a time-out.
 fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
-    let request = config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
+    let request =
+        config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
     if request.uri().scheme_str() != Some("ws") {
         return Err(format!("{}: only ws:// is spoken", config.url));
     }
@@ -371,9 +381,13 @@ fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
         .into_iter()
         .find(allowed)
         .ok_or_else(|| format!("{host} is another machine; set allow_remote to use it"))?;
-    let stream = TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
-    let prepare = |wait| stream.set_nodelay(true).and_then(|()| stream.set_read_timeout(Some(wait)));
-    prepare(PATIENCE).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).map_err(|e| e.to_string())?;
+    let stream =
+        TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
+    let prepare =
+        |wait| stream.set_nodelay(true).and_then(|()| stream.set_read_timeout(Some(wait)));
+    prepare(PATIENCE)
+        .and_then(|()| stream.set_write_timeout(Some(PATIENCE)))
+        .map_err(|e| e.to_string())?;
     let limits = WebSocketConfig::default()
         .max_message_size(Some(MAX_MESSAGE))
         .max_frame_size(Some(MAX_MESSAGE))

@@ -66,7 +66,10 @@ fn every_frame_of_the_journal_comes_out_as_it_went_in_and_twice_the_same() {
             );
             assert!(a.orientation.unwrap().angle_between(b.orientation.unwrap()) < 1e-3);
             for (f, g) in a.fingers.iter().flatten().zip(b.fingers.iter().flatten()) {
-                assert_eq!((f.joints, f.tip, f.extended, f.width), (g.joints, g.tip, g.extended, g.width));
+                assert_eq!(
+                    (f.joints, f.tip, f.extended, f.width),
+                    (g.joints, g.tip, g.extended, g.width)
+                );
             }
         }
     }
@@ -122,7 +125,10 @@ fn silence_ends_the_hands_and_the_greeting_is_short() {
     assert!(matches!(rig.rx.next_within(SOON).unwrap().body, Body::Hands(h) if h.count == 0));
     rig.step(9_310_000);
     let wishes = rig.tracker.wishes();
-    assert_eq!(wishes, [r#"{"background":true}"#, r#"{"optimizeHMD":false}"#, r#"{"focused":true}"#]);
+    assert_eq!(
+        wishes,
+        [r#"{"background":true}"#, r#"{"optimizeHMD":false}"#, r#"{"focused":true}"#]
+    );
     assert!(wishes.iter().all(|w| w.len() < 32));
 }
 
@@ -138,7 +144,11 @@ fn hostile(answers: Vec<Vec<u8>>) -> (String, std::thread::JoinHandle<()>) {
             let n = stream.read(&mut request).unwrap();
             let text = String::from_utf8_lossy(&request[..n]).into_owned();
             assert!(!text.to_ascii_lowercase().contains("origin:"), "no web page");
-            let key = text.lines().find_map(|l| l.strip_prefix("Sec-WebSocket-Key: ")).unwrap_or("").trim();
+            let key = text
+                .lines()
+                .find_map(|l| l.strip_prefix("Sec-WebSocket-Key: "))
+                .unwrap_or("")
+                .trim();
             let accept = tungstenite::handshake::derive_accept_key(key.as_bytes());
             let answer = match answer.strip_prefix(b"WS") {
                 Some(frames) => {
@@ -229,7 +239,8 @@ fn a_server_that_breaks_every_rule_is_survived() {
     println!("{reasons:#?}");
     let mut got = Vec::new();
     rx.drain(100, &mut got);
-    let counts: Vec<u8> = got.iter().map(|s| if let Body::Hands(h) = s.body { h.count } else { 9 }).collect();
+    let counts: Vec<u8> =
+        got.iter().map(|s| if let Body::Hands(h) = s.body { h.count } else { 9 }).collect();
     assert_eq!(counts, [0, 1, 0], "the mended frame without its hand, the good one, and its end");
     let status = client.status.lock().unwrap().clone();
     assert!(status.errors >= 4 && status.mended == 1, "{status:?}");
@@ -246,7 +257,8 @@ fn another_machine_is_not_asked_unless_allowed_and_only_ws_is_spoken() {
 
 #[test]
 fn a_page_of_another_origin_and_a_strange_path_are_turned_away() {
-    let config = TrackerConfig { origins: vec!["http://localhost:8080".into()], ..TrackerConfig::default() };
+    let config =
+        TrackerConfig { origins: vec!["http://localhost:8080".into()], ..TrackerConfig::default() };
     let tracker = Tracker::new(journal().hands, config).unwrap();
     for (origin, path, welcome) in [
         (None, "/v6.json", true),
@@ -256,7 +268,8 @@ fn a_page_of_another_origin_and_a_strange_path_are_turned_away() {
         (Some("null"), "/v6.json", false),
         (None, "/", false),
     ] {
-        let mut request = format!("ws://{}{path}", tracker.address()).into_client_request().unwrap();
+        let mut request =
+            format!("ws://{}{path}", tracker.address()).into_client_request().unwrap();
         if let Some(o) = origin {
             request.headers_mut().insert("Origin", o.parse().unwrap());
         }

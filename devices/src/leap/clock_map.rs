@@ -1,8 +1,8 @@
 //! From the tracker's clock to ours.
 //!
-//! A frame is read some time after it was taken: the least delay ever seen is the best word on how the two clocks stand to
-//! each other. Frames that came late in a burst get the instants at which they were taken, so that a speed computed from
-//! them is the hand's and not the network's.
+//! A frame is read some time after it was taken: the least delay ever seen is the best word on how
+//! the two clocks stand to each other. Frames that came late in a burst get the instants at which
+//! they were taken, so that a speed computed from them is the hand's and not the network's.
 
 /// Beyond this the clocks are held to have jumped, and the map starts afresh.
 const JUMP_US: i64 = 1_000_000;
@@ -24,8 +24,8 @@ struct Seen {
 }
 
 impl ClockMap {
-    /// When the frame was taken, on our clock: never later than `read_us`, never before the frame that came before it.
-    /// With no stamp of the tracker's it is the instant of the read.
+    /// When the frame was taken, on our clock: never later than `read_us`, never before the frame
+    /// that came before it. With no stamp of the tracker's it is the instant of the read.
     pub fn map(&mut self, device_us: Option<u64>, read_us: u64) -> u64 {
         let taken = match device_us.and_then(|d| i64::try_from(d).ok()) {
             Some(device) => self.taken(device, read_us),
@@ -43,7 +43,10 @@ impl ClockMap {
     fn taken(&mut self, device: i64, read_us: u64) -> u64 {
         let apart = (read_us as i64).saturating_sub(device);
         let offset = match self.seen {
-            Some(s) if device >= s.device && apart.saturating_sub(s.offset).saturating_abs() <= JUMP_US => {
+            Some(s)
+                if device >= s.device
+                    && apart.saturating_sub(s.offset).saturating_abs() <= JUMP_US =>
+            {
                 // Saturating: a device clock may say anything.
                 let drift = device.saturating_sub(s.device) / DRIFT_PARTS;
                 s.offset.saturating_add(drift).min(apart)
@@ -73,8 +76,16 @@ mod tests {
     #[test]
     fn it_is_never_later_than_the_read_never_backwards_and_survives_any_stamp() {
         let mut map = ClockMap::default();
-        let stamps =
-            [Some(5), None, Some(u64::MAX), Some(0), Some(i64::MAX as u64), Some(7), Some(1 << 62), Some(3)];
+        let stamps = [
+            Some(5),
+            None,
+            Some(u64::MAX),
+            Some(0),
+            Some(i64::MAX as u64),
+            Some(7),
+            Some(1 << 62),
+            Some(3),
+        ];
         let mut last = 0;
         for (i, stamp) in stamps.iter().cycle().take(64).enumerate() {
             let read = 1000 * (i as u64 / 3);

@@ -44,8 +44,11 @@ impl FrameFile {
     pub fn from_reader(source: impl Read + Send + 'static) -> io::Result<Self> {
         let mut source = BufReader::new(source);
         let zipped = source.fill_buf()?.starts_with(&[0x1f, 0x8b]);
-        let lines: Box<dyn BufRead + Send> =
-            if zipped { Box::new(BufReader::new(GzDecoder::new(source))) } else { Box::new(source) };
+        let lines: Box<dyn BufRead + Send> = if zipped {
+            Box::new(BufReader::new(GzDecoder::new(source)))
+        } else {
+            Box::new(source)
+        };
         Ok(FrameFile { lines, t_us: 0, last_stamp: None, any: false })
     }
 
@@ -62,14 +65,16 @@ impl FrameFile {
                     format!("a line of more than {MAX_MESSAGE} bytes"),
                 ));
             }
-            let line = String::from_utf8(line).map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))?;
+            let line = String::from_utf8(line)
+                .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))?;
             if !line.trim().is_empty() {
                 return Ok(Some(line.trim_end().to_owned()));
             }
         }
     }
 
-    /// Time passes with the tracker's stamps; where they run backwards, jump or are missing, at the usual rate.
+    /// Time passes with the tracker's stamps; where they run backwards, jump or are missing, at the
+    /// usual rate.
     fn advance(&mut self, line: &str) {
         let stamp = serde_json::from_str::<Stamp>(line).ok().and_then(|s| s.timestamp);
         let stamp = stamp.filter(|t| *t >= 0.0 && *t < 9e15).map(|t| t as u64);

@@ -8,10 +8,12 @@ use serde::Deserialize;
 use super::loose::{Scalar, Triple};
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// Longest message that is looked at, in bytes. Real frames with two hands and all bones have 14,000.
+/// Longest message that is looked at, in bytes. Real frames with two hands and all bones have
+/// 14,000.
 pub const MAX_MESSAGE: usize = 256 * 1024;
 
-/// Deepest nesting that is looked at. Real frames reach 6 (message, pointables, pointable, bases, matrix, row).
+/// Deepest nesting that is looked at. Real frames reach 6 (message, pointables, pointable, bases,
+/// matrix, row).
 pub const MAX_DEPTH: usize = 16;
 
 /// Hands and fingers past these are not even looked at: 10 people's worth.
@@ -138,7 +140,8 @@ pub fn parse_frame(json: &str) -> Result<Frame, FrameError> {
 pub fn parse_message(json: &str) -> Result<Message, FrameError> {
     let holds_nan = check(json)?;
     let text = if holds_nan { mend(json) } else { Cow::Borrowed(json) };
-    let mut raw: RawMessage = serde_json::from_str(&text).map_err(|e| FrameError::NotJson(e.to_string()))?;
+    let mut raw: RawMessage =
+        serde_json::from_str(&text).map_err(|e| FrameError::NotJson(e.to_string()))?;
     if let Some(hands) = raw.hands.take() {
         let mut frame = Frame {
             hands: Hands { frame: raw.id.int().unwrap_or(0), ..Hands::default() },
@@ -151,13 +154,16 @@ pub fn parse_message(json: &str) -> Result<Message, FrameError> {
         return Ok(Message::Frame(frame));
     }
     if let Some(state) = raw.event.and_then(|e| e.state) {
-        return Ok(Message::Device { attached: state.attached.bool(), streaming: state.streaming.bool() });
+        return Ok(Message::Device {
+            attached: state.attached.bool(),
+            streaming: state.streaming.bool(),
+        });
     }
     Ok(raw.version.map_or(Message::Other, |v| Message::Version(v.int())))
 }
 
-/// Holds size and depth to their caps before anything is built from the text; true if `nan` or `inf` stands in it
-/// outside strings.
+/// Holds size and depth to their caps before anything is built from the text; true if `nan` or
+/// `inf` stands in it outside strings.
 fn check(json: &str) -> Result<bool, FrameError> {
     if json.len() > MAX_MESSAGE {
         return Err(FrameError::TooLong(json.len()));
@@ -211,13 +217,17 @@ fn mend(json: &str) -> Cow<'_, str> {
             continue;
         }
         let mut word = String::from(c);
-        while let Some(n) =
-            chars.next_if(|n| n.is_ascii_alphanumeric() || matches!(n, '.' | '+' | '-' | '(' | ')' | '_'))
-        {
+        while let Some(n) = chars.next_if(|n| {
+            n.is_ascii_alphanumeric() || matches!(n, '.' | '+' | '-' | '(' | ')' | '_')
+        }) {
             word.push(n);
         }
         let bare = word.trim_start_matches('-').to_ascii_lowercase();
-        out.push_str(if bare.starts_with("nan") || bare.starts_with("inf") { "null" } else { &word });
+        out.push_str(if bare.starts_with("nan") || bare.starts_with("inf") {
+            "null"
+        } else {
+            &word
+        });
     }
     Cow::Owned(out)
 }
@@ -265,8 +275,9 @@ fn decode_hand(raw: &RawHand, id: i32, palm: Vec3) -> Hand {
     }
 }
 
-/// The turn that brings the tracker's axes onto the hand's: x across the palm, y out of the back of the hand, z from the
-/// fingers to the wrist. A flat hand, palm down, fingers away from the user, has none.
+/// The turn that brings the tracker's axes onto the hand's: x across the palm, y out of the back of
+/// the hand, z from the fingers to the wrist. A flat hand, palm down, fingers away from the user,
+/// has none.
 fn palm_orientation(direction: Vec3, normal: Vec3) -> Option<Quat> {
     let z = -direction;
     let y = (-normal + z * normal.dot(z)).try_normalize()?;
@@ -278,9 +289,13 @@ fn attach_fingers(hand: &mut Hand, hand_id: i64, fingers: &[RawFinger]) {
         if raw.hand_id.int() != Some(hand_id) || raw.tool.bool() == Some(true) {
             continue;
         }
-        // Some servers leave the type out; the id then says it: ten times the hand's, plus the finger.
-        let kind = raw.kind.int().or_else(|| Some(raw.id.int()?.wrapping_sub(hand_id.wrapping_mul(10))));
-        let Some(slot) = kind.and_then(|k| hand.fingers.get_mut(usize::try_from(k).ok()?)) else { continue };
+        // Some servers leave the type out; the id then says it: ten times the hand's, plus the
+        // finger.
+        let kind =
+            raw.kind.int().or_else(|| Some(raw.id.int()?.wrapping_sub(hand_id.wrapping_mul(10))));
+        let Some(slot) = kind.and_then(|k| hand.fingers.get_mut(usize::try_from(k).ok()?)) else {
+            continue;
+        };
         if slot.is_none() {
             *slot = decode_finger(raw);
         }
@@ -288,7 +303,13 @@ fn attach_fingers(hand: &mut Hand, hand_id: i64, fingers: &[RawFinger]) {
 }
 
 fn decode_finger(raw: &RawFinger) -> Option<Finger> {
-    let places = [raw.carp_position, raw.mcp_position, raw.pip_position, raw.dip_position, raw.btip_position];
+    let places = [
+        raw.carp_position,
+        raw.mcp_position,
+        raw.pip_position,
+        raw.dip_position,
+        raw.btip_position,
+    ];
     let joints = places.map(Triple::vec);
     Some(Finger {
         joints,

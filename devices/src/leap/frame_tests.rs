@@ -18,8 +18,15 @@ const FRAME: &str = r#"{"id":7,"timestamp":1234567,"currentFrameRate":110.5,"han
 #[test]
 fn a_frame_reads_and_what_is_wrong_in_it_is_absent() {
     let f = parse_frame(FRAME).unwrap();
-    assert_eq!((f.hands.frame, f.device_t_us, f.rate, f.dropped_hands), (7, Some(1_234_567), Some(110.5), 2));
-    assert_eq!(f.hands.as_slice().iter().map(|h| h.id).collect::<Vec<_>>(), [4, 9], "in order of their ids");
+    assert_eq!(
+        (f.hands.frame, f.device_t_us, f.rate, f.dropped_hands),
+        (7, Some(1_234_567), Some(110.5), 2)
+    );
+    assert_eq!(
+        f.hands.as_slice().iter().map(|h| h.id).collect::<Vec<_>>(),
+        [4, 9],
+        "in order of their ids"
+    );
     let h = f.hands.hands[1];
     assert_eq!(
         (h.left, h.palm, h.palm_normal),
@@ -27,19 +34,31 @@ fn a_frame_reads_and_what_is_wrong_in_it_is_absent() {
     );
     assert_eq!((h.grab, h.pinch, h.confidence, h.time_visible), (Some(1.0), None, None, None));
     assert_eq!((h.palm_width, h.wrist, h.elbow), (Some(85.0), Some(vec3(0.0, 0.0, 60.0)), None));
-    assert!(h.orientation.unwrap().abs_diff_eq(Quat::IDENTITY, 1e-6), "flat, palm down, away from the user");
+    assert!(
+        h.orientation.unwrap().abs_diff_eq(Quat::IDENTITY, 1e-6),
+        "flat, palm down, away from the user"
+    );
     assert_eq!(h.fingers[1].unwrap().tip, vec3(5.0, 6.0, 7.0), "told by its id");
     assert_eq!(h.fingers[1].unwrap().joints[3], Some(vec3(5.0, 6.0, 8.0)));
     assert_eq!(h.fingers[0].unwrap().tip, vec3(1.0, 1.0, 1.0), "the bone's end stands for the tip");
-    assert_eq!((h.fingers[2], h.fingers[3], h.fingers[4]), (None, None, None), "no tool, no tenth finger");
+    assert_eq!(
+        (h.fingers[2], h.fingers[3], h.fingers[4]),
+        (None, None, None),
+        "no tool, no tenth finger"
+    );
 }
 
 #[test]
 fn the_other_messages() {
-    assert_eq!(parse_message(r#"{"serviceVersion":"2.3","version":6}"#), Ok(Message::Version(Some(6))));
-    let event =
-        r#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"x","streaming":false,"type":"p"}}}"#;
-    assert_eq!(parse_message(event), Ok(Message::Device { attached: Some(true), streaming: Some(false) }));
+    assert_eq!(
+        parse_message(r#"{"serviceVersion":"2.3","version":6}"#),
+        Ok(Message::Version(Some(6)))
+    );
+    let event = r#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"x","streaming":false,"type":"p"}}}"#;
+    assert_eq!(
+        parse_message(event),
+        Ok(Message::Device { attached: Some(true), streaming: Some(false) })
+    );
     assert_eq!(parse_message("{}"), Ok(Message::Other));
     assert_eq!(parse_frame("{}"), Err(FrameError::NotAFrame));
 }
@@ -60,7 +79,8 @@ fn words_that_are_not_json_are_read_as_absent_numbers() {
 #[test]
 fn numbers_out_of_reason_are_absent() {
     for n in ["1e300", "-20000", "1e39"] {
-        let f = parse_frame(&format!(r#"{{"hands":[{{"id":1,"palmPosition":[0,{n},0]}}]}}"#)).unwrap();
+        let f =
+            parse_frame(&format!(r#"{{"hands":[{{"id":1,"palmPosition":[0,{n},0]}}]}}"#)).unwrap();
         assert_eq!((f.hands.count, f.dropped_hands), (0, 1), "{n}");
     }
     assert!(matches!(parse_frame(r#"{"hands":[{"id":1e999}]}"#), Err(FrameError::NotJson(_))));
@@ -73,7 +93,8 @@ fn size_and_depth_are_capped_and_a_crowd_is_counted() {
     let quoted = format!(r#"{{"hands":[],"x":"{}"}}"#, "[".repeat(5000));
     assert!(parse_frame(&quoted).is_ok(), "brackets in a string are text");
     assert!(matches!(parse_frame(&" ".repeat(MAX_MESSAGE + 1)), Err(FrameError::TooLong(_))));
-    let crowd: Vec<String> = (0..500).map(|i| format!(r#"{{"id":{i},"palmPosition":[0,0,0]}}"#)).collect();
+    let crowd: Vec<String> =
+        (0..500).map(|i| format!(r#"{{"id":{i},"palmPosition":[0,0,0]}}"#)).collect();
     let f = parse_frame(&format!(r#"{{"hands":[{}]}}"#, crowd.join(","))).unwrap();
     assert_eq!((f.hands.count as usize, f.dropped_hands), (MAX_HANDS, 496));
 }
@@ -88,8 +109,11 @@ fn every_cut_of_a_frame_is_an_error_and_no_panic() {
 fn all_finite(f: &Frame) -> bool {
     f.hands.as_slice().iter().all(|h| {
         let places = [Some(h.palm), h.palm_normal, h.direction, h.palm_velocity, h.wrist, h.elbow];
-        let fingers =
-            h.fingers.iter().flatten().flat_map(|f| f.joints.into_iter().chain([Some(f.tip), f.direction]));
+        let fingers = h
+            .fingers
+            .iter()
+            .flatten()
+            .flat_map(|f| f.joints.into_iter().chain([Some(f.tip), f.direction]));
         let mut all = places.into_iter().chain(fingers).flatten();
         all.all(Vec3::is_finite) && h.orientation.is_none_or(|q| q.is_finite())
     })
@@ -110,13 +134,15 @@ proptest! {
 fn a_frame_file_tells_time_by_the_stamps() {
     let text = "{\"version\":6}\n{\"timestamp\":100,\"hands\":[]}\n\n{\"timestamp\":9100,\"hands\":[]}\n\
                 {\"timestamp\":50,\"hands\":[]}\n{\"hands\":[]}\n{\"timestamp\":99000000,\"hands\":[]}";
-    let times: Vec<u64> = FrameFile::from_reader(text.as_bytes()).unwrap().map(|l| l.unwrap().0).collect();
+    let times: Vec<u64> =
+        FrameFile::from_reader(text.as_bytes()).unwrap().map(|l| l.unwrap().0).collect();
     assert_eq!(times, [0, 0, 9000, 19_000, 29_000, 39_000]);
 }
 
 #[test]
 fn every_frame_of_every_real_recording_decodes() {
-    let Some(dir) = std::env::var_os("SCULPTD_CORPUS").map(|c| PathBuf::from(c).join("devices/open/leap"))
+    let Some(dir) =
+        std::env::var_os("SCULPTD_CORPUS").map(|c| PathBuf::from(c).join("devices/open/leap"))
     else {
         return println!("skipped: SCULPTD_CORPUS not set");
     };
@@ -135,7 +161,8 @@ fn every_frame_of_every_real_recording_decodes() {
                 assert_eq!(parse_message(&text), Ok(Message::Version(Some(6))));
                 continue;
             }
-            let f = parse_frame(&text).unwrap_or_else(|e| panic!("{} line {}: {e}", path.display(), i + 1));
+            let f = parse_frame(&text)
+                .unwrap_or_else(|e| panic!("{} line {}: {e}", path.display(), i + 1));
             assert!(all_finite(&f) && f.device_t_us.is_some() && f.dropped_hands == 0);
             assert!(f.hands.as_slice().iter().all(|h| h.orientation.is_some() && h.left.is_some()));
             frames += 1;
@@ -144,7 +171,10 @@ fn every_frame_of_every_real_recording_decodes() {
             end = t;
         }
         let (name, s) = (path.file_name().unwrap().to_string_lossy(), end as f64 / 1e6);
-        println!("{name:32} {frames:6} {hands:6} {fingers:7} {s:8.2} {:7.1}", f64::from(frames) / s);
+        println!(
+            "{name:32} {frames:6} {hands:6} {fingers:7} {s:8.2} {:7.1}",
+            f64::from(frames) / s
+        );
         assert!(frames >= 100 && fingers == 5 * hands, "{name}: each hand has its five fingers");
     }
 }

@@ -50,9 +50,11 @@ fn without_a_switch_contact_begins_at_5_percent_and_ends_below_1() {
 
 #[test]
 fn a_switch_decides_alone() {
-    let reports = [pen(400, Some(false)), pen(0, Some(true)), pen(0, Some(true)), pen(400, Some(false))];
+    let reports =
+        [pen(400, Some(false)), pen(0, Some(true)), pen(0, Some(true)), pen(400, Some(false))];
     let got = run(CFG, &reports);
-    // Pressure in the air is no click, and a pen-down report without pressure does not cut the stroke.
+    // Pressure in the air is no click, and a pen-down report without pressure does not cut the
+    // stroke.
     assert_eq!(tips(&got), [false, true, true, false, false]);
 }
 
@@ -61,7 +63,10 @@ fn buttons_are_let_go_and_the_tip_lifts_when_the_pen_leaves() {
     let held = PenReport { buttons: Some(3), ..pen(500, Some(true)) };
     let got = run(CFG, &[held, held]);
     let last = got[2];
-    assert_eq!((last.in_range, last.tip, last.buttons, last.pressure), (false, false, 0, Some(0.0)));
+    assert_eq!(
+        (last.in_range, last.tip, last.buttons, last.pressure),
+        (false, false, 0, Some(0.0))
+    );
     assert_eq!(last.raw, [10_000, 5000], "it left where it was");
 }
 
@@ -110,7 +115,8 @@ fn a_worn_pen_that_presses_in_the_air_is_learned() {
     let high = |p| PenReport { distance: Some(50), ..pen(p, None) };
     let low = |p| PenReport { distance: Some(5), ..pen(p, None) };
     let got = run(CFG, &[high(80), low(100), low(120), low(140), low(60), low(85)]);
-    // 80 at rest: down at 5 % of what is left, up when it is back at rest; a lower rest is believed at once.
+    // 80 at rest: down at 5 % of what is left, up when it is back at rest; a lower rest is believed
+    // at once.
     assert_eq!(tips(&got), [false, false, false, true, false, false, false]);
     let got = run(CFG, &[high(600), low(600)]);
     assert_eq!(tips(&got), [true, true, false], "more than half is a hand");
@@ -131,7 +137,11 @@ fn the_tool_is_decided_at_entry() {
         ]
     );
     let puck = PenReport { tool: Some(Tool::Mouse), ..pen(1000, Some(true)) };
-    assert_eq!(tips(&run(CFG, &[puck, puck])), [false, false, false], "a puck moves, it never presses");
+    assert_eq!(
+        tips(&run(CFG, &[puck, puck])),
+        [false, false, false],
+        "a puck moves, it never presses"
+    );
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Eight tablets at 1,000 reports a second each, through their own reader threads, and a consumer that stands still for
-//! 300 ms at random.
+//! Eight tablets at 1,000 reports a second each, through their own reader threads, and a consumer
+//! that stands still for 300 ms at random.
 
 use std::time::Duration;
 
@@ -51,11 +51,14 @@ fn nothing_but_motion_is_ever_lost() {
     let (factory, mut rx) = channel(CAPACITY);
     let (mut tablets, mut readers) = (Vec::new(), Vec::new());
     for i in 0..TABLETS {
-        // On a loaded machine the flood itself comes in bursts: its own loss would hide the channel's.
+        // On a loaded machine the flood itself comes in bursts: its own loss would hide the
+        // channel's.
         let config = TabletConfig { rate: RATE, keeps: 4096, ..TabletConfig::default() };
         let (tablet, end) = Tablet::new(&found, script.clone(), config);
         let id = DeviceId(i as u16);
-        readers.push(reader::start(Box::new(end), &found, &[], id, clock.clone(), factory.sender()).unwrap());
+        readers.push(
+            reader::start(Box::new(end), &found, &[], id, clock.clone(), factory.sender()).unwrap(),
+        );
         tablets.push(tablet);
     }
     let stats = rx.stats();

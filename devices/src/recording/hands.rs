@@ -14,12 +14,15 @@ pub(super) struct HandRecording {
 
 /// A file that starts like one: gzipped, or with a JSON object.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0x1f, 0x8b]) || bytes.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{')
+    bytes.starts_with(&[0x1f, 0x8b])
+        || bytes.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{')
 }
 
 pub(super) fn open(path: &Path) -> Result<HandRecording, RecordingError> {
-    let broken = |line: usize, what: String| RecordingError::Broken { path: path.to_owned(), line, what };
-    let file = FrameFile::open(path).map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
+    let broken =
+        |line: usize, what: String| RecordingError::Broken { path: path.to_owned(), line, what };
+    let file = FrameFile::open(path)
+        .map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
     let mut out = HandRecording::default();
     for (i, line) in file.enumerate() {
         let (t_us, text) = line.map_err(|e| broken(i + 1, e.to_string()))?;
@@ -37,7 +40,12 @@ pub(super) fn open(path: &Path) -> Result<HandRecording, RecordingError> {
 impl HandRecording {
     pub(super) fn sample(&self, i: usize, device: DeviceId, offset_us: u64) -> Sample {
         let (t_us, device_t_us, hands) = self.frames[i];
-        Sample { device, t_us: t_us.saturating_add(offset_us), device_t_us, body: Body::Hands(hands) }
+        Sample {
+            device,
+            t_us: t_us.saturating_add(offset_us),
+            device_t_us,
+            body: Body::Hands(hands),
+        }
     }
 
     /// The last word: every hand has gone.

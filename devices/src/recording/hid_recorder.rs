@@ -1,5 +1,6 @@
-//! The text that the `hid-recorder` tool writes (hid-tools): `D:` device number, `R:` descriptor, `N:` name, `P:` place,
-//! `I:` bus and ids, `E:` a stamped report. Also read: `# USB-STRING S index bytes`, raw string descriptors by index.
+//! The text that the `hid-recorder` tool writes (hid-tools): `D:` device number, `R:` descriptor,
+//! `N:` name, `P:` place, `I:` bus and ids, `E:` a stamped report. Also read: `# USB-STRING S index
+//! bytes`, raw string descriptors by index.
 
 use super::{HidRecording, Stamped};
 use crate::catalogue::Identity;
@@ -23,7 +24,10 @@ pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
         reader.line(line.trim()).map_err(|what| BadLine { line: i + 1, what })?;
     }
     if !reader.described {
-        return Err(BadLine { line: 1, what: "no `R:` or `E:` line: not a hid-recorder file".to_owned() });
+        return Err(BadLine {
+            line: 1,
+            what: "no `R:` or `E:` line: not a hid-recorder file".to_owned(),
+        });
     }
     Ok(reader.finish())
 }
@@ -53,12 +57,17 @@ impl Reader {
         let rest = rest.trim();
         match tag {
             "D" => {
-                let n = rest.parse::<u32>().map_err(|_| format!("`D: {rest}`: expected a device number"))?;
+                let n = rest
+                    .parse::<u32>()
+                    .map_err(|_| format!("`D: {rest}`: expected a device number"))?;
                 self.select(n)?;
             }
             "R" => self.here()?.descriptor = counted(rest)?,
             "N" => self.here()?.name = rest.to_owned(),
-            "P" => self.here()?.interface = rest.rsplit_once("/input").and_then(|(_, n)| n.parse().ok()),
+            "P" => {
+                self.here()?.interface =
+                    rest.rsplit_once("/input").and_then(|(_, n)| n.parse().ok())
+            }
             "I" => self.ids(rest)?,
             "E" => self.event(rest)?,
             _ => return Ok(()),
@@ -97,7 +106,8 @@ impl Reader {
             return Err(format!("`I: {rest}`: expected bus, vendor and product"));
         };
         let hex = |s: &str| {
-            u16::from_str_radix(s, 16).map_err(|_| format!("`{s}`: expected four hexadecimal digits"))
+            u16::from_str_radix(s, 16)
+                .map_err(|_| format!("`{s}`: expected four hexadecimal digits"))
         };
         let (vid, pid) = (hex(vid)?, hex(pid)?);
         let here = self.here()?;
@@ -133,7 +143,9 @@ impl Reader {
     fn usb_string(&mut self, rest: &str) {
         let rest = rest.trim();
         let Some((index, bytes)) = rest.split_once(char::is_whitespace) else { return };
-        let (Ok(index), Some(bytes)) = (u8::from_str_radix(index, 16), hex_bytes(bytes)) else { return };
+        let (Ok(index), Some(bytes)) = (u8::from_str_radix(index, 16), hex_bytes(bytes)) else {
+            return;
+        };
         self.strings.push((index, bytes));
     }
 
@@ -148,7 +160,8 @@ impl Reader {
 /// `count hex hex ...`: exactly as many bytes as counted.
 fn counted(text: &str) -> Result<Vec<u8>, String> {
     let (count, bytes) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-    let count: usize = count.parse().map_err(|_| format!("`{count}`: expected a count of bytes"))?;
+    let count: usize =
+        count.parse().map_err(|_| format!("`{count}`: expected a count of bytes"))?;
     let bytes = hex_bytes(bytes).ok_or("expected pairs of hexadecimal digits")?;
     if bytes.len() != count {
         return Err(format!("{count} bytes announced, {} found", bytes.len()));
@@ -180,8 +193,12 @@ mod tests {
                     E: 1.000000 2 02 80\nD:1\nE: 1.010500 1 ff\nE: 0.5 0\n";
         let got = parse(text).unwrap();
         assert_eq!((got.interfaces[0].pid, got.interfaces[1].pid), (0x5e, 0x5b));
-        assert_eq!((got.interfaces[0].name.as_str(), got.interfaces[0].interface), ("One", Some(1)));
-        let seen: Vec<_> = got.reports.iter().map(|r| (r.t_us, r.interface, r.bytes.len())).collect();
+        assert_eq!(
+            (got.interfaces[0].name.as_str(), got.interfaces[0].interface),
+            ("One", Some(1))
+        );
+        let seen: Vec<_> =
+            got.reports.iter().map(|r| (r.t_us, r.interface, r.bytes.len())).collect();
         assert_eq!(seen, [(0, 1, 2), (10_500, 0, 1), (10_500, 0, 0)], "time never runs backward");
     }
 

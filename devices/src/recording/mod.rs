@@ -10,7 +10,8 @@ use std::path::PathBuf;
 
 pub use player::{DeviceInfo, DeviceKind, Player};
 
-/// A HID device as it was recorded: one [`crate::catalogue::Identity`] an interface, and every report in order.
+/// A HID device as it was recorded: one [`crate::catalogue::Identity`] an interface, and every
+/// report in order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct HidRecording {
     pub interfaces: Vec<crate::catalogue::Identity>,

@@ -103,8 +103,13 @@ fn same_device(known: &Found, who: &Identity) -> bool {
     known.id().vid == who.vid && known.id().pid == who.pid
 }
 
-/// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note: it is a choice, not knowledge.
-fn choose<'a>(mut many: Vec<Found>, reports: impl Iterator<Item = &'a [u8]>, descriptor: &[u8]) -> Found {
+/// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note:
+/// it is a choice, not knowledge.
+fn choose<'a>(
+    mut many: Vec<Found>,
+    reports: impl Iterator<Item = &'a [u8]>,
+    descriptor: &[u8],
+) -> Found {
     let count = many.len();
     many.sort_by(|a, b| area(a).cmp(&area(b)).then_with(|| a.tablet.name.cmp(&b.tablet.name)));
     let mut reach = [0i32; 2];
@@ -119,7 +124,8 @@ fn choose<'a>(mut many: Vec<Found>, reports: impl Iterator<Item = &'a [u8]>, des
     let holds = |f: &Found| f.tablet.area.max_x >= reach[0] && f.tablet.area.max_y >= reach[1];
     let at = many.iter().position(holds).unwrap_or(count - 1);
     let mut chosen = many.swap_remove(at);
-    chosen.note = Some(format!("one of {count} models alike, chosen by the range of what was sent"));
+    chosen.note =
+        Some(format!("one of {count} models alike, chosen by the range of what was sent"));
     chosen
 }
 

@@ -44,9 +44,13 @@ pub struct Player {
 
 impl Player {
     /// Opens a recording of any kind that is known, and finds its device.
-    pub fn open(path: &Path, device: DeviceId, catalogue: &Catalogue) -> Result<Player, RecordingError> {
-        let bytes =
-            std::fs::read(path).map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
+    pub fn open(
+        path: &Path,
+        device: DeviceId,
+        catalogue: &Catalogue,
+    ) -> Result<Player, RecordingError> {
+        let bytes = std::fs::read(path)
+            .map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
         if hands::looks_like(&bytes) {
             let info = DeviceInfo {
                 name: "hand tracker".to_owned(),
@@ -62,7 +66,8 @@ impl Player {
             return Err(broken(1, "binary data: not a recording".to_owned()));
         }
         let text = String::from_utf8_lossy(&bytes);
-        let parsed = if raw::looks_like(&bytes) { raw::parse(&text) } else { hid_recorder::parse(&text) };
+        let parsed =
+            if raw::looks_like(&bytes) { raw::parse(&text) } else { hid_recorder::parse(&text) };
         let recording = parsed.map_err(|b| broken(b.line, b.what))?;
         Player::of(path, recording, device, catalogue)
     }
@@ -103,8 +108,8 @@ impl Player {
         self.ended
     }
 
-    /// Plays every report due up to `until_us`, relative to the first report, that one included. After the last, whatever
-    /// is in range leaves.
+    /// Plays every report due up to `until_us`, relative to the first report, that one included.
+    /// After the last, whatever is in range leaves.
     pub fn advance(&mut self, until_us: u64, emit: &mut dyn FnMut(Sample)) {
         let mut last = 0;
         while let Some(due) = self.next_due_us().filter(|&due| due <= until_us) {

@@ -1,6 +1,7 @@
 //! Our own recordings: raw bytes as they were read, with what was known of the device.
 //!
-//! Text, one thing a line, whole lines only, so that a recording cut off by a crash is good up to its last line:
+//! Text, one thing a line, whole lines only, so that a recording cut off by a crash is good up to
+//! its last line:
 //!
 //! ```text
 //! sculptd-recording 1
@@ -9,9 +10,9 @@
 //! 0 3932 02e01e050bcf00217fc2
 //! ```
 //!
-//! A line with a brace describes an interface, under a number of this file; a report's line has that number, microseconds
-//! since the recording began, and the bytes in hexadecimal. `number` is the interface's own on its device, or absent. A reader
-//! refuses a version that it does not know.
+//! A line with a brace describes an interface, under a number of this file; a report's line has
+//! that number, microseconds since the recording began, and the bytes in hexadecimal. `number` is
+//! the interface's own on its device, or absent. A reader refuses a version that it does not know.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -124,7 +125,8 @@ pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
         } else if !line.is_empty() {
             let mut report = event(line, out.interfaces.len()).map_err(|what| bad(i, what))?;
             let first = *first_us.get_or_insert(report.t_us);
-            report.t_us = report.t_us.saturating_sub(first).max(out.reports.last().map_or(0, |r| r.t_us));
+            report.t_us =
+                report.t_us.saturating_sub(first).max(out.reports.last().map_or(0, |r| r.t_us));
             let seen = &mut out.interfaces[report.interface].seen_lengths;
             if !seen.contains(&report.bytes.len()) {
                 seen.push(report.bytes.len());
@@ -166,7 +168,8 @@ fn event(line: &str, interfaces: usize) -> Result<Stamped, String> {
     else {
         return Err("expected an interface, microseconds and bytes".to_owned());
     };
-    let interface: usize = interface.parse().map_err(|_| format!("`{interface}`: expected an interface"))?;
+    let interface: usize =
+        interface.parse().map_err(|_| format!("`{interface}`: expected an interface"))?;
     if interface >= interfaces {
         return Err(format!("interface {interface} was not described"));
     }
@@ -201,7 +204,10 @@ mod tests {
         let got = parse(&written()).unwrap();
         let who = &got.interfaces[0];
         assert_eq!((who.vid, who.interface, who.name.as_str()), (0x256c, Some(1), "A \"pen\""));
-        assert_eq!((who.string(201).as_deref(), who.descriptor.as_slice()), (Some("x"), &[5u8, 0x0d][..]));
+        assert_eq!(
+            (who.string(201).as_deref(), who.descriptor.as_slice()),
+            (Some("x"), &[5u8, 0x0d][..])
+        );
         let reports: Vec<_> = got.reports.iter().map(|r| (r.t_us, r.bytes.clone())).collect();
         assert_eq!(reports, [(0, vec![8, 0x81]), (4000, vec![])]);
     }

@@ -14,7 +14,8 @@ use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// A line that is silent for so long has ended its packet: four bytes at 19200, three at 9600 take less or about it.
+/// A line that is silent for so long has ended its packet: four bytes at 19200, three at 9600 take
+/// less or about it.
 const QUIET: Duration = Duration::from_millis(2);
 /// How long a read waits while nothing is held back.
 const READ_SLICE: Duration = Duration::from_millis(20);
@@ -27,8 +28,8 @@ const BACK_OFF: (Duration, Duration) = (Duration::from_millis(500), Duration::fr
 pub struct Config {
     /// The port that a tablet is on, such as `/dev/ttyS0` or `COM3`.
     pub port: Option<String>,
-    /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking writes to the port, and what
-    /// is there may not like it.
+    /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking
+    /// writes to the port, and what is there may not like it.
     pub probe: Vec<String>,
     /// What it speaks; `None`: found by asking, which takes up to five seconds a port.
     pub protocol: Option<Protocol>,
@@ -156,9 +157,13 @@ impl Reader {
         if self.config.probe.is_empty() {
             return Vec::new();
         }
-        let mut names: Vec<String> =
-            serialport::available_ports().unwrap_or_default().into_iter().map(|p| p.port_name).collect();
-        // A pseudo-terminal or a link that is named in full is no "available port", but allowed is allowed.
+        let mut names: Vec<String> = serialport::available_ports()
+            .unwrap_or_default()
+            .into_iter()
+            .map(|p| p.port_name)
+            .collect();
+        // A pseudo-terminal or a link that is named in full is no "available port", but allowed is
+        // allowed.
         names.extend(self.config.probe.iter().filter(|p| !p.ends_with('*')).cloned());
         names.sort();
         names.dedup();
@@ -167,8 +172,10 @@ impl Reader {
     }
 
     fn find(&self, name: &str, leash: &Leash) -> Result<(Box<dyn Wire>, Facts), String> {
-        let port =
-            serialport::new(name, 9600).timeout(READ_SLICE).open().map_err(|e| format!("{name}: {e}"))?;
+        let port = serialport::new(name, 9600)
+            .timeout(READ_SLICE)
+            .open()
+            .map_err(|e| format!("{name}: {e}"))?;
         let mut wire: Box<dyn Wire> = Box::new(port);
         let asked = match &self.config.protocol {
             Some(one) => std::slice::from_ref(one),
@@ -223,7 +230,8 @@ impl Reader {
         for sample in out.drain(..) {
             self.sender.push(sample);
         }
-        let (now, (from, before), packets) = (self.clock.now_us(), self.second, decoder.counts.packets);
+        let (now, (from, before), packets) =
+            (self.clock.now_us(), self.second, decoder.counts.packets);
         let rate = (now >= from + 1_000_000).then(|| {
             self.second = (now, packets);
             // A new line counts from nought again.

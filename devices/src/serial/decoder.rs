@@ -1,5 +1,5 @@
-//! Bytes of a serial line to samples: framing, then the layout, then the pen's state. No IO; live lines, simulators and
-//! tests use the same object.
+//! Bytes of a serial line to samples: framing, then the layout, then the pen's state. No IO; live
+//! lines, simulators and tests use the same object.
 
 use serde::Serialize;
 
@@ -11,8 +11,8 @@ use crate::sample::{DeviceId, Sample};
 /// Longest packet of any protocol (two fingers over ISDV4).
 const MAX_PACKET: usize = 16;
 
-/// All these protocols say when the pen leaves, and stream while it is there. A lost last packet must not leave it there
-/// for ever: this much silence ends the visit.
+/// All these protocols say when the pen leaves, and stream while it is there. A lost last packet
+/// must not leave it there for ever: this much silence ends the visit.
 const SILENCE_US: u64 = 300_000;
 
 /// What became of the bytes.

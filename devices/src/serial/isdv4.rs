@@ -1,5 +1,5 @@
-//! Wacom ISDV4, as in tablet PCs (the kernel's "W8001"): 9-byte pen packets, touch packets of 5, 7 or 13 bytes, control
-//! packets of 11.
+//! Wacom ISDV4, as in tablet PCs (the kernel's "W8001"): 9-byte pen packets, touch packets of 5, 7
+//! or 13 bytes, control packets of 11.
 
 use super::{low7, signed7};
 use crate::hid::report::{Parsed, PenReport};
@@ -57,7 +57,8 @@ impl TouchQuery {
         let x = low7(b, 3) << 9 | low7(b, 4) << 2 | low7(b, 2) >> 5 & 3;
         let y = low7(b, 5) << 9 | low7(b, 6) << 2 | low7(b, 2) >> 3 & 3;
         // The first touch models state a number of bits instead.
-        let max = if x == 0 && y == 0 { [1 << low7(b, 1).min(14); 2] } else { [x as i32, y as i32] };
+        let max =
+            if x == 0 && y == 0 { [1 << low7(b, 1).min(14); 2] } else { [x as i32, y as i32] };
         Some(TouchQuery { sensor: b[2] & 7, max })
     }
 
@@ -133,8 +134,8 @@ impl Layout {
             return Parsed::Broken;
         }
         let f2 = b0 & 4 != 0;
-        // One bit means two things: set as the pen enters it is the eraser, set later the second button. An eraser whose
-        // bit goes was a pen all along.
+        // One bit means two things: set as the pen enters it is the eraser, set later the second
+        // button. An eraser whose bit goes was a pen all along.
         self.visit = match self.visit {
             Visit::Nothing | Visit::Finger if f2 => Visit::Eraser,
             Visit::Eraser if f2 => Visit::Eraser,
@@ -153,8 +154,9 @@ impl Layout {
         })
     }
 
-    /// Sources disagree on whether tilt is signed: a stated maximum under 64 can only be that of a signed one, as the
-    /// sensor leans further than 64 degrees from end to end; a greater one is the whole span.
+    /// Sources disagree on whether tilt is signed: a stated maximum under 64 can only be that of a
+    /// signed one, as the sensor leans further than 64 degrees from end to end; a greater one is
+    /// the whole span.
     fn tilt(&self, b: &[u8]) -> Option<[f32; 2]> {
         let [x, y] = self.query.max_tilt;
         if !self.tilts() {
@@ -213,7 +215,10 @@ mod tests {
         assert_eq!(Query::parse(&[0x80; 11]), None);
         let touch = [0xc0, 10, 0b0110_0101, 7, 1, 3, 2, 0, 0, 0, 0];
         assert_eq!(TouchQuery::parse(&touch), Some(TouchQuery { sensor: 5, max: [3591, 1544] }));
-        assert_eq!(TouchQuery::parse(&[0xc0, 10, 1, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap().max, [1024; 2]);
+        assert_eq!(
+            TouchQuery::parse(&[0xc0, 10, 1, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap().max,
+            [1024; 2]
+        );
         assert_eq!(TouchQuery::parse(&[0xc0, 0, 1, 7, 1, 3, 2, 0, 0, 0, 0]), None, "no touch here");
     }
 
@@ -238,7 +243,9 @@ mod tests {
     #[test]
     fn coordinates_come_from_five_bytes_and_beyond_the_maximum_are_refused() {
         let mut l = layout(None);
-        let Parsed::Pen(r) = l.parse(&[0xa1, 10, 3, 20, 5, 40, 0b0110_1001, 0, 0]) else { panic!() };
+        let Parsed::Pen(r) = l.parse(&[0xa1, 10, 3, 20, 5, 40, 0b0110_1001, 0, 0]) else {
+            panic!()
+        };
         assert_eq!(r.pos, Some([10 << 9 | 3 << 2 | 3, 20 << 9 | 5 << 2 | 1]));
         assert_eq!((r.pressure, r.tilt), (Some(1 << 7 | 40), None));
         assert_eq!(l.parse(&[0xa1, 127, 127, 20, 5, 40, 0, 0, 0]), Parsed::Broken);

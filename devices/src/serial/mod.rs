@@ -5,12 +5,14 @@
 //! ```
 //!
 //! Laws kept here:
-//! * None of these protocols has a checksum; all set bit 7 of a packet's first byte and of no other. A packet becomes a
-//!   point only if it has its full length **and** the next byte begins another, or the line falls silent. So a packet with
-//!   a byte cut, lost or doubled never becomes one; the price is that a point waits 2 ms.
+//! * None of these protocols has a checksum; all set bit 7 of a packet's first byte and of no
+//!   other. A packet becomes a point only if it has its full length **and** the next byte begins
+//!   another, or the line falls silent. So a packet with a byte cut, lost or doubled never becomes
+//!   one; the price is that a point waits 2 ms.
 //! * Only ports that the person named or allowed are ever opened.
 //!
-//! Sources: the Linux drivers `wacom_w8001.c` and `wacom_serial4.c`, `wcmSerial.c` of linuxwacom, `xf86Summa.c` of XFree86.
+//! Sources: the Linux drivers `wacom_w8001.c` and `wacom_serial4.c`, `wcmSerial.c` of linuxwacom,
+//! `xf86Summa.c` of XFree86.
 
 mod adaptor;
 pub mod decoder;

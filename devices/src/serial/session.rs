@@ -49,8 +49,8 @@ enum End {
     Line,
 }
 
-/// The order in which protocols are tried on a port whose tablet is not known: the one that answers fastest first, the one
-/// with the oddest line last.
+/// The order in which protocols are tried on a port whose tablet is not known: the one that answers
+/// fastest first, the one with the oddest line last.
 pub(crate) const PROBE_ORDER: [Protocol; 4] =
     [Protocol::Isdv4, Protocol::WacomV, Protocol::WacomIv, Protocol::SummaMm];
 
@@ -99,7 +99,8 @@ impl Session<'_> {
             match self.wire.read(&mut buffer) {
                 Ok(0) => return Err(io::ErrorKind::BrokenPipe.into()),
                 Ok(n) => reply.extend_from_slice(&buffer[..n]),
-                Err(e) if matches!(e.kind(), io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock) => {}
+                Err(e)
+                    if matches!(e.kind(), io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock) => {}
                 Err(e) => return Err(e),
             }
             match end {
@@ -128,7 +129,8 @@ impl Session<'_> {
             self.settle(250)?;
             let reply = self.ask(b"*", End::Packet(isdv4::CONTROL_LENGTH))?;
             let Some(query) = isdv4::Query::parse(&reply) else { continue };
-            let touch = isdv4::TouchQuery::parse(&self.ask(b"%", End::Packet(isdv4::CONTROL_LENGTH))?);
+            let touch =
+                isdv4::TouchQuery::parse(&self.ask(b"%", End::Packet(isdv4::CONTROL_LENGTH))?);
             self.say(b"1")?;
             let area = query.max.map(|m| m as f32 / isdv4::PER_MM);
             return Ok(Some(Facts {
@@ -153,7 +155,11 @@ impl Session<'_> {
             return Ok(None);
         }
         let Some(max) = self.maxima(&model)? else { return Ok(None) };
-        if five { self.wacom_v(&model, max).map(Some) } else { self.wacom_iv(&model, max).map(Some) }
+        if five {
+            self.wacom_v(&model, max).map(Some)
+        } else {
+            self.wacom_iv(&model, max).map(Some)
+        }
     }
 
     fn maxima(&mut self, model: &str) -> io::Result<Option<[i32; 2]>> {
@@ -168,8 +174,10 @@ impl Session<'_> {
     }
 
     fn wacom_iv(&mut self, model: &str, max: [i32; 2]) -> io::Result<Facts> {
-        let stated = answer(&self.ask(b"~R\r", End::Line)?, "~R").map(|a| numbers(&a)).unwrap_or_default();
-        // The answer holds a hexadecimal word, two figures, and then the resolution in lines an inch.
+        let stated =
+            answer(&self.ask(b"~R\r", End::Line)?, "~R").map(|a| numbers(&a)).unwrap_or_default();
+        // The answer holds a hexadecimal word, two figures, and then the resolution in lines an
+        // inch.
         let usual = if model.starts_with("PL") || model.starts_with("DT") { 508 } else { 1000 };
         let per_inch = |i: usize| stated.get(i).copied().filter(|r| *r > 0).unwrap_or(usual) as f32;
         let layout = wacom_iv::Layout::new(model, version(model), max);
@@ -187,7 +195,8 @@ impl Session<'_> {
         Ok(Facts {
             model: format!("Wacom {model}"),
             max,
-            area_mm: Vec2::new(max[0] as f32 / per_inch(3), max[1] as f32 / per_inch(4)) * MM_PER_INCH,
+            area_mm: Vec2::new(max[0] as f32 / per_inch(3), max[1] as f32 / per_inch(4))
+                * MM_PER_INCH,
             max_pressure: layout.max_pressure(),
             layout: Layout::WacomIv(layout),
         })
@@ -252,8 +261,9 @@ fn numbers(text: &str) -> Vec<i32> {
 
 /// `V1.3` somewhere in a model's name.
 fn version(model: &str) -> (u32, u32) {
-    let digits =
-        |t: &str| t.chars().take_while(char::is_ascii_digit).collect::<String>().parse().unwrap_or(0);
+    let digits = |t: &str| {
+        t.chars().take_while(char::is_ascii_digit).collect::<String>().parse().unwrap_or(0)
+    };
     let Some((_, tail)) = model.rsplit_once('V') else { return (0, 0) };
     (digits(tail), tail.split_once('.').map_or(0, |(_, minor)| digits(minor)))
 }

@@ -93,7 +93,11 @@ fn wacom_tablets_are_told_apart_by_their_name() {
     let mut line = Fake::new(9600, IV);
     assert!(line.open(Protocol::WacomV).is_none());
     let facts = line.open(Protocol::WacomIv).unwrap();
-    assert_eq!((facts.max, facts.max_pressure), ([32480, 32480], 127), "an early ROM has seven bits");
+    assert_eq!(
+        (facts.max, facts.max_pressure),
+        ([32480, 32480], 127),
+        "an early ROM has seven bits"
+    );
     assert!((facts.area_mm.x - 324.8).abs() < 0.1);
     assert!(line.said.ends_with(b"ZF1\rST\r"));
 
@@ -101,7 +105,10 @@ fn wacom_tablets_are_told_apart_by_their_name() {
     let mut line = Fake::new(9600, V);
     assert!(line.open(Protocol::WacomIv).is_none());
     let facts = line.open(Protocol::WacomV).unwrap();
-    assert_eq!((line.now, facts.area_mm, facts.max_pressure), (38400, Vec2::new(304.8, 240.6), 1023));
+    assert_eq!(
+        (line.now, facts.area_mm, facts.max_pressure),
+        (38400, Vec2::new(304.8, 240.6), 1023)
+    );
 
     // A Graphire does not answer the question for its size, and leaves the carriage return out.
     let mut line = Fake::new(9600, &[(b"~#", b"~#ET-0405-R00,V1.1")]);

@@ -1,4 +1,5 @@
-//! SummaSketch in MM format: 5 bytes, no pressure. Its proximity bit is turned over: set means away.
+//! SummaSketch in MM format: 5 bytes, no pressure. Its proximity bit is turned over: set means
+//! away.
 
 use super::low7;
 use crate::hid::report::{Parsed, PenReport};
@@ -36,7 +37,10 @@ mod tests {
     #[test]
     fn a_packet_reads_and_set_means_away() {
         let Parsed::Pen(r) = parse(&[0x9b, 5, 40, 6, 20]) else { panic!() };
-        assert_eq!((r.pos, r.tip, r.buttons), (Some([40 << 7 | 5, 20 << 7 | 6]), Some(true), Some(1)));
+        assert_eq!(
+            (r.pos, r.tip, r.buttons),
+            (Some([40 << 7 | 5, 20 << 7 | 6]), Some(true), Some(1))
+        );
         assert_eq!(parse(&[0xdb, 5, 40, 6, 20]), Parsed::Away);
         assert_eq!(parse(&[0x9b, 5, 40, 6]), Parsed::Broken);
     }

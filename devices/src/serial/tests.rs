@@ -7,7 +7,8 @@ use crate::serial::{Config, Handle, Protocol, start};
 use crate::sim::{Faults, Journal, SerialPen, SerialPenConfig, journal};
 
 const SOON: Duration = Duration::from_secs(5);
-const ALL: [Protocol; 4] = [Protocol::Isdv4, Protocol::WacomIv, Protocol::WacomV, Protocol::SummaMm];
+const ALL: [Protocol; 4] =
+    [Protocol::Isdv4, Protocol::WacomIv, Protocol::WacomV, Protocol::SummaMm];
 
 struct Rig {
     pen: SerialPen,
@@ -19,9 +20,11 @@ struct Rig {
 
 fn rig(protocol: Protocol, faults: Faults, rate: f32, known: bool) -> Rig {
     let Journal { pen, area_mm, .. } = journal();
-    let sim =
-        SerialPen::new(pen, SerialPenConfig { rate, faults, ..SerialPenConfig::new(protocol, area_mm) })
-            .unwrap();
+    let sim = SerialPen::new(
+        pen,
+        SerialPenConfig { rate, faults, ..SerialPenConfig::new(protocol, area_mm) },
+    )
+    .unwrap();
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
     let config = Config {
@@ -58,7 +61,8 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
         (0..400).for_each(|i| rig.step(i * 20_000));
         assert_eq!(rig.rx.waiting(), 0);
         let (mut worst, mut contacts, mut erased) = (0.0f32, 0, 0);
-        // A sample is stamped with the step in which it was read; the pose is that of one of the packets in it.
+        // A sample is stamped with the step in which it was read; the pose is that of one of the
+        // packets in it.
         for s in &rig.got {
             let p = pen(s);
             assert!(p.in_range || !p.tip);
@@ -67,7 +71,8 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
             }
             contacts += usize::from(p.tip);
             erased += usize::from(p.tip && p.tool == Tool::Eraser);
-            let near = (0..=20).map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
+            let near = (0..=20)
+                .map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
             worst = worst.max(near.fold(f32::INFINITY, f32::min));
         }
         let status = rig.handle.status();
@@ -77,7 +82,10 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
         );
         assert!(worst < 0.5 && contacts > 500, "{protocol:?}: {worst}");
         assert!(protocol == Protocol::SummaMm || erased > 50, "{protocol:?}: {erased}");
-        assert_eq!(status.counts.cut + status.counts.suspect + status.counts.stray + status.counts.broken, 0);
+        assert_eq!(
+            status.counts.cut + status.counts.suspect + status.counts.stray + status.counts.broken,
+            0
+        );
         assert_eq!(status.samples, rig.got.len() as u64);
         assert!(status.rate < 140.0, "{}", status.rate);
         if protocol != Protocol::SummaMm {
@@ -91,21 +99,23 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
 #[test]
 fn two_runs_give_the_same_bits() {
     let run = || {
-        let mut rig = rig(Protocol::Isdv4, Faults { seed: 5, tear: 0.02, ..Faults::default() }, 133.0, true);
+        let mut rig =
+            rig(Protocol::Isdv4, Faults { seed: 5, tear: 0.02, ..Faults::default() }, 133.0, true);
         (0..300).for_each(|i| rig.step(i * 8_333));
         rig.got
     };
     assert_eq!(run(), run());
 }
 
-/// Packets with a byte cut off, lost or doubled: every point that comes out is one that was sent, and each good packet
-/// between two bad ones is a point but for the one next to a fault.
+/// Packets with a byte cut off, lost or doubled: every point that comes out is one that was sent,
+/// and each good packet between two bad ones is a point but for the one next to a fault.
 #[test]
 fn no_bogus_point_from_a_noisy_line() {
     let long = std::env::var_os("SCULPTD_LONG").is_some();
     let packets = if long { 100_000 } else { 10_000 };
     for protocol in ALL {
-        let faults = Faults { seed: 11, tear: 0.02, drop: 0.02, duplicate: 0.02, ..Faults::default() };
+        let faults =
+            Faults { seed: 11, tear: 0.02, drop: 0.02, duplicate: 0.02, ..Faults::default() };
         let script = journal().pen;
         // Many packets a step, so that it takes no time: 2 us apart in the script.
         let rate = 20_000.0;
@@ -161,11 +171,13 @@ fn an_unplug_ends_the_visit() {
     let gone = pen(&rig.rx.next_within(SOON).unwrap());
     assert!(!gone.tip && !gone.in_range && gone.buttons == 0);
     let (_hold, leash) = crate::lifeline::pair();
-    assert!((0..100).any(|_| !rig.handle.status().connected || leash.wait(Duration::from_millis(20))));
+    assert!(
+        (0..100).any(|_| !rig.handle.status().connected || leash.wait(Duration::from_millis(20)))
+    );
 }
 
-/// Every byte of a packet cut, lost and doubled in turn: what comes out is only what was sent, and the stream is whole
-/// again from the second packet after the fault at the latest.
+/// Every byte of a packet cut, lost and doubled in turn: what comes out is only what was sent, and
+/// the stream is whole again from the second packet after the fault at the latest.
 #[test]
 fn every_single_fault_is_followed_by_sync() {
     for protocol in ALL {
@@ -179,7 +191,9 @@ fn every_single_fault_is_followed_by_sync() {
             got
         };
         let whole = read(&good);
-        assert!(whole.len() > 15 && whole.len() == good.iter().filter(|p| p[0] & 0xfc != 0xc0).count());
+        assert!(
+            whole.len() > 15 && whole.len() == good.iter().filter(|p| p[0] & 0xfc != 0xc0).count()
+        );
         let at = 8;
         for i in 0..good[at].len() {
             for fault in 0..3 {

@@ -17,7 +17,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// By the model's two letters (`UD`, `ET`, `CT`, `PL`, `DT`, ...) and its ROM's version, 0.0 where unknown.
+    /// By the model's two letters (`UD`, `ET`, `CT`, `PL`, `DT`, ...) and its ROM's version, 0.0
+    /// where unknown.
     pub fn new(model: &str, version: (u32, u32), max: [i32; 2]) -> Self {
         let graphire = model.starts_with("ET");
         let plain = model.starts_with("UD") && version.0 == 1 && version.1 <= 2;
@@ -104,9 +105,16 @@ mod tests {
         assert_eq!((l.length(), l.max_pressure()), (7, 255));
         let Parsed::Pen(r) = l.parse(&[0xe8, 31, 104, 0b0001100, 15, 80, 0x20]) else { panic!() };
         assert_eq!(r.pos, Some([31 << 7 | 104, 15 << 7 | 80]));
-        assert_eq!((r.tip, r.pressure, r.tool), (Some(true), Some((0x20 << 1 | 1) ^ 0x80), Some(Tool::Pen)));
+        assert_eq!(
+            (r.tip, r.pressure, r.tool),
+            (Some(true), Some((0x20 << 1 | 1) ^ 0x80), Some(Tool::Pen))
+        );
         let Parsed::Pen(r) = l.parse(&[0xe8, 1, 1, 0b0101000, 1, 1, 0x40]) else { panic!() };
-        assert_eq!((r.tool, r.buttons, r.pressure), (Some(Tool::Pen), Some(2), Some(0)), "now a button");
+        assert_eq!(
+            (r.tool, r.buttons, r.pressure),
+            (Some(Tool::Pen), Some(2), Some(0)),
+            "now a button"
+        );
         assert_eq!(l.parse(&[0xa0, 0, 0, 0, 0, 0, 0]), Parsed::Away);
         let Parsed::Pen(r) = l.parse(&[0xe8, 1, 1, 0b0100000, 1, 1, 0x40]) else { panic!() };
         assert_eq!((r.tool, r.buttons), (Some(Tool::Eraser), Some(0)));

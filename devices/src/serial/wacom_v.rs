@@ -1,4 +1,5 @@
-//! Wacom protocol V: serial Intuos and Intuos 2. 9 bytes; the lowest bit of the first is the channel.
+//! Wacom protocol V: serial Intuos and Intuos 2. 9 bytes; the lowest bit of the first is the
+//! channel.
 
 use super::{low7, signed7};
 use crate::hid::report::{Parsed, PenReport};
@@ -10,7 +11,8 @@ pub const MAX_PRESSURE: u32 = 1023;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     max: [i32; 2],
-    /// By channel: what lies on it. A tablet follows two tools at once; the first to come has the word.
+    /// By channel: what lies on it. A tablet follows two tools at once; the first to come has the
+    /// word.
     tools: [Option<Tool>; 2],
     leading: Option<usize>,
 }
@@ -37,8 +39,8 @@ impl Layout {
             }
             return Parsed::Nothing;
         }
-        // A pen packet has 101 above, an airbrush's second 10110 with its wheel where the pressure is; mice and lens
-        // cursors (101 with bits 3 or 4 set) only move.
+        // A pen packet has 101 above, an airbrush's second 10110 with its wheel where the pressure
+        // is; mice and lens cursors (101 with bits 3 or 4 set) only move.
         if b[0] & 0xa0 != 0xa0 || *self.leading.get_or_insert(channel) != channel {
             return Parsed::Nothing;
         }
@@ -71,7 +73,8 @@ impl Layout {
     }
 }
 
-/// By the twelve bits of the tool's type: pens and their like end in 2 with bit 3 clear, erasers in A, mice in 4, 6 or 7.
+/// By the twelve bits of the tool's type: pens and their like end in 2 with bit 3 clear, erasers in
+/// A, mice in 4, 6 or 7.
 fn tool(id: u32) -> Tool {
     match id & 0xf {
         0xa..=0xb => Tool::Eraser,
@@ -95,10 +98,17 @@ mod tests {
         let pen = [0xe2, 20, 5, 0b0101010, 9, 0b010_1011, 77, 0x7b, 5];
         let Parsed::Pen(r) = l.parse(&pen) else { panic!() };
         assert_eq!(r.pos, Some([20 << 9 | 5 << 2 | 1, 10 << 11 | 9 << 4 | 5]));
-        assert_eq!((r.tool, r.pressure, r.buttons), (Some(Tool::Eraser), Some(3 << 7 | 77), Some(1)));
+        assert_eq!(
+            (r.tool, r.pressure, r.buttons),
+            (Some(Tool::Eraser), Some(3 << 7 | 77), Some(1))
+        );
         assert_eq!(r.tilt, Some([-5.0, 5.0]));
         l.parse(&enter(0x822, 1));
-        assert_eq!(l.parse(&[0xe1, 1, 1, 1, 1, 1, 1, 1, 1]), Parsed::Nothing, "the other channel waits");
+        assert_eq!(
+            l.parse(&[0xe1, 1, 1, 1, 1, 1, 1, 1, 1]),
+            Parsed::Nothing,
+            "the other channel waits"
+        );
         assert_eq!(l.parse(&[0x80, 0, 0, 0, 0, 0, 0, 0, 0]), Parsed::Away);
         assert!(matches!(
             l.parse(&[0xe1, 1, 1, 1, 1, 1, 1, 1, 1]),

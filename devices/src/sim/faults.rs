@@ -36,7 +36,8 @@ pub enum Event<T> {
     Unplug,
 }
 
-/// A small seeded generator (SplitMix64, Steele et al. 2014): good enough to choose faults, the same on every machine.
+/// A small seeded generator (SplitMix64, Steele et al. 2014): good enough to choose faults, the
+/// same on every machine.
 #[derive(Debug, Clone)]
 pub struct Rng(u64);
 
@@ -81,7 +82,8 @@ impl<T: Clone> Line<T> {
     /// Puts a packet on the line.
     pub fn pass(&mut self, packet: T, mut out: impl FnMut(Event<T>)) {
         let f = self.faults;
-        // Each fault draws whether or not an earlier one struck, so that one ratio does not shift another's fate.
+        // Each fault draws whether or not an earlier one struck, so that one ratio does not shift
+        // another's fate.
         let [drop, duplicate, reorder, tear, stall, jump, unplug] =
             [f.drop, f.duplicate, f.reorder, f.tear, f.stall, f.clock_jump, f.unplug]
                 .map(|r| self.rng.unit() < r);
@@ -125,10 +127,20 @@ mod tests {
             events
         };
         assert_eq!(run(Faults::default()), (0..2000).map(Event::Whole).collect::<Vec<_>>());
-        let bad = Faults { seed: 7, drop: 0.1, duplicate: 0.1, reorder: 0.1, tear: 0.1, ..Faults::default() };
+        let bad = Faults {
+            seed: 7,
+            drop: 0.1,
+            duplicate: 0.1,
+            reorder: 0.1,
+            tear: 0.1,
+            ..Faults::default()
+        };
         assert_eq!(run(bad), run(bad));
         assert_ne!(run(bad), run(Faults { seed: 8, ..bad }));
         let torn = run(bad).iter().filter(|e| matches!(e, Event::Torn(..))).count();
-        assert!((120..280).contains(&torn), "{torn} of 2000 at a ratio of a tenth, less the dropped");
+        assert!(
+            (120..280).contains(&torn),
+            "{torn} of 2000 at a ratio of a tenth, less the dropped"
+        );
     }
 }

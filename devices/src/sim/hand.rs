@@ -1,15 +1,16 @@
 //! A simulated hand: bones and joints moved by a few plain figures, as a pure function of time.
 //!
-//! The bone lengths are those of a medium adult hand in mm (means over men and women of Buryanov and Kotiuk 2010 for the
-//! fingers, rounded to whole mm); the joints bend about one axis, the distal one two thirds as far as the middle one, which
-//! is how a hand's tendons couple them.
+//! The bone lengths are those of a medium adult hand in mm (means over men and women of Buryanov
+//! and Kotiuk 2010 for the fingers, rounded to whole mm); the joints bend about one axis, the
+//! distal one two thirds as far as the middle one, which is how a hand's tendons couple them.
 
 use glam::{Mat3, Quat, Vec3, vec3};
 
 use super::pen::smooth;
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// Metacarpal, proximal, middle and distal bone, thumb first; a thumb has no metacarpal of its own in the protocol.
+/// Metacarpal, proximal, middle and distal bone, thumb first; a thumb has no metacarpal of its own
+/// in the protocol.
 const BONES: [[f32; 4]; 5] = [
     [0.0, 46.0, 32.0, 22.0],
     [68.0, 40.0, 23.0, 16.0],
@@ -17,7 +18,8 @@ const BONES: [[f32; 4]; 5] = [
     [58.0, 41.0, 26.0, 17.0],
     [54.0, 33.0, 18.0, 16.0],
 ];
-/// Where each finger leaves the wrist, sideways, thumb side first: mm from the middle of a right hand.
+/// Where each finger leaves the wrist, sideways, thumb side first: mm from the middle of a right
+/// hand.
 const ROOTS: [f32; 5] = [-24.0, -12.0, -3.0, 6.0, 15.0];
 /// Degrees by which each finger spreads from the middle one.
 const SPREAD: [f32; 5] = [-38.0, -7.0, 0.0, 7.0, 14.0];
@@ -115,9 +117,12 @@ impl Performer {
     pub fn at(&self, t_us: u64) -> Option<(HandKey, i32)> {
         let next = self.keys.partition_point(|k| k.t_us <= t_us);
         let key = self.keys.get(next.checked_sub(1)?)?;
-        let visit = self.keys[..next].windows(2).filter(|w| !w[0].present && w[1].present).count() as i32;
+        let visit =
+            self.keys[..next].windows(2).filter(|w| !w[0].present && w[1].present).count() as i32;
         let pose = match self.keys.get(next) {
-            Some(to) => key.mix(to, smooth((t_us - key.t_us) as f32 / (to.t_us - key.t_us).max(1) as f32)),
+            Some(to) => {
+                key.mix(to, smooth((t_us - key.t_us) as f32 / (to.t_us - key.t_us).max(1) as f32))
+            }
             None => *key,
         };
         key.present.then_some((pose, visit))
@@ -135,7 +140,8 @@ impl HandScript {
         self.performers.iter().filter_map(|p| p.keys.last()).map(|k| k.t_us).max().unwrap_or(0)
     }
 
-    /// Everything that a tracker sees at `t_us`. A hand that comes back has a new id, as with a real tracker.
+    /// Everything that a tracker sees at `t_us`. A hand that comes back has a new id, as with a
+    /// real tracker.
     pub fn at(&self, t_us: u64, frame: i64) -> Hands {
         let mut out = Hands { frame, ..Hands::default() };
         for (i, who) in self.performers.iter().take(MAX_HANDS).enumerate() {
@@ -157,9 +163,11 @@ impl HandScript {
 /// Every joint of a hand in this pose, in the tracker's axes.
 pub fn skeleton(pose: &HandKey, left: bool) -> Hand {
     let [yaw, pitch, roll] = pose.yaw_pitch_roll;
-    let turn = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
+    let turn =
+        Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
     let side = if left { -1.0 } else { 1.0 };
-    // In the hand's own axes the fingers run along -z and the back looks along +y; a left hand is the mirror image.
+    // In the hand's own axes the fingers run along -z and the back looks along +y; a left hand is
+    // the mirror image.
     let place = |v: Vec3| pose.palm + turn * vec3(side * v.x, v.y, v.z);
     let aim = |v: Vec3| turn * vec3(side * v.x, v.y, v.z);
     let mut own = [0, 1, 2, 3, 4].map(|f| chain(f, pose.curl[f], pose.spread));
@@ -202,18 +210,21 @@ fn chain(finger: usize, curl: f32, spread: f32) -> [Vec3; 5] {
     let thumb = finger == 0;
     // Spread on purpose, fingers stand two and a half times as far apart as at rest.
     let apart = (1.0 + 1.5 * spread) * (1.0 - 0.6 * curl);
-    let yaw =
-        Quat::from_rotation_y(-SPREAD[finger].to_radians() * if thumb { 1.0 - 0.6 * curl } else { apart });
+    let yaw = Quat::from_rotation_y(
+        -SPREAD[finger].to_radians() * if thumb { 1.0 - 0.6 * curl } else { apart },
+    );
     // A thumb closes across the palm, the fingers into it.
     let axis = if thumb { vec3(0.35, 0.85, 0.0).normalize() } else { Vec3::X };
     let bend = if thumb { [0.0, -0.5, -0.6, -0.7] } else { [0.0, -1.45, -1.7, -1.15] };
-    let mut at = vec3(ROOTS[finger], if thumb { -8.0 } else { 0.0 }, PALM - if thumb { 14.0 } else { 4.0 });
+    let mut at =
+        vec3(ROOTS[finger], if thumb { -8.0 } else { 0.0 }, PALM - if thumb { 14.0 } else { 4.0 });
     let mut joints = [at; 5];
     let mut turn = yaw;
     for bone in 0..4 {
         // The metacarpals spread less than the fingers do.
         let spread = if bone == 0 { Quat::IDENTITY.slerp(yaw, 0.5) } else { yaw };
-        turn = if bone == 0 { spread } else { turn * Quat::from_axis_angle(axis, bend[bone] * curl) };
+        turn =
+            if bone == 0 { spread } else { turn * Quat::from_axis_angle(axis, bend[bone] * curl) };
         if bone == 1 {
             turn = yaw * Quat::from_axis_angle(axis, bend[1] * curl);
         }
@@ -223,8 +234,8 @@ fn chain(finger: usize, curl: f32, spread: f32) -> [Vec3; 5] {
     joints
 }
 
-/// Brings the tips of thumb and index finger together, each joint by its share of the way, so that bones keep nearly
-/// their lengths.
+/// Brings the tips of thumb and index finger together, each joint by its share of the way, so that
+/// bones keep nearly their lengths.
 fn pinch(own: &mut [[Vec3; 5]; 5], by: f32) {
     let meet = (own[0][4] + own[1][4]) * 0.5 + vec3(0.0, -12.0, 8.0);
     for (finger, apart) in [(0, vec3(-4.0, -3.0, 0.0)), (1, vec3(4.0, 3.0, 0.0))] {
@@ -235,7 +246,8 @@ fn pinch(own: &mut [[Vec3; 5]; 5], by: f32) {
     }
 }
 
-/// The hand's basis as the protocol gives it: three rows, x across, y out of the back, z toward the wrist.
+/// The hand's basis as the protocol gives it: three rows, x across, y out of the back, z toward the
+/// wrist.
 pub(super) fn basis(hand: &Hand) -> Mat3 {
     hand.orientation.map_or(Mat3::IDENTITY, Mat3::from_quat)
 }
@@ -267,8 +279,10 @@ mod tests {
 
     #[test]
     fn left_mirrors_right_and_the_thumb_is_on_the_inside() {
-        let (r, l) =
-            (skeleton(&HandKey::flat(0, Vec3::ZERO), false), skeleton(&HandKey::flat(0, Vec3::ZERO), true));
+        let (r, l) = (
+            skeleton(&HandKey::flat(0, Vec3::ZERO), false),
+            skeleton(&HandKey::flat(0, Vec3::ZERO), true),
+        );
         let (rt, lt) = (r.fingers[0].unwrap().tip, l.fingers[0].unwrap().tip);
         assert!(rt.x < 0.0, "a right hand, palm down, has its thumb on the left: {rt}");
         assert!((rt * vec3(-1.0, 1.0, 1.0)).distance(lt) < 1e-3);

@@ -1,5 +1,5 @@
-//! The performance of the demo and of the ghosts: a pen that shapes a form, a hand that dips in, a serial pen that adds
-//! the finish.
+//! The performance of the demo and of the ghosts: a pen that shapes a form, a hand that dips in, a
+//! serial pen that adds the finish.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -24,8 +24,9 @@ pub struct Journal {
 /// A5, the most common size of tablet, lying across.
 const AREA: Vec2 = Vec2::new(210.0, 148.0);
 
-/// About 20 s: 0 to 9 s the pen (ring, wave, spiral, dots), 7 to 15 s the hand (dips in, pinches, makes a fist, leaves),
-/// 14 to 20 s the serial pen (two arcs and a smile). They overlap, so that each is seen beside another.
+/// About 20 s: 0 to 9 s the pen (ring, wave, spiral, dots), 7 to 15 s the hand (dips in, pinches,
+/// makes a fist, leaves), 14 to 20 s the serial pen (two arcs and a smile). They overlap, so that
+/// each is seen beside another.
 pub fn journal() -> Journal {
     let (pen, serial_pen, hands) = (PenScript::new(pen()), PenScript::new(serial()), hands());
     let duration_us = pen.end_us().max(serial_pen.end_us()).max(hands.end_us());
@@ -34,7 +35,15 @@ pub fn journal() -> Journal {
 
 fn stroke(from_s: f32, to_s: f32, shape: Shape, pressure: f32, tilt: Vec2) -> Stroke {
     let us = |s: f32| (f64::from(s) * 1e6) as u64;
-    Stroke { from_us: us(from_s), to_us: us(to_s), shape, pressure, tilt, eraser: false, buttons: 0 }
+    Stroke {
+        from_us: us(from_s),
+        to_us: us(to_s),
+        shape,
+        pressure,
+        tilt,
+        eraser: false,
+        buttons: 0,
+    }
 }
 
 fn pen() -> Vec<Stroke> {
@@ -50,14 +59,25 @@ fn pen() -> Vec<Stroke> {
         stroke(
             2.6,
             4.2,
-            Shape::Wave { from: c - vec2(30.0, 0.0), to: c + vec2(30.0, 0.0), swing: 12.0, times: 3.0 },
+            Shape::Wave {
+                from: c - vec2(30.0, 0.0),
+                to: c + vec2(30.0, 0.0),
+                swing: 12.0,
+                times: 3.0,
+            },
             0.9,
             vec2(-0.2, 0.4),
         ),
         // The other end of the pen takes a little away again.
         Stroke {
             eraser: true,
-            ..stroke(4.5, 5.3, Shape::Line(c - vec2(24.0, 22.0), c + vec2(24.0, -22.0)), 0.6, Vec2::ZERO)
+            ..stroke(
+                4.5,
+                5.3,
+                Shape::Line(c - vec2(24.0, 22.0), c + vec2(24.0, -22.0)),
+                0.6,
+                Vec2::ZERO,
+            )
         },
         stroke(
             6.0,
@@ -79,7 +99,8 @@ fn pen() -> Vec<Stroke> {
 
 fn serial() -> Vec<Stroke> {
     let c = AREA * 0.5;
-    let eye = |x: f32| Shape::Turn { centre: c + vec2(x, -14.0), radius: [5.0, 5.0], angle: [0.0, TAU] };
+    let eye =
+        |x: f32| Shape::Turn { centre: c + vec2(x, -14.0), radius: [5.0, 5.0], angle: [0.0, TAU] };
     vec![
         stroke(14.3, 15.6, eye(-16.0), 0.8, Vec2::ZERO),
         stroke(15.9, 17.2, eye(16.0), 0.8, Vec2::ZERO),
@@ -121,7 +142,10 @@ fn hands() -> HandScript {
         over(13.4, -170.0, 330.0, 60.0).gone(),
     ];
     HandScript {
-        performers: vec![Performer { left: false, keys: right }, Performer { left: true, keys: left }],
+        performers: vec![
+            Performer { left: false, keys: right },
+            Performer { left: true, keys: left },
+        ],
     }
 }
 
@@ -147,6 +171,9 @@ mod tests {
             eraser += usize::from(j.pen.at(t).tip && j.pen.at(t).eraser);
             with_pen += usize::from(hands.count > 0 && j.pen.at(t).tip);
         }
-        assert!(both_hands > 100 && eraser > 100 && with_pen > 20, "{both_hands} {eraser} {with_pen}");
+        assert!(
+            both_hands > 100 && eraser > 100 && with_pen > 20,
+            "{both_hands} {eraser} {with_pen}"
+        );
     }
 }

@@ -1,10 +1,13 @@
-//! Simulated devices that speak bytes: what they say goes through the same parsers and reader threads as a real device's.
+//! Simulated devices that speak bytes: what they say goes through the same parsers and reader
+//! threads as a real device's.
 //!
-//! A **script** ([`PenScript`], [`HandScript`]) says where a pen or a hand is at any instant; a **device** ([`Tracker`] and
-//! its fellows) turns that into wire bytes; [`Faults`] spoil them, the same way for the same seed. A device can be stepped
-//! (`advance(until)`), so that with a manual [`crate::Clock`] two runs give the same bits.
+//! A **script** ([`PenScript`], [`HandScript`]) says where a pen or a hand is at any instant; a
+//! **device** ([`Tracker`] and its fellows) turns that into wire bytes; [`Faults`] spoil them, the
+//! same way for the same seed. A device can be stepped (`advance(until)`), so that with a manual
+//! [`crate::Clock`] two runs give the same bits.
 //!
-//! A hand tracker, its client, and every frame of a performance, with no hardware and no waiting for the clock:
+//! A hand tracker, its client, and every frame of a performance, with no hardware and no waiting
+//! for the clock:
 //!
 //! ```
 //! use std::time::Duration;

@@ -2,7 +2,8 @@
 
 use glam::{Vec2, vec2};
 
-/// How high over the surface the pen travels between strokes, as a share of what the device can sense.
+/// How high over the surface the pen travels between strokes, as a share of what the device can
+/// sense.
 const HOVER: f32 = 0.5;
 /// A pause longer than this is spent out of range: the hand rests.
 const REST_US: u64 = 1_200_000;
@@ -15,7 +16,8 @@ const PRESS_US: u64 = 90_000;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     Line(Vec2, Vec2),
-    /// Centre, first and last radius, first and last angle in radians: a circle, an arc or a spiral.
+    /// Centre, first and last radius, first and last angle in radians: a circle, an arc or a
+    /// spiral.
     Turn {
         centre: Vec2,
         radius: [f32; 2],
@@ -132,7 +134,8 @@ impl PenScript {
         {
             return touching(s, t_us);
         }
-        let (before, after) = (next.checked_sub(1).map(|i| &self.strokes[i]), self.strokes.get(next));
+        let (before, after) =
+            (next.checked_sub(1).map(|i| &self.strokes[i]), self.strokes.get(next));
         hovering(before, after, t_us)
     }
 }
@@ -157,8 +160,9 @@ fn touching(s: &Stroke, t_us: u64) -> PenPose {
 fn hovering(before: Option<&Stroke>, after: Option<&Stroke>, t_us: u64) -> PenPose {
     let since = before.map_or(u64::MAX, |b| t_us - b.to_us);
     let until = after.map_or(u64::MAX, |a| a.from_us - t_us);
-    let one_visit =
-        before.zip(after).is_some_and(|(b, a)| a.from_us - b.to_us <= REST_US && a.eraser == b.eraser);
+    let one_visit = before
+        .zip(after)
+        .is_some_and(|(b, a)| a.from_us - b.to_us <= REST_US && a.eraser == b.eraser);
     let in_range = one_visit || since < HOVER_US || until <= HOVER_US;
     let (from, to) = (before.map(|b| b.shape.at(1.0)), after.map(|a| a.shape.at(0.0)));
     let share = if one_visit { since as f32 / (since + until) as f32 } else { 0.0 };

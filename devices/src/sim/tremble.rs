@@ -1,5 +1,5 @@
-//! What a tracker makes of a hand: noise, hands lost and found under another number, fingers it cannot see, a clock that
-//! runs at its own pace. Seeded: the same frames for the same seed.
+//! What a tracker makes of a hand: noise, hands lost and found under another number, fingers it
+//! cannot see, a clock that runs at its own pace. Seeded: the same frames for the same seed.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 #[serde(default, deny_unknown_fields)]
 pub struct Tremble {
     pub seed: u64,
-    /// Standard deviation of every joint of a hand at rest, mm along each axis. Trackers of the Leap kind: 0.2 (Weichert et
-    /// al., Sensors 2013).
+    /// Standard deviation of every joint of a hand at rest, mm along each axis. Trackers of the
+    /// Leap kind: 0.2 (Weichert et al., Sensors 2013).
     pub rest_mm: f32,
     /// The same of a hand in motion (from [`FAST_MM_S`] on); 1.2 in the same measurements.
     pub moving_mm: f32,
@@ -21,7 +21,8 @@ pub struct Tremble {
     pub dropout: f32,
     /// Share of frames at which a hand's number changes though it never left.
     pub new_id: f32,
-    /// Share of frames in which a finger other than thumb and index begins to be hidden, for 1 to 7 frames.
+    /// Share of frames in which a finger other than thumb and index begins to be hidden, for 1 to 7
+    /// frames.
     pub occlude: f32,
     /// By which the tracker's clock runs fast, parts in a million.
     pub skew_ppm: f32,
@@ -35,8 +36,8 @@ pub const FAST_MM_S: f32 = 200.0;
 pub struct Trembling {
     figures: Tremble,
     rng: Rng,
-    /// For each performer: frames for which the hand is still lost, the hidden finger and for how long, the last number given
-    /// by the script, and the number in its place.
+    /// For each performer: frames for which the hand is still lost, the hidden finger and for how
+    /// long, the last number given by the script, and the number in its place.
     hands: [Fate; MAX_HANDS],
     ids: i32,
 }
@@ -83,8 +84,10 @@ impl Trembling {
 
     fn one(&mut self, slot: usize, hand: &Hand) -> Option<Hand> {
         let f = self.figures;
-        // Every draw is made whether or not it is needed, so that one ratio does not shift another's fate.
-        let [drop, renamed, occluded] = [f.dropout, f.new_id, f.occlude].map(|r| self.rng.unit() < r);
+        // Every draw is made whether or not it is needed, so that one ratio does not shift
+        // another's fate.
+        let [drop, renamed, occluded] =
+            [f.dropout, f.new_id, f.occlude].map(|r| self.rng.unit() < r);
         let (span, which) = (1 + self.rng.below(7) as u32, 2 + self.rng.below(3) as usize);
         let fate = &mut self.hands[slot];
         if fate.lost > 0 || drop {
@@ -95,7 +98,8 @@ impl Trembling {
         }
         let mut out = *hand;
         if f.dropout > 0.0 || f.new_id > 0.0 {
-            let known = fate.id.filter(|(script, _)| *script == hand.id && !renamed).map(|(_, id)| id);
+            let known =
+                fate.id.filter(|(script, _)| *script == hand.id && !renamed).map(|(_, id)| id);
             out.id = known.unwrap_or_else(|| {
                 self.ids += 1;
                 self.ids
@@ -149,7 +153,8 @@ mod tests {
             (0..4000).map(|_| t.apply(&hands).hands[0].palm - hand.palm).collect::<Vec<_>>()
         };
         let all = run(figures);
-        let sigma = (all.iter().map(|o| o.length_squared()).sum::<f32>() / (3.0 * all.len() as f32)).sqrt();
+        let sigma =
+            (all.iter().map(|o| o.length_squared()).sum::<f32>() / (3.0 * all.len() as f32)).sqrt();
         assert!((sigma - 0.2).abs() < 0.01, "{sigma} mm");
         assert_eq!(all, run(figures));
         assert_ne!(all, run(Tremble { seed: 4, ..figures }));
@@ -159,7 +164,8 @@ mod tests {
     fn hands_are_lost_for_a_while_and_found_under_another_number() {
         let mut hands = Hands { count: 1, ..Hands::default() };
         hands.hands[0] = skeleton(&HandKey::flat(0, Vec3::ZERO), false);
-        let mut t = Trembling::new(Tremble { seed: 1, dropout: 0.02, occlude: 0.05, ..Tremble::default() });
+        let mut t =
+            Trembling::new(Tremble { seed: 1, dropout: 0.02, occlude: 0.05, ..Tremble::default() });
         let (mut gaps, mut longest, mut gap, mut hidden) = (0, 0, 0, 0);
         let mut ids = std::collections::BTreeSet::new();
         for _ in 0..5000 {

@@ -16,7 +16,8 @@ fn folder() -> std::path::PathBuf {
 fn every_file_is_valid_canonical_and_built_in() {
     let mut names = BTreeSet::new();
     let listed =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/builtin.rs")).unwrap();
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/builtin.rs"))
+            .unwrap();
     let files = super::files(&folder(), ".toml");
     for path in &files {
         let file = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -39,8 +40,10 @@ fn the_udev_rule_names_every_maker() {
     for tablet in Catalogue::builtin().unwrap().tablets() {
         for id in &tablet.id {
             let maker = format!("ATTRS{{idVendor}}==\"{:04x}\", TAG", id.vid);
-            let one =
-                format!("ATTRS{{idVendor}}==\"{:04x}\", ATTRS{{idProduct}}==\"{:04x}\"", id.vid, id.pid);
+            let one = format!(
+                "ATTRS{{idVendor}}==\"{:04x}\", ATTRS{{idProduct}}==\"{:04x}\"",
+                id.vid, id.pid
+            );
             assert!(
                 rule.contains(&maker) || rule.contains(&one),
                 "{}: {:04x}:{:04x}",
@@ -79,7 +82,8 @@ fn recording() -> HidRecording {
         interface: 0,
         bytes: vec![8, flags, 0x10, 0x27, 0x88, 0x13, 0, pressure, 0, 0, 10, 0],
     };
-    let reports = vec![report(0, 0x80, 0), report(1, 0x81, 16), report(2, 0x80, 0), report(3, 0, 0)];
+    let reports =
+        vec![report(0, 0x80, 0), report(1, 0x81, 16), report(2, 0x80, 0), report(3, 0, 0)];
     HidRecording { interfaces: vec![who], reports }
 }
 
@@ -111,7 +115,9 @@ fn a_new_tablet_is_one_file_in_a_folder() {
 fn a_broken_file_in_the_folder_is_named() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::File::create(dir.path().join("bad.toml"))
-        .and_then(|mut f| std::io::Write::write_all(&mut f, NEW.replace("buttons", "knobs").as_bytes()))
+        .and_then(|mut f| {
+            std::io::Write::write_all(&mut f, NEW.replace("buttons", "knobs").as_bytes())
+        })
         .unwrap();
     let e = Catalogue::builtin().unwrap().with_dir(dir.path()).unwrap_err().to_string();
     assert!(e.contains("bad.toml") && e.contains("knobs"), "{e}");
@@ -124,7 +130,13 @@ fn usb_strings_tell_namesakes_apart() {
         let mut raw = vec![(2 + 2 * text.len()) as u8, 3];
         raw.extend(text.encode_utf16().flat_map(u16::to_le_bytes));
         let strings = vec![(201, raw)];
-        let who = Identity { vid: 0x256c, pid: 0x6d, seen_lengths: vec![12], strings, ..Identity::default() };
+        let who = Identity {
+            vid: 0x256c,
+            pid: 0x6d,
+            seen_lengths: vec![12],
+            strings,
+            ..Identity::default()
+        };
         match catalogue.identify(&who) {
             Identification::Identified(found) => found.tablet.name.clone(),
             other => format!("{other:?}"),

@@ -1,4 +1,5 @@
-//! Every recording and descriptor of the corpus: known or declined with a reason, and what comes out is lawful.
+//! Every recording and descriptor of the corpus: known or declined with a reason, and what comes
+//! out is lawful.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,11 +26,16 @@ fn lawful(name: &str, samples: &[Sample]) {
             "{at}"
         );
         assert!(p.pressure.is_none_or(|v| (0.0..=1.0).contains(&v)), "{at}");
-        assert!(p.tilt.is_none_or(|t| t.abs().max_element() <= std::f32::consts::FRAC_PI_2 + 1e-6), "{at}");
+        assert!(
+            p.tilt.is_none_or(|t| t.abs().max_element() <= std::f32::consts::FRAC_PI_2 + 1e-6),
+            "{at}"
+        );
     }
     assert!(!tip, "{name}: the last contact has no end");
-    let visit =
-        samples.iter().rev().find_map(|s| if let Body::Pen(p) = s.body { Some(p.in_range) } else { None });
+    let visit = samples
+        .iter()
+        .rev()
+        .find_map(|s| if let Body::Pen(p) = s.body { Some(p.in_range) } else { None });
     assert_ne!(visit, Some(true), "{name}: the last visit has no end");
 }
 
@@ -58,7 +64,10 @@ fn every_recording_is_read_or_declined_with_a_reason() {
                 let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
                 let reports = hid_recorder::parse(&text).unwrap().reports.len();
                 let pens = samples.iter().filter(|s| matches!(s.body, Body::Pen(_))).count();
-                println!("{name:50} {:30} {reports:5} reports {pens:5} samples", player.device().name);
+                println!(
+                    "{name:50} {:30} {reports:5} reports {pens:5} samples",
+                    player.device().name
+                );
                 if reports > 0 && pens == 0 {
                     silent.push(name);
                 }
@@ -81,7 +90,9 @@ fn every_recording_is_read_or_declined_with_a_reason() {
 fn playing_in_steps_gives_what_playing_at_once_gives() {
     let Some(corpus) = super::devices() else { return };
     let catalogue = Catalogue::builtin().unwrap();
-    for name in ["DIGImend_Huion_K58.hid", "Wacom_Intuos4_4x6_056a_00B8.hid", "DIGImend_Ugee_M708_v2.hid"] {
+    for name in
+        ["DIGImend_Huion_K58.hid", "Wacom_Intuos4_4x6_056a_00B8.hid", "DIGImend_Ugee_M708_v2.hid"]
+    {
         let path = corpus.join("hid").join(name);
         let (_, stepped) = play(&path, &catalogue).unwrap();
         let mut player = Player::open(&path, DeviceId(0), &catalogue).unwrap();
@@ -92,7 +103,8 @@ fn playing_in_steps_gives_what_playing_at_once_gives() {
             now += 8333;
             player.advance(now, &mut |s| ticked.push(s));
         }
-        let moved: Vec<Sample> = stepped.iter().map(|s| Sample { t_us: s.t_us + 7_000_000, ..*s }).collect();
+        let moved: Vec<Sample> =
+            stepped.iter().map(|s| Sample { t_us: s.t_us + 7_000_000, ..*s }).collect();
         assert_eq!(ticked, moved, "{name}");
     }
 }

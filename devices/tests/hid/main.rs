@@ -1,4 +1,5 @@
-//! Pens over HID against real devices: the kernel's own decode, every recording, another descriptor parser.
+//! Pens over HID against real devices: the kernel's own decode, every recording, another descriptor
+//! parser.
 
 #![allow(clippy::print_stdout)] // Tests print what they compared and what they skipped.
 
@@ -20,7 +21,8 @@ fn devices() -> Option<PathBuf> {
 }
 
 fn files(dir: &std::path::Path, ending: &str) -> Vec<PathBuf> {
-    let mut all: Vec<PathBuf> = std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut all: Vec<PathBuf> =
+        std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().path()).collect();
     all.retain(|p| p.to_string_lossy().ends_with(ending));
     all.sort();
     all

@@ -68,11 +68,17 @@ fn compare(oracle: &str, recording: &Path) -> Tally {
         tally.check("tool", (p.tool == Tool::Eraser) == (row.n("tool_rubber") == 1));
         let pressure = (f64::from(p.pressure.unwrap()) * max_pressure as f64).round() as i64;
         tally.check("pressure", pressure == row.n("pressure"));
-        tally.check("buttons", i64::from(p.buttons) == row.n("btn_stylus") + 2 * row.n("btn_stylus2"));
-        let off = (i64::from(p.raw[0]) - row.n("x")).abs().max((i64::from(p.raw[1]) - row.n("y")).abs());
+        tally.check(
+            "buttons",
+            i64::from(p.buttons) == row.n("btn_stylus") + 2 * row.n("btn_stylus2"),
+        );
+        let off =
+            (i64::from(p.raw[0]) - row.n("x")).abs().max((i64::from(p.raw[1]) - row.n("y")).abs());
         tally.worst_xy = tally.worst_xy.max(off);
         if let Some(t) = p.tilt {
-            let off = |ours: f32, theirs: &str| (f64::from(ours).to_degrees() - row.n(theirs) as f64).abs();
+            let off = |ours: f32, theirs: &str| {
+                (f64::from(ours).to_degrees() - row.n(theirs) as f64).abs()
+            };
             tally.worst_tilt = tally.worst_tilt.max(off(t.x, "tilt_x")).max(off(t.y, "tilt_y"));
         }
         if max_distance > 0 {
@@ -88,7 +94,9 @@ fn every_recording_with_an_oracle_agrees_with_the_kernel() {
     let Some(corpus) = super::devices() else { return };
     let oracles = super::files(&corpus.join("oracle"), ".csv");
     assert!(oracles.len() >= 8, "{oracles:?}");
-    println!("recording                              reports placed  prox tool press butt    xy  tilt  dist");
+    println!(
+        "recording                              reports placed  prox tool press butt    xy  tilt  dist"
+    );
     for path in oracles {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         let plain = corpus.join(format!("hid/{name}.hid"));

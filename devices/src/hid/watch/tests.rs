@@ -38,7 +38,8 @@ impl Sim {
         let who = tablet::identity(&catalogue, model).unwrap();
         let Identification::Identified(found) = catalogue.identify(&who) else { panic!("{model}") };
         let (journal, a) = (journal(), found.tablet.area);
-        let script = journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
+        let script =
+            journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
         let (tablet, end) = Tablet::new(&found, script, TabletConfig::default());
         let node = Node { path: path.into(), serial: serial.into(), who, may_be_pen: true };
         self.0.lock().unwrap().push((node, Some(Ok(end))));
@@ -135,6 +136,7 @@ fn namesakes_are_asked_about_once_and_the_answer_holds() {
         assert_eq!((found.tablet.name.as_str(), names.len()), ("Huion H640P", 0));
     }
     let models = [("256c:006d".to_owned(), "No such".to_owned())].into();
-    let e = choose(&node, &who, &HidConfig { models, ..HidConfig::default() }, &catalogue).unwrap_err();
+    let e =
+        choose(&node, &who, &HidConfig { models, ..HidConfig::default() }, &catalogue).unwrap_err();
     assert!(e.contains("No such"), "{e}");
 }

@@ -30,7 +30,12 @@ impl Model {
         let max = counts_of(area_mm, per_mm);
         let layout = match protocol {
             Protocol::Isdv4 => {
-                let query = isdv4::Query { max, max_pressure, max_tilt: [TILT_LIMIT as u32; 2], version: 1 };
+                let query = isdv4::Query {
+                    max,
+                    max_pressure,
+                    max_tilt: [TILT_LIMIT as u32; 2],
+                    version: 1,
+                };
                 Layout::Isdv4(isdv4::Layout::new(query, None, false))
             }
             Protocol::WacomIv => Layout::WacomIv(wacom_iv::Layout::new("UD", (1, 4), max)),
@@ -65,7 +70,11 @@ impl Model {
     fn counts(&self, pose: &PenPose) -> (u32, u32, u32) {
         let share = (pose.pos_mm / self.facts.area_mm).clamp(Vec2::ZERO, Vec2::ONE);
         let at = |i: usize| (share[i] * self.facts.max[i] as f32).round() as u32;
-        (at(0), at(1), (pose.pressure.clamp(0.0, 1.0) * self.facts.max_pressure as f32).round() as u32)
+        (
+            at(0),
+            at(1),
+            (pose.pressure.clamp(0.0, 1.0) * self.facts.max_pressure as f32).round() as u32,
+        )
     }
 
     fn packet(&self, pose: &PenPose) -> Vec<u8> {
@@ -95,9 +104,20 @@ impl Model {
             }
             Protocol::WacomV => seven(
                 0xe0 | second << 2 | side << 1,
-                &[x >> 9, x >> 2, (x & 3) << 5 | y >> 11, y >> 4, (y & 0xf) << 3 | p >> 7, p, tx, ty],
+                &[
+                    x >> 9,
+                    x >> 2,
+                    (x & 3) << 5 | y >> 11,
+                    y >> 4,
+                    (y & 0xf) << 3 | p >> 7,
+                    p,
+                    tx,
+                    ty,
+                ],
             ),
-            Protocol::SummaMm => seven(0x98 | second << 2 | side << 1 | tip, &[x, x >> 7, y, y >> 7]),
+            Protocol::SummaMm => {
+                seven(0x98 | second << 2 | side << 1 | tip, &[x, x >> 7, y, y >> 7])
+            }
         }
     }
 
@@ -109,7 +129,8 @@ impl Model {
         }
     }
 
-    /// The answer to what the host has written so far, which is taken out of `said`; and whether the stream is on.
+    /// The answer to what the host has written so far, which is taken out of `said`; and whether
+    /// the stream is on.
     pub(super) fn answer(&self, said: &mut Vec<u8>, streaming: &mut bool) -> Vec<u8> {
         let (mut reply, words) = (Vec::new(), std::mem::take(said));
         let [x, y] = self.facts.max.map(|m| m as u32);
@@ -133,24 +154,38 @@ impl Model {
                     reply.push(0xc0);
                     reply.extend(fields.map(|v| (v & 0x7f) as u8));
                 }
-                Protocol::Isdv4 if is(b"%", &mut rest) => reply.extend([0xc0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]),
-                Protocol::WacomIv if is(b"~#", &mut rest) => reply.extend(b"~#UD-0608-R00,V1.4-4\r"),
+                Protocol::Isdv4 if is(b"%", &mut rest) => {
+                    reply.extend([0xc0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0])
+                }
+                Protocol::WacomIv if is(b"~#", &mut rest) => {
+                    reply.extend(b"~#UD-0608-R00,V1.4-4\r")
+                }
                 Protocol::WacomV if is(b"~#", &mut rest) => reply.extend(b"~#GD-0608-R,V1.2-0\r"),
                 Protocol::WacomIv | Protocol::WacomV if is(b"~C\r", &mut rest) => {
                     reply.extend(format!("~C{x},{y}\r").bytes());
                 }
-                Protocol::WacomIv if is(b"~R\r", &mut rest) => reply.extend(b"~RE202C910,002,02,1270,1270\r"),
+                Protocol::WacomIv if is(b"~R\r", &mut rest) => {
+                    reply.extend(b"~RE202C910,002,02,1270,1270\r")
+                }
                 Protocol::WacomIv | Protocol::WacomV if is(b"ST\r", &mut rest) => *streaming = true,
                 Protocol::WacomIv | Protocol::WacomV if is(b"\r#", &mut rest) => *streaming = false,
                 Protocol::SummaMm if is(b"z?", &mut rest) => reply.extend(b"MM1201"),
                 Protocol::SummaMm if is(b"ha", &mut rest) => {
-                    reply.extend([0x98, (x & 0x7f) as u8, (x >> 7) as u8, (y & 0x7f) as u8, (y >> 7) as u8]);
+                    reply.extend([
+                        0x98,
+                        (x & 0x7f) as u8,
+                        (x >> 7) as u8,
+                        (y & 0x7f) as u8,
+                        (y >> 7) as u8,
+                    ]);
                 }
                 Protocol::SummaMm if is(b"@", &mut rest) => *streaming = true,
                 Protocol::SummaMm if is(b"B", &mut rest) => *streaming = false,
-                // A question that has not wholly come yet is kept; a word that is none of the questions is read over.
+                // A question that has not wholly come yet is kept; a word that is none of the
+                // questions is read over.
                 _ if rest.len() < 3
-                    && [&b"~"[..], b"~C", b"~R", b"S", b"ST", b"\r", b"z", b"h"].contains(&rest) =>
+                    && [&b"~"[..], b"~C", b"~R", b"S", b"ST", b"\r", b"z", b"h"]
+                        .contains(&rest) =>
                 {
                     said.extend_from_slice(rest);
                     break;

@@ -18,8 +18,8 @@ use crate::lifeline::{self, Lifeline};
 use crate::sample::DeviceId;
 use crate::serial::{Decoder, Facts, Protocol};
 
-/// The packets that a pen on this script gives over a span of time, and what its tablet says of itself: for tests that need
-/// bytes and no port.
+/// The packets that a pen on this script gives over a span of time, and what its tablet says of
+/// itself: for tests that need bytes and no port.
 pub fn stream(
     protocol: Protocol,
     script: &PenScript,
@@ -49,7 +49,13 @@ pub struct SerialPenConfig {
 
 impl SerialPenConfig {
     pub fn new(protocol: Protocol, area_mm: Vec2) -> Self {
-        SerialPenConfig { protocol, area_mm, rate: 133.0, repeat_us: None, faults: Faults::default() }
+        SerialPenConfig {
+            protocol,
+            area_mm,
+            rate: 133.0,
+            repeat_us: None,
+            faults: Faults::default(),
+        }
     }
 }
 
@@ -82,7 +88,8 @@ impl SerialPen {
     /// If there is no pseudo-terminal to be had, or no thread.
     pub fn new(script: PenScript, config: SerialPenConfig) -> io::Result<Self> {
         let (master, slave) = TTYPort::pair()?;
-        let name = slave.name().ok_or_else(|| io::Error::other("a pseudo-terminal without a name"))?;
+        let name =
+            slave.name().ok_or_else(|| io::Error::other("a pseudo-terminal without a name"))?;
         let model = Model::new(config.protocol, config.area_mm);
         let streaming = Arc::new(AtomicBool::new(false));
         let mut ears = master.try_clone_native()?;
@@ -145,7 +152,8 @@ impl SerialPen {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Pulls the plug: a reader sees the line break. What was in range leaves: gives the samples to expect.
+    /// Pulls the plug: a reader sees the line break. What was in range leaves: gives the samples to
+    /// expect.
     pub fn unplug(&mut self) -> u32 {
         self.streaming.store(false, SeqCst);
         self.listener = None;
@@ -155,8 +163,8 @@ impl SerialPen {
         n
     }
 
-    /// Writes every packet due up to `until_us`, that one included; nothing before a reader has asked for the stream.
-    /// Gives how many samples must come out of its adaptor for them.
+    /// Writes every packet due up to `until_us`, that one included; nothing before a reader has
+    /// asked for the stream. Gives how many samples must come out of its adaptor for them.
     pub fn advance(&mut self, until_us: u64) -> u32 {
         let step = (1e6 / f64::from(self.config.rate.clamp(1.0, 100_000.0))) as u64;
         let mut bytes = Vec::new();
@@ -194,8 +202,9 @@ impl SerialPen {
         if stall {
             self.stalled_until_us = at + 20_000 + self.rng.below(280_000);
         }
-        // Two faults in a row can make a whole packet out of two broken ones, which no reader can tell from a good one:
-        // these protocols have no checksum. One at a time is what a line's noise is, too.
+        // Two faults in a row can make a whole packet out of two broken ones, which no reader can
+        // tell from a good one: these protocols have no checksum. One at a time is what a line's
+        // noise is, too.
         self.spoilt = !self.spoilt && (cut || lost || doubled);
         let mut bytes = packet;
         if self.spoilt {

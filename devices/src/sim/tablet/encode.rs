@@ -1,4 +1,5 @@
-//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read. Facts and sources stand there.
+//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read. Facts
+//! and sources stand there.
 
 use glam::Vec2;
 
@@ -97,7 +98,11 @@ impl Encoder {
             Family::UcLogic | Family::XpPenOffset => {
                 // The short forms cannot carry the coordinates of a large tablet.
                 let least = if self.area.max_x.max(self.area.max_y) > 0xffff { 12 } else { 8 };
-                reports::uclogic(&counts, self.length.clamp(least, 12), self.family == Family::XpPenOffset)
+                reports::uclogic(
+                    &counts,
+                    self.length.clamp(least, 12),
+                    self.family == Family::XpPenOffset,
+                )
             }
             family => reports::other(family, &counts),
         }
@@ -107,7 +112,8 @@ impl Encoder {
         let a = &self.area;
         let size = Vec2::new(a.width_mm as f32, a.height_mm as f32);
         let share = (pose.pos_mm / size).clamp(Vec2::ZERO, Vec2::ONE);
-        let axis = |s: f32, min: i32, max: i32| (min as f32 + s * (max - min) as f32).round() as u32;
+        let axis =
+            |s: f32, min: i32, max: i32| (min as f32 + s * (max - min) as f32).round() as u32;
         let degrees = |r: f32| r.to_degrees().round().clamp(-TILT_LIMIT, TILT_LIMIT) as i32;
         Counts {
             x: axis(share.x, a.min_x, a.max_x),

@@ -1,4 +1,5 @@
-//! A virtual pen tablet: report bytes of its family behind the transport that a real one is read through.
+//! A virtual pen tablet: report bytes of its family behind the transport that a real one is read
+//! through.
 
 mod encode;
 mod reports;
@@ -36,11 +37,17 @@ pub struct TabletConfig {
 
 impl Default for TabletConfig {
     fn default() -> Self {
-        TabletConfig { rate: 200.0, repeat_us: None, keeps: KERNEL_KEEPS, faults: Faults::default() }
+        TabletConfig {
+            rate: 200.0,
+            repeat_us: None,
+            keeps: KERNEL_KEEPS,
+            faults: Faults::default(),
+        }
     }
 }
 
-/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`: no model of this name.
+/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`:
+/// no model of this name.
 pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
     let tablet = catalogue.tablets().iter().find(|t| t.name == name)?;
     let id = tablet.id.first()?;
@@ -54,7 +61,8 @@ pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
     })
 }
 
-/// A tablet that no file describes: it is read by its report descriptor alone. A5, tilt, 8192 levels of pressure.
+/// A tablet that no file describes: it is read by its report descriptor alone. A5, tilt, 8192
+/// levels of pressure.
 pub fn generic_identity() -> Identity {
     Identity {
         vid: 0x1209, // The id that is lent to projects without their own.
@@ -84,7 +92,8 @@ pub struct Tablet {
     asked: Arc<Mutex<Vec<Vec<u8>>>>,
 }
 
-/// The report descriptor that a reader of a simulated tablet is given: empty but for the generic one, which is read by it.
+/// The report descriptor that a reader of a simulated tablet is given: empty but for the generic
+/// one, which is read by it.
 pub fn descriptor(found: &Found) -> &'static [u8] {
     if found.id().parser == Family::Digitiser { reports::GENERIC_DESCRIPTOR } else { &[] }
 }
@@ -117,8 +126,8 @@ impl Tablet {
         (tablet, TabletEnd { rx, asked })
     }
 
-    /// Whether its reports say when the pen leaves; else only silence does, and [`Tablet::advance`] counts on a reader
-    /// that looks at its clock.
+    /// Whether its reports say when the pen leaves; else only silence does, and [`Tablet::advance`]
+    /// counts on a reader that looks at its clock.
     pub fn says_away(&self) -> bool {
         self.encoder.says_away()
     }
@@ -133,7 +142,8 @@ impl Tablet {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Pulls the plug: a reader gets an error, and what was in range leaves. Gives the samples to expect.
+    /// Pulls the plug: a reader gets an error, and what was in range leaves. Gives the samples to
+    /// expect.
     pub fn unplug(&mut self) -> u32 {
         self.tx = None;
         let mut n = 0;
@@ -141,8 +151,8 @@ impl Tablet {
         n
     }
 
-    /// Sends every report due up to `until_us`, that one included. Gives how many samples must come out of its reader for
-    /// them; that holds while the reader keeps up.
+    /// Sends every report due up to `until_us`, that one included. Gives how many samples must come
+    /// out of its reader for them; that holds while the reader keeps up.
     pub fn advance(&mut self, until_us: u64) -> u32 {
         let step = (1e6 / f64::from(self.config.rate.clamp(1.0, 100_000.0))) as u64;
         let mut expected = 0;

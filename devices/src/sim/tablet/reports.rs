@@ -18,16 +18,20 @@ pub(super) struct Counts {
 
 /// A plain pen as its descriptor below says: what the generic parser reads.
 pub(super) const GENERIC_DESCRIPTOR: &[u8] = &[
-    0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x20, 0xa1, 0x00, // Pen, report 1, stylus
-    0x09, 0x42, 0x09, 0x44, 0x09, 0x45, 0x09, 0x3c, 0x09, 0x32, // tip, barrel, eraser, invert, in range
+    0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x20, 0xa1,
+    0x00, // Pen, report 1, stylus
+    0x09, 0x42, 0x09, 0x44, 0x09, 0x45, 0x09, 0x3c, 0x09,
+    0x32, // tip, barrel, eraser, invert, in range
     0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x05, 0x81, 0x02, 0x95, 0x03, 0x81,
     0x03, // one bit each, 3 spare
-    0x05, 0x01, 0x26, 0xff, 0x7f, 0x35, 0x00, 0x55, 0x0e, 0x65, 0x11, 0x75, 0x10, 0x95, 0x01, // 0.1 mm
+    0x05, 0x01, 0x26, 0xff, 0x7f, 0x35, 0x00, 0x55, 0x0e, 0x65, 0x11, 0x75, 0x10, 0x95,
+    0x01, // 0.1 mm
     0x09, 0x30, 0x46, 0x34, 0x08, 0x81, 0x02, // X: 0 to 32767 over 210 mm
     0x09, 0x31, 0x46, 0xc8, 0x05, 0x81, 0x02, // Y: over 148 mm
     0x05, 0x0d, 0x45, 0x00, 0x65, 0x00, 0x55, 0x00, 0x26, 0xff, 0x1f, 0x09, 0x30, 0x81,
     0x02, // pressure to 8191
-    0x15, 0xc4, 0x25, 0x3c, 0x35, 0xc4, 0x45, 0x3c, 0x65, 0x14, 0x75, 0x08, // degrees, -60 to 60
+    0x15, 0xc4, 0x25, 0x3c, 0x35, 0xc4, 0x45, 0x3c, 0x65, 0x14, 0x75,
+    0x08, // degrees, -60 to 60
     0x09, 0x3d, 0x81, 0x02, 0x09, 0x3e, 0x81, 0x02, 0xc0, 0xc0,
 ];
 
@@ -77,7 +81,9 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
         Family::WacomBamboo => of(9, &[0x02, 0x10]),
         Family::WacomGraphireBluetooth => of(9, &[0x03, 0x10]),
         Family::WacomPenPartner => of(7, &[0x01]),
-        Family::WacomPl | Family::WacomPtu | Family::WacomDtu | Family::WacomTabletPc => of(8, &[0x02]),
+        Family::WacomPl | Family::WacomPtu | Family::WacomDtu | Family::WacomTabletPc => {
+            of(8, &[0x02])
+        }
         Family::WacomDtus => of(8, &[0x11]),
         Family::WacomIntuosV2 => of(27, &[0x10]),
         Family::WacomIntuosV3 => of(26, &[0x1e]),
@@ -92,7 +98,11 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
         Family::RobotPen => of(12, &[0x02, 0x40]),
         Family::WoodPad => of(14, &[0x02]),
         Family::Digitiser => of(10, &[0x01]),
-        Family::WacomBambooPad | Family::Kye | Family::KyePlain | Family::TenMoons | Family::Plain => None,
+        Family::WacomBambooPad
+        | Family::Kye
+        | Family::KyePlain
+        | Family::TenMoons
+        | Family::Plain => None,
     }
 }
 
@@ -125,7 +135,16 @@ pub(super) fn pl(c: &Counts, max_pressure: u32) -> Vec<u8> {
     b4 |= bit(q & 1 != 0, 4);
     let seven = |v: u32| (v & 0x7f) as u8;
     let b1 = 0x40 | (c.x >> 14) as u8 & 3;
-    vec![0x02, b1, seven(c.x >> 7), seven(c.x), b4, seven(c.y >> 7), seven(c.y), (q >> 1) as u8 & 0x7f]
+    vec![
+        0x02,
+        b1,
+        seven(c.x >> 7),
+        seven(c.x),
+        b4,
+        seven(c.y >> 7),
+        seven(c.y),
+        (q >> 1) as u8 & 0x7f,
+    ]
 }
 
 /// 8 bytes, 10 with tilt, 12 with high coordinate bytes; pressure may count from 8192.
@@ -148,10 +167,21 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
     let f = c.flags();
     match family {
         Family::WacomBambooPad => {
-            vec![0x10, 1, bit(c.eraser, 8) | bit(c.buttons & 1 != 0, 2), x[0], x[1], y[0], y[1], p[0], p[1]]
+            vec![
+                0x10,
+                1,
+                bit(c.eraser, 8) | bit(c.buttons & 1 != 0, 2),
+                x[0],
+                x[1],
+                y[0],
+                y[1],
+                p[0],
+                p[1],
+            ]
         }
         Family::WacomGraphire | Family::WacomGraphire4 | Family::WacomBamboo => {
-            let mut b = vec![0x02, 0x90 | bit(c.eraser, 0x20) | f, x[0], x[1], y[0], y[1], p[0], p[1] & 3];
+            let mut b =
+                vec![0x02, 0x90 | bit(c.eraser, 0x20) | f, x[0], x[1], y[0], y[1], p[0], p[1] & 3];
             b.resize(if family == Family::WacomBamboo { 9 } else { 8 }, 0);
             b
         }
@@ -166,11 +196,29 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
         }
         Family::WacomPtu => {
             let tip = bit(c.tip, if c.eraser { 8 } else { 1 });
-            vec![0x02, 0x20 | bit(c.eraser, 4) | tip | two_buttons(c), x[0], x[1], y[0], y[1], p[0], p[1]]
+            vec![
+                0x02,
+                0x20 | bit(c.eraser, 4) | tip | two_buttons(c),
+                x[0],
+                x[1],
+                y[0],
+                y[1],
+                p[0],
+                p[1],
+            ]
         }
         Family::WacomDtu | Family::WacomTabletPc => {
             let tip = bit(c.tip, if c.eraser { 4 } else { 1 });
-            vec![0x02, 0x20 | bit(c.eraser, 8) | tip | two_buttons(c), x[0], x[1], y[0], y[1], p[0], p[1]]
+            vec![
+                0x02,
+                0x20 | bit(c.eraser, 8) | tip | two_buttons(c),
+                x[0],
+                x[1],
+                y[0],
+                y[1],
+                p[0],
+                p[1],
+            ]
         }
         Family::WacomDtus => {
             let (x, y, tool) = (be(c.x), be(c.y), if c.eraser { 1 } else { 2 });
@@ -185,7 +233,8 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
             b
         }
         Family::WacomIntuosV3 => {
-            let end = bit(c.eraser && c.tip, 0x10) | bit(c.eraser, 0x20) | bit(c.tip && !c.eraser, 1);
+            let end =
+                bit(c.eraser && c.tip, 0x10) | bit(c.eraser, 0x20) | bit(c.tip && !c.eraser, 1);
             let mut b = vec![0x1e, 0x01, 0xc0 | end | (c.buttons as u8) << 1];
             b.extend(x.into_iter().chain(y).chain(p).chain(c.tilt16(1)));
             b.resize(26, 0);
@@ -193,7 +242,17 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
             b
         }
         Family::WacomOne => {
-            let mut b = vec![0x1f, 0x01, 0x60 | bit(c.eraser, 0x10) | f, x[0], x[1], y[0], y[1], p[0], p[1]];
+            let mut b = vec![
+                0x1f,
+                0x01,
+                0x60 | bit(c.eraser, 0x10) | f,
+                x[0],
+                x[1],
+                y[0],
+                y[1],
+                p[0],
+                p[1],
+            ];
             b.extend(c.tilt16(100));
             b.push(c.height as u8);
             b
@@ -205,8 +264,18 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
             b
         }
         Family::Huion => {
-            let mut b =
-                vec![0x08, 0x80 | bit(c.eraser, 8) | f, x[0], x[1], y[0], y[1], p[0], p[1], x[2], y[2]];
+            let mut b = vec![
+                0x08,
+                0x80 | bit(c.eraser, 8) | f,
+                x[0],
+                x[1],
+                y[0],
+                y[1],
+                p[0],
+                p[1],
+                x[2],
+                y[2],
+            ];
             b.extend([t[0], -c.tilt[1] as i8 as u8]);
             b
         }
@@ -229,7 +298,9 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
         }
         Family::KyePlain => vec![0x10, f, x[0], x[1], y[0], y[1], p[0], p[1]],
         Family::Plain => vec![0x01, f, x[0], x[1], y[0], y[1], p[0], p[1]],
-        Family::Xenx => vec![0x01, 0x80 | bit(c.eraser, 0x40) | f, x[0], x[1], y[0], y[1], p[0], p[1]],
+        Family::Xenx => {
+            vec![0x01, 0x80 | bit(c.eraser, 0x40) | f, x[0], x[1], y[0], y[1], p[0], p[1]]
+        }
         Family::TenMoons => {
             let pressed = if c.buttons == 0 { 0 } else { 50 };
             let (x, y, p) = (be(c.x), be(c.y), be(0x672u32.saturating_sub(c.p) + pressed));

@@ -83,7 +83,8 @@ fn the_journal_comes_out_as_it_went_in_and_twice_the_same() {
         }
         contacts += usize::from(p.tip);
         erased += usize::from(p.tip && p.tool == Tool::Eraser);
-        let near = (0..=8).map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
+        let near =
+            (0..=8).map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
         worst = worst.max(near.fold(f32::INFINITY, f32::min));
     }
     assert!(worst < 0.5 && contacts > 700 && erased > 50, "{worst} {contacts} {erased}");
@@ -102,8 +103,10 @@ fn an_unplug_ends_the_visit_and_a_bad_line_no_more_than_that() {
         stall: 0.005,
         ..Faults::default()
     };
-    let mut rig =
-        rig(&found("Wacom PTK-440"), TabletConfig { faults, keeps: 4096, ..TabletConfig::default() });
+    let mut rig = rig(
+        &found("Wacom PTK-440"),
+        TabletConfig { faults, keeps: 4096, ..TabletConfig::default() },
+    );
     (0..110).for_each(|i| rig.step(i * 10_000));
     let status = rig.handle.status();
     assert!(status.broken > 0, "{status:?}");
@@ -119,7 +122,8 @@ fn an_unplug_ends_the_visit_and_a_bad_line_no_more_than_that() {
     assert!(!rig.handle.status().connected);
 }
 
-/// Every model that is known, in every way it shows itself: what its simulator writes, its parser reads.
+/// Every model that is known, in every way it shows itself: what its simulator writes, its parser
+/// reads.
 #[test]
 fn every_model_reads_what_it_writes() {
     let catalogue = Catalogue::builtin().unwrap();
@@ -150,8 +154,8 @@ fn reads_what_it_writes(found: &Found) -> Result<(), String> {
     let mut encoder = super::Encoder::new(found);
     let mut decoder = super::Decoder::new(found, super::descriptor(found), DeviceId(0));
     let a = tablet.area;
-    let count_mm =
-        (a.width_mm / f64::from(a.max_x - a.min_x)).max(a.height_mm / f64::from(a.max_y - a.min_y)) as f32;
+    let count_mm = (a.width_mm / f64::from(a.max_x - a.min_x))
+        .max(a.height_mm / f64::from(a.max_y - a.min_y)) as f32;
     let (mut last, mut contacts, mut erased, mut visits) = (None, 0, 0, 0);
     for t in (0..9_500_000).step_by(5_000) {
         let pose = script.at(t);

@@ -1,7 +1,7 @@
 //! A virtual hand tracker: serves frames over a loopback WebSocket as the real service does.
 //!
-//! Unlike the services seen in the wild it binds the loopback interface only, lets in no web page whose origin is not on a
-//! list, and reads no message longer than 4 KiB.
+//! Unlike the services seen in the wild it binds the loopback interface only, lets in no web page
+//! whose origin is not on a list, and reads no message longer than 4 KiB.
 
 mod encode;
 mod server;
@@ -31,7 +31,8 @@ pub struct TrackerConfig {
     pub port: u16,
     /// Frames a second; 110 is what real recordings have.
     pub rate: f32,
-    /// Web pages that may connect, as `scheme://host[:port]`. A client that names no origin is no web page.
+    /// Web pages that may connect, as `scheme://host[:port]`. A client that names no origin is no
+    /// web page.
     pub origins: Vec<String>,
     /// The script begins again after so long; `None` ends with it: no hands from then on.
     pub repeat_us: Option<u64>,
@@ -78,7 +79,8 @@ struct Packet {
     hands: u8,
 }
 
-/// What a client that keeps to the rules has taken in so far; by it the expected samples are counted.
+/// What a client that keeps to the rules has taken in so far; by it the expected samples are
+/// counted.
 #[derive(Debug, Default)]
 struct Seen {
     last: Option<(i64, u64, u8)>,
@@ -166,9 +168,9 @@ impl Tracker {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Sends every frame due up to `until_us`, that one included, since the simulation began. Gives how many samples must
-    /// come out of one client's adaptor for them; that holds for steps of at most half a second (more frames at once are
-    /// over the adaptor's cap on the rate).
+    /// Sends every frame due up to `until_us`, that one included, since the simulation began. Gives
+    /// how many samples must come out of one client's adaptor for them; that holds for steps of at
+    /// most half a second (more frames at once are over the adaptor's cap on the rate).
     pub fn advance(&mut self, until_us: u64) -> u32 {
         let step = (1e6 / f64::from(self.config.rate.clamp(1.0, 10_000.0))) as u64;
         let mut expected = 0;
@@ -176,7 +178,8 @@ impl Tracker {
             let at = self.next_us;
             self.next_us += step;
             self.frame += 1;
-            let stamp = (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
+            let stamp =
+                (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
             let hands = self.hands_at(at);
             let text = frame_json(&hands, stamp, self.config.rate);
             let packet = Packet { text, frame: self.frame, stamp, hands: hands.count };

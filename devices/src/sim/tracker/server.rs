@@ -47,7 +47,8 @@ impl Server {
         let address = listener.local_addr()?;
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
-        let thread = lifeline::spawn("sim-ws", move |leash| accept(&listener, &origins, &theirs, &leash))?;
+        let thread =
+            lifeline::spawn("sim-ws", move |leash| accept(&listener, &origins, &theirs, &leash))?;
         Ok(Server { address, shared, _thread: thread })
     }
 
@@ -92,14 +93,19 @@ impl Server {
     }
 }
 
-fn hear(client: &mut WebSocket<TcpStream>, wishes: &mut Vec<String>) -> Result<(), tungstenite::Error> {
+fn hear(
+    client: &mut WebSocket<TcpStream>,
+    wishes: &mut Vec<String>,
+) -> Result<(), tungstenite::Error> {
     client.get_ref().set_nonblocking(true)?;
     let heard = loop {
         match client.read() {
             Ok(Message::Text(text)) if wishes.len() < MAX_WISHES => wishes.push(text.to_string()),
             Ok(Message::Close(_)) => break Err(tungstenite::Error::ConnectionClosed),
             Ok(_) => {}
-            Err(tungstenite::Error::Io(e)) if e.kind() == std::io::ErrorKind::WouldBlock => break Ok(()),
+            Err(tungstenite::Error::Io(e)) if e.kind() == std::io::ErrorKind::WouldBlock => {
+                break Ok(());
+            }
             Err(e) => break Err(e),
         }
     };
@@ -148,8 +154,8 @@ fn welcome(stream: TcpStream, origins: &[String]) -> Result<WebSocket<TcpStream>
             Ok(response)
         }
     };
-    let mut client =
-        tungstenite::accept_hdr_with_config(stream, check, Some(limits)).map_err(|e| e.to_string())?;
+    let mut client = tungstenite::accept_hdr_with_config(stream, check, Some(limits))
+        .map_err(|e| e.to_string())?;
     for hello in [
         format!(r#"{{"serviceVersion":"sculptd","version":{version}}}"#),
         r#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"SIM","streaming":true,"type":"peripheral"}}}"#
@@ -160,7 +166,8 @@ fn welcome(stream: TcpStream, origins: &[String]) -> Result<WebSocket<TcpStream>
     Ok(client)
 }
 
-/// Why a request is not answered: a page of another origin, or a path that is none of the protocol's.
+/// Why a request is not answered: a page of another origin, or a path that is none of the
+/// protocol's.
 fn refuse(request: &Request, origins: &[String]) -> Option<StatusCode> {
     if let Some(origin) = request.headers().get("origin")
         && !origins.iter().any(|o| o.as_bytes() == origin.as_bytes())
