@@ -163,7 +163,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::DeviceId;
+    use crate::sample::DeviceId;
 
     fn at(c: &Calibration, x: f32, y: f32) -> Pen {
         let pen = Pen {

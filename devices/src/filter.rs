@@ -1,7 +1,7 @@
 //! Steady hands: the One-Euro filter (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens
 //! stay raw; their strokes are smoothed where strokes are.
 //!
-//! A low pass whose cutoff rises with speed: at rest it takes the tremble away, in motion it hardly
+//! A low pass whose cutoff rises with speed: at rest it takes the jitter away, in motion it hardly
 //! lags. Units matter: speed is in mm a second, so `beta` is in Hz for each of them.
 
 use glam::{Quat, Vec3};
@@ -24,7 +24,7 @@ const DIRECTIONS: usize = 2 + 5;
 pub struct OneEuro {
     /// Hz at rest. Lower: steadier, and slower to set off.
     pub min_cutoff: f32,
-    /// Hz more for each mm a second. Higher: less lag in motion, more tremble in slow motion.
+    /// Hz more for each mm a second. Higher: less lag in motion, more jitter in slow motion.
     pub beta: f32,
     /// Hz of the speed's own low pass.
     pub speed_cutoff: f32,

@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 use glam::{Vec2, Vec3};
 
 use crate::catalogue::{Catalogue, Found};
+use crate::descriptor::Descriptor;
 use crate::hid::decoder::Decoder;
-use crate::hid::descriptor::Descriptor;
 use crate::leap::{self, FrameFile, Message};
 use crate::sample::{Body, DeviceId, Hands, Sample};
 use crate::serial::{self, Protocol};

@@ -38,18 +38,22 @@ mod builtin;
 pub mod calibration;
 pub mod catalogue;
 pub mod clock;
+pub mod descriptor;
+mod device_thread;
 pub mod filter;
 #[doc(hidden)]
 pub mod fuzzing;
 pub mod hid;
 pub mod latency;
 pub mod leap;
-mod lifeline;
 pub mod long_array;
 pub mod pen_state;
 pub mod queue;
 pub mod recording;
+pub mod report;
 pub mod sample;
+#[cfg(test)]
+mod scenarios;
 pub mod serial;
 pub mod sim;
 pub mod tablet;

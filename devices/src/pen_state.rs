@@ -11,7 +11,7 @@
 
 use glam::Vec2;
 
-use crate::hid::report::PenReport;
+use crate::report::PenReport;
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 
 /// Contact begins at this share of the pressure range where there is no tip switch (libinput's

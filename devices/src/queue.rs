@@ -20,7 +20,7 @@ use crossbeam_channel as cc;
 use serde::Serialize;
 
 use crate::calibration::Calibration;
-use crate::{DeviceId, Sample};
+use crate::sample::{DeviceId, Sample};
 
 /// Devices that have counters of their own; ids from here up share the last slot, so that counting
 /// never allocates.
@@ -374,7 +374,5 @@ impl Receiver {
     }
 }
 
-#[cfg(test)]
-mod flood;
 #[cfg(test)]
 mod tests;

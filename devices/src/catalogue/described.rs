@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Found, Identification, Identity, Params};
-use crate::hid::descriptor::{Bits, Descriptor, Kind, PenLayout};
+use crate::descriptor::{Bits, Descriptor, Kind, PenLayout};
 use crate::tablet::{Area, Family, Id, Pad, PenFacts, Tablet};
 
 /// Makers whose reports are UC-Logic's whatever their descriptors say: those label the second

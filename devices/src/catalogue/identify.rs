@@ -2,7 +2,7 @@
 
 use super::described::described;
 use super::{Catalogue, Found, Identification, Identity, Params};
-use crate::hid::descriptor::Descriptor;
+use crate::descriptor::Descriptor;
 use crate::tablet::{Id, StringIs, Tablet};
 
 /// A candidate's standing: higher is likelier.
@@ -74,9 +74,7 @@ fn standing(tablet: &Tablet, id: &Id, who: &Identity, d: Option<&Descriptor>) ->
         return None;
     }
     if n == 0
-        && d.is_some_and(|d| {
-            d.kinds.contains(&crate::hid::descriptor::Kind::Touch) && d.pens.is_empty()
-        })
+        && d.is_some_and(|d| d.kinds.contains(&crate::descriptor::Kind::Touch) && d.pens.is_empty())
     {
         return None;
     }

@@ -11,7 +11,7 @@ mod params;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::hid::descriptor::Descriptor;
+use crate::descriptor::Descriptor;
 use crate::tablet::{Id, Tablet, TabletError};
 
 pub(crate) use described::Scale;

@@ -3,12 +3,12 @@
 
 use glam::Vec2;
 
-use super::descriptor::{Descriptor, PenLayout};
 use super::family::Engine;
 use super::pad_state::PadState;
-use super::report::Parsed;
 use crate::catalogue::{Found, Scale, by_descriptor};
+use crate::descriptor::{Descriptor, PenLayout};
 use crate::pen_state::{PenConfig, PenScale, PenState};
+use crate::report::Parsed;
 use crate::sample::{DeviceId, Sample};
 
 /// What became of the reports fed so far.

@@ -1,23 +1,23 @@
 //! Any pen that its report descriptor describes.
 
-use super::descriptor::{Descriptor, PenLayout};
-use super::report::{Parsed, PenReport};
-use crate::Tool;
+use crate::descriptor::{Descriptor, PenLayout};
+use crate::report::{Parsed, PenReport};
+use crate::sample::Tool;
 
 pub fn parse(b: &[u8], descriptor: &Descriptor) -> Parsed {
     let of_id = |l: &&PenLayout| l.report_id.is_none_or(|id| b.first() == Some(&id));
     let Some(layout) = descriptor.pens.iter().find(of_id) else { return Parsed::Nothing };
-    let set = |bits: &Option<super::descriptor::Bits>| bits.as_ref().and_then(|f| f.set(b));
+    let set = |bits: &Option<crate::descriptor::Bits>| bits.as_ref().and_then(|f| f.set(b));
     if set(&layout.in_range) == Some(false) {
         // The kernel's generic Wacom driver keeps such a pen near, too.
         return if set(&layout.sense) == Some(true) { Parsed::Nothing } else { Parsed::Away };
     }
-    let read = |bits: &Option<super::descriptor::Bits>| bits.as_ref().and_then(|f| f.read(b));
+    let read = |bits: &Option<crate::descriptor::Bits>| bits.as_ref().and_then(|f| f.read(b));
     let (Some(x), Some(y)) = (read(&layout.x), read(&layout.y)) else { return Parsed::Broken };
     let (tip, eraser) = (set(&layout.tip), set(&layout.eraser));
     let inverted = set(&layout.invert).unwrap_or(false) || eraser.unwrap_or(false);
     let barrel = |i: usize| u32::from(set(&layout.barrel[i]).unwrap_or(false)) << i;
-    let degrees = |bits: &Option<super::descriptor::Bits>, full: f64| {
+    let degrees = |bits: &Option<crate::descriptor::Bits>, full: f64| {
         bits.as_ref().and_then(|f| f.read(b).map(|v| f.degrees(v, full) as f32))
     };
     let tilt = match (degrees(&layout.tilt[0], 90.0), degrees(&layout.tilt[1], 90.0)) {

@@ -1,12 +1,12 @@
 //! Which parser reads a report: the closed set of families, each with what it must remember.
 
-use super::descriptor::Descriptor;
-use super::report::{PadReport, Parsed};
 use super::uclogic::Packing;
 use super::{
-    digitiser, makers, uclogic, wacom_bamboo, wacom_display, wacom_graphire, wacom_intuos,
+    digitiser, uclogic, vendors, wacom_bamboo, wacom_display, wacom_graphire, wacom_intuos,
     wacom_pad, wacom_pro,
 };
+use crate::descriptor::Descriptor;
+use crate::report::{PadReport, Parsed};
 use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 
 /// libinput's time of silence after which a pen that never says so has left.
@@ -91,16 +91,16 @@ impl Engine {
             Family::XpPenGen2 => uclogic(Packing::XpPenGen2),
             Family::Huion => uclogic(Packing::Huion),
             Family::Floogoo => uclogic(Packing::Fma),
-            Family::Veikk => maker(|b| makers::veikk(b, false), true),
-            Family::VeikkA15 => maker(|b| makers::veikk(b, true), true),
-            Family::Acepen => maker(makers::acepen, true),
-            Family::Kye => maker(makers::kye, false),
-            Family::KyePlain => maker(makers::kye_plain, false),
-            Family::TenMoons => maker(makers::ten_moons, false),
-            Family::Plain => maker(makers::plain, false),
-            Family::Xenx => maker(makers::xenx, true),
-            Family::RobotPen => maker(makers::robot_pen, true),
-            Family::WoodPad => maker(makers::wood_pad, true),
+            Family::Veikk => maker(|b| vendors::veikk(b, false), true),
+            Family::VeikkA15 => maker(|b| vendors::veikk(b, true), true),
+            Family::Acepen => maker(vendors::acepen, true),
+            Family::Kye => maker(vendors::kye, false),
+            Family::KyePlain => maker(vendors::kye_plain, false),
+            Family::TenMoons => maker(vendors::ten_moons, false),
+            Family::Plain => maker(vendors::plain, false),
+            Family::Xenx => maker(vendors::xenx, true),
+            Family::RobotPen => maker(vendors::robot_pen, true),
+            Family::WoodPad => maker(vendors::wood_pad, true),
             Family::Digitiser => Engine::Digitiser(Box::new(described)),
         }
     }

@@ -10,16 +10,14 @@
 
 pub mod bus;
 pub mod decoder;
-pub mod descriptor;
 pub mod digitiser;
 pub mod family;
-pub mod makers;
 pub mod pad_state;
 pub mod reader;
-pub mod report;
 pub mod tap;
 pub mod transport;
 pub mod uclogic;
+pub mod vendors;
 pub mod wacom_bamboo;
 pub mod wacom_display;
 pub mod wacom_graphire;

@@ -1,6 +1,6 @@
 //! The pad's complete state, from reports that say a part of it.
 
-use super::report::PadReport;
+use crate::report::PadReport;
 use crate::sample::{Body, DeviceId, Pad, Sample};
 
 /// One pad on one device. A sample is made only when something changed: most reports repeat the

@@ -8,10 +8,10 @@ use serde::Serialize;
 
 use super::decoder::Decoder;
 use super::transport::Transport;
-use crate::Clock;
 use crate::catalogue::Found;
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::latency::{Latency, Quantiles};
-use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
@@ -37,7 +37,7 @@ pub struct Status {
 #[derive(Debug)]
 pub struct Handle {
     shared: Arc<Mutex<Shared>>,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 #[derive(Debug, Default)]
@@ -69,10 +69,10 @@ pub fn start(
     let shared = Arc::new(Mutex::new(Shared { status, ..Shared::default() }));
     let theirs = shared.clone();
     let decoder = Decoder::new(found, descriptor, device);
-    let thread = lifeline::spawn("hid-pen", move |leash| {
+    let thread = device_thread::spawn("hid-pen", move |stop| {
         let mut sender = sender;
-        sender.stop_when(leash.flag());
-        Reader { transport, decoder, clock, sender, shared: theirs }.run(&leash);
+        sender.stop_when(stop.flag());
+        Reader { transport, decoder, clock, sender, shared: theirs }.run(&stop);
     })?;
     Ok(Handle { shared, _thread: thread })
 }
@@ -86,11 +86,11 @@ struct Reader {
 }
 
 impl Reader {
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let (mut buffer, mut out) = (vec![0; MAX_REPORT], Vec::with_capacity(16));
         let mut error = None;
         self.ask_tool(&mut buffer, &mut out);
-        while !leash.stopped() && error.is_none() {
+        while !stop.stopped() && error.is_none() {
             match self.transport.read(&mut buffer, READ_MS) {
                 Ok(0) => {
                     self.decoder.tick(self.clock.now_us(), &mut |s| out.push(s));

@@ -7,8 +7,8 @@ use crossbeam_channel as cc;
 
 use super::bus::{Bus, Node, read_more};
 use super::transport::Transport;
-use crate::Clock;
 use crate::catalogue::Identity;
+use crate::clock::Clock;
 
 /// Something that was read.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,8 +15,8 @@
 //! mean "in range". Sources: Linux `hid-uclogic-params.c`, OpenTabletDriver, and the real
 //! recordings of all of these.
 
-use super::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
+use crate::sample::Tool;
 
 /// How one tablet of the family packs its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -148,7 +148,7 @@ fn pen(b: &[u8], traits: &Traits) -> PenReport {
             }
         }
         Packing::Fma => {
-            tilt = Some([super::report::s16_at(b, 8) / 100.0, super::report::s16_at(b, 10) / 100.0])
+            tilt = Some([crate::report::s16_at(b, 8) / 100.0, crate::report::s16_at(b, 10) / 100.0])
         }
         _ => {
             if b.len() >= 12 {

@@ -2,8 +2,8 @@
 //! Pad. Layouts from Linux `wacom_wac.c` (`wacom_bpt_pen`); agrees with its decode of real
 //! recordings. Bamboo Pad: OpenTabletDriver.
 
-use super::report::{Parsed, PenReport, byte, u16_at};
-use crate::Tool;
+use crate::report::{Parsed, PenReport, byte, u16_at};
+use crate::sample::Tool;
 
 /// What must be remembered: the tool of this visit, known once the pen was placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

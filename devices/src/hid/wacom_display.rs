@@ -2,8 +2,8 @@
 //! from Linux `wacom_wac.c` (`wacom_pl_irq`, `wacom_ptu_irq`, `wacom_dtu_irq`, `wacom_dtus_irq`,
 //! `wacom_tpc_pen`).
 
-use super::report::{PadReport, Parsed, PenReport, be16_at, byte, u16_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, be16_at, byte, u16_at};
+use crate::sample::Tool;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {

@@ -2,8 +2,8 @@
 //! `wacom_wac.c` (`wacom_graphire_irq`, `wacom_penpartner_irq`); agrees with its decode of real
 //! recordings.
 
-use super::report::{PadReport, Parsed, PenReport, byte, u16_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, byte, u16_at};
+use crate::sample::Tool;
 
 /// How one tablet of the family carries pressure and its pad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

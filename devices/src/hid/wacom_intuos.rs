@@ -2,8 +2,8 @@
 //! numbers from Linux `wacom_wac.c` (`wacom_intuos_general`, `wacom_intuos_inout`); agrees with its
 //! decode of real recordings.
 
-use super::report::{Parsed, PenReport, be16_at};
-use crate::Tool;
+use crate::report::{Parsed, PenReport, be16_at};
+use crate::sample::Tool;
 
 /// What one tablet of the family does differently.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,7 +1,7 @@
 //! Keys, rings and strips of Wacom's Intuos and Cintiq tablets: reports 0C, 03 and 11. Layouts from
 //! Linux `wacom_wac.c` (`wacom_intuos_pad`).
 
-use super::report::{PadReport, byte};
+use crate::report::{PadReport, byte};
 use crate::tablet::PadLayout;
 
 /// Places on a ring.

@@ -2,8 +2,8 @@
 //! 1E, "V3"), Wacom One (report 1F). Layouts from OpenTabletDriver and from these tablets' own
 //! report descriptors.
 
-use super::report::{Parsed, PenReport, byte, s8_at, s16_at, u16_at, u24_at};
-use crate::Tool;
+use crate::report::{Parsed, PenReport, byte, s8_at, s16_at, u16_at, u24_at};
+use crate::sample::Tool;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use super::bus::{Bus, HidApiBus, Node, read_more};
 use super::reader;
-use crate::Clock;
 use crate::calibration::{self, Calibration, Calibrations};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::SenderFactory;
 use crate::sample::DeviceId;
 use crate::tablet::hex_bytes;
@@ -71,7 +71,7 @@ pub struct NodeStatus {
 #[derive(Debug)]
 pub struct HidHandle {
     shared: Arc<Mutex<Shared>>,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 impl HidHandle {
@@ -148,7 +148,7 @@ pub fn start_on(
         failures: BTreeMap::new(),
         connections: BTreeMap::new(),
     };
-    let thread = lifeline::spawn("hid-watch", move |leash| watcher.run(&leash))?;
+    let thread = device_thread::spawn("hid-watch", move |stop| watcher.run(&stop))?;
     Ok(HidHandle { shared, _thread: thread })
 }
 
@@ -194,7 +194,7 @@ struct Watcher {
 }
 
 impl Watcher {
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let (mut wait, mut seen) = (LOOK.0, None);
         loop {
             let ended = self.collect_ended();
@@ -208,7 +208,7 @@ impl Watcher {
             }
             // Looking at the stamp costs microseconds; looking at the bus does not.
             let pause = if stamp.is_some() { LOOK.0 } else { wait };
-            if leash.wait(pause) {
+            if stop.wait(pause) {
                 break;
             }
         }
@@ -337,7 +337,7 @@ enum Refusal {
 }
 
 /// Which model a node is read as, and the names of all that it may be when that is uncertain.
-fn choose(
+pub(crate) fn choose(
     node: &Node,
     who: &Identity,
     config: &HidConfig,
@@ -431,6 +431,3 @@ impl NodeStatus {
         self.candidates = candidates;
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use super::{Config, start};
-use crate::Clock;
+use crate::clock::Clock;
 use crate::queue::channel;
 use crate::sample::{Body, Hand};
 

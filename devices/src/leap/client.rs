@@ -11,8 +11,8 @@ use tungstenite::{Error as WsError, Message as WsMessage, WebSocket};
 
 use super::clock_map::ClockMap;
 use super::frame::{Frame, MAX_MESSAGE, Message, parse_message};
-use crate::Clock;
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::Sender;
 use crate::sample::{Body, DeviceId, Hands, Sample};
 
@@ -98,7 +98,7 @@ pub struct Status {
 #[derive(Debug)]
 pub struct Handle {
     status: Arc<Mutex<Status>>,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 impl Handle {
@@ -114,10 +114,10 @@ impl Handle {
 pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
     let status = Arc::new(Mutex::new(Status::default()));
     let shared = status.clone();
-    let thread = lifeline::spawn("leap", move |leash| {
+    let thread = device_thread::spawn("leap", move |stop| {
         let mut sender = sender;
-        sender.stop_when(leash.flag());
-        Client::new(config, clock, sender, shared).run(&leash);
+        sender.stop_when(stop.flag());
+        Client::new(config, clock, sender, shared).run(&stop);
     })?;
     Ok(Handle { status, _thread: thread })
 }
@@ -153,9 +153,9 @@ impl Client {
         change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let mut wait = BACK_OFF.0;
-        while !leash.stopped() {
+        while !stop.stopped() {
             let why = match connect(&self.config) {
                 Ok(socket) => {
                     self.note(|s| {
@@ -164,7 +164,7 @@ impl Client {
                         s.last_error = None;
                     });
                     let before = self.frames();
-                    let why = self.serve(socket, leash);
+                    let why = self.serve(socket, stop);
                     if self.frames() > before {
                         wait = BACK_OFF.0;
                     }
@@ -183,7 +183,7 @@ impl Client {
             let slices = (wait.as_millis() / READ_SLICE.as_millis()) as u32;
             for _ in 0..slices {
                 self.sender.flush();
-                if leash.wait(READ_SLICE) {
+                if stop.wait(READ_SLICE) {
                     return;
                 }
             }
@@ -197,10 +197,10 @@ impl Client {
     }
 
     /// Greets, then reads until something ends the connection; returns what did.
-    fn serve(&mut self, mut socket: WebSocket<TcpStream>, leash: &Leash) -> String {
+    fn serve(&mut self, mut socket: WebSocket<TcpStream>, stop: &StopToken) -> String {
         self.map = ClockMap::default();
         let (mut heard, mut pinged, mut greeted) = (self.clock.now_us(), false, false);
-        while !leash.stopped() {
+        while !stop.stopped() {
             match socket.read() {
                 Ok(WsMessage::Text(text)) => {
                     (heard, pinged) = (self.clock.now_us(), false);

@@ -227,8 +227,8 @@ fn a_server_that_breaks_every_rule_is_survived() {
         // Each attempt by hand: the back-off has its own test and would take a minute here.
         let why = match connect(&client.config) {
             Ok(socket) => {
-                let (_hold, leash) = lifeline::pair();
-                client.serve(socket, &leash)
+                let (_hold, stop) = device_thread::pair();
+                client.serve(socket, &stop)
             }
             Err(why) => why,
         };

@@ -4,7 +4,7 @@ use glam::vec2;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Body, Pen};
+use crate::sample::{Body, Pen};
 
 fn pen(device: u16, t_us: u64, tip: bool) -> Sample {
     let pen = Pen { in_range: true, tip, pos_mm: vec2(t_us as f32, 0.0), ..Pen::default() };

@@ -1,5 +1,6 @@
 //! Recordings: raw stamped bytes of real devices, and how they are fed again through the live path.
 
+mod device_info;
 mod hands;
 pub mod hid_recorder;
 mod pens;
@@ -8,7 +9,8 @@ pub mod raw;
 
 use std::path::PathBuf;
 
-pub use player::{DeviceInfo, DeviceKind, Player};
+pub use device_info::{DeviceInfo, DeviceKind};
+pub use player::Player;
 
 /// A HID device as it was recorded: one [`crate::catalogue::Identity`] an interface, and every
 /// report in order.

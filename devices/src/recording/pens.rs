@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
+use super::device_info::{DeviceInfo, DeviceKind};
 use super::{HidRecording, RecordingError};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
 use crate::hid::decoder::Decoder;
 use crate::sample::{Body, DeviceId, Sample};
-
-use super::player::{DeviceInfo, DeviceKind};
 
 #[derive(Debug)]
 pub(super) struct PenPlayer {

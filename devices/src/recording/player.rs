@@ -2,29 +2,12 @@
 
 use std::path::Path;
 
+use super::device_info::{DeviceInfo, DeviceKind};
 use super::hands::HandRecording;
 use super::pens::PenPlayer;
 use super::{HidRecording, RecordingError, hands, hid_recorder, raw};
 use crate::catalogue::Catalogue;
 use crate::sample::{DeviceId, Sample};
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DeviceKind {
-    Pen,
-    Hand,
-}
-
-/// What plays.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeviceInfo {
-    pub name: String,
-    pub kind: DeviceKind,
-    /// Size of the active area of a pen; zero for hands.
-    pub area_mm: glam::Vec2,
-    pub device: DeviceId,
-    /// Which model and parser each interface got and why, for people.
-    pub notes: Vec<String>,
-}
 
 #[derive(Debug)]
 enum Source {

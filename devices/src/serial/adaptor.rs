@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::session::{self, PROBE_ORDER, Wire};
 use super::{Counts, Decoder, Facts, Protocol};
-use crate::Clock;
 use crate::calibration::Calibration;
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
@@ -63,7 +63,7 @@ pub struct Status {
 #[derive(Debug)]
 pub struct Handle {
     status: Arc<Mutex<Status>>,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 impl Handle {
@@ -79,11 +79,11 @@ impl Handle {
 pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
     let status = Arc::new(Mutex::new(Status::default()));
     let shared = status.clone();
-    let thread = lifeline::spawn("serial-pen", move |leash| {
+    let thread = device_thread::spawn("serial-pen", move |stop| {
         let mut sender = sender;
-        sender.stop_when(leash.flag());
+        sender.stop_when(stop.flag());
         sender.calibrate(config.device, config.calibration);
-        Reader { config, clock, sender, status: shared, second: (0, 0) }.run(&leash);
+        Reader { config, clock, sender, status: shared, second: (0, 0) }.run(&stop);
     })?;
     Ok(Handle { status, _thread: thread })
 }
@@ -102,29 +102,29 @@ impl Reader {
         change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let mut wait = BACK_OFF.0;
-        while !leash.stopped() {
+        while !stop.stopped() {
             let mut why = "no port is named, and none that may be asked is there".to_owned();
             for name in self.ports() {
-                why = match self.find(&name, leash) {
+                why = match self.find(&name, stop) {
                     Ok((mut wire, facts)) => {
                         wait = BACK_OFF.0;
                         self.found(&name, &facts);
-                        let why = self.read(wire.as_mut(), &facts, leash);
+                        let why = self.read(wire.as_mut(), &facts, stop);
                         self.note(|s| s.connected = false);
                         why
                     }
                     Err(why) => why,
                 };
                 tracing::debug!(port = name, %why, "no serial tablet");
-                if leash.stopped() {
+                if stop.stopped() {
                     return;
                 }
             }
             self.note(|s| s.last_error = Some(why));
             self.sender.flush();
-            if leash.wait(wait) {
+            if stop.wait(wait) {
                 return;
             }
             wait = (wait * 2).min(BACK_OFF.1);
@@ -171,7 +171,7 @@ impl Reader {
         names
     }
 
-    fn find(&self, name: &str, leash: &Leash) -> Result<(Box<dyn Wire>, Facts), String> {
+    fn find(&self, name: &str, stop: &StopToken) -> Result<(Box<dyn Wire>, Facts), String> {
         let port = serialport::new(name, 9600)
             .timeout(READ_SLICE)
             .open()
@@ -182,7 +182,7 @@ impl Reader {
             None => &PROBE_ORDER[..],
         };
         for &protocol in asked {
-            let found = session::open(wire.as_mut(), protocol, self.config.touch, leash);
+            let found = session::open(wire.as_mut(), protocol, self.config.touch, stop);
             if let Some(facts) = found.map_err(|e| format!("{name}: {e}"))? {
                 return Ok((wire, facts));
             }
@@ -191,12 +191,12 @@ impl Reader {
     }
 
     /// Reads until the line breaks; returns why it did.
-    fn read(&mut self, wire: &mut dyn Wire, facts: &Facts, leash: &Leash) -> String {
+    fn read(&mut self, wire: &mut dyn Wire, facts: &Facts, stop: &StopToken) -> String {
         let mut decoder = Decoder::new(facts, self.config.device);
         let (mut buffer, mut out) = ([0; 512], Vec::with_capacity(64));
         let mut patience = Duration::ZERO;
         let why = loop {
-            if leash.stopped() {
+            if stop.stopped() {
                 break "stopped".to_owned();
             }
             let wanted = if decoder.holds() { QUIET } else { READ_SLICE };

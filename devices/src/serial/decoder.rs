@@ -4,8 +4,8 @@
 use serde::Serialize;
 
 use super::{Facts, Layout};
-use crate::hid::report::Parsed;
 use crate::pen_state::{PenConfig, PenScale, PenState};
+use crate::report::Parsed;
 use crate::sample::{DeviceId, Sample};
 
 /// Longest packet of any protocol (two fingers over ISDV4).

@@ -2,7 +2,7 @@
 //! or 13 bytes, control packets of 11.
 
 use super::{low7, signed7};
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
 pub const PEN_LENGTH: usize = 9;

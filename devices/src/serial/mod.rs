@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 pub use adaptor::{Config, Handle, Status, start};
 pub use decoder::{Counts, Decoder};
 
-use crate::hid::report::Parsed;
+use crate::report::Parsed;
 
 /// What a serial tablet speaks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -110,6 +110,3 @@ fn signed7(b: &[u8], i: usize) -> f32 {
     let v = low7(b, i) as f32;
     if v >= 64.0 { v - 128.0 } else { v }
 }
-
-#[cfg(test)]
-mod tests;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::Vec2;
 
 use super::{Facts, Layout, Protocol, isdv4, summa_mm, wacom_iv, wacom_v};
-use crate::lifeline::Leash;
+use crate::device_thread::StopToken;
 
 const MM_PER_INCH: f32 = 25.4;
 /// How long one read of the line waits.
@@ -59,10 +59,10 @@ pub(crate) fn open(
     wire: &mut dyn Wire,
     protocol: Protocol,
     fingers: bool,
-    leash: &Leash,
+    stop: &StopToken,
 ) -> io::Result<Option<Facts>> {
     wire.set_patience(SLICE)?;
-    let mut s = Session { wire, leash };
+    let mut s = Session { wire, stop };
     match protocol {
         Protocol::Isdv4 => s.isdv4(fingers),
         Protocol::WacomIv | Protocol::WacomV => s.wacom(protocol),
@@ -72,7 +72,7 @@ pub(crate) fn open(
 
 struct Session<'a> {
     wire: &'a mut dyn Wire,
-    leash: &'a Leash,
+    stop: &'a StopToken,
 }
 
 impl Session<'_> {
@@ -83,7 +83,7 @@ impl Session<'_> {
 
     /// Waits, then throws away what came meanwhile.
     fn settle(&mut self, ms: u64) -> io::Result<()> {
-        if self.leash.wait(Duration::from_millis(ms)) {
+        if self.stop.wait(Duration::from_millis(ms)) {
             return Err(io::Error::new(io::ErrorKind::Interrupted, "stopped"));
         }
         self.wire.clear()
@@ -93,7 +93,7 @@ impl Session<'_> {
         self.say(question)?;
         let (mut reply, mut buffer) = (Vec::new(), [0; MAX_REPLY]);
         for _ in 0..PATIENCE.as_millis() / SLICE.as_millis() {
-            if self.leash.stopped() {
+            if self.stop.stopped() {
                 return Err(io::Error::new(io::ErrorKind::Interrupted, "stopped"));
             }
             match self.wire.read(&mut buffer) {

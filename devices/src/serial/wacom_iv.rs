@@ -1,7 +1,7 @@
 //! Wacom protocol IV: UD, ArtPad, PenPartner, Graphire, PL. 7 bytes, 9 with tilt.
 
 use super::{low7, signed7};
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
 /// What differs between models.

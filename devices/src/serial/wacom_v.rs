@@ -2,7 +2,7 @@
 //! channel.
 
 use super::{low7, signed7};
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
 pub const LENGTH: usize = 9;

@@ -31,18 +31,18 @@
 
 pub mod faults;
 pub mod hand;
+pub mod jitter;
 pub mod journal;
 pub mod pen;
 pub mod serial;
 pub mod tablet;
 pub mod tracker;
-pub mod tremble;
 
 pub use faults::Faults;
 pub use hand::{HandKey, HandScript, Performer};
+pub use jitter::{Jitter, JitterState};
 pub use journal::{Journal, journal};
 pub use pen::{PenPose, PenScript, Shape, Stroke};
 pub use serial::{SerialPen, SerialPenConfig};
 pub use tablet::{Tablet, TabletConfig, TabletEnd};
 pub use tracker::{Tracker, TrackerConfig};
-pub use tremble::{Tremble, Trembling};

@@ -1,7 +1,7 @@
 //! Every descriptor of the corpus, field by field, against what hid-tools reads in it
 //! (`hid_tools_facts.py`).
 
-use sculptd_devices::hid::descriptor::Descriptor;
+use sculptd_devices::descriptor::Descriptor;
 use sculptd_devices::recording::hid_recorder;
 
 const FACTS: &str = include_str!("facts.txt");

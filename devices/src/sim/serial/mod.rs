@@ -13,8 +13,8 @@ use serialport::{SerialPort, TTYPort};
 use self::encode::Model;
 use super::faults::{Faults, Rng};
 use super::pen::PenScript;
-use crate::Clock;
-use crate::lifeline::{self, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread};
 use crate::sample::DeviceId;
 use crate::serial::{Decoder, Facts, Protocol};
 
@@ -78,7 +78,7 @@ pub struct SerialPen {
     backlog: Vec<u8>,
     /// What a reader makes of the same bytes: by it the expected samples are counted.
     reader: Decoder,
-    listener: Option<Lifeline>,
+    listener: Option<DeviceThread>,
 }
 
 impl SerialPen {
@@ -95,9 +95,9 @@ impl SerialPen {
         let mut ears = master.try_clone_native()?;
         ears.set_timeout(LISTEN)?;
         let (their_model, on) = (Mutex::new(model.clone()), streaming.clone());
-        let listener = lifeline::spawn("sim-serial", move |leash| {
+        let listener = device_thread::spawn("sim-serial", move |stop| {
             let (mut said, mut buffer) = (Vec::new(), [0; 64]);
-            while !leash.stopped() {
+            while !stop.stopped() {
                 match ears.read(&mut buffer) {
                     Ok(0) => return,
                     Ok(n) => said.extend_from_slice(&buffer[..n]),
@@ -142,9 +142,9 @@ impl SerialPen {
 
     /// Waits until a reader has asked for the stream; false if none has in time.
     pub fn wait_for_reader(&self, patience: Duration) -> bool {
-        let (_hold, leash) = lifeline::pair();
+        let (_hold, stop) = device_thread::pair();
         let slices = patience.as_millis() / LISTEN.as_millis();
-        (0..slices).any(|_| self.streaming() || leash.wait(LISTEN)) || self.streaming()
+        (0..slices).any(|_| self.streaming() || stop.wait(LISTEN)) || self.streaming()
     }
 
     /// Leaves out everything before `us`.
@@ -235,8 +235,8 @@ impl SerialPen {
     /// If no thread can be started.
     pub fn play(mut self, clock: Clock) -> io::Result<PlayingPen> {
         let (port, start) = (self.name.clone(), clock.now_us());
-        let thread = lifeline::spawn("sim-serial-pen", move |leash| {
-            while !leash.wait(Duration::from_millis(2)) {
+        let thread = device_thread::spawn("sim-serial-pen", move |stop| {
+            while !stop.wait(Duration::from_millis(2)) {
                 self.advance(clock.now_us().saturating_sub(start));
             }
         })?;
@@ -248,7 +248,7 @@ impl SerialPen {
 #[derive(Debug)]
 pub struct PlayingPen {
     pub port: String,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 fn waited(e: &io::Error) -> bool {

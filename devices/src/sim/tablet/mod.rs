@@ -13,11 +13,11 @@ use crossbeam_channel as cc;
 use self::encode::Encoder;
 use super::faults::{Event, Faults, Line};
 use super::pen::PenScript;
-use crate::Clock;
 use crate::catalogue::{Catalogue, Found, Identity};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread};
 use crate::hid::decoder::Decoder;
 use crate::hid::transport::Transport;
-use crate::lifeline::{self, Lifeline};
 use crate::sample::DeviceId;
 use crate::tablet::Family;
 
@@ -214,8 +214,8 @@ impl Tablet {
     /// If no thread can be started.
     pub fn play(mut self, clock: Clock) -> io::Result<PlayingTablet> {
         let start = clock.now_us();
-        let thread = lifeline::spawn("sim-tablet", move |leash| {
-            while !leash.wait(Duration::from_millis(2)) {
+        let thread = device_thread::spawn("sim-tablet", move |stop| {
+            while !stop.wait(Duration::from_millis(2)) {
                 self.advance(clock.now_us().saturating_sub(start));
             }
         })?;
@@ -226,7 +226,7 @@ impl Tablet {
 /// A simulated tablet that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct PlayingTablet {
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 impl Transport for TabletEnd {

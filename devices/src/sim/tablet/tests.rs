@@ -1,7 +1,7 @@
 use std::time::Duration;
 
-use crate::Clock;
 use crate::catalogue::{Catalogue, Found, Identification};
+use crate::clock::Clock;
 use crate::hid::reader;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};

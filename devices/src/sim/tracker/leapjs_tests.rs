@@ -23,12 +23,12 @@ fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
         tracker.wait_for_client(std::time::Duration::from_secs(20)),
         "leapjs has not connected"
     );
-    let (_hold, leash) = crate::lifeline::pair();
+    let (_hold, stop) = crate::device_thread::pair();
     let mut us = 10_400_000;
     while tracker.clients() > 0 && us < 20_000_000 {
         us += 9_091;
         tracker.advance(us);
-        leash.wait(std::time::Duration::from_millis(4));
+        stop.wait(std::time::Duration::from_millis(4));
     }
     let out = child.wait_with_output().unwrap();
     let text = String::from_utf8_lossy(&out.stdout);

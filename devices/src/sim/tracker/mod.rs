@@ -14,9 +14,9 @@ use serde::{Deserialize, Serialize};
 use self::server::Server;
 use super::faults::{Event, Faults, Line};
 use super::hand::HandScript;
-use super::tremble::{Tremble, Trembling};
-use crate::Clock;
-use crate::lifeline::{self, Lifeline};
+use super::jitter::{Jitter, JitterState};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread};
 use crate::sample::Hands;
 
 pub use self::encode::frame_json;
@@ -38,7 +38,7 @@ pub struct TrackerConfig {
     pub repeat_us: Option<u64>,
     pub faults: Faults,
     /// How well it sees.
-    pub tremble: Tremble,
+    pub jitter: Jitter,
 }
 
 impl Default for TrackerConfig {
@@ -49,7 +49,7 @@ impl Default for TrackerConfig {
             origins: Vec::new(),
             repeat_us: None,
             faults: Faults::default(),
-            tremble: Tremble::default(),
+            jitter: Jitter::default(),
         }
     }
 }
@@ -61,7 +61,7 @@ pub struct Tracker {
     script: HandScript,
     server: Server,
     line: Line<Packet>,
-    trembling: Trembling,
+    jitter_state: JitterState,
     next_us: u64,
     frame: i64,
     /// By which the device's clock is off.
@@ -112,13 +112,13 @@ impl Tracker {
     pub fn new(script: HandScript, config: TrackerConfig) -> std::io::Result<Self> {
         let server = Server::bind(config.port, config.origins.clone())?;
         let line = Line::new(config.faults);
-        let trembling = Trembling::new(config.tremble);
+        let jitter_state = JitterState::new(config.jitter);
         Ok(Tracker {
             config,
             script,
             server,
             line,
-            trembling,
+            jitter_state,
             next_us: 0,
             frame: 0,
             jumped_us: 0,
@@ -178,8 +178,8 @@ impl Tracker {
             let at = self.next_us;
             self.next_us += step;
             self.frame += 1;
-            let stamp =
-                (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
+            let stamp = (CLOCK_ORIGIN_US + self.jitter_state.stamp(at))
+                .saturating_add_signed(self.jumped_us);
             let hands = self.hands_at(at);
             let text = frame_json(&hands, stamp, self.config.rate);
             let packet = Packet { text, frame: self.frame, stamp, hands: hands.count };
@@ -198,7 +198,7 @@ impl Tracker {
 
     fn hands_at(&mut self, at: u64) -> Hands {
         let at = self.config.repeat_us.filter(|p| *p > 0).map_or(at, |p| at % p);
-        self.trembling.apply(&self.script.at(at, self.frame))
+        self.jitter_state.apply(&self.script.at(at, self.frame))
     }
 
     fn happen(&mut self, event: Event<Packet>, at: u64) -> u32 {
@@ -237,8 +237,8 @@ impl Tracker {
     /// If no thread can be started.
     pub fn play(mut self, clock: Clock) -> std::io::Result<Playing> {
         let (address, start) = (self.address(), clock.now_us());
-        let thread = lifeline::spawn("sim-tracker", move |leash| {
-            while !leash.wait(Duration::from_millis(2)) {
+        let thread = device_thread::spawn("sim-tracker", move |stop| {
+            while !stop.wait(Duration::from_millis(2)) {
                 self.advance(clock.now_us().saturating_sub(start));
             }
         })?;
@@ -250,7 +250,7 @@ impl Tracker {
 #[derive(Debug)]
 pub struct Playing {
     pub address: SocketAddr,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 #[cfg(test)]

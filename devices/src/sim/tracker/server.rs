@@ -9,7 +9,7 @@ use tungstenite::http::StatusCode;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Message, WebSocket};
 
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::device_thread::{self, DeviceThread, StopToken};
 
 /// Nothing that a client may say is longer than a few dozen bytes.
 const MAX_FROM_CLIENT: usize = 4096;
@@ -37,7 +37,7 @@ struct Clients {
 pub(super) struct Server {
     address: SocketAddr,
     shared: Arc<Shared>,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 impl Server {
@@ -47,8 +47,9 @@ impl Server {
         let address = listener.local_addr()?;
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
-        let thread =
-            lifeline::spawn("sim-ws", move |leash| accept(&listener, &origins, &theirs, &leash))?;
+        let thread = device_thread::spawn("sim-ws", move |stop| {
+            accept(&listener, &origins, &theirs, &stop)
+        })?;
         Ok(Server { address, shared, _thread: thread })
     }
 
@@ -113,8 +114,8 @@ fn hear(
     heard
 }
 
-fn accept(listener: &TcpListener, origins: &[String], shared: &Shared, leash: &Leash) {
-    while !leash.wait(ACCEPT_SLICE) {
+fn accept(listener: &TcpListener, origins: &[String], shared: &Shared, stop: &StopToken) {
+    while !stop.wait(ACCEPT_SLICE) {
         while let Ok((stream, _)) = listener.accept() {
             match welcome(stream, origins) {
                 Ok(client) => {

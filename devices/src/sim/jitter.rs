@@ -10,7 +10,7 @@ use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 /// How far from perfect. All zero by default: a tracker that sees everything.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Tremble {
+pub struct Jitter {
     pub seed: u64,
     /// Standard deviation of every joint of a hand at rest, mm along each axis. Trackers of the
     /// Leap kind: 0.2 (Weichert et al., Sensors 2013).
@@ -31,10 +31,10 @@ pub struct Tremble {
 /// From this speed of the palm on the noise is that of motion, mm a second.
 pub const FAST_MM_S: f32 = 200.0;
 
-/// The tremble over time.
+/// The jitter over time.
 #[derive(Debug, Clone)]
-pub struct Trembling {
-    figures: Tremble,
+pub struct JitterState {
+    figures: Jitter,
     rng: Rng,
     /// For each performer: frames for which the hand is still lost, the hidden finger and for how
     /// long, the last number given by the script, and the number in its place.
@@ -49,9 +49,9 @@ struct Fate {
     id: Option<(i32, i32)>,
 }
 
-impl Trembling {
-    pub fn new(figures: Tremble) -> Self {
-        Trembling { figures, rng: Rng::new(figures.seed), hands: Default::default(), ids: 1000 }
+impl JitterState {
+    pub fn new(figures: Jitter) -> Self {
+        JitterState { figures, rng: Rng::new(figures.seed), hands: Default::default(), ids: 1000 }
     }
 
     /// A stamp on the tracker's own clock.
@@ -147,9 +147,9 @@ mod tests {
         let hand = skeleton(&HandKey::flat(0, Vec3::new(0.0, 200.0, 0.0)), false);
         let mut hands = Hands { count: 1, ..Hands::default() };
         hands.hands[0] = hand;
-        let figures = Tremble { seed: 3, rest_mm: 0.2, moving_mm: 1.2, ..Tremble::default() };
-        let run = |f: Tremble| {
-            let mut t = Trembling::new(f);
+        let figures = Jitter { seed: 3, rest_mm: 0.2, moving_mm: 1.2, ..Jitter::default() };
+        let run = |f: Jitter| {
+            let mut t = JitterState::new(f);
             (0..4000).map(|_| t.apply(&hands).hands[0].palm - hand.palm).collect::<Vec<_>>()
         };
         let all = run(figures);
@@ -157,7 +157,7 @@ mod tests {
             (all.iter().map(|o| o.length_squared()).sum::<f32>() / (3.0 * all.len() as f32)).sqrt();
         assert!((sigma - 0.2).abs() < 0.01, "{sigma} mm");
         assert_eq!(all, run(figures));
-        assert_ne!(all, run(Tremble { seed: 4, ..figures }));
+        assert_ne!(all, run(Jitter { seed: 4, ..figures }));
     }
 
     #[test]
@@ -165,7 +165,7 @@ mod tests {
         let mut hands = Hands { count: 1, ..Hands::default() };
         hands.hands[0] = skeleton(&HandKey::flat(0, Vec3::ZERO), false);
         let mut t =
-            Trembling::new(Tremble { seed: 1, dropout: 0.02, occlude: 0.05, ..Tremble::default() });
+            JitterState::new(Jitter { seed: 1, dropout: 0.02, occlude: 0.05, ..Jitter::default() });
         let (mut gaps, mut longest, mut gap, mut hidden) = (0, 0, 0, 0);
         let mut ids = std::collections::BTreeSet::new();
         for _ in 0..5000 {

@@ -10,7 +10,7 @@ use crossbeam_channel as cc;
 
 /// The owner's end: dropping it tells the thread to stop and waits until it has.
 #[derive(Debug)]
-pub(crate) struct Lifeline {
+pub(crate) struct DeviceThread {
     flag: Arc<AtomicBool>,
     hold: Option<cc::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -18,27 +18,30 @@ pub(crate) struct Lifeline {
 
 /// The thread's end.
 #[derive(Debug, Clone)]
-pub(crate) struct Leash {
+pub(crate) struct StopToken {
     flag: Arc<AtomicBool>,
     released: cc::Receiver<()>,
 }
 
-/// Starts a named thread on a leash.
-pub(crate) fn spawn(name: &str, body: impl FnOnce(Leash) + Send + 'static) -> io::Result<Lifeline> {
+/// Starts a named thread on a stop.
+pub(crate) fn spawn(
+    name: &str,
+    body: impl FnOnce(StopToken) + Send + 'static,
+) -> io::Result<DeviceThread> {
     let flag = Arc::new(AtomicBool::new(false));
     let (hold, released) = cc::bounded(0);
-    let leash = Leash { flag: flag.clone(), released };
-    let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || body(leash))?;
-    Ok(Lifeline { flag, hold: Some(hold), thread: Some(thread) })
+    let stop = StopToken { flag: flag.clone(), released };
+    let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || body(stop))?;
+    Ok(DeviceThread { flag, hold: Some(hold), thread: Some(thread) })
 }
 
-/// A leash with nothing at its other end but what the caller holds.
-pub(crate) fn pair() -> (cc::Sender<()>, Leash) {
+/// A stop with nothing at its other end but what the caller holds.
+pub(crate) fn pair() -> (cc::Sender<()>, StopToken) {
     let (hold, released) = cc::bounded(0);
-    (hold, Leash { flag: Arc::new(AtomicBool::new(false)), released })
+    (hold, StopToken { flag: Arc::new(AtomicBool::new(false)), released })
 }
 
-impl Leash {
+impl StopToken {
     pub(crate) fn stopped(&self) -> bool {
         self.flag.load(Relaxed)
     }
@@ -54,7 +57,7 @@ impl Leash {
     }
 }
 
-impl Drop for Lifeline {
+impl Drop for DeviceThread {
     fn drop(&mut self) {
         self.flag.store(true, Relaxed);
         drop(self.hold.take());

@@ -4,9 +4,13 @@ use std::io;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::*;
 use crate::catalogue::Identification;
+use crate::catalogue::{Catalogue, Identity};
+use crate::clock::Clock;
+use crate::device_thread;
+use crate::hid::bus::{Bus, Node};
 use crate::hid::transport::Transport;
+use crate::hid::watch::{HidConfig, HidHandle, choose, start_on};
 use crate::queue::channel;
 use crate::sample::{Body, Sample};
 use crate::sim::{Tablet, TabletConfig, TabletEnd, journal, tablet};
@@ -56,8 +60,8 @@ fn until(what: &str, mut happened: impl FnMut() -> bool) {
         if happened() {
             return;
         }
-        let (_hold, leash) = lifeline::pair();
-        leash.wait(Duration::from_millis(10));
+        let (_hold, stop) = device_thread::pair();
+        stop.wait(Duration::from_millis(10));
     }
     panic!("never: {what}");
 }

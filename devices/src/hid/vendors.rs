@@ -1,8 +1,8 @@
 //! Smaller families, one function each. Layouts from OpenTabletDriver (facts) unless a line says
 //! otherwise.
 
-use super::report::{PadReport, Parsed, PenReport, be16_at, byte, s8_at, u16_at, u24_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, be16_at, byte, s8_at, u16_at, u24_at};
+use crate::sample::Tool;
 
 fn tool(eraser: bool) -> Option<Tool> {
     Some(if eraser { Tool::Eraser } else { Tool::Pen })

@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use crate::Clock;
+use crate::clock::Clock;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 use crate::serial::{Config, Handle, Protocol, start};
@@ -170,9 +170,9 @@ fn an_unplug_ends_the_visit() {
     assert_eq!(rig.pen.unplug(), 1);
     let gone = pen(&rig.rx.next_within(SOON).unwrap());
     assert!(!gone.tip && !gone.in_range && gone.buttons == 0);
-    let (_hold, leash) = crate::lifeline::pair();
+    let (_hold, stop) = crate::device_thread::pair();
     assert!(
-        (0..100).any(|_| !rig.handle.status().connected || leash.wait(Duration::from_millis(20)))
+        (0..100).any(|_| !rig.handle.status().connected || stop.wait(Duration::from_millis(20)))
     );
 }
 

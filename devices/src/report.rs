@@ -2,7 +2,7 @@
 //! Judgement (contact, proximity, stuck buttons, spikes) belongs to [`crate::pen_state`], so that
 //! every family is judged alike.
 
-use crate::Tool;
+use crate::sample::Tool;
 
 /// One report, read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

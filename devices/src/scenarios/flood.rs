@@ -3,10 +3,10 @@
 
 use std::time::Duration;
 
-use crate::Clock;
 use crate::catalogue::{Catalogue, Identification};
+use crate::clock::Clock;
+use crate::device_thread;
 use crate::hid::reader;
-use crate::lifeline;
 use crate::queue::channel;
 use crate::sample::{Body, DeviceId, Sample};
 use crate::sim::faults::Rng;
@@ -63,8 +63,8 @@ fn nothing_but_motion_is_ever_lost() {
     }
     let stats = rx.stats();
     let (tablet_clock, start) = (clock.clone(), clock.now_us());
-    let device = lifeline::spawn("flood", move |leash| {
-        while !leash.wait(Duration::from_millis(1)) {
+    let device = device_thread::spawn("flood", move |stop| {
+        while !stop.wait(Duration::from_millis(1)) {
             let now = tablet_clock.now_us() - start;
             tablets.iter_mut().for_each(|t| {
                 t.advance(now);
@@ -72,7 +72,7 @@ fn nothing_but_motion_is_ever_lost() {
         }
     })
     .unwrap();
-    let (_hold, leash) = lifeline::pair();
+    let (_hold, stop) = device_thread::pair();
     let (mut rng, mut got) = (Rng::new(9), Vec::with_capacity(CAPACITY));
     let (mut edges, mut is_down, mut stalls) = ([0u32; TABLETS], [false; TABLETS], 0);
     let mut take = |got: &mut Vec<Sample>| {
@@ -84,7 +84,7 @@ fn nothing_but_motion_is_ever_lost() {
     while clock.now_us() - start < seconds * 1_000_000 {
         let stalled = rng.unit() < 0.02;
         stalls += u32::from(stalled);
-        leash.wait(if stalled { Duration::from_millis(300) } else { TICK });
+        stop.wait(if stalled { Duration::from_millis(300) } else { TICK });
         rx.drain(CAPACITY, &mut got);
         take(&mut got);
     }
@@ -92,7 +92,7 @@ fn nothing_but_motion_is_ever_lost() {
     let p99 = readers.iter().map(|r| r.status().to_channel_us).max_by_key(|q| q.p99).unwrap();
     let ends = std::thread::spawn(move || drop(readers));
     while stats.total().on_the_way() > 0 || !ends.is_finished() {
-        leash.wait(Duration::from_millis(1));
+        stop.wait(Duration::from_millis(1));
         rx.drain(CAPACITY, &mut got);
         take(&mut got);
     }
