@@ -9,6 +9,7 @@ use crate::catalogue::{Catalogue, Found};
 use crate::descriptor::Descriptor;
 use crate::hid::decoder::Decoder;
 use crate::leap::{self, FrameFile, Message};
+use crate::report::Batch;
 use crate::sample::{Body, DeviceId, Hands, Sample};
 use crate::serial::{self, Protocol};
 use crate::sim::PenScript;
@@ -62,7 +63,7 @@ pub fn descriptor_bytes(data: &[u8]) {
         let mut report = [0xa5; 64];
         report[0] = data.first().copied().unwrap_or(0);
         for length in [0, 1, 8, 64] {
-            let _ = crate::hid::digitiser::parse(&report[..length], &descriptor);
+            crate::hid::digitiser::parse(&report[..length], &descriptor, &mut Batch::default());
         }
     }
 }
@@ -74,12 +75,7 @@ pub fn report_bytes(data: &[u8]) {
         let catalogue = Catalogue::builtin().unwrap_or_default();
         let ways = |t: &std::sync::Arc<crate::tablet::Tablet>| {
             let tablet = t.clone();
-            (0..t.id.len()).map(move |at| Found {
-                tablet: tablet.clone(),
-                at,
-                note: None,
-                described: false,
-            })
+            (0..t.id.len()).map(move |at| Found::new(tablet.clone(), at))
         };
         catalogue.tablets().iter().flat_map(ways).collect()
     });
@@ -246,7 +242,7 @@ mod tests {
         let mut families = std::collections::BTreeSet::new();
         for model in catalogue.tablets() {
             for i in 0..model.id.len() {
-                let found = Found { tablet: model.clone(), at: i, note: None, described: false };
+                let found = Found::new(model.clone(), i);
                 let family = found.id().parser;
                 if families.insert(family) {
                     let area = Vec2::new(model.area.width_mm as f32, model.area.height_mm as f32);

@@ -47,6 +47,7 @@ pub mod hid;
 pub mod latency;
 pub mod leap;
 pub mod long_array;
+pub mod pad_actions;
 pub mod pen_state;
 pub mod queue;
 pub mod recording;

@@ -22,6 +22,13 @@ const UP: f32 = 0.01;
 /// A rest pressure above this is a hand pressing, not a worn pen.
 const MOST_OFFSET: f32 = 0.5;
 
+/// Part of an axis by which a pen at the edge may be beyond it.
+const EDGE_SHARE: i64 = 100;
+/// Reports above the stated full pressure that prove it wrong; fewer are taken for noise.
+const PROOF: u32 = 3;
+/// Counts above this are noise and no pressure: no pen has more than 16 bits.
+const MOST_PRESSURE: u32 = 0xffff;
+
 /// What the model's description says of its pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenConfig {
@@ -59,6 +66,12 @@ pub struct PenState {
     offset: f32,
     /// The last tip switch seen, where there is one.
     switch: Option<bool>,
+    /// Reports above the stated full pressure, and the highest of them.
+    over: (u32, u32),
+    /// Full pressure as reports have proved it, where it is more than the stated one.
+    proved_pressure: u32,
+    /// Positions outside the area or pressures above the stated maximum, and all positions.
+    outside: (u64, u64),
 }
 
 impl PenState {
@@ -66,11 +79,26 @@ impl PenState {
         let pressure = (cfg.scale.max_pressure > 0).then_some(0.0);
         let tilt = cfg.tilts.then_some(Vec2::ZERO);
         let pen = Pen { area_mm: cfg.scale.area_mm, pressure, tilt, ..Pen::default() };
-        PenState { cfg, pen, last_us: 0, fresh: true, offset: 0.0, switch: None }
+        PenState {
+            cfg,
+            pen,
+            last_us: 0,
+            fresh: true,
+            offset: 0.0,
+            switch: None,
+            over: (0, 0),
+            proved_pressure: 0,
+            outside: (0, 0),
+        }
     }
 
     pub fn in_range(&self) -> bool {
         self.pen.in_range
+    }
+
+    /// Positions outside the area or pressures above the stated maximum, and all positions.
+    pub fn outside(&self) -> (u64, u64) {
+        self.outside
     }
 
     /// A firmware shows only as it speaks whether it says when the pen leaves.
@@ -141,6 +169,7 @@ impl PenState {
         }
         self.pen.in_range = true;
         self.last_us = t_us;
+        self.count_outside(r);
         self.place(r);
         if let Some(d) = r.distance {
             self.pen.distance = Some(d as f32);
@@ -154,6 +183,34 @@ impl PenState {
         self.press(r, entering);
         self.fresh = false;
         self.emit(t_us, emit);
+    }
+
+    fn count_outside(&mut self, r: &PenReport) {
+        let PenScale { min, max, max_pressure, .. } = self.cfg.scale;
+        if let Some(pos) = r.pos {
+            // A pen at the edge may be a little beyond it.
+            let beyond = |i: usize| {
+                let slack = (i64::from(max[i]) - i64::from(min[i])) / EDGE_SHARE;
+                let at = i64::from(pos[i]);
+                at < i64::from(min[i]) - slack || at > i64::from(max[i]) + slack
+            };
+            let over = max_pressure > 0 && r.pressure.is_some_and(|p| p > max_pressure);
+            self.outside.0 += u64::from(beyond(0) || beyond(1) || over);
+            self.outside.1 += 1;
+        }
+    }
+
+    /// Counts at full pressure: as stated, or as reports have proved it. A vendor's figure is wrong
+    /// more often than a pen's: counts above it show the next power of two to be the true one.
+    fn full_pressure(&mut self, counts: u32) -> u32 {
+        let stated = self.cfg.scale.max_pressure;
+        if counts > stated && counts <= MOST_PRESSURE {
+            self.over = (self.over.0 + 1, self.over.1.max(counts));
+            if self.over.0 >= PROOF {
+                self.proved_pressure = self.over.1.next_power_of_two() - 1;
+            }
+        }
+        stated.max(self.proved_pressure)
     }
 
     fn place(&mut self, r: &PenReport) {
@@ -179,8 +236,8 @@ impl PenState {
 
     fn press(&mut self, r: &PenReport, entering: bool) {
         if let (Some(counts), true) = (r.pressure, self.cfg.scale.max_pressure > 0) {
-            let share =
-                (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
+            let full = self.full_pressure(counts);
+            let share = (f64::from(counts) / f64::from(full)).min(1.0) as f32;
             if entering {
                 self.learn_offset(r, share);
             } else if share < self.offset {

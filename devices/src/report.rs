@@ -18,6 +18,31 @@ pub enum Parsed {
     Pad(PadReport),
 }
 
+/// Most facts in one report: seven frames of a Bluetooth pen and two halves of its pad.
+const MAX_BATCH: usize = 10;
+
+/// What one report says, in order. Some carry several frames of the pen, and its pad.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Batch {
+    items: [Parsed; MAX_BATCH],
+    count: usize,
+}
+
+impl Batch {
+    /// Adds what was read. [`Parsed::Nothing`] adds nothing; what is over the limit is left out.
+    pub fn push(&mut self, parsed: Parsed) {
+        if parsed != Parsed::Nothing && self.count < MAX_BATCH {
+            self.items[self.count] = parsed;
+            self.count += 1;
+        }
+    }
+
+    /// Everything that was added.
+    pub fn as_slice(&self) -> &[Parsed] {
+        &self.items[..self.count]
+    }
+}
+
 /// A pen in range. `None` means "this report does not say": the last word stands.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PenReport {

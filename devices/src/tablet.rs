@@ -5,6 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::pad_actions::ActionTable;
+
 /// One model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -17,6 +19,9 @@ pub struct Tablet {
     pub pen: PenFacts,
     #[serde(default, skip_serializing_if = "Pad::is_empty")]
     pub pad: Pad,
+    /// What its keys, wheels and pen buttons do by default; see [`crate::pad_actions`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actions: Option<ActionTable>,
     /// How it shows itself; a model may have several firmwares.
     pub id: Vec<Id>,
 }
@@ -25,15 +30,22 @@ pub struct Tablet {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Area {
+    /// Width in mm.
     pub width_mm: f64,
+    /// Height in mm.
     pub height_mm: f64,
+    /// The size is rounded to whole inches, as libwacom's is: a believable size in the report
+    /// descriptor is better.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub nominal: bool,
     /// Counts at the left and top edge.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub min_x: i32,
     #[serde(default, skip_serializing_if = "is_zero")]
     pub min_y: i32,
-    /// Counts at the right and bottom edge.
+    /// Counts at the right edge. 0 where the report descriptor says it (`parser = "digitiser"`).
     pub max_x: i32,
+    /// Counts at the bottom edge; 0 as with `max_x`.
     pub max_y: i32,
 }
 
@@ -141,6 +153,8 @@ pub enum Family {
     WacomDtus,
     WacomTabletPc,
     WacomIntuosV2,
+    WacomProBluetooth,
+    WacomIntuosBluetooth,
     WacomIntuosV3,
     WacomOne,
     UcLogic,
@@ -221,7 +235,9 @@ impl Tablet {
                 return Err(format!("area.{name} = {v}: expected 5 to 5000 mm"));
             }
         }
-        if a.max_x <= a.min_x || a.max_y <= a.min_y {
+        let described = self.id.iter().all(|id| id.parser == Family::Digitiser);
+        let empty = a.max_x <= a.min_x || a.max_y <= a.min_y;
+        if empty && !(described && (a.max_x, a.max_y) == (0, 0)) {
             return Err("area: max_x and max_y must exceed min_x and min_y".to_owned());
         }
         if self.pen.max_pressure > 1 << 20 {
@@ -232,6 +248,9 @@ impl Tablet {
         }
         if self.id.is_empty() {
             return Err("no [[id]]: the model could never be found".to_owned());
+        }
+        if let Some(actions) = &self.actions {
+            actions.check()?;
         }
         for id in &self.id {
             if let Some(bad) = id.strings.iter().find(|s| StringIs::parse(s).is_none()) {
@@ -284,6 +303,9 @@ impl Pad {
     }
 }
 
+fn is_false(v: &bool) -> bool {
+    !*v
+}
 fn is_zero(v: &i32) -> bool {
     *v == 0
 }

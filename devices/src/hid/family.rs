@@ -2,11 +2,11 @@
 
 use super::uclogic::Packing;
 use super::{
-    digitiser, uclogic, vendors, wacom_bamboo, wacom_display, wacom_graphire, wacom_intuos,
-    wacom_pad, wacom_pro,
+    digitiser, uclogic, vendors, wacom_bamboo, wacom_bluetooth, wacom_display, wacom_graphire,
+    wacom_intuos, wacom_pad, wacom_pro,
 };
 use crate::descriptor::Descriptor;
-use crate::report::{PadReport, Parsed};
+use crate::report::{Batch, Parsed};
 use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 
 /// libinput's time of silence after which a pen that never says so has left.
@@ -27,9 +27,10 @@ pub enum Engine {
     },
     Display(wacom_display::Kind, u32, wacom_display::Memory),
     Pro(wacom_pro::Kind),
+    Bluetooth(wacom_bluetooth::Kind, wacom_bluetooth::Memory),
     UcLogic(uclogic::Traits, uclogic::Memory),
     /// Families without memory; `leaves`: they say when the pen goes.
-    Maker {
+    Vendor {
         parse: fn(&[u8]) -> Parsed,
         leaves: bool,
     },
@@ -52,9 +53,10 @@ impl Engine {
                 uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt), untilted };
             Engine::UcLogic(traits, uclogic::Memory::default())
         };
-        let maker = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Maker { parse, leaves };
+        let vendor = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Vendor { parse, leaves };
         let display =
             |kind| Engine::Display(kind, tablet.pen.max_pressure, wacom_display::Memory::default());
+        let bluetooth = |kind| Engine::Bluetooth(kind, wacom_bluetooth::Memory::default());
         match id.parser {
             Family::WacomIntuosV1 => Engine::Intuos(
                 wacom_intuos::Traits {
@@ -84,6 +86,8 @@ impl Engine {
             Family::WacomDtus => display(wacom_display::Kind::Dtus),
             Family::WacomTabletPc => display(wacom_display::Kind::TabletPc),
             Family::WacomIntuosV2 => Engine::Pro(wacom_pro::Kind::V2),
+            Family::WacomProBluetooth => bluetooth(wacom_bluetooth::Kind::Pro),
+            Family::WacomIntuosBluetooth => bluetooth(wacom_bluetooth::Kind::Intuos),
             Family::WacomIntuosV3 => Engine::Pro(wacom_pro::Kind::V3),
             Family::WacomOne => Engine::Pro(wacom_pro::Kind::One),
             Family::UcLogic => uclogic(Packing::XpPen),
@@ -91,51 +95,55 @@ impl Engine {
             Family::XpPenGen2 => uclogic(Packing::XpPenGen2),
             Family::Huion => uclogic(Packing::Huion),
             Family::Floogoo => uclogic(Packing::Fma),
-            Family::Veikk => maker(|b| vendors::veikk(b, false), true),
-            Family::VeikkA15 => maker(|b| vendors::veikk(b, true), true),
-            Family::Acepen => maker(vendors::acepen, true),
-            Family::Kye => maker(vendors::kye, false),
-            Family::KyePlain => maker(vendors::kye_plain, false),
-            Family::TenMoons => maker(vendors::ten_moons, false),
-            Family::Plain => maker(vendors::plain, false),
-            Family::Xenx => maker(vendors::xenx, true),
-            Family::RobotPen => maker(vendors::robot_pen, true),
-            Family::WoodPad => maker(vendors::wood_pad, true),
+            Family::Veikk => vendor(|b| vendors::veikk(b, false), true),
+            Family::VeikkA15 => vendor(|b| vendors::veikk(b, true), true),
+            Family::Acepen => vendor(vendors::acepen, true),
+            Family::Kye => vendor(vendors::kye, false),
+            Family::KyePlain => vendor(vendors::kye_plain, false),
+            Family::TenMoons => vendor(vendors::ten_moons, false),
+            Family::Plain => vendor(vendors::plain, false),
+            Family::Xenx => vendor(vendors::xenx, true),
+            Family::RobotPen => vendor(vendors::robot_pen, true),
+            Family::WoodPad => vendor(vendors::wood_pad, true),
             Family::Digitiser => Engine::Digitiser(Box::new(described)),
         }
     }
 
-    /// What a report says of the pen, and of the pad where they share it.
-    pub fn parse(&mut self, b: &[u8]) -> (Parsed, Option<PadReport>, Option<PadReport>) {
+    /// Reads one report, its id first where it has one.
+    pub fn parse(&mut self, b: &[u8], out: &mut Batch) {
         match self {
             Engine::Intuos(traits, memory, pad) => {
                 match pad.and_then(|layout| wacom_pad::parse(b, layout)) {
-                    Some([first, second]) => (Parsed::Nothing, Some(first), Some(second)),
-                    None => (wacom_intuos::parse(b, traits, memory), None, None),
+                    Some(halves) => halves.into_iter().for_each(|r| out.push(Parsed::Pad(r))),
+                    None => out.push(wacom_intuos::parse(b, traits, memory)),
                 }
             }
             Engine::Simple { max_distance, memory } => {
-                (wacom_bamboo::parse(b, *max_distance, memory), None, None)
+                out.push(wacom_bamboo::parse(b, *max_distance, memory));
             }
-            Engine::BambooPad => (wacom_bamboo::bamboo_pad(b), None, None),
+            Engine::BambooPad => out.push(wacom_bamboo::bamboo_pad(b)),
             Engine::Graphire(kind) => {
                 let parsed = wacom_graphire::parse(b, *kind);
-                let pad =
-                    if parsed == Parsed::Nothing { None } else { wacom_graphire::pad(b, *kind) };
-                (parsed, pad, None)
+                out.push(parsed);
+                if parsed != Parsed::Nothing {
+                    wacom_graphire::pad(b, *kind)
+                        .into_iter()
+                        .for_each(|r| out.push(Parsed::Pad(r)));
+                }
             }
             Engine::PenPartner { leaves } => {
                 let parsed = wacom_graphire::pen_partner(b);
                 *leaves |= parsed == Parsed::Away;
-                (parsed, None, None)
+                out.push(parsed);
             }
             Engine::Display(kind, max, memory) => {
-                (wacom_display::parse(b, *kind, *max, memory), None, None)
+                out.push(wacom_display::parse(b, *kind, *max, memory));
             }
-            Engine::Pro(kind) => (wacom_pro::parse(b, *kind), None, None),
-            Engine::UcLogic(traits, memory) => (uclogic::parse(b, traits, memory), None, None),
-            Engine::Maker { parse, .. } => (parse(b), None, None),
-            Engine::Digitiser(d) => (digitiser::parse(b, d), None, None),
+            Engine::Pro(kind) => wacom_pro::parse(b, *kind, out),
+            Engine::Bluetooth(kind, memory) => wacom_bluetooth::parse(b, *kind, memory, out),
+            Engine::UcLogic(traits, memory) => out.push(uclogic::parse(b, traits, memory)),
+            Engine::Vendor { parse, .. } => out.push(parse(b)),
+            Engine::Digitiser(d) => digitiser::parse(b, d, out),
         }
     }
 
@@ -162,9 +170,9 @@ impl Engine {
     pub fn silence_us(&self) -> Option<u64> {
         let mute = match self {
             Engine::Intuos(..) | Engine::Simple { .. } | Engine::Graphire(_) => false,
-            Engine::Display(..) | Engine::Pro(_) => false,
+            Engine::Display(..) | Engine::Pro(_) | Engine::Bluetooth(..) => false,
             Engine::BambooPad => true,
-            Engine::PenPartner { leaves } | Engine::Maker { leaves, .. } => !leaves,
+            Engine::PenPartner { leaves } | Engine::Vendor { leaves, .. } => !leaves,
             Engine::UcLogic(_, memory) => memory.is_mute(),
             Engine::Digitiser(d) => d.pens.iter().any(|p| p.in_range.is_none()),
         };

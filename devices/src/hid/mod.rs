@@ -19,6 +19,7 @@ pub mod transport;
 pub mod uclogic;
 pub mod vendors;
 pub mod wacom_bamboo;
+pub mod wacom_bluetooth;
 pub mod wacom_display;
 pub mod wacom_graphire;
 pub mod wacom_intuos;

@@ -125,7 +125,7 @@ impl Reader {
         for sample in out.drain(..) {
             self.sender.push(sample);
         }
-        let counts = self.decoder.counts;
+        let counts = self.decoder.counts();
         let taken = read_us.map(|t| self.clock.now_us().saturating_sub(t));
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(us) = taken {

@@ -6,7 +6,7 @@ use super::*;
 use crate::queue::{Receiver, channel};
 use crate::sim::{Faults, Tracker, TrackerConfig, journal};
 
-const SOON: Duration = Duration::from_secs(5);
+const SOON: Duration = Duration::from_secs(60);
 
 struct Rig {
     tracker: Tracker,

@@ -17,11 +17,26 @@ pub struct BadLine {
     pub what: String,
 }
 
-/// Reads a whole file.
+/// Reads a whole file. A last line that has no end and cannot be read was cut off: it is left out,
+/// and [`HidRecording::cut_at`] says so.
+///
+/// # Errors
+/// Any other line that cannot be read, or a file without a descriptor and without a report.
 pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
     let mut reader = Reader::default();
+    let unended = (!text.ends_with('\n')).then(|| text.lines().count());
     for (i, line) in text.lines().enumerate() {
-        reader.line(line.trim()).map_err(|what| BadLine { line: i + 1, what })?;
+        let unfinished = !line.contains(':') && !line.starts_with('#') && !line.trim().is_empty();
+        match reader.line(line.trim()) {
+            Ok(()) if unended == Some(i + 1) && unfinished && reader.described => {
+                reader.out.cut_at = Some(i + 1);
+            }
+            Ok(()) => {}
+            Err(_) if unended == Some(i + 1) && reader.described => {
+                reader.out.cut_at = Some(i + 1);
+            }
+            Err(what) => return Err(BadLine { line: i + 1, what }),
+        }
     }
     if !reader.described {
         return Err(BadLine {
@@ -200,6 +215,19 @@ mod tests {
         let seen: Vec<_> =
             got.reports.iter().map(|r| (r.t_us, r.interface, r.bytes.len())).collect();
         assert_eq!(seen, [(0, 1, 2), (10_500, 0, 1), (10_500, 0, 0)], "time never runs backward");
+    }
+
+    #[test]
+    fn a_recording_is_read_up_to_the_line_that_was_cut() {
+        let text = "R: 2 05 0d\nE: 0.1 2 01 02\nE: 0.2 2 03 04\n";
+        assert_eq!(parse(text).unwrap().cut_at, None);
+        for length in text.len() - 14..text.len() - 1 {
+            let got = parse(&text[..length]).unwrap();
+            assert_eq!((got.reports.len(), got.cut_at), (1, Some(3)), "{:?}", &text[..length]);
+        }
+        assert_eq!(parse(&text[..text.len() - 1]).unwrap().reports.len(), 2, "only its end is cut");
+        let e = parse("R: 2 05 0d\nE: 0.1 2 01\nE: 0.2 2 03 0").unwrap_err();
+        assert_eq!(e.line, 2, "an earlier line was not cut off");
     }
 
     #[test]

@@ -17,7 +17,10 @@ pub use player::Player;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct HidRecording {
     pub interfaces: Vec<crate::catalogue::Identity>,
+    /// Every report, in order of time.
     pub reports: Vec<Stamped>,
+    /// Number of the last line, from 1, where it was cut off and therefore left out.
+    pub cut_at: Option<usize>,
 }
 
 /// One report.

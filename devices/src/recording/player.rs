@@ -35,14 +35,15 @@ impl Player {
         let bytes = std::fs::read(path)
             .map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
         if hands::looks_like(&bytes) {
+            let recording = hands::open(path)?;
             let info = DeviceInfo {
                 name: "hand tracker".to_owned(),
                 kind: DeviceKind::Hand,
                 area_mm: glam::Vec2::ZERO,
                 device,
-                notes: Vec::new(),
+                notes: recording.cut_at.map(|line| cut_warning(path, line)).into_iter().collect(),
             };
-            return Ok(Player::with(info, Source::Hands(hands::open(path)?)));
+            return Ok(Player::with(info, Source::Hands(recording)));
         }
         let broken = |line, what| RecordingError::Broken { path: path.to_owned(), line, what };
         if bytes.contains(&0) {
@@ -62,7 +63,9 @@ impl Player {
         device: DeviceId,
         catalogue: &Catalogue,
     ) -> Result<Player, RecordingError> {
-        let (pen, info) = PenPlayer::of(path, recording, device, catalogue)?;
+        let cut_at = recording.cut_at;
+        let (pen, mut info) = PenPlayer::of(path, recording, device, catalogue)?;
+        info.notes.extend(cut_at.map(|line| cut_warning(path, line)));
         Ok(Player::with(info, Source::Pen(pen)))
     }
 
@@ -114,4 +117,11 @@ impl Player {
         }
         self.ended = done;
     }
+}
+
+/// Warns of a recording whose last line was cut off, and gives the warning for people.
+fn cut_warning(path: &Path, line: usize) -> String {
+    let what = format!("line {line} was cut off and is left out");
+    tracing::warn!("{}: {what}", path.display());
+    what
 }

@@ -39,6 +39,10 @@ struct Head {
     name: String,
     #[serde(default)]
     serial: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    uniq: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    driver: String,
     #[serde(default)]
     descriptor: String,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -72,6 +76,8 @@ impl<W: Write> Recorder<W> {
             number: who.interface,
             name: who.name.clone(),
             serial: serial.to_owned(),
+            uniq: who.uniq.clone(),
+            driver: who.driver.clone(),
             descriptor: hex(&who.descriptor),
             strings: who.strings.iter().map(|(i, b)| (*i, hex(b))).collect(),
         };
@@ -112,6 +118,9 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
     let mut out = HidRecording::default();
     let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    if whole.len() + 1 < text.len() {
+        out.cut_at = Some(whole.lines().count() + 1);
+    }
     let bad = |line: usize, what: String| BadLine { line: line + 1, what };
     let mut first_us = None;
     for (i, line) in whole.lines().enumerate() {
@@ -154,6 +163,8 @@ fn head(line: &str, next: usize) -> Result<Identity, String> {
         vid: head.vid,
         pid: head.pid,
         interface: head.number,
+        uniq: head.uniq,
+        driver: head.driver,
         name: head.name,
         descriptor: bytes(&head.descriptor)?,
         strings,
@@ -191,6 +202,8 @@ mod tests {
             name: "A \"pen\"".into(),
             descriptor: vec![5, 0x0d],
             strings: vec![(201, vec![4, 3, b'x', 0])],
+            uniq: "HUION_T173_190619".into(),
+            driver: "uclogic".into(),
             seen_lengths: vec![],
         };
         assert_eq!(r.interface(&who, "S1").unwrap(), 0);
@@ -216,7 +229,9 @@ mod tests {
     fn a_cut_recording_is_good_to_its_last_line_and_a_broken_one_is_named() {
         let text = written();
         let cut = &text[..text.len() - 3];
-        assert_eq!(parse(cut).unwrap().reports.len(), 1);
+        let good = parse(cut).unwrap();
+        assert_eq!((good.reports.len(), good.cut_at), (1, Some(4)));
+        assert_eq!(parse(&text).unwrap().cut_at, None);
         for (from, to, line) in [
             ("recording 1", "recording 2", 1),
             ("\"interface\":0", "\"interface\":7", 2),

@@ -6,7 +6,7 @@ use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 use crate::serial::{Config, Handle, Protocol, start};
 use crate::sim::{Faults, Journal, SerialPen, SerialPenConfig, journal};
 
-const SOON: Duration = Duration::from_secs(5);
+const SOON: Duration = Duration::from_secs(60);
 const ALL: [Protocol; 4] =
     [Protocol::Isdv4, Protocol::WacomIv, Protocol::WacomV, Protocol::SummaMm];
 

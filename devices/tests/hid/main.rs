@@ -9,6 +9,7 @@ mod catalogue;
 mod corpus;
 mod facts;
 mod oracle;
+mod plausible;
 
 /// The folder of real recordings, where the environment names one.
 fn devices() -> Option<PathBuf> {

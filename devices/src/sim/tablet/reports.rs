@@ -86,6 +86,8 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
         }
         Family::WacomDtus => of(8, &[0x11]),
         Family::WacomIntuosV2 => of(27, &[0x10]),
+        Family::WacomProBluetooth => of(361, &[0x80, 0x80]),
+        Family::WacomIntuosBluetooth => of(51, &[0x80, 0x80]),
         Family::WacomIntuosV3 => of(26, &[0x1e]),
         Family::WacomOne => of(14, &[0x1f, 0x01]),
         Family::UcLogic | Family::XpPenOffset => of(12, &[0x02, 0xc0]),
@@ -230,6 +232,19 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
             b.extend(x.into_iter().chain(y).chain(p).chain(t));
             b.resize(27, 0);
             b[16] = c.height as u8;
+            b
+        }
+        // One frame of those that fit.
+        Family::WacomProBluetooth | Family::WacomIntuosBluetooth => {
+            let pro = family == Family::WacomProBluetooth;
+            let mut b = vec![0x80, 0xe0 | bit(c.eraser, 0x10) | f];
+            b.extend(le(c.x).into_iter().chain(le(c.y)).chain(p));
+            if pro {
+                b.extend(t);
+            }
+            b.resize(if pro { 14 } else { 8 }, 0);
+            b.push(c.height as u8);
+            b.resize(if pro { 361 } else { 51 }, 0);
             b
         }
         Family::WacomIntuosV3 => {

@@ -133,7 +133,10 @@ fn every_model_reads_what_it_writes() {
     };
     for tablet in catalogue.tablets() {
         for at in 0..tablet.id.len() {
-            generic.push(Found { tablet: tablet.clone(), at, note: None, described: false });
+            // A model that is read by its descriptor has no counts of its own.
+            if tablet.area.max_x > 0 {
+                generic.push(Found::new(tablet.clone(), at));
+            }
         }
     }
     let (mut families, mut bad) = (std::collections::BTreeMap::<_, u32>::new(), Vec::new());
