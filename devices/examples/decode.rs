@@ -1,53 +1,69 @@
-//! Decodes a recording and prints one line a sample.
+//! Decodes a recording of a pen tablet, a serial pen or a hand tracker and prints its samples.
+//!
+//! ```text
+//! cargo run -p sculptd-devices --example decode [RECORDING]
+//! ```
+//!
+//! A recording is what `sculptd devices record` or the `hid-recorder` tool writes. Without one, the
+//! program decodes a few reports of a Huion H640P that stand below.
 
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout)] // It prints what it decodes.
+
+use std::error::Error;
+use std::path::Path;
 
 use sculptd_devices::catalogue::Catalogue;
-use sculptd_devices::recording::Player;
-use sculptd_devices::{Body, DeviceId};
+use sculptd_devices::recording::{Player, hid_recorder};
+use sculptd_devices::{Body, DeviceId, Sample};
 
-fn main() {
-    for path in std::env::args().skip(1) {
-        let name = path.rsplit('/').next().unwrap_or("").to_owned();
-        let mut p = match Player::open(path.as_ref(), DeviceId(0), &Catalogue::builtin().unwrap()) {
-            Ok(p) => p,
-            Err(e) => {
-                let e = e.to_string();
-                println!("{name} DECLINED {}", e.rsplit('/').next().unwrap());
-                continue;
-            }
-        };
-        let info = p.device().clone();
-        let (mut n, mut tips, mut sat, mut lo, mut hi, mut edge) =
-            (0, 0, 0, [i32::MAX; 2], [i32::MIN; 2], 0);
-        let mut maxp = 0f32;
-        p.advance(u64::MAX / 2, &mut |s| {
-            if let Body::Pen(p) = s.body {
-                n += 1;
-                if p.in_range {
-                    for k in 0..2 {
-                        lo[k] = lo[k].min(p.raw[k]);
-                        hi[k] = hi[k].max(p.raw[k]);
-                    }
-                    if p.pos_mm.x >= p.area_mm.x || p.pos_mm.y >= p.area_mm.y {
-                        edge += 1
-                    }
-                }
-                if p.tip {
-                    tips += 1;
-                    if p.pressure == Some(1.0) {
-                        sat += 1
-                    }
-                }
-                maxp = maxp.max(p.pressure.unwrap_or(0.0));
-            }
-        });
-        println!(
-            "{name} | {} | {}x{} | n {n} tips {tips} sat {sat} edge {edge} maxp {maxp:.3} lo {lo:?} hi {hi:?} | {}",
-            info.name,
-            info.area_mm.x,
-            info.area_mm.y,
-            info.notes.join(" ; ")
-        );
+/// A stroke in the format of `hid-recorder`: the pen comes near, touches, moves and leaves. String
+/// 201 (hexadecimal c9) is the firmware's name, `HUION_T173_190619`.
+const STROKE: &str = "\
+D: 0
+N: HUION Huion Tablet
+I: 3 256c 006d
+# USB-STRING S c9 24034800550049004f004e005f0054003100370033005f00310039003000360031003900
+R: 18 06 00 ff 09 01 a1 01 85 08 75 08 95 0b 09 01 81 02 c0
+E: 0.000 12 08 80 10 27 88 13 00 00 00 00 0a f6
+E: 0.004 12 08 81 20 27 90 13 00 02 00 00 0a f6
+E: 0.008 12 08 81 60 27 b0 13 00 08 00 00 0b f6
+E: 0.012 12 08 81 a0 27 d0 13 00 10 00 00 0b f5
+E: 0.016 12 08 80 c0 27 e0 13 00 00 00 00 0b f5
+E: 0.020 12 08 00 c0 27 e0 13 00 00 00 00 0b f5
+";
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let catalogue = Catalogue::builtin()?;
+    let mut player = match std::env::args_os().nth(1) {
+        Some(path) => Player::open(path.as_ref(), DeviceId(0), &catalogue)?,
+        None => {
+            let recording = hid_recorder::parse(STROKE).map_err(|bad| bad.what)?;
+            Player::of(Path::new("the stroke above"), recording, DeviceId(0), &catalogue)?
+        }
+    };
+    let device = player.device();
+    println!("{}, {} x {} mm", device.name, device.area_mm.x, device.area_mm.y);
+    for note in &device.notes {
+        println!("  {note}");
+    }
+    player.advance(u64::MAX / 2, &mut |sample| print(&sample));
+    Ok(())
+}
+
+fn print(sample: &Sample) {
+    let t_us = sample.t_us;
+    match sample.body {
+        Body::Pen(p) => println!(
+            "{t_us:>9} us  {:?} in range {} touching {} at {:.2}, {:.2} mm, pressure {:?}",
+            p.tool, p.in_range, p.tip, p.pos_mm.x, p.pos_mm.y, p.pressure
+        ),
+        Body::Pad(p) => println!(
+            "{t_us:>9} us  keys {:032b} wheels {:?} strips {:?}",
+            p.keys, p.wheels, p.strips
+        ),
+        Body::Hands(h) => {
+            let palms: Vec<_> = h.as_slice().iter().map(|hand| hand.palm).collect();
+            println!("{t_us:>9} us  {} hands, palms at {palms:.1?} mm", h.count);
+        }
     }
 }

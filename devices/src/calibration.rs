@@ -30,6 +30,7 @@ pub struct Calibration {
     /// Width over height of what is drawn on. The area is cut to it, about its middle, so that a
     /// circle stays a circle.
     pub lock_aspect: Option<f32>,
+    /// How pressure is bent. The default leaves it as it is.
     pub pressure: PressureCurve,
 }
 
@@ -61,6 +62,7 @@ pub fn find<'a>(all: &Calibrations, names: impl IntoIterator<Item = &'a str>) ->
     names.into_iter().find_map(|n| all.get(n)).copied().unwrap_or_default()
 }
 
+/// A setting that makes no sense; the text names it and says what is expected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct CalibrationError(String);

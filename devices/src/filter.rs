@@ -92,6 +92,7 @@ pub struct HandsFilter {
 }
 
 impl HandsFilter {
+    /// A filter that has seen no hand yet.
     pub fn new(figures: OneEuro) -> Self {
         HandsFilter { figures, hands: [None; MAX_HANDS] }
     }

@@ -45,7 +45,8 @@ pub fn serial_bytes(data: &[u8]) {
     let protocols = [Protocol::Isdv4, Protocol::WacomIv, Protocol::WacomV, Protocol::SummaMm];
     let protocol = protocols[usize::from(which) % protocols.len()];
     let (facts, _) = crate::sim::serial::stream(protocol, &PenScript::default(), 0..0);
-    let (mut decoder, mut visit) = (serial::Decoder::new(&facts, DeviceId(0)), Visit::default());
+    let (mut decoder, mut visit) =
+        (serial::SerialDecoder::new(&facts, DeviceId(0)), Visit::default());
     for (i, chunk) in line.chunks(16).enumerate() {
         decoder.feed(chunk, i as u64 * 7_000, &mut |s| visit.see(&s));
         if which & 0x80 != 0 {
@@ -151,7 +152,7 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::sim::tablet::{self, Tablet, TabletConfig};
+    use crate::sim::tablet::{self, SimTablet, TabletConfig};
     use crate::sim::{journal, tracker};
 
     fn corpus() -> PathBuf {
@@ -249,7 +250,7 @@ mod tests {
                     let script = j.pen.fitted(j.area_mm, area);
                     let config =
                         TabletConfig { rate: 40.0, keeps: 1000, ..TabletConfig::default() };
-                    let (mut sim, mut end) = Tablet::new(&found, script, config);
+                    let (mut sim, mut end) = SimTablet::new(&found, script, config);
                     sim.skip_to(2_100_000);
                     sim.advance(2_900_000);
                     let mut bytes = at.to_le_bytes().to_vec();

@@ -34,6 +34,8 @@
 //! file in `tablets/`, or in a folder given to [`catalogue::Catalogue::with_dir`]: [`tablet`] says
 //! what stands in it.
 
+#![warn(missing_docs)]
+
 mod builtin;
 pub mod calibration;
 pub mod catalogue;

@@ -32,7 +32,9 @@ const MOST_PRESSURE: u32 = 0xffff;
 /// What the model's description says of its pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenConfig {
+    /// Number of the device that the samples go out under.
     pub device: DeviceId,
+    /// What its counts mean.
     pub scale: PenScale,
     /// Microseconds of silence that mean "gone"; `None` where the family always says it.
     pub silence_us: Option<u64>,
@@ -45,7 +47,9 @@ pub struct PenConfig {
 pub struct PenScale {
     /// First and last count of the active area.
     pub min: [i32; 2],
+    /// Last count of the active area.
     pub max: [i32; 2],
+    /// Width and height of the active area in mm.
     pub area_mm: Vec2,
     /// 0: the device has no pressure.
     pub max_pressure: u32,
@@ -75,6 +79,7 @@ pub struct PenState {
 }
 
 impl PenState {
+    /// A pen out of range.
     pub fn new(cfg: PenConfig) -> Self {
         let pressure = (cfg.scale.max_pressure > 0).then_some(0.0);
         let tilt = cfg.tilts.then_some(Vec2::ZERO);
@@ -92,6 +97,7 @@ impl PenState {
         }
     }
 
+    /// Whether the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range
     }

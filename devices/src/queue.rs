@@ -165,6 +165,7 @@ impl SenderFactory {
         }
     }
 
+    /// The counters of every device.
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }
@@ -204,6 +205,7 @@ impl Sender {
         }
     }
 
+    /// The counters of every device.
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }
@@ -369,6 +371,7 @@ impl Receiver {
         self.rx.len()
     }
 
+    /// The counters of every device.
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }

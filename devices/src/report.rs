@@ -12,9 +12,11 @@ pub enum Parsed {
     Nothing,
     /// Too short for its family or cut; counted, never guessed at.
     Broken,
+    /// A pen in range.
     Pen(PenReport),
     /// The device says that the pen has left.
     Away,
+    /// Keys, wheels, rings or strips.
     Pad(PadReport),
 }
 
@@ -46,6 +48,7 @@ impl Batch {
 /// A pen in range. `None` means "this report does not say": the last word stands.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PenReport {
+    /// Which end of the pen, or which tool.
     pub tool: Option<Tool>,
     /// The tip switch; families without one leave contact to the pressure.
     pub tip: Option<bool>,
@@ -66,6 +69,7 @@ pub struct PenReport {
 /// Keys, wheels and strips. `None`: this report does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PadReport {
+    /// Pressed keys, bit 0 the first.
     pub keys: Option<u32>,
     /// Which wheel, and its steps since the last report, clockwise positive.
     pub turned: Option<(u8, i32)>,
@@ -89,6 +93,7 @@ pub fn be16_at(b: &[u8], i: usize) -> u32 {
     u32::from(byte(b, i)) << 8 | u32::from(byte(b, i + 1))
 }
 
+/// The byte at `i`; 0 past the end.
 pub fn byte(b: &[u8], i: usize) -> u8 {
     b.get(i).copied().unwrap_or(0)
 }

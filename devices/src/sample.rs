@@ -22,6 +22,7 @@ pub struct DeviceId(pub u16);
 /// What a device said at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
+    /// Which device said it.
     pub device: DeviceId,
     /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a
     /// tracker that stamps its frames: when the frame was taken, brought onto our clock
@@ -29,21 +30,29 @@ pub struct Sample {
     pub t_us: u64,
     /// Microseconds on the device's own clock, where it has one (its origin is unknown).
     pub device_t_us: Option<u64>,
+    /// What it said.
     pub body: Body,
 }
 
+/// What a device said.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[allow(clippy::large_enum_variant)] // Copied inline on purpose: a box would be freed on the tick thread.
 pub enum Body {
+    /// A pen over or on its surface.
     Pen(Pen),
+    /// Every hand that a tracker saw.
     Hands(Hands),
+    /// Keys, wheels and strips of a tablet.
     Pad(Pad),
 }
 
+/// What touches or hovers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
 pub enum Tool {
+    /// The tip of a pen.
     #[default]
     Pen,
+    /// The other end of a pen.
     Eraser,
     /// A puck or mouse on the tablet: it moves, it never presses.
     Mouse,
@@ -54,6 +63,7 @@ pub enum Tool {
 /// A pen over or on its surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Pen {
+    /// Which tool it is. It does not change within a visit.
     pub tool: Tool,
     /// The pen is in proximity: position is meaningful. `false` is the last word of a visit.
     pub in_range: bool,
@@ -95,11 +105,14 @@ pub struct Pad {
 pub struct Hands {
     /// The tracker's own frame number.
     pub frame: i64,
+    /// How many entries of `hands` are used, at most [`MAX_HANDS`].
     pub count: u8,
+    /// The hands. Entries from `count` on have no meaning.
     pub hands: [Hand; MAX_HANDS],
 }
 
 impl Hands {
+    /// The hands that were seen.
     pub fn as_slice(&self) -> &[Hand] {
         &self.hands[..(self.count as usize).min(MAX_HANDS)]
     }
@@ -111,12 +124,14 @@ impl Default for Hands {
     }
 }
 
+/// One hand. Positions are in mm in the tracker's axes; `None` is what the tracker did not report.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Hand {
     /// The tracker's id; it changes when the tracker loses and finds the hand again.
     pub id: i32,
     /// `None` where the tracker does not say.
     pub left: Option<bool>,
+    /// Middle of the palm.
     pub palm: Vec3,
     /// Out of the palm; unit length, or `None`.
     pub palm_normal: Option<Vec3>,
@@ -137,22 +152,27 @@ pub struct Hand {
     /// Of the palm, from the tracker's axes to the hand's; absent where neither basis nor normal
     /// came.
     pub orientation: Option<Quat>,
+    /// Middle of the wrist.
     pub wrist: Option<Vec3>,
+    /// Middle of the elbow.
     pub elbow: Option<Vec3>,
     /// Thumb to little finger. A finger that the tracker did not report is `None`.
     pub fingers: [Option<Finger>; 5],
 }
 
+/// One finger. Positions are in mm in the tracker's axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Finger {
     /// Carpal-metacarpal, knuckle, first and second joint, and the end of the last bone; absent
     /// joints are `None`.
     pub joints: [Option<Vec3>; 5],
+    /// The finger's tip.
     pub tip: Vec3,
     /// Unit length, along the last bone.
     pub direction: Option<Vec3>,
     /// mm.
     pub width: Option<f32>,
+    /// The finger is stretched out, as the tracker judges it.
     pub extended: Option<bool>,
 }
 

@@ -21,7 +21,7 @@ use sculptd_devices::hid::decoder::Decoder;
 use sculptd_devices::hid::transport::Transport;
 use sculptd_devices::recording::raw;
 use sculptd_devices::serial::Protocol;
-use sculptd_devices::sim::{Tablet, TabletConfig, journal};
+use sculptd_devices::sim::{SimTablet, TabletConfig, journal};
 use sculptd_devices::{Body, DeviceId, Pen, Tool};
 
 const MODEL: &str = "Wacom PTK-440";
@@ -161,7 +161,7 @@ fn reports(found: &Found) -> Vec<Vec<u8>> {
     let script =
         journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
     let (mut tablet, mut end) =
-        Tablet::new(found, script, TabletConfig { keeps: 100_000, ..TabletConfig::default() });
+        SimTablet::new(found, script, TabletConfig { keeps: 100_000, ..TabletConfig::default() });
     tablet.advance(journal.pen.end_us());
     let mut buf = [0; 64];
     let mut all = Vec::new();

@@ -1,4 +1,5 @@
-//! A tablet made from what the device states of itself: its report descriptor, its parameter string.
+//! A tablet made from what the device states of itself: its report descriptor, its parameter
+//! string.
 
 use std::sync::Arc;
 
@@ -7,8 +8,8 @@ use super::identity::Identity;
 use super::params::Params;
 use super::rewritten::rewritten;
 use super::size;
-use crate::descriptor::{Bits, Descriptor, Kind, PenLayout};
-use crate::tablet::{Area, Family, Id, Pad, PenFacts, Tablet};
+use crate::descriptor::{Bits, CollectionKind, Descriptor, PenLayout};
+use crate::tablet::{Area, Family, Id, PadFacts, PenFacts, Tablet};
 
 /// Vendors whose reports are UC-Logic's, whatever their descriptors say: those call the second
 /// button an eraser.
@@ -30,7 +31,7 @@ pub(super) fn described(who: &Identity, d: &Descriptor, known: Option<&Tablet>) 
         .or_else(|| d.pens.iter().find(|p| p.pressure.is_some()))
         .or(d.pens.first());
     let Some((pen, (x, y))) = pen.and_then(|p| Some((p, p.x.as_ref().zip(p.y.as_ref())?))) else {
-        return match params.filter(|_| d.kinds.contains(&Kind::Vendor)) {
+        return match params.filter(|_| d.kinds.contains(&CollectionKind::Vendor)) {
             Some(params) => Identification::Identified(by_params(who, d, params)),
             None => Identification::Declined(format!("no pen: {}", kinds_in_words(&d.kinds))),
         };
@@ -158,7 +159,7 @@ fn made(
         source: "the device itself".to_owned(),
         area,
         pen,
-        pad: Pad::default(),
+        pad: PadFacts::default(),
         actions: None,
         id: vec![id],
     };
@@ -204,18 +205,18 @@ impl Scale {
     }
 }
 
-fn kinds_in_words(kinds: &[Kind]) -> String {
+fn kinds_in_words(kinds: &[CollectionKind]) -> String {
     if kinds.is_empty() {
         return "the interface has no input".to_owned();
     }
-    let word = |k: &Kind| match k {
-        Kind::Pen => "pen without axes",
-        Kind::Touch => "touch",
-        Kind::Mouse => "mouse",
-        Kind::Keyboard => "keyboard",
-        Kind::Consumer => "media keys",
-        Kind::Vendor => "vendor page",
-        Kind::Other => "other",
+    let word = |k: &CollectionKind| match k {
+        CollectionKind::Pen => "pen without axes",
+        CollectionKind::Touch => "touch",
+        CollectionKind::Mouse => "mouse",
+        CollectionKind::Keyboard => "keyboard",
+        CollectionKind::Consumer => "media keys",
+        CollectionKind::Vendor => "vendor page",
+        CollectionKind::Other => "other",
     };
     kinds.iter().map(word).collect::<Vec<_>>().join(", ")
 }

@@ -8,7 +8,7 @@ use super::identity::Identity;
 use super::params::Params;
 use super::rewritten::rewritten;
 use super::{Catalogue, size};
-use crate::descriptor::{Descriptor, Kind};
+use crate::descriptor::{CollectionKind, Descriptor};
 use crate::tablet::{Family, Id, StringIs, Tablet};
 
 /// What each piece of evidence adds to a candidate's score. A contradiction excludes the candidate
@@ -86,8 +86,9 @@ impl Catalogue {
         self.tablets.iter().filter(|t| of_pid(t, who)).count() >= SHARED
     }
 
-    /// The candidates with the best score, one for each way of decoding, and that score. `relaxed`: a model that is
-    /// alone with its ids may come with a report length that its file does not have.
+    /// The candidates with the best score, one for each way of decoding, and that score. `relaxed`:
+    /// a model that is alone with its ids may come with a report length that its file does not
+    /// have.
     fn candidates(
         &self,
         who: &Identity,
@@ -97,8 +98,8 @@ impl Catalogue {
         let mut best: Vec<Found> = Vec::new();
         // A negative score is a stranger with a known id.
         let mut most = 0;
-        // A model without patterns is not what a device with an unknown firmware's name is, where
-        // that name tells its namesakes apart.
+        // Where a string that is known tells these models apart, a model that it does not match is
+        // another one.
         let ids = self.tablets.iter().flat_map(|t| &t.id);
         let shared = self.shared(who);
         let told_apart = ids
@@ -113,8 +114,8 @@ impl Catalogue {
                 .filter(|(_, id)| id.vid == who.vid && id.pid == who.pid);
             for (at, id) in same_ids {
                 let own = i < self.added;
-                if !fits_length(id, who, d, relaxed) || told_apart && id.strings.is_empty() && !own
-                {
+                let unmatched = told_apart && strings(id, who).is_none_or(|n| n == 0);
+                if !fits_length(id, who, d, relaxed) || unmatched && !own {
                     continue;
                 }
                 let Some(score) = standing(tablet, id, who, d, shared) else { continue };
@@ -181,7 +182,7 @@ fn fits_length(id: &Id, who: &Identity, d: Option<&Descriptor>, relaxed: bool) -
     }
     match usize::from(id.length) {
         // The product id alone decides, unless the interface is for fingers only.
-        0 => !d.is_some_and(|d| d.kinds.contains(&Kind::Touch) && d.pens.is_empty()),
+        0 => !d.is_some_and(|d| d.kinds.contains(&CollectionKind::Touch) && d.pens.is_empty()),
         n => has(n),
     }
 }
@@ -272,10 +273,10 @@ fn by_descriptor(tablet: &Tablet, d: &Descriptor) -> i32 {
         let (Some(x), Some(y)) = (&pen.x, &pen.y) else { continue };
         if (x.max, y.max) == (tablet.area.max_x, tablet.area.max_y) {
             score = score.max(score::RANGE);
-        } else if let Some((w, h)) = size::believed(x, y, true) {
-            if other_size(w, tablet.area.width_mm) || other_size(h, tablet.area.height_mm) {
-                return score::OTHER_SIZE;
-            }
+        } else if let Some((w, h)) = size::believed(x, y, true)
+            && (other_size(w, tablet.area.width_mm) || other_size(h, tablet.area.height_mm))
+        {
+            return score::OTHER_SIZE;
         }
     }
     score

@@ -1,9 +1,10 @@
 //! Whether a kernel driver replaced an interface's descriptor and changes its reports.
 //!
-//! Under Linux `hid-uclogic`, `hid-kye`, `hid-waltop`, `hid-holtek-kbd` and HID-BPF programs replace
-//! the report descriptor of a tablet. `hid-uclogic` and HID-BPF change the reports, too, and they do
-//! so before hidraw hands them out. Both are visible in the descriptor that hidraw shows, which is
-//! the replaced one. Such reports are read by that descriptor, and its size is the true one.
+//! Under Linux `hid-uclogic`, `hid-kye`, `hid-waltop`, `hid-holtek-kbd` and HID-BPF programs
+//! replace the report descriptor of a tablet. `hid-uclogic` and HID-BPF change the reports, too,
+//! and they do so before hidraw hands them out. Both are visible in the descriptor that hidraw
+//! shows, which is the replaced one. Such reports are read by that descriptor, and its size is the
+//! true one.
 //!
 //! Source: Linux `hid-uclogic-params.c` and `hid-uclogic-rdesc.h` (report ids of the frame), the
 //! descriptors of public collections that were taken under `hid-uclogic`.

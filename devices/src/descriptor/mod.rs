@@ -17,7 +17,7 @@ pub use bits::Bits;
 pub use error::DescriptorError;
 pub use pad::{PadFields, Turn};
 pub use pen::{PenLayout, Selector};
-pub use usage::Kind;
+pub use usage::CollectionKind;
 
 use pen::AbsoluteMouse;
 use usage::kind_of;
@@ -46,7 +46,7 @@ pub struct Fact {
 #[derive(Debug, Clone, Default)]
 pub struct Descriptor {
     /// What the application collections are for: sorted, each kind once.
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<CollectionKind>,
     /// Every input report that places a pen, in the order of the descriptor.
     pub pens: Vec<PenLayout>,
     /// Every input report that carries keys, wheels or rings of a pad.
@@ -95,7 +95,7 @@ impl Descriptor {
             if let Some(kind) = kind {
                 self.kinds.push(kind);
             }
-            if let (Field::Array(f), Some(Kind::Pen)) = (field, kind) {
+            if let (Field::Array(f), Some(CollectionKind::Pen)) = (field, kind) {
                 pen.take_array(f);
             }
             let Field::Variable(f) = field else { continue };
@@ -110,8 +110,8 @@ impl Descriptor {
             });
             pad.take(f);
             match kind {
-                Some(Kind::Pen) => pen.take(f),
-                Some(Kind::Mouse) => mouse.take(f),
+                Some(CollectionKind::Pen) => pen.take(f),
+                Some(CollectionKind::Mouse) => mouse.take(f),
                 _ => {}
             }
         }

@@ -32,8 +32,8 @@ pub struct PadFields {
 
 impl PadFields {
     /// Adds a field if it lies in a pad's collection: tablet function keys (0x0D:0x39) or a keypad
-    /// (0x01:0x07), which is what Linux `hid-uclogic`, the HID-BPF fixes and Wacom describe pads as.
-    /// Usages of Wacom's own page (0xFF0D): Linux `wacom_wac.h`.
+    /// (0x01:0x07), which is what Linux `hid-uclogic`, the HID-BPF fixes and Wacom describe pads
+    /// as. Usages of Wacom's own page (0xFF0D): Linux `wacom_wac.h`.
     pub(super) fn take(&mut self, f: &VariableField) {
         let of_pad = |usage: u32| matches!(page_id(usage), (0x0d | 0xff0d, 0x39) | (0x01, 0x07));
         let usages = f.collections.iter().flat_map(|c| c.usages());

@@ -6,7 +6,7 @@ use super::page_id;
 
 /// What an application collection is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum CollectionKind {
     /// A digitiser, pen or stylus.
     Pen,
     /// A touch screen or touch pad.
@@ -24,31 +24,33 @@ pub enum Kind {
 }
 
 /// The kind of the innermost collection that tells it.
-pub(super) fn kind_of(field: &Field) -> Option<Kind> {
+pub(super) fn kind_of(field: &Field) -> Option<CollectionKind> {
     let mut kind = None;
     for c in field.collections() {
         for u in c.usages() {
             let (page, id) = page_id(u32::from(u));
             let this = match (page, id) {
-                (0x0d | 0xff0d, 0x22 | 0x04 | 0x05) => Some(Kind::Touch),
-                (0x0d | 0xff0d, 0x01 | 0x02 | 0x20) => Some(Kind::Pen),
-                (0x0d, 0x03) => Some(Kind::Pen),
-                (0x01, 0x02) => Some(Kind::Mouse),
-                (0x01, 0x06) => Some(Kind::Keyboard),
-                (0x0c, _) => Some(Kind::Consumer),
-                (p, _) if p >= 0xff00 => Some(Kind::Vendor),
+                (0x0d | 0xff0d, 0x22 | 0x04 | 0x05) => Some(CollectionKind::Touch),
+                (0x0d | 0xff0d, 0x01 | 0x02 | 0x20) => Some(CollectionKind::Pen),
+                (0x0d, 0x03) => Some(CollectionKind::Pen),
+                (0x01, 0x02) => Some(CollectionKind::Mouse),
+                (0x01, 0x06) => Some(CollectionKind::Keyboard),
+                (0x0c, _) => Some(CollectionKind::Consumer),
+                (p, _) if p >= 0xff00 => Some(CollectionKind::Vendor),
                 _ => None,
             };
             kind = match (kind, this) {
                 // A finger inside a digitiser is a finger; a stylus inside a touch screen is a
                 // stylus.
-                (_, Some(Kind::Touch)) => Some(Kind::Touch),
-                (Some(Kind::Touch), Some(Kind::Pen)) if id == 0x20 => Some(Kind::Pen),
+                (_, Some(CollectionKind::Touch)) => Some(CollectionKind::Touch),
+                (Some(CollectionKind::Touch), Some(CollectionKind::Pen)) if id == 0x20 => {
+                    Some(CollectionKind::Pen)
+                }
                 (None, this) => this,
-                (Some(Kind::Vendor), Some(this)) => Some(this),
+                (Some(CollectionKind::Vendor), Some(this)) => Some(this),
                 (kept, _) => kept,
             };
         }
     }
-    kind.or(Some(Kind::Other))
+    kind.or(Some(CollectionKind::Other))
 }

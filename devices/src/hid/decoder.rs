@@ -12,8 +12,8 @@ use crate::pen_state::{PenConfig, PenScale, PenState};
 use crate::report::{Batch, Parsed};
 use crate::sample::{DeviceId, Sample};
 
-/// Longest time over which the frames of one report are spread, in microseconds: seven frames at 200
-/// a second.
+/// Longest time over which the frames of one report are spread, in microseconds: seven frames at
+/// 200 a second.
 const MAX_SPREAD_US: u64 = 35_000;
 
 /// What became of the reports that were fed so far.
@@ -167,6 +167,7 @@ impl Decoder {
         self.engine.names_tool()
     }
 
+    /// Whether the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range() || self.plain.as_ref().is_some_and(|p| p.in_range())
     }
@@ -177,6 +178,7 @@ impl Decoder {
         [self.pen.due_us(), other].into_iter().flatten().min()
     }
 
+    /// Ends the pen's visit if it has been silent for too long. Call it while no report comes.
     pub fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.pen.tick(now_us, emit);
         if let Some(plain) = &mut self.plain {

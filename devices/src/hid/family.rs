@@ -15,25 +15,40 @@ const SILENCE_US: u64 = 50_000;
 /// A family bound to one model.
 #[derive(Debug, Clone)]
 pub enum Engine {
-    Intuos(wacom_intuos::Traits, wacom_intuos::Memory, Option<PadLayout>),
+    /// Intuos 1 to 5, Intuos Pro, most Cintiqs, with the layout of their pads.
+    Intuos(wacom_intuos::IntuosTraits, wacom_intuos::IntuosMemory, Option<PadLayout>),
+    /// Bamboo, One by Wacom, Intuos of 2013.
     Simple {
+        /// Greatest height in counts; 0 where height is not sent.
         max_distance: u32,
-        memory: wacom_bamboo::Memory,
+        /// The tool of the present visit.
+        memory: wacom_bamboo::BambooMemory,
     },
+    /// Bamboo Pad.
     BambooPad,
-    Graphire(wacom_graphire::Kind),
+    /// Graphire and the tablets that share its layout.
+    Graphire(wacom_graphire::GraphireKind),
+    /// PenPartner.
     PenPartner {
+        /// A report of the newer kind was seen, which says when the pen leaves.
         leaves: bool,
     },
-    Display(wacom_display::Kind, u32, wacom_display::Memory),
-    Pro(wacom_pro::Kind),
-    Bluetooth(wacom_bluetooth::Kind, wacom_bluetooth::Memory),
-    UcLogic(uclogic::Traits, uclogic::Memory),
+    /// Pen displays of the PL, PTU and DTU series and tablet PCs, with their full pressure.
+    Display(wacom_display::DisplayKind, u32, wacom_display::DisplayMemory),
+    /// Intuos Pro of 2017 and 2025, Intuos of 2018, Wacom One.
+    Pro(wacom_pro::ProKind),
+    /// The same over Bluetooth.
+    Bluetooth(wacom_bluetooth::BluetoothKind, wacom_bluetooth::BluetoothMemory),
+    /// UC-Logic, Huion, XP-Pen and their many brands.
+    UcLogic(uclogic::UcLogicTraits, uclogic::UcLogicMemory),
     /// Families without memory; `leaves`: they say when the pen goes.
     Vendor {
+        /// Reads one report.
         parse: fn(&[u8]) -> Parsed,
+        /// The reports say when the pen leaves.
         leaves: bool,
     },
+    /// By the report descriptor.
     Digitiser(Box<Descriptor>),
 }
 
@@ -49,17 +64,22 @@ impl Engine {
             let untilted =
                 described.pens.iter().filter(|p| p.tilt[0].is_none()).filter_map(|p| p.report_id);
             let untilted = untilted.filter(|id| *id < 32).fold(0, |bits, id| bits | 1 << id);
-            let traits =
-                uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt), untilted };
-            Engine::UcLogic(traits, uclogic::Memory::default())
+            let traits = uclogic::UcLogicTraits {
+                packing,
+                range_bit,
+                no_tilt: quirk(Quirk::NoTilt),
+                untilted,
+            };
+            Engine::UcLogic(traits, uclogic::UcLogicMemory::default())
         };
         let vendor = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Vendor { parse, leaves };
-        let display =
-            |kind| Engine::Display(kind, tablet.pen.max_pressure, wacom_display::Memory::default());
-        let bluetooth = |kind| Engine::Bluetooth(kind, wacom_bluetooth::Memory::default());
+        let display = |kind| {
+            Engine::Display(kind, tablet.pen.max_pressure, wacom_display::DisplayMemory::default())
+        };
+        let bluetooth = |kind| Engine::Bluetooth(kind, wacom_bluetooth::BluetoothMemory::default());
         match id.parser {
             Family::WacomIntuosV1 => Engine::Intuos(
-                wacom_intuos::Traits {
+                wacom_intuos::IntuosTraits {
                     halved: quirk(Quirk::Halved),
                     halved_pressure: tablet.pen.max_pressure < 2047,
                     needs_ready: quirk(Quirk::NeedsReady),
@@ -67,29 +87,31 @@ impl Engine {
                     height_inverted: quirk(Quirk::HeightInverted),
                     max_distance: tablet.pen.max_distance,
                 },
-                wacom_intuos::Memory::default(),
+                wacom_intuos::IntuosMemory::default(),
                 tablet.pad.layout,
             ),
             Family::WacomSimple => Engine::Simple {
                 max_distance: tablet.pen.max_distance,
-                memory: wacom_bamboo::Memory::default(),
+                memory: wacom_bamboo::BambooMemory::default(),
             },
             Family::WacomBambooPad => Engine::BambooPad,
-            Family::WacomGraphire => Engine::Graphire(wacom_graphire::Kind::Graphire),
-            Family::WacomGraphire4 => Engine::Graphire(wacom_graphire::Kind::Graphire4),
-            Family::WacomBamboo => Engine::Graphire(wacom_graphire::Kind::Ring),
-            Family::WacomGraphireBluetooth => Engine::Graphire(wacom_graphire::Kind::Bluetooth),
+            Family::WacomGraphire => Engine::Graphire(wacom_graphire::GraphireKind::Graphire),
+            Family::WacomGraphire4 => Engine::Graphire(wacom_graphire::GraphireKind::Graphire4),
+            Family::WacomBamboo => Engine::Graphire(wacom_graphire::GraphireKind::Ring),
+            Family::WacomGraphireBluetooth => {
+                Engine::Graphire(wacom_graphire::GraphireKind::Bluetooth)
+            }
             Family::WacomPenPartner => Engine::PenPartner { leaves: false },
-            Family::WacomPl => display(wacom_display::Kind::Pl),
-            Family::WacomPtu => display(wacom_display::Kind::Ptu),
-            Family::WacomDtu => display(wacom_display::Kind::Dtu),
-            Family::WacomDtus => display(wacom_display::Kind::Dtus),
-            Family::WacomTabletPc => display(wacom_display::Kind::TabletPc),
-            Family::WacomIntuosV2 => Engine::Pro(wacom_pro::Kind::V2),
-            Family::WacomProBluetooth => bluetooth(wacom_bluetooth::Kind::Pro),
-            Family::WacomIntuosBluetooth => bluetooth(wacom_bluetooth::Kind::Intuos),
-            Family::WacomIntuosV3 => Engine::Pro(wacom_pro::Kind::V3),
-            Family::WacomOne => Engine::Pro(wacom_pro::Kind::One),
+            Family::WacomPl => display(wacom_display::DisplayKind::Pl),
+            Family::WacomPtu => display(wacom_display::DisplayKind::Ptu),
+            Family::WacomDtu => display(wacom_display::DisplayKind::Dtu),
+            Family::WacomDtus => display(wacom_display::DisplayKind::Dtus),
+            Family::WacomTabletPc => display(wacom_display::DisplayKind::TabletPc),
+            Family::WacomIntuosV2 => Engine::Pro(wacom_pro::ProKind::V2),
+            Family::WacomProBluetooth => bluetooth(wacom_bluetooth::BluetoothKind::Pro),
+            Family::WacomIntuosBluetooth => bluetooth(wacom_bluetooth::BluetoothKind::Intuos),
+            Family::WacomIntuosV3 => Engine::Pro(wacom_pro::ProKind::V3),
+            Family::WacomOne => Engine::Pro(wacom_pro::ProKind::One),
             Family::UcLogic => uclogic(Packing::XpPen),
             Family::XpPenOffset => uclogic(Packing::XpPenOffset),
             Family::XpPenGen2 => uclogic(Packing::XpPenGen2),

@@ -21,35 +21,43 @@ const READ_MS: i32 = 10;
 /// Longest report; hidraw's own limit is 4096.
 const MAX_REPORT: usize = 4096;
 
+/// How a reader stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Status {
+pub struct ReaderStatus {
+    /// The device is there and its thread reads it.
     pub connected: bool,
+    /// Reports that were read.
     pub reports: u64,
+    /// Reports that are cut short or contradict themselves.
     pub broken: u64,
+    /// Reports of another id: touch, mouse, battery.
     pub ignored: u64,
+    /// Samples that were made of them.
     pub samples: u64,
     /// From the read of a report to its samples being in the channel.
     pub to_channel_us: Quantiles,
+    /// Why the thread ended, if it did.
     pub last_error: Option<String>,
 }
 
 /// A running reader; dropping it ends its thread.
 #[derive(Debug)]
-pub struct Handle {
-    shared: Arc<Mutex<Shared>>,
+pub struct ReaderHandle {
+    shared: Arc<Mutex<ReaderShared>>,
     _thread: DeviceThread,
 }
 
 #[derive(Debug, Default)]
-struct Shared {
-    status: Status,
+struct ReaderShared {
+    status: ReaderStatus,
     to_channel: Latency,
 }
 
-impl Handle {
-    pub fn status(&self) -> Status {
+impl ReaderHandle {
+    /// A copy of the present state.
+    pub fn status(&self) -> ReaderStatus {
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        Status { to_channel_us: shared.to_channel.quantiles(), ..shared.status.clone() }
+        ReaderStatus { to_channel_us: shared.to_channel.quantiles(), ..shared.status.clone() }
     }
 }
 
@@ -64,28 +72,28 @@ pub fn start(
     device: DeviceId,
     clock: Clock,
     sender: Sender,
-) -> io::Result<Handle> {
-    let status = Status { connected: true, ..Status::default() };
-    let shared = Arc::new(Mutex::new(Shared { status, ..Shared::default() }));
+) -> io::Result<ReaderHandle> {
+    let status = ReaderStatus { connected: true, ..ReaderStatus::default() };
+    let shared = Arc::new(Mutex::new(ReaderShared { status, ..ReaderShared::default() }));
     let theirs = shared.clone();
     let decoder = Decoder::new(found, descriptor, device);
     let thread = device_thread::spawn("hid-pen", move |stop| {
         let mut sender = sender;
         sender.stop_when(stop.flag());
-        Reader { transport, decoder, clock, sender, shared: theirs }.run(&stop);
+        HidReader { transport, decoder, clock, sender, shared: theirs }.run(&stop);
     })?;
-    Ok(Handle { shared, _thread: thread })
+    Ok(ReaderHandle { shared, _thread: thread })
 }
 
-struct Reader {
+struct HidReader {
     transport: Box<dyn Transport>,
     decoder: Decoder,
     clock: Clock,
     sender: Sender,
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<ReaderShared>>,
 }
 
-impl Reader {
+impl HidReader {
     fn run(&mut self, stop: &StopToken) {
         let (mut buffer, mut out) = (vec![0; MAX_REPORT], Vec::with_capacity(16));
         let mut error = None;

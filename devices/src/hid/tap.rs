@@ -15,13 +15,20 @@ use crate::clock::Clock;
 pub enum Tapped {
     /// An interface was opened; later reports carry its number.
     Opened {
+        /// Number of the interface, from 0 in the order of opening.
         number: usize,
+        /// What is known of it, its strings included.
         who: Identity,
+        /// Serial number; empty where the device has none.
         serial: String,
     },
+    /// A report was read.
     Report {
+        /// Number of the interface.
         number: usize,
+        /// When it was read, in microseconds on the clock of the bus.
         t_us: u64,
+        /// The report, its id first where the device has ids.
         bytes: Vec<u8>,
     },
 }
@@ -30,13 +37,17 @@ pub enum Tapped {
 /// comes first.
 #[derive(Debug)]
 pub struct TapBus<B> {
+    /// The bus that is read.
     pub bus: B,
+    /// The clock that stamps reports.
     pub clock: Clock,
+    /// Where copies go. A full channel drops them.
     pub out: cc::Sender<Tapped>,
     opened: usize,
 }
 
 impl<B: Bus> TapBus<B> {
+    /// Copies what is read from `bus` to `out`.
     pub fn new(bus: B, clock: Clock, out: cc::Sender<Tapped>) -> Self {
         TapBus { bus, clock, out, opened: 0 }
     }

@@ -7,12 +7,12 @@ use crate::sample::Tool;
 
 /// What must be remembered: the tool of this visit, known once the pen was placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Memory {
+pub struct BambooMemory {
     tool: Option<Tool>,
 }
 
 /// `max_distance` turns the count, which grows toward the surface, into height.
-pub fn parse(b: &[u8], max_distance: u32, memory: &mut Memory) -> Parsed {
+pub fn parse(b: &[u8], max_distance: u32, memory: &mut BambooMemory) -> Parsed {
     if b.first() != Some(&2) {
         return Parsed::Nothing;
     }
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn a_visit_from_sensed_to_gone() {
-        let mut m = Memory::default();
+        let mut m = BambooMemory::default();
         let sensed = [2, 0x80, 0, 0, 0, 0, 0, 0, 0];
         assert_eq!(parse(&sensed, 31, &mut m), Parsed::Nothing, "sensed, never placed");
         let Parsed::Pen(p) = parse(&[2, 0xf1, 0x10, 0x27, 1, 0, 0xff, 3, 30], 31, &mut m) else {

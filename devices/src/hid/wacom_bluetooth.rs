@@ -12,7 +12,7 @@ const MAX_DISTANCE: u32 = 63;
 
 /// Which tablet sends the report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum BluetoothKind {
     /// Intuos Pro 2: seven frames of 14 bytes, tilt and twist, nine keys and a ring.
     Pro,
     /// Intuos 2018: four frames of 8 bytes, four keys.
@@ -21,18 +21,18 @@ pub enum Kind {
 
 /// What must be remembered between reports: the tool is decided as the pen comes into range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Memory {
+pub struct BluetoothMemory {
     tool: Option<Tool>,
 }
 
 /// Reads every frame of the pen that a report holds, in order, then its pad.
-pub fn parse(b: &[u8], kind: Kind, memory: &mut Memory, out: &mut Batch) {
+pub fn parse(b: &[u8], kind: BluetoothKind, memory: &mut BluetoothMemory, out: &mut Batch) {
     if !matches!(byte(b, 0), 0x80 | 0x81) {
         return;
     }
     let (length, frames) = match kind {
-        Kind::Pro => (14, 7),
-        Kind::Intuos => (8, 4),
+        BluetoothKind::Pro => (14, 7),
+        BluetoothKind::Intuos => (8, 4),
     };
     if b.len() < 1 + length * frames {
         return out.push(Parsed::Broken);
@@ -51,12 +51,12 @@ pub fn parse(b: &[u8], kind: Kind, memory: &mut Memory, out: &mut Batch) {
         out.push(pen(frame, kind, memory));
     }
     match kind {
-        Kind::Pro if b.len() > 285 => out.push(Parsed::Pad(PadReport {
+        BluetoothKind::Pro if b.len() > 285 => out.push(Parsed::Pad(PadReport {
             keys: Some(u32::from(b[282]) | u32::from(b[281] & 0x40) << 2),
             strip: Some((0, ring_place(b[285]))),
             ..PadReport::default()
         })),
-        Kind::Intuos if b.len() > 44 => {
+        BluetoothKind::Intuos if b.len() > 44 => {
             out.push(Parsed::Pad(PadReport {
                 keys: Some(u32::from(b[44])),
                 ..PadReport::default()
@@ -66,15 +66,15 @@ pub fn parse(b: &[u8], kind: Kind, memory: &mut Memory, out: &mut Batch) {
     }
 }
 
-fn pen(frame: &[u8], kind: Kind, memory: &mut Memory) -> Parsed {
+fn pen(frame: &[u8], kind: BluetoothKind, memory: &mut BluetoothMemory) -> Parsed {
     let flags = frame[0];
     let placed = flags & 0x20 != 0;
     if placed {
         memory.tool.get_or_insert(if flags & 0x10 != 0 { Tool::Eraser } else { Tool::Pen });
     }
     let Some(tool) = memory.tool else { return Parsed::Nothing };
-    let pro = placed && kind == Kind::Pro;
-    let height = if kind == Kind::Pro { 13 } else { 7 };
+    let pro = placed && kind == BluetoothKind::Pro;
+    let height = if kind == BluetoothKind::Pro { 13 } else { 7 };
     Parsed::Pen(PenReport {
         tool: Some(tool),
         tip: Some(flags & 0x09 != 0),
@@ -92,8 +92,8 @@ fn pen(frame: &[u8], kind: Kind, memory: &mut Memory) -> Parsed {
 mod tests {
     use super::*;
 
-    fn report(kind: Kind, frames: &[[u8; 8]]) -> Vec<u8> {
-        let (length, size) = if kind == Kind::Pro { (14, 361) } else { (8, 51) };
+    fn report(kind: BluetoothKind, frames: &[[u8; 8]]) -> Vec<u8> {
+        let (length, size) = if kind == BluetoothKind::Pro { (14, 361) } else { (8, 51) };
         let mut b = vec![0; size];
         b[0] = 0x80;
         for (i, frame) in frames.iter().enumerate() {
@@ -102,17 +102,17 @@ mod tests {
         b
     }
 
-    fn read(b: &[u8], kind: Kind) -> Vec<Parsed> {
+    fn read(b: &[u8], kind: BluetoothKind) -> Vec<Parsed> {
         let mut out = Batch::default();
-        parse(b, kind, &mut Memory::default(), &mut out);
+        parse(b, kind, &mut BluetoothMemory::default(), &mut out);
         out.as_slice().to_vec()
     }
 
     #[test]
     fn every_frame_is_read_in_order() {
         let frame = |i: u8| [0xe1, i, 1, 2, 0, 100 + i, 0, 0xf6];
-        let b = report(Kind::Pro, &[0, 1, 2, 3, 4, 5, 6].map(frame));
-        let all = read(&b, Kind::Pro);
+        let b = report(BluetoothKind::Pro, &[0, 1, 2, 3, 4, 5, 6].map(frame));
+        let all = read(&b, BluetoothKind::Pro);
         let pens: Vec<_> = all
             .iter()
             .filter_map(|p| if let Parsed::Pen(p) = p { Some((p.pos, p.pressure)) } else { None })
@@ -128,18 +128,18 @@ mod tests {
     #[test]
     fn an_empty_frame_says_nothing_and_a_pen_that_left_ends_the_report() {
         let near = [0xe0, 1, 0, 1, 0, 0, 0, 20];
-        let b = report(Kind::Intuos, &[near, [0; 8], [0x80, 0, 0, 0, 0, 0, 0, 0], near]);
-        let all = read(&b, Kind::Intuos);
+        let b = report(BluetoothKind::Intuos, &[near, [0; 8], [0x80, 0, 0, 0, 0, 0, 0, 0], near]);
+        let all = read(&b, BluetoothKind::Intuos);
         assert!(matches!(all[..], [Parsed::Pen(_), Parsed::Away, Parsed::Pad(_)]), "{all:?}");
-        assert_eq!(read(&b[..20], Kind::Intuos), [Parsed::Broken]);
-        assert_eq!(read(&[0x10; 60], Kind::Intuos), []);
+        assert_eq!(read(&b[..20], BluetoothKind::Intuos), [Parsed::Broken]);
+        assert_eq!(read(&[0x10; 60], BluetoothKind::Intuos), []);
     }
 
     #[test]
     fn keys_and_the_ring_come_with_the_pen() {
-        let mut b = report(Kind::Pro, &[]);
+        let mut b = report(BluetoothKind::Pro, &[]);
         (b[281], b[282], b[285]) = (0x40, 0x05, 0x80 | 66);
-        let [Parsed::Pad(pad)] = read(&b, Kind::Pro)[..] else { panic!() };
+        let [Parsed::Pad(pad)] = read(&b, BluetoothKind::Pro)[..] else { panic!() };
         assert_eq!((pad.keys, pad.strip), (Some(0x105), Some((0, Some(0.25)))));
     }
 }

@@ -34,7 +34,7 @@ const BURST: f64 = 100.0;
 /// Where the tracker's service is, and what it is asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Config {
+pub struct LeapConfig {
     /// The service; the path names the protocol's version, `/v6.json` or `/v7.json`.
     pub url: String,
     /// Whether a service on another machine may be used. Frames are neither encrypted nor signed.
@@ -51,9 +51,9 @@ pub struct Config {
     pub device: DeviceId,
 }
 
-impl Default for Config {
+impl Default for LeapConfig {
     fn default() -> Self {
-        Config {
+        LeapConfig {
             url: "ws://127.0.0.1:6437/v6.json".into(),
             allow_remote: false,
             background: true,
@@ -66,12 +66,14 @@ impl Default for Config {
 
 /// How the connection stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Status {
+pub struct LeapStatus {
+    /// A server is connected.
     pub connected: bool,
     /// The protocol's version as the server stated it.
     pub version: Option<i64>,
     /// What the tracker's service last said of the tracker itself.
     pub attached: Option<bool>,
+    /// The tracker streams, as far as the server said.
     pub streaming: Option<bool>,
     /// Frames decoded and sent on.
     pub frames: u64,
@@ -85,6 +87,7 @@ pub struct Status {
     pub over_rate: u64,
     /// Hands left out of frames.
     pub dropped_hands: u64,
+    /// Times that a connection was made.
     pub connections: u64,
     /// Frames a second, smoothed over about a second.
     pub rate: f32,
@@ -96,13 +99,14 @@ pub struct Status {
 
 /// A running client; dropping it ends its thread.
 #[derive(Debug)]
-pub struct Handle {
-    status: Arc<Mutex<Status>>,
+pub struct LeapHandle {
+    status: Arc<Mutex<LeapStatus>>,
     _thread: DeviceThread,
 }
 
-impl Handle {
-    pub fn status(&self) -> Status {
+impl LeapHandle {
+    /// A copy of the present state.
+    pub fn status(&self) -> LeapStatus {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
@@ -111,22 +115,22 @@ impl Handle {
 ///
 /// # Errors
 /// Only if no thread can be started.
-pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
-    let status = Arc::new(Mutex::new(Status::default()));
+pub fn start(config: LeapConfig, clock: Clock, sender: Sender) -> std::io::Result<LeapHandle> {
+    let status = Arc::new(Mutex::new(LeapStatus::default()));
     let shared = status.clone();
     let thread = device_thread::spawn("leap", move |stop| {
         let mut sender = sender;
         sender.stop_when(stop.flag());
         Client::new(config, clock, sender, shared).run(&stop);
     })?;
-    Ok(Handle { status, _thread: thread })
+    Ok(LeapHandle { status, _thread: thread })
 }
 
 struct Client {
-    config: Config,
+    config: LeapConfig,
     clock: Clock,
     sender: Sender,
-    status: Arc<Mutex<Status>>,
+    status: Arc<Mutex<LeapStatus>>,
     map: ClockMap,
     /// The newest sample of this connection.
     last: Option<Sample>,
@@ -135,7 +139,12 @@ struct Client {
 }
 
 impl Client {
-    fn new(config: Config, clock: Clock, sender: Sender, status: Arc<Mutex<Status>>) -> Self {
+    fn new(
+        config: LeapConfig,
+        clock: Clock,
+        sender: Sender,
+        status: Arc<Mutex<LeapStatus>>,
+    ) -> Self {
         let tokens_at_us = clock.now_us();
         Client {
             config,
@@ -149,7 +158,7 @@ impl Client {
         }
     }
 
-    fn note(&self, change: impl FnOnce(&mut Status)) {
+    fn note(&self, change: impl FnOnce(&mut LeapStatus)) {
         change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
@@ -367,7 +376,7 @@ fn waited(e: &std::io::Error) -> bool {
 }
 
 /// Connects and shakes hands, every step with a time-out.
-fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
+fn connect(config: &LeapConfig) -> Result<WebSocket<TcpStream>, String> {
     let request =
         config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
     if request.uri().scheme_str() != Some("ws") {

@@ -22,12 +22,16 @@ const MAX_LISTED: usize = 128;
 /// Why a message gave nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FrameError {
+    /// The message has so many bytes.
     #[error("message of {0} bytes, more than {MAX_MESSAGE}")]
     TooLong(usize),
+    /// Arrays and objects are nested too deeply, at this byte.
     #[error("nested deeper than {MAX_DEPTH} at byte {0}")]
     TooDeep(usize),
+    /// The text is not JSON; the parser's reason.
     #[error("not JSON: {0}")]
     NotJson(String),
+    /// The text is a message of another kind.
     #[error("a message, but not a frame")]
     NotAFrame,
 }
@@ -40,9 +44,12 @@ pub enum Message {
     Version(Option<i64>),
     /// A tracker was plugged in or out, or began or ceased to stream.
     Device {
+        /// A tracker is plugged in; `None` where the message does not say.
         attached: Option<bool>,
+        /// It streams; `None` where the message does not say.
         streaming: Option<bool>,
     },
+    /// A frame.
     Frame(Frame),
     /// Well-formed, and nothing that this client knows.
     Other,
@@ -51,6 +58,7 @@ pub enum Message {
 /// A decoded frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
+    /// Every hand of the frame.
     pub hands: Hands,
     /// Microseconds on the tracker's clock; its origin is unknown.
     pub device_t_us: Option<u64>,

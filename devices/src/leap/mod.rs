@@ -15,7 +15,7 @@ pub mod file;
 pub mod frame;
 mod loose;
 
-pub use client::{Config, Handle, Status, start};
+pub use client::{LeapConfig, LeapHandle, LeapStatus, start};
 pub use clock_map::ClockMap;
 pub use file::FrameFile;
 pub use frame::{Frame, FrameError, Message, parse_frame, parse_message};

@@ -13,7 +13,9 @@ const MAX_REPORT: usize = 4096;
 /// A line that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BadLine {
+    /// Number of the line, from 1.
     pub line: usize,
+    /// What is wrong with it and what was expected.
     pub what: String,
 }
 
@@ -23,7 +25,7 @@ pub struct BadLine {
 /// # Errors
 /// Any other line that cannot be read, or a file without a descriptor and without a report.
 pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
-    let mut reader = Reader::default();
+    let mut reader = LineReader::default();
     let unended = (!text.ends_with('\n')).then(|| text.lines().count());
     for (i, line) in text.lines().enumerate() {
         let unfinished = !line.contains(':') && !line.starts_with('#') && !line.trim().is_empty();
@@ -48,7 +50,7 @@ pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
 }
 
 #[derive(Default)]
-struct Reader {
+struct LineReader {
     out: HidRecording,
     /// Device number of each interface, in order of appearance.
     numbers: Vec<u32>,
@@ -61,7 +63,7 @@ struct Reader {
     described: bool,
 }
 
-impl Reader {
+impl LineReader {
     fn line(&mut self, line: &str) -> Result<(), String> {
         let Some((tag, rest)) = line.split_once(':').filter(|(tag, _)| tag.len() == 1) else {
             if let Some(rest) = line.strip_prefix("# USB-STRING S ") {

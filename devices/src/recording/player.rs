@@ -73,6 +73,7 @@ impl Player {
         Player { info, source, next: 0, offset_us: 0, ended: false }
     }
 
+    /// What the recording is of.
     pub fn device(&self) -> &DeviceInfo {
         &self.info
     }
@@ -90,6 +91,7 @@ impl Player {
         }
     }
 
+    /// Every report was played, and whatever was in range has left.
     pub fn finished(&self) -> bool {
         self.ended
     }

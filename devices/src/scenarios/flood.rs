@@ -10,7 +10,7 @@ use crate::hid::reader;
 use crate::queue::channel;
 use crate::sample::{Body, DeviceId, Sample};
 use crate::sim::faults::Rng;
-use crate::sim::tablet::{self, Tablet, TabletConfig};
+use crate::sim::tablet::{self, SimTablet, TabletConfig};
 use crate::sim::{PenScript, Shape, Stroke};
 
 const TABLETS: usize = 8;
@@ -54,7 +54,7 @@ fn nothing_but_motion_is_ever_lost() {
         // On a loaded machine the flood itself comes in bursts: its own loss would hide the
         // channel's.
         let config = TabletConfig { rate: RATE, keeps: 4096, ..TabletConfig::default() };
-        let (tablet, end) = Tablet::new(&found, script.clone(), config);
+        let (tablet, end) = SimTablet::new(&found, script.clone(), config);
         let id = DeviceId(i as u16);
         readers.push(
             reader::start(Box::new(end), &found, &[], id, clock.clone(), factory.sender()).unwrap(),

@@ -13,7 +13,7 @@ use crate::hid::transport::Transport;
 use crate::hid::watch::{HidConfig, HidHandle, choose, start_on};
 use crate::queue::channel;
 use crate::sample::{Body, Sample};
-use crate::sim::{Tablet, TabletConfig, TabletEnd, journal, tablet};
+use crate::sim::{SimTablet, TabletConfig, TabletEnd, journal, tablet};
 
 type Sockets = Arc<Mutex<Vec<(Node, Option<io::Result<TabletEnd>>)>>>;
 
@@ -37,14 +37,14 @@ impl Bus for Sim {
 }
 
 impl Sim {
-    fn plug(&self, path: &str, model: &str, serial: &str) -> Tablet {
+    fn plug(&self, path: &str, model: &str, serial: &str) -> SimTablet {
         let catalogue = Catalogue::builtin().unwrap();
         let who = tablet::identity(&catalogue, model).unwrap();
         let Identification::Identified(found) = catalogue.identify(&who) else { panic!("{model}") };
         let (journal, a) = (journal(), found.tablet.area);
         let script =
             journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
-        let (tablet, end) = Tablet::new(&found, script, TabletConfig::default());
+        let (tablet, end) = SimTablet::new(&found, script, TabletConfig::default());
         let node = Node { path: path.into(), serial: serial.into(), who, may_be_pen: true };
         self.0.lock().unwrap().push((node, Some(Ok(end))));
         tablet
@@ -143,4 +143,47 @@ fn namesakes_are_asked_about_once_and_the_answer_holds() {
     let e =
         choose(&node, &who, &HidConfig { models, ..HidConfig::default() }, &catalogue).unwrap_err();
     assert!(e.contains("No such"), "{e}");
+}
+
+/// What Windows and macOS do: the descriptor is known once the interface is open.
+#[test]
+fn a_tablet_whose_descriptor_is_hidden_is_opened_before_it_is_judged() {
+    struct Hidden(Option<TabletEnd>);
+    struct Opened(TabletEnd);
+    impl Transport for Opened {
+        fn read(&mut self, buf: &mut [u8], timeout_ms: i32) -> io::Result<usize> {
+            self.0.read(buf, timeout_ms)
+        }
+        fn write(&mut self, report: &[u8]) -> io::Result<()> {
+            self.0.write(report)
+        }
+        fn send_feature(&mut self, report: &[u8]) -> io::Result<()> {
+            self.0.send_feature(report)
+        }
+        fn descriptor(&mut self) -> Option<Vec<u8>> {
+            Some(tablet::generic_identity().descriptor)
+        }
+    }
+    impl Bus for Hidden {
+        fn nodes(&mut self) -> io::Result<Vec<Node>> {
+            let (descriptor, seen_lengths) = (Vec::new(), Vec::new());
+            let who = Identity { descriptor, seen_lengths, ..tablet::generic_identity() };
+            Ok(vec![Node { path: "hid#1".into(), serial: String::new(), who, may_be_pen: true }])
+        }
+        fn open(&mut self, _: &Node) -> io::Result<Box<dyn Transport>> {
+            let end = self.0.take().ok_or(io::ErrorKind::NotFound)?;
+            Ok(Box::new(Opened(end)))
+        }
+    }
+    let catalogue = Catalogue::builtin().unwrap();
+    let Identification::Identified(found) = catalogue.identify(&tablet::generic_identity()) else {
+        panic!("it describes itself")
+    };
+    let (mut pen, end) = SimTablet::new(&found, journal().pen, TabletConfig::default());
+    let (factory, rx) = channel(4096);
+    let bus = Box::new(Hidden(Some(end)));
+    let handle = start_on(bus, HidConfig::default(), catalogue, Clock::manual(), factory).unwrap();
+    until("it is read", || handle.status().first().is_some_and(|s| s.usable));
+    pen.advance(journal().pen.strokes()[0].from_us + 300_000);
+    until("its samples come", || rx.waiting() > 10);
 }

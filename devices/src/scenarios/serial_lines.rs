@@ -3,7 +3,7 @@ use std::time::Duration;
 use crate::clock::Clock;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
-use crate::serial::{Config, Handle, Protocol, start};
+use crate::serial::{Protocol, SerialConfig, SerialHandle, start};
 use crate::sim::{Faults, Journal, SerialPen, SerialPenConfig, journal};
 
 const SOON: Duration = Duration::from_secs(60);
@@ -12,7 +12,7 @@ const ALL: [Protocol; 4] =
 
 struct Rig {
     pen: SerialPen,
-    handle: Handle,
+    handle: SerialHandle,
     rx: Receiver,
     clock: Clock,
     got: Vec<Sample>,
@@ -27,12 +27,12 @@ fn rig(protocol: Protocol, faults: Faults, rate: f32, known: bool) -> Rig {
     .unwrap();
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
-    let config = Config {
+    let config = SerialConfig {
         port: known.then(|| sim.port().to_owned()),
         probe: if known { Vec::new() } else { vec![sim.port().to_owned()] },
         protocol: known.then_some(protocol),
         device: DeviceId(9),
-        ..Config::default()
+        ..SerialConfig::default()
     };
     let handle = start(config, clock.clone(), factory.sender()).unwrap();
     assert!(sim.wait_for_reader(Duration::from_secs(20)), "{protocol:?}: {:?}", handle.status());
@@ -157,7 +157,7 @@ fn a_port_that_may_be_asked_is_asked_until_something_answers() {
     }
     // With nothing named and nothing allowed no port is touched.
     let (factory, _rx) = channel(4);
-    let handle = start(Config::default(), Clock::manual(), factory.sender()).unwrap();
+    let handle = start(SerialConfig::default(), Clock::manual(), factory.sender()).unwrap();
     assert!(!handle.status().connected);
 }
 
@@ -183,7 +183,8 @@ fn every_single_fault_is_followed_by_sync() {
     for protocol in ALL {
         let (facts, good) = crate::sim::serial::stream(protocol, &journal().pen, 600_000..800_000);
         let read = |packets: &[Vec<u8>]| {
-            let (mut d, mut got) = (crate::serial::Decoder::new(&facts, DeviceId(0)), Vec::new());
+            let (mut d, mut got) =
+                (crate::serial::SerialDecoder::new(&facts, DeviceId(0)), Vec::new());
             for (i, p) in packets.iter().enumerate() {
                 d.feed(p, i as u64, &mut |s| got.push(pen(&s)));
             }
@@ -232,7 +233,7 @@ mod any_bytes {
         #[test]
         fn never_panic_and_never_leave_the_tablet(bytes in prop::collection::vec(any::<u8>(), 0..600), which in 0..4usize) {
             let (facts, _) = crate::sim::serial::stream(ALL[which], &journal().pen, 0..1);
-            let mut d = crate::serial::Decoder::new(&facts, DeviceId(0));
+            let mut d = crate::serial::SerialDecoder::new(&facts, DeviceId(0));
             let mut got = Vec::new();
             for (t, chunk) in bytes.chunks(7).enumerate() {
                 d.feed(chunk, t as u64 * 1000, &mut |s| got.push(pen(&s)));

@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::session::{self, PROBE_ORDER, Wire};
-use super::{Counts, Decoder, Facts, Protocol};
+use super::{Protocol, SerialCounts, SerialDecoder, SerialFacts};
 use crate::calibration::Calibration;
 use crate::clock::Clock;
 use crate::device_thread::{self, DeviceThread, StopToken};
@@ -25,7 +25,7 @@ const BACK_OFF: (Duration, Duration) = (Duration::from_millis(500), Duration::fr
 /// Which ports may be opened, and what to expect there.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Config {
+pub struct SerialConfig {
     /// The port that a tablet is on, such as `/dev/ttyS0` or `COM3`.
     pub port: Option<String>,
     /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking
@@ -44,30 +44,39 @@ pub struct Config {
 
 /// How the line stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Status {
+pub struct SerialStatus {
+    /// A tablet was found and is read.
     pub connected: bool,
+    /// The port that it is on.
     pub port: Option<String>,
+    /// What it speaks.
     pub protocol: Option<Protocol>,
+    /// What it calls itself.
     pub model: Option<String>,
     /// Width and height of the active area.
     pub area_mm: Option<[f32; 2]>,
-    pub counts: Counts,
+    /// What became of its bytes.
+    pub counts: SerialCounts,
+    /// Samples that were made of them.
     pub samples: u64,
     /// Packets in the last full second.
     pub rate: f32,
+    /// Times that a tablet was found.
     pub connections: u64,
+    /// Why no tablet is read, or what was wrong last.
     pub last_error: Option<String>,
 }
 
 /// A running reader; dropping it ends its thread.
 #[derive(Debug)]
-pub struct Handle {
-    status: Arc<Mutex<Status>>,
+pub struct SerialHandle {
+    status: Arc<Mutex<SerialStatus>>,
     _thread: DeviceThread,
 }
 
-impl Handle {
-    pub fn status(&self) -> Status {
+impl SerialHandle {
+    /// A copy of the present state.
+    pub fn status(&self) -> SerialStatus {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
@@ -76,29 +85,29 @@ impl Handle {
 ///
 /// # Errors
 /// Only if no thread can be started.
-pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
-    let status = Arc::new(Mutex::new(Status::default()));
+pub fn start(config: SerialConfig, clock: Clock, sender: Sender) -> std::io::Result<SerialHandle> {
+    let status = Arc::new(Mutex::new(SerialStatus::default()));
     let shared = status.clone();
     let thread = device_thread::spawn("serial-pen", move |stop| {
         let mut sender = sender;
         sender.stop_when(stop.flag());
         sender.calibrate(config.device, config.calibration);
-        Reader { config, clock, sender, status: shared, second: (0, 0) }.run(&stop);
+        SerialReader { config, clock, sender, status: shared, second: (0, 0) }.run(&stop);
     })?;
-    Ok(Handle { status, _thread: thread })
+    Ok(SerialHandle { status, _thread: thread })
 }
 
-struct Reader {
-    config: Config,
+struct SerialReader {
+    config: SerialConfig,
     clock: Clock,
     sender: Sender,
-    status: Arc<Mutex<Status>>,
+    status: Arc<Mutex<SerialStatus>>,
     /// When the present second of counting began, and the packets by then.
     second: (u64, u64),
 }
 
-impl Reader {
-    fn note(&self, change: impl FnOnce(&mut Status)) {
+impl SerialReader {
+    fn note(&self, change: impl FnOnce(&mut SerialStatus)) {
         change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
@@ -131,7 +140,7 @@ impl Reader {
         }
     }
 
-    fn found(&self, name: &str, facts: &Facts) {
+    fn found(&self, name: &str, facts: &SerialFacts) {
         self.note(|s| {
             s.connected = true;
             s.connections += 1;
@@ -171,7 +180,7 @@ impl Reader {
         names
     }
 
-    fn find(&self, name: &str, stop: &StopToken) -> Result<(Box<dyn Wire>, Facts), String> {
+    fn find(&self, name: &str, stop: &StopToken) -> Result<(Box<dyn Wire>, SerialFacts), String> {
         let port = serialport::new(name, 9600)
             .timeout(READ_SLICE)
             .open()
@@ -191,8 +200,8 @@ impl Reader {
     }
 
     /// Reads until the line breaks; returns why it did.
-    fn read(&mut self, wire: &mut dyn Wire, facts: &Facts, stop: &StopToken) -> String {
-        let mut decoder = Decoder::new(facts, self.config.device);
+    fn read(&mut self, wire: &mut dyn Wire, facts: &SerialFacts, stop: &StopToken) -> String {
+        let mut decoder = SerialDecoder::new(facts, self.config.device);
         let (mut buffer, mut out) = ([0; 512], Vec::with_capacity(64));
         let mut patience = Duration::ZERO;
         let why = loop {
@@ -225,7 +234,7 @@ impl Reader {
         why
     }
 
-    fn send(&mut self, out: &mut Vec<Sample>, decoder: &Decoder) {
+    fn send(&mut self, out: &mut Vec<Sample>, decoder: &SerialDecoder) {
         let n = out.len() as u64;
         for sample in out.drain(..) {
             self.sender.push(sample);

@@ -16,7 +16,7 @@ impl Fake {
         Fake { speed, answers, now: 0, out: VecDeque::new(), said: Vec::new() }
     }
 
-    fn open(&mut self, protocol: Protocol) -> Option<Facts> {
+    fn open(&mut self, protocol: Protocol) -> Option<SerialFacts> {
         let (_hold, stop) = crate::device_thread::pair();
         open(self, protocol, true, &stop).unwrap()
     }

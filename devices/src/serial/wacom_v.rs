@@ -5,11 +5,14 @@ use super::{low7, signed7};
 use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
+/// Bytes of a packet.
 pub const LENGTH: usize = 9;
+/// Full pressure in counts.
 pub const MAX_PRESSURE: u32 = 1023;
 
+/// How packets are read, and the tool that is near.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct WacomVLayout {
     max: [i32; 2],
     /// By channel: what lies on it. A tablet follows two tools at once; the first to come has the
     /// word.
@@ -17,11 +20,13 @@ pub struct Layout {
     leading: Option<usize>,
 }
 
-impl Layout {
+impl WacomVLayout {
+    /// A layout for a tablet with these largest coordinates.
     pub fn new(max: [i32; 2]) -> Self {
-        Layout { max, tools: [None; 2], leading: None }
+        WacomVLayout { max, tools: [None; 2], leading: None }
     }
 
+    /// Reads one whole packet.
     pub fn parse(&mut self, b: &[u8]) -> Parsed {
         if b.len() < LENGTH {
             return Parsed::Broken;
@@ -93,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_tool_enters_moves_and_leaves_and_the_first_has_the_word() {
-        let mut l = Layout::new([30480, 24060]);
+        let mut l = WacomVLayout::new([30480, 24060]);
         assert_eq!(l.parse(&enter(0x82a, 0)), Parsed::Nothing);
         let pen = [0xe2, 20, 5, 0b0101010, 9, 0b010_1011, 77, 0x7b, 5];
         let Parsed::Pen(r) = l.parse(&pen) else { panic!() };

@@ -31,6 +31,7 @@ const FOREARM: f32 = 260.0;
 /// A hand at one instant of its script; between two keys everything is interpolated smoothly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandKey {
+    /// When, in microseconds since the script began.
     pub t_us: u64,
     /// Seen from this key until the next one.
     pub present: bool,
@@ -65,6 +66,7 @@ impl HandKey {
         HandKey { curl: [curl; 5], ..self }
     }
 
+    /// The same with thumb and index finger pinched, 0 to 1.
     pub fn pinched(self, pinch: f32) -> Self {
         HandKey { pinch, ..self }
     }
@@ -74,6 +76,7 @@ impl HandKey {
         HandKey { curl: [0.05; 5], spread, ..self }
     }
 
+    /// The same turned: yaw, pitch and roll in radians.
     pub fn turned(self, yaw: f32, pitch: f32, roll: f32) -> Self {
         HandKey { yaw_pitch_roll: [yaw, pitch, roll], ..self }
     }
@@ -107,6 +110,7 @@ impl HandKey {
 /// One hand's life over the tracker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Performer {
+    /// A left hand.
     pub left: bool,
     /// In order of time.
     pub keys: Vec<HandKey>,
@@ -132,10 +136,12 @@ impl Performer {
 /// Every hand over one tracker.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HandScript {
+    /// One for each hand, at most [`MAX_HANDS`].
     pub performers: Vec<Performer>,
 }
 
 impl HandScript {
+    /// When the last key is reached, in microseconds.
     pub fn end_us(&self) -> u64 {
         self.performers.iter().filter_map(|p| p.keys.last()).map(|k| k.t_us).max().unwrap_or(0)
     }

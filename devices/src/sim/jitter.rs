@@ -11,6 +11,7 @@ use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Jitter {
+    /// The same seed gives the same noise.
     pub seed: u64,
     /// Standard deviation of every joint of a hand at rest, mm along each axis. Trackers of the
     /// Leap kind: 0.2 (Weichert et al., Sensors 2013).
@@ -50,6 +51,7 @@ struct Fate {
 }
 
 impl JitterState {
+    /// A tracker with these figures that has seen nothing yet.
     pub fn new(figures: Jitter) -> Self {
         JitterState { figures, rng: Rng::new(figures.seed), hands: Default::default(), ids: 1000 }
     }

@@ -15,7 +15,9 @@ pub struct Journal {
     pub pen: PenScript,
     /// On another of the same size.
     pub serial_pen: PenScript,
+    /// What the hands do over the tracker.
     pub hands: HandScript,
+    /// Width and height of the tablets in mm.
     pub area_mm: Vec2,
     /// When the last of them is done.
     pub duration_us: u64,

@@ -16,7 +16,7 @@
 //! let mut tracker = sim::Tracker::new(sim::journal().hands, sim::TrackerConfig::default())?;
 //! let (factory, mut samples) = queue::channel(1024);
 //! let clock = Clock::manual();
-//! let config = leap::Config { url: tracker.url(), ..leap::Config::default() };
+//! let config = leap::LeapConfig { url: tracker.url(), ..leap::LeapConfig::default() };
 //! let _client = leap::start(config, clock.clone(), factory.sender())?;
 //! assert!(tracker.wait_for_client(Duration::from_secs(10)));
 //! for us in (0..200_000).step_by(10_000) {
@@ -44,5 +44,5 @@ pub use jitter::{Jitter, JitterState};
 pub use journal::{Journal, journal};
 pub use pen::{PenPose, PenScript, Shape, Stroke};
 pub use serial::{SerialPen, SerialPenConfig};
-pub use tablet::{Tablet, TabletConfig, TabletEnd};
+pub use tablet::{SimTablet, TabletConfig, TabletEnd};
 pub use tracker::{Tracker, TrackerConfig};

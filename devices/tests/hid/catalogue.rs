@@ -8,7 +8,7 @@ use sculptd_devices::recording::{HidRecording, Player, Stamped};
 use sculptd_devices::tablet::Tablet;
 use sculptd_devices::{Body, DeviceId};
 
-fn folder() -> std::path::PathBuf {
+fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tablets")
 }
 

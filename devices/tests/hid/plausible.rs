@@ -1,11 +1,11 @@
-//! Every real recording with pressure: nothing is saturated but what the person pressed, and no size
-//! contradicts the descriptor or the catalogue.
+//! Every real recording with pressure: nothing is saturated but what the person pressed, and no
+//! size contradicts the descriptor or the catalogue.
 //!
 //! **How a hard press is told from a wrong maximum.** A pen that is pressed as hard as it can be
 //! sends its own highest count, again and again: the highest count of the recording is the maximum
-//! that the decoder uses, and no count lies above it. A wrong maximum lies below counts that the pen
-//! sends: [`Counts::outside`] counts those, and a full pressure at several different counts shows
-//! it, too.
+//! that the decoder uses, and no count lies above it. A wrong maximum lies below counts that the
+//! pen sends: [`Counts::outside`] counts those, and a full pressure at several different counts
+//! shows it, too.
 //!
 //! [`Counts::outside`]: sculptd_devices::hid::decoder::Counts::outside
 
@@ -91,8 +91,9 @@ fn no_size_is_nonsense_or_contradicts_the_catalogue() {
             assert!(a.width_mm.max(a.height_mm) <= 720.0, "{at}");
             assert!((a.width_mm - a.height_mm).abs() > 1.0, "{at}: square");
             let aspect = a.width_mm / a.height_mm;
-            // Counts are square wherever the axes have ranges of their own.
-            if let Ok(d) = Descriptor::parse(&who.descriptor)
+            // UC-Logic's counts are square wherever the axes have ranges of their own.
+            if matches!(who.vid, 0x5543 | 0x256c | 0x28bd)
+                && let Ok(d) = Descriptor::parse(&who.descriptor)
                 && let Some(pen) = d.pens.iter().find(|p| !p.as_mouse && p.pressure.is_some())
                 && let (Some(x), Some(y)) = (&pen.x, &pen.y)
                 && x.max != y.max

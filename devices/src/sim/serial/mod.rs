@@ -16,7 +16,7 @@ use super::pen::PenScript;
 use crate::clock::Clock;
 use crate::device_thread::{self, DeviceThread};
 use crate::sample::DeviceId;
-use crate::serial::{Decoder, Facts, Protocol};
+use crate::serial::{Protocol, SerialDecoder, SerialFacts};
 
 /// The packets that a pen on this script gives over a span of time, and what its tablet says of
 /// itself: for tests that need bytes and no port.
@@ -24,7 +24,7 @@ pub fn stream(
     protocol: Protocol,
     script: &PenScript,
     span_us: std::ops::Range<u64>,
-) -> (Facts, Vec<Vec<u8>>) {
+) -> (SerialFacts, Vec<Vec<u8>>) {
     let mut model = Model::new(protocol, vec2(210.0, 148.0));
     let packets = span_us.step_by(7_500).flat_map(|t| model.packets(&script.at(t))).collect();
     (model.facts, packets)
@@ -35,9 +35,12 @@ const LISTEN: Duration = Duration::from_millis(3);
 /// Attempts of 100 ms each before a reader that does not read is given up.
 const WRITE_ATTEMPTS: usize = 20;
 
+/// What a simulated serial pen is and how well its line works.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SerialPenConfig {
+    /// What it speaks.
     pub protocol: Protocol,
+    /// Width and height of its active area in mm.
     pub area_mm: Vec2,
     /// Packets a second: 133 is what an ISDV4 screen gives, 38400 baud carry 400.
     pub rate: f32,
@@ -48,6 +51,7 @@ pub struct SerialPenConfig {
 }
 
 impl SerialPenConfig {
+    /// A pen at the usual rate on a good line.
     pub fn new(protocol: Protocol, area_mm: Vec2) -> Self {
         SerialPenConfig {
             protocol,
@@ -77,7 +81,7 @@ pub struct SerialPen {
     stalled_until_us: u64,
     backlog: Vec<u8>,
     /// What a reader makes of the same bytes: by it the expected samples are counted.
-    reader: Decoder,
+    reader: SerialDecoder,
     listener: Option<DeviceThread>,
 }
 
@@ -111,7 +115,7 @@ impl SerialPen {
                 let _ = write_all(&mut ears, &reply);
             }
         })?;
-        let reader = Decoder::new(&model.facts, DeviceId(0));
+        let reader = SerialDecoder::new(&model.facts, DeviceId(0));
         Ok(SerialPen {
             rng: Rng::new(config.faults.seed),
             spoilt: false,
@@ -247,6 +251,7 @@ impl SerialPen {
 /// A simulated pen that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct PlayingPen {
+    /// The port that a reader opens.
     pub port: String,
     _thread: DeviceThread,
 }

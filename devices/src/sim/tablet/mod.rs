@@ -24,6 +24,7 @@ use crate::tablet::Family;
 /// Reports that wait for a reader: what the kernel's hidraw keeps. The newest is dropped, as there.
 const KERNEL_KEEPS: usize = 63;
 
+/// How a simulated tablet behaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TabletConfig {
     /// Reports a second: 133 to 330 in real ones.
@@ -32,6 +33,7 @@ pub struct TabletConfig {
     pub repeat_us: Option<u64>,
     /// Reports that wait for a reader before the newest are dropped.
     pub keeps: usize,
+    /// How well its line works.
     pub faults: Faults,
 }
 
@@ -76,7 +78,7 @@ pub fn generic_identity() -> Identity {
 
 /// The device, stepped by its owner.
 #[derive(Debug)]
-pub struct Tablet {
+pub struct SimTablet {
     config: TabletConfig,
     script: PenScript,
     encoder: Encoder,
@@ -105,12 +107,12 @@ pub struct TabletEnd {
     asked: Arc<Mutex<Vec<Vec<u8>>>>,
 }
 
-impl Tablet {
+impl SimTablet {
     /// A tablet as its file describes it, and the end that a reader is given.
     pub fn new(found: &Found, script: PenScript, config: TabletConfig) -> (Self, TabletEnd) {
         let (tx, rx) = cc::bounded(config.keeps.max(1));
         let asked = Arc::new(Mutex::new(Vec::new()));
-        let tablet = Tablet {
+        let tablet = SimTablet {
             encoder: Encoder::new(found),
             line: Line::new(config.faults),
             config,
@@ -126,8 +128,8 @@ impl Tablet {
         (tablet, TabletEnd { rx, asked })
     }
 
-    /// Whether its reports say when the pen leaves; else only silence does, and [`Tablet::advance`]
-    /// counts on a reader that looks at its clock.
+    /// Whether its reports say when the pen leaves; else only silence does, and
+    /// [`SimTablet::advance`] counts on a reader that looks at its clock.
     pub fn says_away(&self) -> bool {
         self.encoder.says_away()
     }

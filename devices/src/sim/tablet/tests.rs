@@ -5,21 +5,21 @@ use crate::clock::Clock;
 use crate::hid::reader;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
-use crate::sim::{Faults, PenScript, Tablet, TabletConfig, journal};
+use crate::sim::{Faults, PenScript, SimTablet, TabletConfig, journal};
 use crate::tablet::Family;
 
 const SOON: Duration = Duration::from_secs(5);
 
 struct Rig {
-    tablet: Tablet,
-    handle: reader::Handle,
+    tablet: SimTablet,
+    handle: reader::ReaderHandle,
     rx: Receiver,
     clock: Clock,
     got: Vec<Sample>,
 }
 
 fn rig(found: &Found, config: TabletConfig) -> Rig {
-    let (tablet, end) = Tablet::new(found, script(found), config);
+    let (tablet, end) = SimTablet::new(found, script(found), config);
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
     let handle = reader::start(

@@ -24,6 +24,7 @@ pub use self::encode::frame_json;
 /// What the tracker's own clock says when the simulation begins: no real one begins at nought.
 const CLOCK_ORIGIN_US: u64 = 3_600_000_000;
 
+/// How a simulated tracker behaves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrackerConfig {
@@ -36,6 +37,7 @@ pub struct TrackerConfig {
     pub origins: Vec<String>,
     /// The script begins again after so long; `None` ends with it: no hands from then on.
     pub repeat_us: Option<u64>,
+    /// How well its line works.
     pub faults: Faults,
     /// How well it sees.
     pub jitter: Jitter,
@@ -68,7 +70,7 @@ pub struct Tracker {
     jumped_us: i64,
     stalled_until_us: u64,
     backlog: Vec<Packet>,
-    seen: Seen,
+    seen: ClientSeen,
 }
 
 #[derive(Debug, Clone)]
@@ -82,11 +84,11 @@ struct Packet {
 /// What a client that keeps to the rules has taken in so far; by it the expected samples are
 /// counted.
 #[derive(Debug, Default)]
-struct Seen {
+struct ClientSeen {
     last: Option<(i64, u64, u8)>,
 }
 
-impl Seen {
+impl ClientSeen {
     fn whole(&mut self, p: &Packet) -> u32 {
         if let Some((frame, stamp, _)) = self.last
             && (0..100).contains(&(frame - p.frame))
@@ -124,7 +126,7 @@ impl Tracker {
             jumped_us: 0,
             stalled_until_us: 0,
             backlog: Vec::new(),
-            seen: Seen::default(),
+            seen: ClientSeen::default(),
         })
     }
 
@@ -143,6 +145,7 @@ impl Tracker {
         self.server.wait_for_clients(1, patience)
     }
 
+    /// How many clients are connected.
     pub fn clients(&self) -> usize {
         self.server.clients()
     }
@@ -249,6 +252,7 @@ impl Tracker {
 /// A simulated device that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct Playing {
+    /// Where it serves.
     pub address: SocketAddr,
     _thread: DeviceThread,
 }

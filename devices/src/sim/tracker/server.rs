@@ -22,7 +22,7 @@ const ACCEPT_SLICE: Duration = Duration::from_millis(5);
 const PATIENCE: Duration = Duration::from_millis(500);
 
 #[derive(Debug, Default)]
-struct Shared {
+struct ServerShared {
     clients: Mutex<Clients>,
     arrived: Condvar,
 }
@@ -36,7 +36,7 @@ struct Clients {
 #[derive(Debug)]
 pub(super) struct Server {
     address: SocketAddr,
-    shared: Arc<Shared>,
+    shared: Arc<ServerShared>,
     _thread: DeviceThread,
 }
 
@@ -45,7 +45,7 @@ impl Server {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(ServerShared::default());
         let theirs = shared.clone();
         let thread = device_thread::spawn("sim-ws", move |stop| {
             accept(&listener, &origins, &theirs, &stop)
@@ -114,7 +114,7 @@ fn hear(
     heard
 }
 
-fn accept(listener: &TcpListener, origins: &[String], shared: &Shared, stop: &StopToken) {
+fn accept(listener: &TcpListener, origins: &[String], shared: &ServerShared, stop: &StopToken) {
     while !stop.wait(ACCEPT_SLICE) {
         while let Ok((stream, _)) = listener.accept() {
             match welcome(stream, origins) {
