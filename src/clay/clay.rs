@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::boxtree::BoxTree;
 use super::dab::{Bench, PhaseTimes};
+use super::garbage::GarbageSink;
 use super::page::Page;
 use super::pick;
 use super::pool::Pool;
@@ -119,6 +120,13 @@ impl Clay {
 
     pub fn set_levels(&mut self, levels: Option<Arc<Levels>>) {
         self.levels = levels;
+    }
+
+    /// From now on, pages and undo steps that are no longer needed go to this sink. A new clay frees
+    /// them in place.
+    pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
+        self.history.sink = sink.clone();
+        self.pool.sink = sink;
     }
 
     /// What was odd about the input, in words.

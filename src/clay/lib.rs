@@ -17,6 +17,7 @@ pub mod brush;
 mod clay;
 mod dab;
 mod dyntopo;
+mod garbage;
 mod kernel;
 pub mod live_thickness;
 pub mod local_boolean;
@@ -41,6 +42,7 @@ pub use assembly::{
 pub use clay::{Clay, Memory};
 pub use dab::{DabReport, PhaseTimes};
 pub use dyntopo::{Cuts, Detail};
+pub use garbage::{CollectGarbage, Garbage, GarbageSink};
 pub use kernel::{Kernel, PageIn, PageOut};
 pub use multires::{Level, LevelError, Levels};
 pub use page::{Page, Points};

@@ -1,43 +1,17 @@
 //! Pages that were replaced wait here until nobody reads them any more, and are then written again.
 //!
-//! So a reader that drops the last snapshot with an old page frees nothing, and the tick thread
-//! neither allocates nor frees in the steady state of a stroke. What is too much goes to a thread
-//! that only drops.
+//! A reader that drops the last snapshot with an old page therefore frees nothing, and the tick
+//! thread neither allocates nor frees in the steady state of a stroke. Pages beyond the pool's
+//! bound go to the [`GarbageSink`].
 
 use std::collections::VecDeque;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use crossbeam_channel::Sender;
-
+use super::garbage::{Garbage, GarbageSink};
 use super::page::Page;
 
 /// Pages kept for reuse, at most; 512-vertex pages take about 25 KB each.
 const KEPT: usize = 2048;
-
-/// What the dropping thread is given.
-pub(super) enum Garbage {
-    Page(Arc<Page>),
-    Pages(Vec<(u32, Arc<Page>)>),
-}
-
-/// Hands memory to the thread that drops it. When that thread is far behind, the caller drops it.
-pub(super) fn discard(garbage: Garbage) {
-    static BIN: OnceLock<Sender<Garbage>> = OnceLock::new();
-    let bin = BIN.get_or_init(|| {
-        let (bin, full) = crossbeam_channel::bounded::<Garbage>(4096);
-        // Without the thread the channel is closed and everybody drops for himself.
-        let _ = std::thread::Builder::new().name("sculptd-drop".into()).spawn(move || {
-            for garbage in full {
-                match garbage {
-                    Garbage::Page(page) => drop(page),
-                    Garbage::Pages(pages) => drop(pages),
-                }
-            }
-        });
-        bin
-    });
-    let _ = bin.try_send(garbage);
-}
 
 #[derive(Debug, Default)]
 pub(super) struct Pool {
@@ -47,6 +21,8 @@ pub(super) struct Pool {
     /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
     leaves: usize,
+    /// Takes what is more than the pool keeps.
+    pub(super) sink: GarbageSink,
 }
 
 impl Pool {
@@ -57,6 +33,7 @@ impl Pool {
             waiting: VecDeque::with_capacity(KEPT),
             rows,
             leaves,
+            sink: GarbageSink::default(),
         };
         for _ in 0..count {
             let mut page = pool.fresh();
@@ -104,12 +81,12 @@ impl Pool {
                     self.waiting.push_back(page);
                 } else {
                     // Its reader will free it.
-                    discard(Garbage::Page(page));
+                    self.sink.discard(Garbage::Shared(page));
                 }
             } else if self.free.len() < KEPT {
                 self.free.push(page);
             } else {
-                discard(Garbage::Page(page));
+                self.sink.discard(Garbage::Shared(page));
             }
         }
     }

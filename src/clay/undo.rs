@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::garbage::{Garbage, GarbageSink};
 use super::page::Page;
-use super::pool::{Garbage, discard};
 
 /// Pages by number, as they were before a step (or, on the redo side, after it).
 type Step = Vec<(u32, Arc<Page>)>;
@@ -23,6 +23,8 @@ pub(super) struct History {
     /// For each page the step that touched it last, and where in the step's list it lies.
     touched: Vec<(u32, u32)>,
     stamp: u32,
+    /// Takes the steps that are forgotten.
+    pub(super) sink: GarbageSink,
 }
 
 fn cost(step: &Step) -> u64 {
@@ -39,6 +41,7 @@ impl History {
             bytes: 0,
             touched: vec![(0, 0); pages],
             stamp: 0,
+            sink: GarbageSink::default(),
         }
     }
 
@@ -80,7 +83,7 @@ impl History {
     }
 
     /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to
-    /// the dropping thread. Whether there is a step more.
+    /// the garbage sink. Whether there is a step more.
     pub(super) fn end(&mut self) -> bool {
         let Some(step) = self.open.take() else { return false };
         if step.is_empty() {
@@ -98,10 +101,12 @@ impl History {
 
     /// Nothing can be taken back or done again.
     pub(super) fn forget(&mut self) {
-        self.open = None;
+        if let Some(open) = self.open.take() {
+            self.sink.discard(Garbage::Pages(open));
+        }
         self.forget_redo();
         for gone in self.undo.drain(..) {
-            discard(Garbage::Pages(gone));
+            self.sink.discard(Garbage::Pages(gone));
         }
         self.bytes = 0;
     }
@@ -109,7 +114,7 @@ impl History {
     pub(super) fn forget_redo(&mut self) {
         for gone in self.redo.drain(..) {
             self.bytes -= cost(&gone);
-            discard(Garbage::Pages(gone));
+            self.sink.discard(Garbage::Pages(gone));
         }
     }
 
@@ -117,7 +122,7 @@ impl History {
         while (self.bytes > self.limit && !self.undo.is_empty()) || self.undo.len() > STEPS {
             let Some(gone) = self.undo.pop_front() else { break };
             self.bytes -= cost(&gone);
-            discard(Garbage::Pages(gone));
+            self.sink.discard(Garbage::Pages(gone));
         }
     }
 

@@ -12,10 +12,12 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use serde::Serialize;
 
+use super::command_queue::{CommandSender, QueuedCommand};
 use super::published::Published;
 use sculptd_clay::{Clay, Grafted, Level, LevelError, Levels, PAGE_VERTICES, Snapshot};
 use sculptd_engine::command::{Carving, Command, NewClay};
 use sculptd_engine::hand::MenuItem;
+use sculptd_engine::payload::Payload;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{Operation, Options};
 use sculptd_geometry::job::Job;
@@ -67,17 +69,14 @@ pub fn join(
     held: bool,
     operation: Operation,
     job: &Job,
-) -> Result<Vec<Command>, JoinError> {
+) -> Result<Vec<QueuedCommand>, JoinError> {
     let options = Options::default();
     if let Some(cut) = sculptd_clay::local_boolean::local(work, tool, operation, &options, job)?
         && cut.page_count() <= MOST_PAGES
         && cut.can_be_made(work)
     {
-        return Ok(vec![Command::Cut(Carving {
-            cut: Arc::new(cut),
-            put_down: held,
-            answer: None,
-        })]);
+        let carving = Carving { cut: Arc::new(cut), put_down: held };
+        return Ok(vec![Command::Cut(carving).into()]);
     }
     let masks = work.masks();
     let work = work.to_tri().to_poly();
@@ -91,12 +90,13 @@ pub fn join(
     let masks = masks.map(|m| boolean::mixed(&solid, &work, &m));
     let built = Clay::build_masked(&plain, masks.as_deref().unwrap_or(&[]), job);
     let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
-    let new = NewClay::new(Arc::new(plain), built, true);
-    let mut out = vec![match masks {
+    let new = NewClay::new(Arc::new(plain), true);
+    let command = match masks {
         Some(masks) => Command::ReplaceMasked(new, Arc::new(masks)),
         None => Command::Replace(new),
-    }];
-    out.extend(held.then_some(Command::PutDown));
+    };
+    let mut out = vec![QueuedCommand::with_payload(command, Payload::Clay(Box::new(built)))];
+    out.extend(held.then(|| Command::PutDown.into()));
     Ok(out)
 }
 
@@ -105,7 +105,7 @@ pub fn join(
 pub fn level(
     shown: &ArcSwap<Published>,
     finer: bool,
-) -> Result<(Command, (usize, usize)), JoinError> {
+) -> Result<(QueuedCommand, (usize, usize)), JoinError> {
     settled(shown, |now| {
         let (work, job) =
             (Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() }, Job::default());
@@ -119,13 +119,13 @@ pub fn level(
         let built = Clay::build_masked(&level.mesh, level.masks.as_deref().unwrap_or(&[]), &job);
         let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
         let at = levels.at();
-        let mut clay = NewClay::new(Arc::new(level.mesh), built, true);
+        let mut clay = NewClay::new(Arc::new(level.mesh), true);
         clay.levels = Some(Arc::new(levels));
         let command = match level.masks {
             Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
             None => Command::Replace(clay),
         };
-        Ok((command, at))
+        Ok((QueuedCommand::with_payload(command, Payload::Clay(Box::new(built))), at))
     })
 }
 
@@ -140,7 +140,7 @@ impl BooleanJobs {
     /// If no thread can be started.
     pub fn start(
         shown: Arc<ArcSwap<Published>>,
-        commands: cc::Sender<Command>,
+        commands: CommandSender,
     ) -> std::io::Result<Self> {
         let (asked, todo) = cc::bounded::<MenuItem>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
@@ -178,7 +178,7 @@ pub fn at_rest(
     shown: &ArcSwap<Published>,
     choice: MenuItem,
     job: &Job,
-    commands: &cc::Sender<Command>,
+    commands: &CommandSender,
 ) -> Result<Joined, JoinError> {
     let operation = operation(choice).ok_or(JoinError::Empty)?;
     let held =
@@ -208,16 +208,16 @@ pub fn carry_out(
     held: bool,
     operation: Operation,
     job: &Job,
-    commands: &cc::Sender<Command>,
+    commands: &CommandSender,
 ) -> Result<Joined, JoinError> {
-    let send = |c| commands.send(c).map_err(|_| JoinError::Ended);
+    let send = |c: QueuedCommand| commands.send(c).map_err(|_| JoinError::Ended);
     for tries in 1..=TRIES {
         let before = shown.load_full();
         let mut done = join(&before.mesh, &tool(&before)?, held, operation, job)?;
         job.check().map_err(boolean::Error::from)?;
-        if let [Command::Cut(carving)] = &mut done[..] {
+        if let [QueuedCommand { command: Command::Cut(_), result, .. }] = &mut done[..] {
             let (answer, made) = cc::bounded(1);
-            carving.answer = Some(answer);
+            *result = Some(answer);
             done.into_iter().try_for_each(send)?;
             match made.recv_timeout(PATIENCE) {
                 Ok(Some(Grafted { written, shared })) => {
@@ -233,7 +233,7 @@ pub fn carry_out(
             }
         }
         if shown.load().mesh.revision() == before.mesh.revision() {
-            let pages = done.iter().find_map(|c| match c {
+            let pages = done.iter().find_map(|queued| match &queued.command {
                 Command::Replace(new) | Command::ReplaceMasked(new, _) => {
                     Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
                 }

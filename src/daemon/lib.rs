@@ -7,11 +7,13 @@
 
 pub mod adaptors;
 pub mod boolean_jobs;
+pub mod command_queue;
 pub mod config;
 #[cfg(unix)]
 pub mod control;
 pub mod demo_devices;
 pub mod doctor;
+pub mod garbage_thread;
 pub mod kiosk;
 pub mod live;
 #[cfg(unix)]

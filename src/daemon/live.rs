@@ -14,19 +14,22 @@ use crossbeam_channel as cc;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs::BooleanJobs;
+use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
+use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::simulated_loop::{in_order_of_time, published_figures};
 use crate::tick_statistics::TickStatistics;
-use sculptd_clay::Clay;
+use sculptd_clay::Grafted;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
+use sculptd_engine::payload::PayloadStore;
 use sculptd_engine::world::World;
 
 /// Commands waiting for the loop; a sender beyond it is told so and tries again.
 pub const COMMANDS: usize = 1024;
-/// Commands taken a tick.
-const COMMANDS_PER_TICK: usize = 64;
+/// Commands taken a tick: the store beside the world has room for the payload of each.
+const COMMANDS_PER_TICK: usize = PayloadStore::CAPACITY;
 
 /// What a tick gave, for the journal: everything that changed the world.
 pub trait Journal: Send {
@@ -37,7 +40,7 @@ pub trait Journal: Send {
 /// A running loop.
 #[derive(Debug)]
 pub struct Live {
-    pub commands: cc::Sender<Command>,
+    pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
     stop: Arc<AtomicBool>,
     thread: JoinHandle<Ended>,
@@ -69,7 +72,9 @@ impl Live {
         drain_per_tick: usize,
         journal: Option<Box<dyn Journal>>,
     ) -> Result<Self, LiveError> {
-        let (commands, inbox) = cc::bounded(COMMANDS);
+        let (commands, inbox) = command_queue(COMMANDS);
+        let garbage = GarbageThread::start().map_err(LiveError::Start)?;
+        world.set_garbage_sink(garbage.sink());
         let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
         let published = publisher.reader();
         let stop = Arc::new(AtomicBool::new(false));
@@ -83,6 +88,7 @@ impl Live {
             rate_hz: config.rate_hz,
             drain_per_tick,
             journal,
+            garbage,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
             joiner: BooleanJobs::start(published.clone(), commands.clone()).ok(),
         };
@@ -108,28 +114,28 @@ struct Ticking {
     world: World,
     receiver: Receiver,
     clock: Clock,
-    inbox: cc::Receiver<Command>,
+    inbox: cc::Receiver<QueuedCommand>,
     publisher: Publisher,
     stop: Arc<AtomicBool>,
     rate_hz: u32,
     drain_per_tick: usize,
     journal: Option<Box<dyn Journal>>,
     joiner: Option<BooleanJobs>,
+    garbage: GarbageThread,
 }
 
 impl Ticking {
     fn run(mut self) -> Ended {
         raise_priority();
-        // Replaced works are dropped here, off the tick thread.
-        let (garbage, dump) = cc::bounded::<Clay>(8);
-        let _ = std::thread::Builder::new()
-            .name("sculptd-drop".into())
-            .spawn(move || dump.iter().for_each(drop));
+        let garbage = self.garbage.sink();
         let mut pacer = Pacer::new(self.rate_hz, self.clock.now_us());
         let sleeper = spin_sleep::SpinSleeper::default();
         let mut figures = TickStatistics::default();
         let mut samples: Vec<Sample> = Vec::with_capacity(self.drain_per_tick);
         let mut commands: Vec<Command> = Vec::with_capacity(COMMANDS_PER_TICK);
+        // Where the result of each cut of this tick goes, in the order of the commands.
+        let mut results: Vec<Option<cc::Sender<Option<Grafted>>>> =
+            Vec::with_capacity(COMMANDS_PER_TICK);
         let mut tick = self.world.tick();
         let mut newest = (0, 0, 0.0);
         while !self.stop.load(Relaxed) {
@@ -138,8 +144,14 @@ impl Ticking {
             samples.clear();
             self.receiver.drain(self.drain_per_tick, &mut samples);
             in_order_of_time(&mut samples);
-            commands.clear();
-            commands.extend(self.inbox.try_iter().take(COMMANDS_PER_TICK));
+            for mut queued in self.inbox.try_iter().take(COMMANDS_PER_TICK) {
+                let result = queued.result.take();
+                let command = queued.deliver(&mut self.world);
+                if matches!(command, Command::Cut(_)) {
+                    results.push(result);
+                }
+                commands.push(command);
+            }
             let begun = self.clock.now_ns();
             let report = *self.world.step(tick, &samples, &commands);
             if let Some(journal) = self.journal.as_deref_mut() {
@@ -150,9 +162,12 @@ impl Ticking {
             {
                 tracing::warn!("{}: another join is under way", choice.label());
             }
-            while let Some(mesh) = self.world.take_retired() {
-                let _ = garbage.try_send(mesh);
+            for (result, made) in results.drain(..).zip(self.world.cut_results()) {
+                if let Some(result) = result {
+                    let _ = result.try_send(*made);
+                }
             }
+            discard_commands(&mut commands, &garbage);
             let stepped = self.clock.now_ns() - begun;
             figures.tick(&report, stepped);
             let mut shown = published_figures(&figures, &self.receiver, stepped);
@@ -161,7 +176,7 @@ impl Ticking {
                 newest = (sample.t_us, tick, took_us as f64 / 1e3);
             }
             (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = newest;
-            self.publisher.publish(Published::of(&mut self.world, shown));
+            self.publisher.publish(Published::of(&mut self.world, shown), &garbage);
             pacer.done(self.clock.now_us());
             figures.overruns = pacer.overruns;
         }

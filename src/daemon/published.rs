@@ -9,7 +9,7 @@ use arc_swap::ArcSwap;
 use glam::Vec3;
 
 use crate::tick_statistics::{Losses, Percentiles};
-use sculptd_clay::Snapshot;
+use sculptd_clay::{GarbageSink, Snapshot};
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
@@ -114,6 +114,12 @@ impl Published {
             figures,
         }
     }
+
+    /// Whether this state holds memory that `newer` does not share.
+    fn holds_other(&self, newer: &Published) -> bool {
+        let held = |state: &Published| state.thing.as_ref().map(|held| Arc::as_ptr(&held.plain));
+        self.mesh.object_id() != newer.mesh.object_id() || held(self) != held(newer)
+    }
 }
 
 /// The loop's end of door 2.
@@ -138,13 +144,19 @@ impl Publisher {
         self.shown.clone()
     }
 
-    pub fn publish(&mut self, state: Published) {
+    /// Shows a new state. What an old one held goes to the sink where it may be the last that holds
+    /// it: the pages of another object, the triangles of what a hand has put down.
+    pub fn publish(&mut self, state: Published, sink: &GarbageSink) {
         let free = self.pool.iter_mut().position(|old| Arc::get_mut(old).is_some());
         let next = match free {
             Some(i) => {
                 let mut next = self.pool.swap_remove(i);
                 if let Some(slot) = Arc::get_mut(&mut next) {
-                    *slot = state;
+                    let other = slot.holds_other(&state);
+                    let old = std::mem::replace(slot, state);
+                    if other {
+                        sink.discard_owned(old);
+                    }
                 }
                 next
             }

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
+use crate::command_queue::CommandSender;
 use crate::config::{Config, Resolved};
 use crate::systemd::{Notifier, Watchdog, Watched, watchdog_us};
 use sculptd_devices::Clock;
@@ -24,7 +25,7 @@ pub struct Reload {
     pub extra: Option<PathBuf>,
     /// The settings in force.
     pub now: Config,
-    pub commands: cc::Sender<Command>,
+    pub commands: CommandSender,
 }
 
 impl Reload {

@@ -12,7 +12,9 @@ use super::live::Journal;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs;
+use crate::command_queue::QueuedCommand;
 use crate::tick_statistics::{Losses, Summary, TickStatistics};
+use sculptd_clay::GarbageSink;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
@@ -95,7 +97,7 @@ impl SimulatedLoop<'_> {
         let mut commands = Vec::new();
         // What a hand's wish to join gave: put in place at the next tick, so that a stepped run has
         // no race in it.
-        let mut joined: Vec<Command> = Vec::new();
+        let mut joined: Vec<QueuedCommand> = Vec::new();
         let mut script = self.script.iter().peekable();
         let first = self.world.tick();
         let mut tick = first;
@@ -115,7 +117,7 @@ impl SimulatedLoop<'_> {
             while let Some((_, command)) = script.next_if(|(at, _)| *at <= tick) {
                 commands.push(command.clone());
             }
-            commands.append(&mut joined);
+            commands.extend(joined.drain(..).map(|queued| queued.deliver(self.world)));
             let begun = wall.now_ns();
             let report = *self.world.step(tick, &samples, &commands);
             let took = wall.now_ns() - begun;
@@ -248,7 +250,7 @@ pub fn published_figures(
     }
 }
 
-/// Publishes the world's state through door 2.
+/// Publishes the world's state.
 pub fn publish(world: &mut World, figures: PublishedFigures, publisher: &mut Publisher) {
-    publisher.publish(Published::of(world, figures));
+    publisher.publish(Published::of(world, figures), &GarbageSink::default());
 }

@@ -2,15 +2,14 @@
 //! through, by a Boolean.
 
 use arc_swap::ArcSwap;
-use crossbeam_channel as cc;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::published::Published;
 use crate::boolean_jobs;
 use crate::boolean_jobs::{JoinError, Joined};
+use crate::command_queue::{CommandSender, QueuedCommand};
 use sculptd_engine::camera::Camera;
-use sculptd_engine::command::Command;
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
@@ -89,7 +88,7 @@ pub fn prism(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<
 }
 
 /// Cuts the part off the work as it is seen now: the commands that put the result in place.
-pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<Command>, JoinError> {
+pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<QueuedCommand>, JoinError> {
     boolean_jobs::settled(shown, |now| {
         // What the hands hold stays in them.
         boolean_jobs::join(
@@ -108,7 +107,7 @@ pub fn carry_out(
     shown: &ArcSwap<Published>,
     part: &Part,
     job: &Job,
-    commands: &cc::Sender<Command>,
+    commands: &CommandSender,
 ) -> Result<Joined, JoinError> {
     boolean_jobs::carry_out(
         shown,

@@ -1,141 +1,181 @@
 //! Every way to change the world that is not a [`sculptd_devices::Sample`]: a panel's click, a
-//! control-socket call, a finished Boolean, an undo. Plain data, serialisable;
-//! [`crate::world::World::step`] is the only reader.
+//! control-socket call, a finished Boolean, an undo.
+//!
+//! A command is plain data and serialises whole: no lock, channel or thread handle is part of one.
+//! What takes long to make (built clay, pages of the session file) is named by a
+//! [`PayloadId`] and lies in the store beside the world, see [`crate::payload`]. What came of a
+//! command is told by the step, see [`crate::world::StepReport`] and
+//! [`crate::world::World::cut_results`]. [`crate::world::World::step`] is the only reader.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::hand::{ReachBox, Similarity};
+use crate::payload::PayloadId;
 use crate::stroke::CurveAction;
 use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
-use sculptd_clay::{Clay, Cut, Grafted, Levels, ObjectState, Page};
+use sculptd_clay::{Cut, Levels, ObjectState};
 use sculptd_geometry::TriMesh;
 
+/// Something that was asked of the world.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Command {
+    /// The brush and its settings; values out of range are clamped.
     Brush(BrushSettings),
+    /// The view that pens draw in. A camera with values that are not finite is ignored.
     Camera(Camera),
     /// Ends every open stroke as a lifted pen does, then takes back the last step.
     Undo,
+    /// Does again the step that was taken back last.
     Redo,
     /// Ends every open stroke as a lifted pen does.
     LiftAll,
-    /// Changes the mask of the whole work: one step of undo.
+    /// Changes the mask of the whole object: one step of undo.
     Mask(MaskAction),
     /// The picture of heights that brushes with the alpha `picture` press.
     Picture(Arc<Picture>),
-    /// Another work takes the place of this one: a file was loaded, a Boolean finished, the kiosk
-    /// was reset.
+    /// Another object takes the place of this one: a file was loaded, a Boolean finished.
     Replace(NewClay),
-    /// The hands take up a thing: a primitive or a loaded mesh, to carry it to its place.
+    /// The hands take up an object: a primitive or a loaded mesh, to carry it to its place.
     TakeUp(Arc<TriMesh>),
-    /// The thing in the hands is gone: put away, or joined with the work.
+    /// The hands hold nothing any more: their object was put away, or joined with the clay.
     PutDown,
     /// The next five seconds of hands say what the person can reach.
     CalibrateReach,
-    /// This part of the tracked space is laid over the work.
+    /// This part of the tracked space is mapped to the space around the object.
     Reach(ReachBox),
-    /// Another person's work begins: the world is made anew, and nothing of what was before it
-    /// stays.
+    /// Another person begins: the world is made anew, and nothing of what was before stays.
     Begin(Box<Beginning>),
-    /// The thing in the hands stands here.
+    /// The object in the hands is placed here.
     Place(Similarity),
-    /// A Boolean of a small tool: made where the work around it is as it was when the cut was
-    /// computed, else not at all.
+    /// A Boolean with a small tool: made where the clay around it is as it was when the cut was
+    /// computed, else not at all. [`crate::world::World::cut_results`] says which.
     Cut(Carving),
-    /// The work becomes what it was at another place of its history, as the session file keeps it.
+    /// The object becomes what it was at another node of its history, as the session file keeps it.
     Jump(Box<Jump>),
     /// The session was opened again: what could be taken back or done again is in the file alone.
     Reopened,
-    /// As [`Command::Replace`], with a mask for each vertex: what made the new work keeps what was
-    /// protected so.
+    /// As [`Command::Replace`], with a mask for each vertex, so that what was protected stays so.
     ReplaceMasked(NewClay, Arc<Vec<f32>>),
     /// To the curve that a pen has laid with the method `curve`: drawn, put away, a handle less.
     CurveStroke(CurveAction),
 }
 
-/// To another place of the history. What it needs is in the session file, under the names given
-/// here, so that a replay finds it again; whoever sends it has fetched it already.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Jump {
-    /// The place's number.
-    pub node: u64,
-    /// The lineage and the revision that it was made for: a work that has changed since takes no
-    /// notice.
-    pub from: (u32, u64),
-    pub object_id: u32,
-    /// Pages that differ, and their revisions; all of them for another work.
-    pub pages: Vec<(u32, u64)>,
-    /// Another work than the one in place.
-    pub other: Option<OtherWork>,
-    /// Taken by the first `step` that sees it.
-    #[serde(skip)]
-    pub fetched: Arc<Mutex<Option<Fetched>>>,
+impl Command {
+    /// Whether the command owns or shares memory beyond its own size. Freeing such a command may
+    /// take long.
+    pub fn owns_memory(&self) -> bool {
+        match self {
+            Command::Picture(_)
+            | Command::Replace(_)
+            | Command::TakeUp(_)
+            | Command::Begin(_)
+            | Command::Cut(_)
+            | Command::Jump(_)
+            | Command::ReplaceMasked(..) => true,
+            Command::Brush(_)
+            | Command::Camera(_)
+            | Command::Undo
+            | Command::Redo
+            | Command::LiftAll
+            | Command::Mask(_)
+            | Command::PutDown
+            | Command::CalibrateReach
+            | Command::Reach(_)
+            | Command::Place(_)
+            | Command::Reopened
+            | Command::CurveStroke(_) => false,
+        }
+    }
+
+    /// The new clay that this command puts in place, if it does.
+    pub fn new_clay_mut(&mut self) -> Option<&mut NewClay> {
+        match self {
+            Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
+            Command::Begin(beginning) => Some(&mut beginning.clay),
+            _ => None,
+        }
+    }
 }
 
-/// What a work brings along besides its pages.
+/// To another node of the history. What it needs is in the session file, under the names given
+/// here; whoever sends or replays it fetches that, as the payload [`Jump::payload_id`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Jump {
+    /// The node's number.
+    pub node: u64,
+    /// The object and the revision that it was made for: the world ignores it when the object has
+    /// changed since.
+    pub from: (u32, u64),
+    /// The object that the node belongs to.
+    pub object_id: u32,
+    /// Pages that differ, and their revisions; all of them for another object.
+    pub pages: Vec<(u32, u64)>,
+    /// What another object than the one in place brings along.
+    pub other: Option<OtherWork>,
+}
+
+impl Jump {
+    /// The name of the pages or the clay that this jump puts in place.
+    pub fn payload_id(&self) -> PayloadId {
+        PayloadId::Jump { node: self.node, from: self.from }
+    }
+}
+
+/// What an object brings along besides its pages.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct OtherWork {
+    /// How many pages it has, its revision and the numbers that it gives out next.
     pub rest: ObjectState,
-    /// Its middle and bounding radius: the measure of brushes, mirrors and hands.
+    /// The centre of its bounding box when it was put in place.
     pub middle: glam::Vec3,
+    /// Its bounding radius then: the measure of brushes, mirrors and hands.
     pub extent: f32,
-    /// Where its levels are kept, if it has any.
+    /// The id in the session file of its multiresolution levels, if it has any.
     pub levels: Option<u64>,
 }
 
-/// What a jump needs, out of the file.
-#[derive(Debug)]
-pub enum Fetched {
-    Pages(Vec<(u32, Arc<Page>)>),
-    Work(Box<Clay>),
-}
-
-/// A cut to be made in the work.
+/// A cut to be made in the clay.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Carving {
+    /// What is removed and what is put in its place.
     pub cut: Arc<Cut>,
-    /// The thing in the hands is the tool, and gone once the cut is made.
+    /// The object in the hands is the tool, and gone once the cut is made.
     pub put_down: bool,
-    /// Told what came of it; `None`: the work was changed there in between. Nobody waits for who
-    /// asked.
-    #[serde(skip)]
-    pub answer: Option<crossbeam_channel::Sender<Option<Grafted>>>,
 }
 
 /// What a new person's world begins with.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Beginning {
+    /// The object.
     pub clay: NewClay,
-    /// Before it frames the work.
+    /// Before it frames the object.
     pub camera: Camera,
+    /// The brush and its settings.
     pub brush: BrushSettings,
 }
 
-/// A work ready to be put in place. Building the pages is done by whoever asks, on a thread of its
-/// own; a replay, which has only the plain triangles, builds them again.
+/// A new object. Its pages are built by whoever asks, on a thread of its own, and sent as the
+/// payload `built`; without that payload the world builds them again from the triangles, which
+/// takes as long as the mesh is large.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct NewClay {
+    /// The triangles.
     pub plain: Arc<TriMesh>,
-    /// Keep the camera where it is (a Boolean's result), or frame the new work (a file).
+    /// Keep the camera where it is (a Boolean's result), or frame the new object (a file).
     pub keep_camera: bool,
-    /// The other levels of it.
+    /// Its multiresolution levels.
     pub levels: Option<Arc<Levels>>,
-    /// Taken by the first `step` that sees it.
+    /// The clay of these triangles in the world's store; not part of the bytes.
     #[serde(skip)]
-    built: Arc<Mutex<Option<Clay>>>,
+    pub built: Option<PayloadId>,
 }
 
 impl NewClay {
-    pub fn new(plain: Arc<TriMesh>, built: Clay, keep_camera: bool) -> Self {
-        NewClay { plain, keep_camera, levels: None, built: Arc::new(Mutex::new(Some(built))) }
-    }
-
-    /// The pages, if they were built and not yet taken. Never waits: nobody else holds the lock
-    /// once the command is sent.
-    pub fn take(&self) -> Option<Clay> {
-        self.built.try_lock().ok().and_then(|mut slot| slot.take())
+    /// A new object without levels, whose clay is not built yet.
+    pub fn new(plain: Arc<TriMesh>, keep_camera: bool) -> Self {
+        NewClay { plain, keep_camera, levels: None, built: None }
     }
 }

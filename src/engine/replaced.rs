@@ -1,15 +1,15 @@
-//! Works that were replaced: a Boolean's result takes the place of the work, and undo brings the
+//! Clay that was replaced: a Boolean's result takes the place of the object, and undo brings the
 //! old one back whole.
 //!
-//! The newest few are kept, and within the bytes that undo may take; what falls out is handed to
-//! somebody else to drop.
+//! The newest few are kept, and within the bytes that undo may take; the others go to the garbage
+//! sink.
 
-use sculptd_clay::Clay;
+use sculptd_clay::{Clay, GarbageSink};
 
-/// Replaced works kept on either side.
+/// Replaced clay kept on either side.
 const KEPT: usize = 8;
 
-/// The works before and after the one in place.
+/// The clay before and after the one in place.
 #[derive(Debug, Default)]
 pub struct ReplacedClay {
     past: Vec<Clay>,
@@ -17,43 +17,42 @@ pub struct ReplacedClay {
 }
 
 impl ReplacedClay {
-    /// `new` takes the place of `now`. What could be done again no longer can. Gives what is to be
-    /// dropped.
-    pub fn replace(&mut self, now: &mut Clay, new: Clay, bytes: u64, mut drop: impl FnMut(Clay)) {
-        self.forget_future(&mut drop);
+    /// `new` takes the place of `now`. What could be done again no longer can.
+    pub fn replace(&mut self, now: &mut Clay, new: Clay, bytes: u64, garbage: &GarbageSink) {
+        self.forget_future(garbage);
         now.end_step();
         now.forget_redo();
         self.past.push(std::mem::replace(now, new));
-        // Not what the allocator happened to give: a replay must forget the same works.
+        // Not what the allocator happened to give: a replay must forget the same clay.
         let size = |m: &Clay| m.weight() as u64;
         while self.past.len() > KEPT || self.past.iter().map(size).sum::<u64>() > bytes {
-            drop(self.past.remove(0));
+            garbage.discard_owned(self.past.remove(0));
         }
     }
 
-    /// Brings the work before back. False when there is none.
+    /// Brings the clay before back. False when there is none.
     pub fn back(&mut self, now: &mut Clay) -> bool {
         let Some(before) = self.past.pop() else { return false };
         self.future.push(std::mem::replace(now, before));
         true
     }
 
-    /// And the work after.
+    /// Brings the clay after back. False when there is none.
     pub fn forth(&mut self, now: &mut Clay) -> bool {
         let Some(after) = self.future.pop() else { return false };
         self.past.push(std::mem::replace(now, after));
         true
     }
 
-    /// The work in place was changed: there is nothing to go forth to.
-    pub fn forget_future(&mut self, drop: impl FnMut(Clay)) {
-        self.future.drain(..).for_each(drop);
+    /// The clay in place was changed: there is nothing to redo.
+    pub fn forget_future(&mut self, garbage: &GarbageSink) {
+        self.future.drain(..).for_each(|clay| garbage.discard_owned(clay));
     }
 
-    /// Everything is forgotten: another person's work begins.
-    pub fn forget(&mut self, mut drop: impl FnMut(Clay)) {
-        self.past.drain(..).for_each(&mut drop);
-        self.future.drain(..).for_each(&mut drop);
+    /// Everything is forgotten: another person begins.
+    pub fn forget(&mut self, garbage: &GarbageSink) {
+        self.past.drain(..).for_each(|clay| garbage.discard_owned(clay));
+        self.forget_future(garbage);
     }
 
     pub fn past(&self) -> usize {

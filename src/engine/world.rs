@@ -8,6 +8,8 @@
 
 mod saved;
 mod stroke_context;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
@@ -17,15 +19,16 @@ use serde::{Deserialize, Serialize};
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, Side};
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
-use crate::command::{Command, NewClay};
+use crate::command::{Carving, Command, Jump, NewClay};
 use crate::hand::{
     Act, HandSettings, HandTools, HeldObject, MenuItem, Pose, ReachBox, Similarity, Volume,
 };
+use crate::payload::{Payload, PayloadId, PayloadStore};
 use crate::replaced::ReplacedClay;
 use crate::stroke::{CurveAction, CurveStroke, PenPoint, PenTrack};
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
-use sculptd_clay::{Clay, Kernel, Reach, Workers};
+use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, Reach, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_geometry::{PolyMesh, TriMesh, shapes};
 
@@ -96,8 +99,11 @@ pub struct World {
     report: StepReport,
     /// Works before and after this one, for undo.
     works: ReplacedClay,
-    /// Works that were replaced, for somebody else to drop.
-    retired: Vec<Clay>,
+    /// Takes what is no longer needed: clay that was replaced, payloads that no command took.
+    garbage: GarbageSink,
+    payloads: PayloadStore,
+    /// What came of the cuts of this tick, in the order of their commands.
+    cuts: Vec<Option<Grafted>>,
     /// Works put in place so far.
     lineages: u32,
     /// What was done in this tick, for whoever keeps the history; `None`: nobody does.
@@ -130,7 +136,9 @@ impl World {
             thing: None,
             report: StepReport::default(),
             works: ReplacedClay::default(),
-            retired: Vec::with_capacity(16),
+            garbage: GarbageSink::default(),
+            payloads: PayloadStore::new(),
+            cuts: Vec::with_capacity(PayloadStore::CAPACITY),
             lineages: 0,
             moments: None,
         };
@@ -159,8 +167,13 @@ impl World {
     pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
-        if let Some(moments) = &mut self.moments {
-            moments.clear();
+        self.cuts.clear();
+        let (object_id, garbage) = (self.mesh.object_id(), &self.garbage);
+        for entry in self.moments.iter_mut().flat_map(|m| m.drain(..)) {
+            // It may be the last that holds the pages of an object that was replaced.
+            if entry.work.object_id() != object_id {
+                garbage.discard_owned(entry);
+            }
         }
         for command in commands {
             self.apply_command(command);
@@ -170,9 +183,9 @@ impl World {
         }
         self.sculpt();
         if self.report.vertices_moved > 0 {
-            let retired = &mut self.retired;
-            self.works.forget_future(|m| retired.push(m));
+            self.works.forget_future(&self.garbage);
         }
+        self.payloads.clear(&self.garbage);
         &self.report
     }
 
@@ -222,16 +235,17 @@ impl World {
             Command::CalibrateReach => self.hands.calibrate(),
             Command::Reach(reach) => self.set_reach(*reach),
             Command::Picture(picture) => {
-                if picture.is_sane() {
-                    self.scratch.picture = Some(picture.clone());
+                if picture.is_sane()
+                    && let Some(old) = self.scratch.picture.replace(picture.clone())
+                {
+                    self.garbage.discard(Garbage::Shared(old));
                 }
             }
             Command::Begin(new) => {
                 self.lift_all();
-                let clay = &new.clay;
-                let built =
-                    clay.take().or_else(|| Clay::build(&clay.plain, &Default::default()).ok());
-                if let (Some(mesh), true) = (built, new.camera.is_sane()) {
+                if new.camera.is_sane()
+                    && let Some(mesh) = self.built(&new.clay, &[])
+                {
                     let workers = std::mem::replace(&mut self.workers, Workers::new(1));
                     let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
                     let mut old = std::mem::replace(self, fresh);
@@ -240,10 +254,10 @@ impl World {
                     self.moments = old.moments.take();
                     self.tick = old.tick;
                     self.report = old.report;
-                    std::mem::swap(&mut self.retired, &mut old.retired);
-                    let retired = &mut self.retired;
-                    old.works.forget(|m| retired.push(m));
-                    self.retired.push(old.mesh);
+                    std::mem::swap(&mut self.payloads, &mut old.payloads);
+                    std::mem::swap(&mut self.cuts, &mut old.cuts);
+                    self.set_garbage_sink(old.garbage.clone());
+                    self.garbage.discard_owned(old);
                     self.note(HistoryEvent::Begin);
                 }
             }
@@ -259,22 +273,7 @@ impl World {
                     thing.place = *place;
                 }
             }
-            Command::Cut(carving) => {
-                self.lift_all();
-                self.mesh.begin_step();
-                let made = self.mesh.graft(&carving.cut);
-                self.close();
-                if made.is_some() {
-                    let retired = &mut self.retired;
-                    self.works.forget_future(|m| retired.push(m));
-                    if carving.put_down {
-                        self.put_down();
-                    }
-                }
-                if let Some(answer) = &carving.answer {
-                    let _ = answer.try_send(made);
-                }
-            }
+            Command::Cut(carving) => self.cut(carving),
             Command::Replace(new) => self.replace(new, &[]),
             Command::ReplaceMasked(new, masks) => self.replace(new, masks),
             Command::Jump(jump) => self.jump(jump),
@@ -292,22 +291,46 @@ impl World {
 
     fn replace(&mut self, new: &NewClay, masks: &[f32]) {
         self.lift_all();
-        let build = || Clay::build_masked(&new.plain, masks, &Default::default()).ok();
-        let Some(mut mesh) = new.take().or_else(build) else { return };
+        let Some(mut mesh) = self.built(new, masks) else { return };
+        mesh.set_garbage_sink(self.garbage.clone());
         mesh.set_undo_bytes(self.options.undo_bytes);
         mesh.set_levels(new.levels.clone());
         self.lineages += 1;
         mesh.set_lineage(self.lineages);
-        let World { works, retired, mesh: now, options, .. } = self;
+        let World { works, garbage, mesh: now, options, .. } = self;
         if new.keep_camera {
-            works.replace(now, mesh, options.undo_bytes, |m| retired.push(m));
+            works.replace(now, mesh, options.undo_bytes, garbage);
         } else {
-            works.forget(|m| retired.push(m));
-            retired.push(std::mem::replace(now, mesh));
+            works.forget(garbage);
+            garbage.discard_owned(std::mem::replace(now, mesh));
             self.measure();
             self.frame();
         }
         self.note(HistoryEvent::Replace);
+    }
+
+    /// The clay of a new object: the payload where there is one, else built here.
+    fn built(&mut self, new: &NewClay, masks: &[f32]) -> Option<Clay> {
+        match new.built.and_then(|id| self.payloads.take(id)) {
+            Some(Payload::Clay(clay)) => return Some(*clay),
+            Some(other) => self.garbage.discard_owned(other),
+            None => {}
+        }
+        Clay::build_masked(&new.plain, masks, &Default::default()).ok()
+    }
+
+    fn cut(&mut self, carving: &Carving) {
+        self.lift_all();
+        self.mesh.begin_step();
+        let made = self.mesh.graft(&carving.cut);
+        self.close();
+        if made.is_some() {
+            self.works.forget_future(&self.garbage);
+            if carving.put_down {
+                self.put_down();
+            }
+        }
+        self.cuts.push(made);
     }
 
     /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must
@@ -340,13 +363,16 @@ impl World {
         let at = self.middle + turn * Vec3::new(self.extent * 1.2, self.extent * 0.4, 0.0);
         let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
         if place.is_sane() {
+            self.put_down();
             self.thing = Some(HeldObject { plain, place });
             self.hands.carrying = true;
         }
     }
 
     fn put_down(&mut self) {
-        self.thing = None;
+        if let Some(held) = self.thing.take() {
+            self.garbage.discard(Garbage::Shared(held.plain));
+        }
         self.hands.carrying = false;
     }
 
@@ -590,9 +616,42 @@ impl World {
         self.last_hands.as_ref()
     }
 
-    /// Works that were replaced since the last call, for another thread to drop.
-    pub fn take_retired(&mut self) -> Option<Clay> {
-        self.retired.pop()
+    /// From now on, what is no longer needed goes to this sink. A new world frees it in place.
+    pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
+        self.mesh.set_garbage_sink(sink.clone());
+        self.garbage = sink;
+    }
+
+    /// Keeps the payload that goes with a command of the next step, and writes its name into the
+    /// command. A payload that the command cannot use, or for which there is no room, goes to the
+    /// garbage sink; the world then builds what the command needs, or ignores a jump.
+    pub fn deliver(&mut self, command: &mut Command, payload: Payload) {
+        if let Command::Jump(jump) = command {
+            self.deliver_for_jump(jump, payload);
+        } else if let Some(new) = command.new_clay_mut() {
+            let id = *new.built.insert(self.payloads.number());
+            self.keep_payload(id, payload);
+        } else {
+            self.garbage.discard_owned(payload);
+        }
+    }
+
+    /// The same for a jump, which names its payload itself: one that was read from a file works
+    /// like one that was sent.
+    pub fn deliver_for_jump(&mut self, jump: &Jump, payload: Payload) {
+        self.keep_payload(jump.payload_id(), payload);
+    }
+
+    fn keep_payload(&mut self, id: PayloadId, payload: Payload) {
+        if let Err(left) = self.payloads.insert(id, payload) {
+            self.garbage.discard_owned(left);
+        }
+    }
+
+    /// What came of each [`Command::Cut`] of the last step, in the order of the commands; `None`:
+    /// not made, because the clay had changed there.
+    pub fn cut_results(&self) -> &[Option<Grafted>] {
+        &self.cuts
     }
 
     /// One number for the whole state of the clay; costs as much as the clay is large.

@@ -8,20 +8,20 @@ use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use sculptd_clay::Clay;
+use sculptd_daemon::command_queue::{QueuedCommand, command_queue};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::control::methods::{METHODS, call as answer};
 use sculptd_daemon::control::server::{Host, Server, permitted};
 use sculptd_daemon::control::{MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
 use sculptd_daemon::published::{Published, PublishedFigures};
 use sculptd_daemon::startup;
-use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 use serde_json::{Value, json};
 
 struct Rig {
     host: Host,
-    commands: crossbeam_channel::Receiver<Command>,
+    commands: crossbeam_channel::Receiver<QueuedCommand>,
     dir: tempfile::TempDir,
 }
 
@@ -34,7 +34,7 @@ impl Rig {
         let mesh = Clay::build(&shapes::sphere_of_about(300), &Job::default()).expect("a ball");
         let mut world = startup::world(mesh, &config);
         let published = Published::of(&mut world, PublishedFigures::default());
-        let (sender, commands) = crossbeam_channel::bounded(4096);
+        let (sender, commands) = command_queue(4096);
         let host = Host {
             commands: sender,
             published: Arc::new(ArcSwap::from_pointee(published)),

@@ -12,6 +12,7 @@ use crossbeam_channel as cc;
 use glam::Vec2;
 use sculptd_clay::brush::Measure;
 use sculptd_clay::{Clay, Workers};
+use sculptd_daemon::command_queue::{QueuedCommand, command_queue};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::live::Journal;
 use sculptd_daemon::session;
@@ -52,7 +53,7 @@ struct Studio {
     writer: Option<SessionWriter>,
     thread: Option<WriterThread>,
     history: Handle,
-    jumps: cc::Receiver<Command>,
+    jumps: cc::Receiver<QueuedCommand>,
     /// What it cost the tick thread to hand over each tick, ns; the most may be another's time on
     /// the processor.
     handed: Vec<u64>,
@@ -91,7 +92,7 @@ impl Studio {
     fn of(path: PathBuf, begun: Begun) -> Studio {
         let (writer, thread) = begun.journal.expect("a session");
         let history = thread.history.as_ref().expect("a history").handle.clone();
-        let (commands, jumps) = cc::bounded(64);
+        let (commands, jumps) = command_queue(64);
         history.connect(commands);
         let (world, writer, clock) = (begun.world, Some(writer), Clock::monotonic());
         let thread = Some(thread);
@@ -109,7 +110,7 @@ impl Studio {
     fn tick(&mut self, samples: &[Sample], commands: &[Command]) {
         let tick = self.world.tick() + 1;
         let mut all = commands.to_vec();
-        all.extend(self.jumps.try_iter());
+        all.extend(self.jumps.try_iter().map(|jump| jump.deliver(&mut self.world)));
         self.world.step(tick, samples, &all);
         self.world.verify_invariants().expect("sound");
         if let Some(writer) = &mut self.writer {
@@ -271,8 +272,7 @@ fn cut_triangles_and_other_works_come_back_from_the_file() {
     hashes.push(s.stroke(Vec2::new(0.05, 0.05)));
     assert!(s.world.mesh().vertex_count() > before, "nothing was cut");
     let other = Arc::new(shapes::sphere_of_about(900));
-    let built = Clay::build(&other, &Job::default()).expect("a ball");
-    s.tick(&[], &[Command::Replace(NewClay::new(other, built, true))]);
+    s.tick(&[], &[Command::Replace(NewClay::new(other, true))]);
     hashes.push(s.world.hash());
     hashes.push(s.stroke(Vec2::new(0.0, 0.05)));
     s.settle();

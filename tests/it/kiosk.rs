@@ -9,6 +9,7 @@ use sculptd_daemon::startup;
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample, queue};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::{Beginning, Command, NewClay};
+use sculptd_engine::payload::Payload;
 use sculptd_geometry::shapes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -76,11 +77,12 @@ fn after_thirty_visitors_nothing_of_them_is_left() {
         visit(&mut world, visitor, &mut tick);
         assert_ne!(world.hash(), hash, "visitor {visitor} did nothing");
         let built = Clay::build(&plain, &Default::default()).expect("a ball");
-        let clay = NewClay::new(plain.clone(), built, false);
+        let clay = NewClay::new(plain.clone(), false);
         let begin = Beginning { clay, camera: config.camera.camera(), brush: config.brush };
         tick += 1;
-        world.step(tick, &[], &[Command::Begin(Box::new(begin))]);
-        while world.take_retired().is_some() {}
+        let mut begin = Command::Begin(Box::new(begin));
+        world.deliver(&mut begin, Payload::Clay(Box::new(built)));
+        world.step(tick, &[], &[begin]);
         assert_eq!(world.hash(), hash, "the clay after visitor {visitor}");
         assert_eq!((*world.camera(), *world.brush()), (camera, brush));
         assert_eq!((world.undo_steps(), world.redo_steps()), (0, 0));

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sculptd_clay::{Clay, Workers};
+use sculptd_clay::{Clay, GarbageSink, Workers};
 use sculptd_daemon::config::Resolved;
 use sculptd_daemon::live::Journal;
 use sculptd_daemon::published::{Published, PublishedFigures, Publisher};
@@ -205,7 +205,8 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
         let report = *world.step(tick, &samples, &commands);
         (dabs, taken) = (dabs + report.dabs, taken + samples.len() as u64);
         writer.tick(tick, &samples, &commands, &world);
-        publisher.publish(Published::of(&mut world, PublishedFigures::default()));
+        let state = Published::of(&mut world, PublishedFigures::default());
+        publisher.publish(state, &GarbageSink::default());
         let at = |e: String| format!("tick {tick}: {e}");
         world.verify_invariants().map_err(at)?;
         let lost = receiver.stats().total().lost_transition;

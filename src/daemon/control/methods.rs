@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::PROTOCOL;
 use super::protocol::{Code, RpcError};
 use super::server::Host;
+use crate::command_queue::QueuedCommand;
 use crate::session::history::{Handle, Want, listing};
 use crate::{Published, boolean_jobs, startup, trim};
 use sculptd_clay::Snapshot;
@@ -19,6 +20,7 @@ use sculptd_clay::live_thickness::LiveMap;
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::{MenuItem, ReachBox};
+use sculptd_engine::payload::Payload;
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::io::{read_mesh, write_mesh};
@@ -257,7 +259,7 @@ fn kept(host: &Host) -> Result<&Handle, RpcError> {
 
 /// Answers one request. Runs on the client's thread: slow work here delays that client only.
 pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError> {
-    let send = |command: Command| {
+    let send_queued = |command: QueuedCommand| {
         host.commands.try_send(command).map_err(|_| {
             RpcError::new(
                 Code::Failed,
@@ -265,6 +267,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             )
         })
     };
+    let send = |command: Command| send_queued(command.into());
     let failed = |e: String| RpcError::new(Code::Failed, e);
     let state = host.published.load_full();
     match method {
@@ -381,7 +384,9 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let loaded =
                 startup::load(Some(&p.path), &Job::default()).map_err(|e| failed(e.to_string()))?;
             let vertices = loaded.mesh.vertex_count();
-            send(Command::Replace(NewClay::new(Arc::new(loaded.plain), loaded.mesh, false)))?;
+            let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
+            let built = Payload::Clay(Box::new(loaded.mesh));
+            send_queued(QueuedCommand::with_payload(command, built))?;
             Ok(json!({ "vertices": vertices, "warnings": loaded.warnings }))
         }
         "export" => {
@@ -460,7 +465,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let finer = matches!(p.to, LevelTo::Up);
             let (command, (level, levels)) =
                 boolean_jobs::level(&host.published, finer).map_err(|e| failed(e.to_string()))?;
-            send(command)?;
+            send_queued(command)?;
             Ok(json!({ "level": level, "levels": levels }))
         }
         "reach" => {

@@ -9,19 +9,18 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
-use crossbeam_channel as cc;
 use serde_json::Value;
 
 use super::protocol::{Code, Response, RpcError, parse};
 use super::{MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, methods, user_id};
 use crate::Published;
+use crate::command_queue::CommandSender;
 use sculptd_devices::Clock;
-use sculptd_engine::command::Command;
 
 /// What a request may touch.
 #[derive(Debug, Clone)]
 pub struct Host {
-    pub commands: cc::Sender<Command>,
+    pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
     /// The wall thickness of the work, as last asked for.
     pub thickness: Arc<Mutex<Option<sculptd_clay::live_thickness::LiveMap>>>,

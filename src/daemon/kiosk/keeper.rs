@@ -13,6 +13,7 @@ use super::film::Film;
 #[cfg(unix)]
 use super::share;
 use super::spool::Spool;
+use crate::command_queue::{CommandSender, QueuedCommand};
 use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
@@ -23,6 +24,7 @@ use sculptd_devices::queue::{Sender, SenderFactory};
 use sculptd_devices::{Clock, DeviceId};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::{Beginning, Command, NewClay};
+use sculptd_engine::payload::Payload;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
@@ -42,10 +44,12 @@ pub struct Start {
 impl Start {
     /// The command that puts everything back. Building the pages takes as long as the start is
     /// large: not on the tick thread.
-    pub fn command(&self) -> Option<Command> {
+    pub fn command(&self) -> Option<QueuedCommand> {
         let mesh = Clay::build(&self.plain, &Job::default()).ok()?;
-        let clay = NewClay::new(self.plain.clone(), mesh, false);
-        Some(Command::Begin(Box::new(Beginning { clay, camera: self.camera, brush: self.brush })))
+        let clay = NewClay::new(self.plain.clone(), false);
+        let beginning = Beginning { clay, camera: self.camera, brush: self.brush };
+        let command = Command::Begin(Box::new(beginning));
+        Some(QueuedCommand::with_payload(command, Payload::Clay(Box::new(mesh))))
     }
 }
 
@@ -85,7 +89,7 @@ struct Keeping {
     config: KioskConfig,
     start: Start,
     published: Arc<ArcSwap<Published>>,
-    commands: cc::Sender<Command>,
+    commands: CommandSender,
     sender: Sender,
     clock: Clock,
     stop: Arc<AtomicBool>,
@@ -106,7 +110,7 @@ pub fn start(
     config: KioskConfig,
     start: Start,
     published: Arc<ArcSwap<Published>>,
-    commands: cc::Sender<Command>,
+    commands: CommandSender,
     factory: &SenderFactory,
     clock: Clock,
     stop: Arc<AtomicBool>,

@@ -1,12 +1,11 @@
 //! Replaying a session: the same world, the same input, tick by tick.
 
-use std::sync::{Arc, Mutex};
-
 use super::history::Store;
 use super::history::keeper::assemble;
 use super::reader::Opened;
 use sculptd_clay::{BuildError, Clay, Snapshot, Workers};
-use sculptd_engine::command::{Command, Fetched, Jump};
+use sculptd_engine::command::{Command, Jump};
+use sculptd_engine::payload::Payload;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 
@@ -98,7 +97,7 @@ impl Run<'_> {
             for command in &input.commands {
                 if let Command::Jump(jump) = command {
                     wanted += 1;
-                    self.fetch(jump);
+                    self.fetch(jump, &mut world);
                 }
             }
             let report = *world.step(tick, &input.samples, &input.commands);
@@ -120,14 +119,14 @@ impl Run<'_> {
         Replayed { world, ticks: tick, jumps_missed }
     }
 
-    /// Gives a jump what it names; where that is not to be had, the world takes no notice of it,
-    /// and it is counted.
-    fn fetch(&self, jump: &Jump) {
+    /// Puts what a jump names beside the world; where that is not in the file, the world ignores the
+    /// jump, and it is counted.
+    fn fetch(&self, jump: &Jump, world: &mut World) {
         let Some(store) = self.store else { return };
         let object_id = jump.object_id;
         let fetched = match &jump.other {
             Some(other) => assemble(store, self.base, &other.rest, &jump.pages, other.levels)
-                .map(|mesh| Fetched::Work(Box::new(mesh))),
+                .map(|mesh| Payload::Clay(Box::new(mesh))),
             None => jump
                 .pages
                 .iter()
@@ -138,17 +137,11 @@ impl Run<'_> {
                     Ok((i, store.page((object_id, i, revision), near)?.0))
                 })
                 .collect::<Result<Vec<_>, _>>()
-                .map(Fetched::Pages),
+                .map(Payload::Pages),
         };
         match fetched {
-            Ok(fetched) => set(&jump.fetched, fetched),
+            Ok(payload) => world.deliver_for_jump(jump, payload),
             Err(e) => tracing::warn!("a jump to {} cannot be replayed: {e}", jump.node),
         }
-    }
-}
-
-fn set(slot: &Arc<Mutex<Option<Fetched>>>, fetched: Fetched) {
-    if let Ok(mut slot) = slot.lock() {
-        *slot = Some(fetched);
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! Laws kept here:
 //! * A world made of a saved state goes on, to the bit, as the one that was saved: everything is in
-//!   it but undo, which a session keeps outside ([`sculptd_daemon::session`]).
+//!   it but undo, which a session file keeps.
 //! * A moment costs what its step changed: it holds a snapshot, not a copy.
 
 use std::sync::Arc;
@@ -12,8 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
-use crate::command::{Fetched, Jump};
+use crate::command::Jump;
 use crate::hand::{HandTools, HeldObject, Similarity};
+use crate::payload::Payload;
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
 use sculptd_devices::Hands;
@@ -125,8 +126,7 @@ impl World {
 
     /// Nothing can be taken back or done again.
     pub(super) fn forget_steps(&mut self) {
-        let retired = &mut self.retired;
-        self.works.forget(|m| retired.push(m));
+        self.works.forget(&self.garbage);
         self.mesh.jump(&[]);
     }
 
@@ -134,27 +134,29 @@ impl World {
         if jump.from != (self.mesh.object_id(), self.mesh.revision()) {
             return;
         }
-        let Some(fetched) = jump.fetched.try_lock().ok().and_then(|mut slot| slot.take()) else {
-            return;
-        };
+        let Some(payload) = self.payloads.take(jump.payload_id()) else { return };
         self.lift_all();
         // A stroke that ended here has changed the work after all.
         if jump.from != (self.mesh.object_id(), self.mesh.revision()) {
+            self.garbage.discard_owned(payload);
             return;
         }
-        match (fetched, &jump.other) {
-            (Fetched::Pages(pages), None) if self.mesh.jump(&pages) => {
-                let retired = &mut self.retired;
-                self.works.forget(|m| retired.push(m));
+        match (payload, &jump.other) {
+            (Payload::Pages(pages), None) if self.mesh.jump(&pages) => {
+                self.works.forget(&self.garbage);
             }
-            (Fetched::Work(mut mesh), Some(other)) => {
+            (Payload::Clay(mut mesh), Some(other)) => {
                 self.forget_steps();
+                mesh.set_garbage_sink(self.garbage.clone());
                 mesh.set_undo_bytes(self.options.undo_bytes);
-                self.retired.push(std::mem::replace(&mut self.mesh, *mesh));
+                self.garbage.discard_owned(std::mem::replace(&mut self.mesh, *mesh));
                 (self.middle, self.extent) = (other.middle, other.extent);
                 self.hands.lay(self.middle, self.extent, self.camera.yaw);
             }
-            _ => return,
+            (other, _) => {
+                self.garbage.discard_owned(other);
+                return;
+            }
         }
         self.report.jumps += 1;
         self.note(HistoryEvent::Jump(jump.node));

@@ -28,6 +28,7 @@ use crate::viewer::camera_animation::CameraAnimation;
 use crate::viewer::overlay_mesh::Triangles;
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
+use sculptd_daemon::command_queue::CommandSender;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
 use sculptd_engine::camera::Camera;
@@ -36,7 +37,7 @@ use sculptd_engine::hand::{MenuItem, Similarity};
 
 /// Everything that joins the window to the daemon.
 pub struct Wiring {
-    pub commands: cc::Sender<Command>,
+    pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
     /// The pointer's own way into the channel.
     pub pointer: Sender,

@@ -17,11 +17,13 @@ use crate::panels::measure::{Distances, Measured};
 use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_daemon::boolean_jobs::JoinError;
+use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{Published, boolean_jobs, startup};
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::MenuItem;
+use sculptd_engine::payload::Payload;
 use sculptd_geometry::io::{write_beside, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
@@ -83,7 +85,7 @@ fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
 
 impl Work {
     /// Reads a mesh and sends it to the loop.
-    pub fn load(&self, path: PathBuf, commands: cc::Sender<Command>) {
+    pub fn load(&self, path: PathBuf, commands: CommandSender) {
         let say = self.say.clone();
         thread("sculptd-load", move || {
             let name = path.display().to_string();
@@ -94,9 +96,11 @@ impl Work {
                         text.push_str("; ");
                         text.push_str(warning);
                     }
-                    let new = NewClay::new(Arc::new(loaded.plain), loaded.mesh, false);
+                    let new = NewClay::new(Arc::new(loaded.plain), false);
+                    let built = Payload::Clay(Box::new(loaded.mesh));
+                    let command = QueuedCommand::with_payload(Command::Replace(new), built);
                     // Waits where the loop has many commands: this thread may.
-                    match commands.send(Command::Replace(new)) {
+                    match commands.send(command) {
                         Ok(()) => {
                             let _ = say.send(Done::Opened);
                             let _ = say.send(Done::Used(path));
@@ -143,7 +147,7 @@ impl Work {
         &self,
         choice: MenuItem,
         shown: Arc<ArcSwap<Published>>,
-        commands: cc::Sender<Command>,
+        commands: CommandSender,
     ) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
@@ -161,8 +165,8 @@ impl Work {
     fn change(
         &self,
         name: &'static str,
-        commands: cc::Sender<Command>,
-        of: impl FnOnce() -> Result<(Vec<Command>, String), JoinError> + Send + 'static,
+        commands: CommandSender,
+        of: impl FnOnce() -> Result<(Vec<QueuedCommand>, String), JoinError> + Send + 'static,
     ) {
         let say = self.say.clone();
         thread(name, move || {
@@ -179,7 +183,7 @@ impl Work {
     }
 
     /// Cuts off what is seen in a part of the view.
-    pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: cc::Sender<Command>) {
+    pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-trim", commands, move || {
             Ok((trim::at_rest(&shown, &part)?, "Trimmed".into()))
         });
@@ -190,7 +194,7 @@ impl Work {
         &self,
         finer: bool,
         shown: Arc<ArcSwap<Published>>,
-        commands: cc::Sender<Command>,
+        commands: CommandSender,
     ) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;

@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 use sculptd_clay::brush::{GaussianBrush, MaskAction};
 use sculptd_clay::{Clay, Cut, Grafted, Reach, Workers};
 use sculptd_daemon::boolean_jobs::{JoinError, carry_out, join};
+use sculptd_daemon::command_queue::QueuedCommand;
 use sculptd_daemon::config::{Config, LoopConfig};
 use sculptd_daemon::live::Live;
 use sculptd_daemon::{Published, startup};
@@ -45,16 +46,14 @@ fn carving(world: &mut World, tool: &PolyMesh) -> Arc<Cut> {
     let done = join(&world.snapshot(), tool, false, Operation::Difference, &Job::default())
         .expect("a result");
     match &done[..] {
-        [Command::Cut(c)] => c.cut.clone(),
+        [QueuedCommand { command: Command::Cut(c), .. }] => c.cut.clone(),
         other => panic!("not local: {} commands", other.len()),
     }
 }
 
 fn make(world: &mut World, tick: u64, cut: &Arc<Cut>) -> Option<Grafted> {
-    let (answer, made) = crossbeam_channel::bounded(1);
-    let command = Command::Cut(Carving { cut: cut.clone(), put_down: false, answer: Some(answer) });
-    world.step(tick, &[], &[command]);
-    made.try_recv().expect("an answer")
+    world.step(tick, &[], &[Command::Cut(Carving { cut: cut.clone(), put_down: false })]);
+    world.cut_results()[0]
 }
 
 #[test]
@@ -79,7 +78,7 @@ fn a_cut_is_made_over_changes_elsewhere_and_refused_over_changes_there() {
         let cut = match &join(&snapshot, &tool, false, Operation::Difference, &Job::default())
             .expect("a result")[..]
         {
-            [Command::Cut(c)] => c.cut.clone(),
+            [QueuedCommand { command: Command::Cut(c), .. }] => c.cut.clone(),
             _ => panic!("not local"),
         };
         let reach = Reach::Sphere { centre, radius: 0.1 };
@@ -99,7 +98,7 @@ fn a_replay_makes_the_same_cut() {
     for (tick, at) in [(1, DVec3::Z), (2, DVec3::new(0.1, 0.0, 1.0)), (3, DVec3::X)] {
         let cut = carving(&mut live, &ball(0.15, at));
         assert!(make(&mut live, tick, &cut).is_some());
-        let command = Command::Cut(Carving { cut, put_down: false, answer: None });
+        let command = Command::Cut(Carving { cut, put_down: false });
         let bytes = postcard::to_allocvec(&command).expect("written");
         let read: Command = postcard::from_bytes(&bytes).expect("read");
         again.step(tick, &[], &[read]);
@@ -117,6 +116,7 @@ fn what_is_protected_stays_so_the_long_way_too() {
     let tool = ball(0.9, DVec3::new(0.5, 0.1, 0.05));
     let done = join(&live.snapshot(), &tool, false, Operation::Intersection, &Job::default());
     let done = done.expect("a result");
+    let done: Vec<Command> = done.into_iter().map(|q| q.deliver(&mut live)).collect();
     assert!(
         matches!(&done[..], [Command::ReplaceMasked(..)]),
         "not with masks: {} commands",

@@ -17,6 +17,7 @@ fn shown(studio: &mut Studio) -> ArcSwap<Published> {
 
 fn go(studio: &mut Studio, finer: bool) -> (usize, usize) {
     let (command, at) = boolean_jobs::level(&shown(studio), finer).expect("there is such a level");
+    let command = command.deliver(&mut studio.world);
     studio.tell(command);
     studio.world.verify_invariants().expect("in order");
     at
@@ -148,7 +149,10 @@ fn a_box_and_a_line_cut_off_what_is_seen_there() {
     let whole = volume(&start);
     let cut = |studio: &mut Studio, part: trim::Part| {
         let done = trim::at_rest(&shown(studio), &part).expect("something is there");
-        done.into_iter().for_each(|c| studio.tell(c));
+        for queued in done {
+            let command = queued.deliver(&mut studio.world);
+            studio.tell(command);
+        }
         studio.world.verify_invariants().expect("in order");
         studio.world.mesh().to_tri()
     };

@@ -80,8 +80,7 @@ fn random_strokes_leave_all_in_order_undo_takes_them_back_and_a_second_run_is_eq
                 // A new work, so that cuts do not pile up, and all steps of one stroke are kept by
                 // undo.
                 let plain = form(12_000);
-                let built = Clay::build(&plain, &Job::default()).expect("builds");
-                studio.tell(Command::Replace(NewClay::new(Arc::new(plain), built, false)));
+                studio.tell(Command::Replace(NewClay::new(Arc::new(plain), false)));
                 cut = false;
             }
             let brush = any_brush(&mut dice);

@@ -15,10 +15,12 @@ use crossbeam_channel as cc;
 
 use super::store::{Store, StoreError};
 use super::tree::{Node, Tree, Way};
+use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::session::history::history_writer::HistoryWriter;
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
 use sculptd_devices::Clock;
-use sculptd_engine::command::{Command, Fetched, Jump, OtherWork};
+use sculptd_engine::command::{Command, Jump, OtherWork};
+use sculptd_engine::payload::Payload;
 use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, World};
 use sculptd_geometry::job::Job;
 
@@ -51,7 +53,7 @@ enum Message {
 #[derive(Debug, Clone)]
 pub struct Handle {
     inbox: cc::Sender<Message>,
-    commands: Arc<OnceLock<cc::Sender<Command>>>,
+    commands: Arc<OnceLock<CommandSender>>,
     tree: Arc<Mutex<Tree>>,
     fault: Arc<Mutex<Option<String>>>,
     path: Arc<PathBuf>,
@@ -63,7 +65,7 @@ pub struct Handle {
 
 impl Handle {
     /// Jumps are sent here; before it is known, none are.
-    pub fn connect(&self, commands: cc::Sender<Command>) {
+    pub fn connect(&self, commands: CommandSender) {
         let _ = self.commands.set(commands);
     }
 
@@ -212,7 +214,7 @@ impl Keeping {
         mut self,
         inbox: &cc::Receiver<Message>,
         fault: &Mutex<Option<String>>,
-        commands: &OnceLock<cc::Sender<Command>>,
+        commands: &OnceLock<CommandSender>,
         ending: &AtomicBool,
         busy: &AtomicUsize,
     ) {
@@ -316,7 +318,7 @@ impl Keeping {
     }
 
     /// Sends the next jump that is wanted, unless one is under way.
-    fn serve(&mut self, commands: &OnceLock<cc::Sender<Command>>) {
+    fn serve(&mut self, commands: &OnceLock<CommandSender>) {
         let now = self.clock.now_us();
         if self.sent.is_some_and(|at| now < at + PATIENCE.as_micros() as u64) {
             return;
@@ -335,7 +337,7 @@ impl Keeping {
             let Some(to) = to else { continue };
             match self.fetch(to) {
                 Ok(Some(jump)) => {
-                    if commands.try_send(Command::Jump(Box::new(jump))).is_ok() {
+                    if commands.try_send(jump).is_ok() {
                         self.sent = Some(now);
                         return;
                     }
@@ -346,18 +348,20 @@ impl Keeping {
         }
     }
 
-    fn fetch(&mut self, to: u64) -> Result<Option<Jump>, StoreError> {
+    fn fetch(&mut self, to: u64) -> Result<Option<QueuedCommand>, StoreError> {
         let (Some(way), Some(node)) = (self.ledger.tree.way(to), self.ledger.tree.node(to)) else {
             return Ok(None);
         };
         let from = (self.ledger.now.object_id(), self.ledger.now.revision());
-        let jump = |pages, other, fetched| Jump {
+        let jump = |pages, other| Jump {
             node: to,
             from,
             object_id: node.object_id,
             pages,
             other,
-            fetched: Arc::new(Mutex::new(Some(fetched))),
+        };
+        let queued = |jump, payload| {
+            QueuedCommand::with_payload(Command::Jump(Box::new(jump)), payload)
         };
         match way {
             Way::Pages(pages) => {
@@ -368,9 +372,9 @@ impl Keeping {
                         .then(|| (self.ledger.now.page(i), t));
                     got.push((i, self.ledger.store.page((node.object_id, i, revision), near)?.0));
                 }
-                let jump = jump(pages, None, Fetched::Pages(got));
+                let jump = jump(pages, None);
                 self.ledger.pin(to, &jump.pages, None)?;
-                Ok(Some(jump))
+                Ok(Some(queued(jump, Payload::Pages(got))))
             }
             Way::Other => {
                 let base = base(&self.path)?;
@@ -382,10 +386,9 @@ impl Keeping {
                     extent: node.extent,
                     levels: node.levels,
                 };
-                let (levels, jump) =
-                    (node.levels, jump(names, Some(other), Fetched::Work(Box::new(mesh))));
+                let (levels, jump) = (node.levels, jump(names, Some(other)));
                 self.ledger.pin(to, &jump.pages, levels)?;
-                Ok(Some(jump))
+                Ok(Some(queued(jump, Payload::Clay(Box::new(mesh)))))
             }
         }
     }

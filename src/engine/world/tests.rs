@@ -1,0 +1,109 @@
+//! What the world keeps for others, and what it hands over.
+
+use std::sync::{Arc, Mutex};
+
+use super::{World, WorldOptions};
+use crate::camera::Camera;
+use crate::command::{Command, Jump, NewClay};
+use crate::hand::HandSettings;
+use crate::payload::{Payload, PayloadId};
+use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{Clay, CollectGarbage, Garbage, GarbageSink, Workers};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{TriMesh, shapes};
+
+fn clay(plain: &TriMesh) -> Clay {
+    Clay::build(plain, &Job::default()).expect("a ball")
+}
+
+fn world(plain: &TriMesh) -> World {
+    let options =
+        WorldOptions { dab_budget: 1 << 20, undo_bytes: 1 << 30, hands: HandSettings::default() };
+    World::new(clay(plain), Camera::default(), BrushSettings::default(), Workers::new(1), options)
+}
+
+/// Keeps all garbage, so that a test can look at it.
+#[derive(Debug, Default)]
+struct Kept(Mutex<Vec<Garbage>>);
+
+impl CollectGarbage for Kept {
+    fn collect(&self, garbage: Garbage) {
+        self.0.lock().expect("one thread").push(garbage);
+    }
+}
+
+impl Kept {
+    fn clays(&self) -> usize {
+        let all = self.0.lock().expect("one thread");
+        all.iter().filter(|g| matches!(g, Garbage::Owned(any) if any.is::<Clay>())).count()
+    }
+}
+
+#[test]
+fn new_clay_is_the_same_with_its_payload_and_from_its_bytes() {
+    let (first, second) = (shapes::sphere_of_about(400), Arc::new(shapes::sphere_of_about(900)));
+    let (mut sent, mut read) = (world(&first), world(&first));
+    let mut command = Command::Replace(NewClay::new(second.clone(), false));
+    sent.deliver(&mut command, Payload::Clay(Box::new(clay(&second))));
+    let bytes = postcard::to_stdvec(&command).expect("plain data");
+    sent.step(1, &[], &[command]);
+    let again: Command = postcard::from_bytes(&bytes).expect("plain data");
+    assert!(matches!(&again, Command::Replace(new) if new.built.is_none()));
+    read.step(1, &[], &[again]);
+    assert_eq!(sent.hash(), clay(&second).hash());
+    assert_eq!(read.hash(), sent.hash());
+}
+
+#[test]
+fn a_jump_that_was_read_from_bytes_works_where_its_pages_can_be_had() {
+    let plain = shapes::sphere_of_about(2000);
+    let mut world = world(&plain);
+    // The same ball, larger: each of its pages differs.
+    let mut larger = plain.clone();
+    larger.positions.iter_mut().for_each(|p| *p *= 1.5);
+    let larger = clay(&larger);
+    let jump = Jump {
+        node: 7,
+        from: (world.mesh().object_id(), world.mesh().revision()),
+        object_id: 0,
+        pages: (0..larger.page_count() as u32).map(|i| (i, larger.page(i).revision())).collect(),
+        other: None,
+    };
+    let bytes = postcard::to_stdvec(&Command::Jump(Box::new(jump))).expect("plain data");
+    let read: Command = postcard::from_bytes(&bytes).expect("plain data");
+    // Without its pages the jump is ignored, and counted as not made.
+    assert_eq!(world.step(1, &[], std::slice::from_ref(&read)).jumps, 0);
+    let Command::Jump(named) = &read else { panic!("not a jump") };
+    assert_eq!(named.payload_id(), PayloadId::Jump { node: 7, from: (0, 0) });
+    let pages = named.pages.iter().map(|&(i, _)| (i, larger.page(i).clone())).collect();
+    world.deliver_for_jump(named, Payload::Pages(pages));
+    assert_eq!(world.step(2, &[], &[read]).jumps, 1);
+    assert_eq!(world.hash(), larger.hash());
+    world.verify_invariants().expect("sound");
+}
+
+#[test]
+fn what_is_replaced_and_what_no_command_takes_goes_to_the_sink() {
+    let plain = Arc::new(shapes::sphere_of_about(400));
+    let kept = Arc::new(Kept::default());
+    let mut world = world(&plain);
+    world.set_garbage_sink(GarbageSink::new(kept.clone()));
+    // A payload whose command is not in the step.
+    let mut command = Command::Replace(NewClay::new(plain.clone(), false));
+    world.deliver(&mut command, Payload::Clay(Box::new(clay(&plain))));
+    world.step(1, &[], &[]);
+    let payloads = |all: &[Garbage]| {
+        all.iter().filter(|g| matches!(g, Garbage::Owned(any) if any.is::<Payload>())).count()
+    };
+    assert_eq!(payloads(&kept.0.lock().expect("one thread")), 1);
+    // The clay that a file replaces cannot come back; the clay that a Boolean replaces can.
+    for (tick, keep_camera, clays) in [(2, false, 1), (3, true, 1), (4, true, 1), (5, false, 4)] {
+        let mut command = Command::Replace(NewClay::new(plain.clone(), keep_camera));
+        world.deliver(&mut command, Payload::Clay(Box::new(clay(&plain))));
+        world.step(tick, &[], &[command]);
+        assert_eq!(kept.clays(), clays, "tick {tick}");
+    }
+    // A command that needs no payload.
+    world.deliver(&mut Command::Undo, Payload::Pages(Vec::new()));
+    assert_eq!(payloads(&kept.0.lock().expect("one thread")), 2);
+}
