@@ -23,6 +23,8 @@ use sculptd_engine::command::Command;
 pub struct Host {
     pub commands: cc::Sender<Command>,
     pub published: Arc<ArcSwap<Published>>,
+    /// What each brush begins with.
+    pub presets: sculptd_clay::brush::Presets,
     /// The wall thickness of the work, as last asked for.
     pub thickness: Arc<Mutex<Option<sculptd_clay::live_thickness::LiveMap>>>,
     /// The Boolean under way.
