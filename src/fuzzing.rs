@@ -45,7 +45,7 @@ pub fn rpc_bytes(data: &[u8]) {
 /// A settings file.
 pub fn config_bytes(data: &[u8]) {
     if let Ok(text) = std::str::from_utf8(data) {
-        let _ = sculptd_daemon::config::Resolved::of_text(text, "input");
+        let _ = sculptd_daemon::config::Resolved::of_text(text, "input", crate::presets());
     }
 }
 

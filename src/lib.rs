@@ -134,3 +134,6 @@
 pub mod cli;
 #[doc(hidden)]
 pub mod fuzzing;
+mod presets;
+
+pub use presets::presets;

@@ -1,6 +1,8 @@
-//! What a person sets for one tablet: which part of it counts, how it lies, and how hard their hand is.
+//! What a person sets for one tablet: which part of it counts, how it lies, and how hard their hand
+//! is.
 //!
-//! Kept by the device's serial number, so that two tablets alike keep apart; where a device has none, by its name.
+//! Kept by the device's serial number, so that two tablets alike keep apart; where a device has
+//! none, by its name.
 
 use std::collections::BTreeMap;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -10,25 +12,30 @@ use serde::{Deserialize, Serialize};
 
 use crate::sample::{Body, Pen, Sample};
 
-/// The smallest side of an active area, in mm: less than a fingertip is a slip of the hand in a config file.
+/// The smallest side of an active area, in mm: less than a fingertip is a slip of the hand in a
+/// config file.
 const LEAST_SIDE: f32 = 5.0;
 
 /// Everything a person may set for one tablet. The default changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Calibration {
-    /// The part of the tablet that counts: left, top, width, height in mm. Beyond it the pen is at its edge.
+    /// The part of the tablet that counts: left, top, width, height in mm. Beyond it the pen is at
+    /// its edge.
     pub area_mm: Option<[f32; 4]>,
     /// Quarter turns clockwise by which the tablet lies turned, 0 to 3.
     pub quarter_turns: u8,
     /// The tablet lies with its keys to the right: half a turn, on top of `quarter_turns`.
     pub left_handed: bool,
-    /// Width over height of what is drawn on. The area is cut to it, about its middle, so that a circle stays a circle.
+    /// Width over height of what is drawn on. The area is cut to it, about its middle, so that a
+    /// circle stays a circle.
     pub lock_aspect: Option<f32>,
+    /// How pressure is bent. The default leaves it as it is.
     pub pressure: PressureCurve,
 }
 
-/// From the pen's pressure to the hand's intent: nothing up to `start`, all from `full` on, bent by `gamma` in between.
+/// From the pen's pressure to the hand's intent: nothing up to `start`, all from `full` on, bent by
+/// `gamma` in between.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PressureCurve {
@@ -49,11 +56,13 @@ impl Default for PressureCurve {
 /// All tablets' settings, by serial number, ids, model or port.
 pub type Calibrations = BTreeMap<String, Calibration>;
 
-/// The setting of the first of a tablet's names that has one: its serial number first, what it shares with others last.
+/// The setting of the first of a tablet's names that has one: its serial number first, what it
+/// shares with others last.
 pub fn find<'a>(all: &Calibrations, names: impl IntoIterator<Item = &'a str>) -> Calibration {
     names.into_iter().find_map(|n| all.get(n)).copied().unwrap_or_default()
 }
 
+/// A setting that makes no sense; the text names it and says what is expected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct CalibrationError(String);
@@ -102,7 +111,8 @@ impl Calibration {
         *self == Calibration::default()
     }
 
-    /// Brings a sample from the tablet's own frame to the person's. Hands and keys are left as they are.
+    /// Brings a sample from the tablet's own frame to the person's. Hands and keys are left as they
+    /// are.
     pub fn apply(&self, sample: &mut Sample) {
         if let Body::Pen(pen) = &mut sample.body {
             self.pen(pen);
@@ -113,7 +123,8 @@ impl Calibration {
         let (origin, size) = self.part(pen.area_mm);
         let local = (pen.pos_mm - origin).clamp(Vec2::ZERO, size);
         let turns = (self.quarter_turns + if self.left_handed { 2 } else { 0 }) % 4;
-        // The tablet lies turned clockwise, so what it calls right is the person's down: each place turns along.
+        // The tablet lies turned clockwise, so what it calls right is the person's down: each place
+        // turns along.
         let turn = |v: Vec2| match turns {
             0 => v,
             1 => vec2(-v.y, v.x),
@@ -128,7 +139,8 @@ impl Calibration {
         pen.pressure = pen.pressure.map(|p| self.pressure.apply(p));
     }
 
-    /// The part of the tablet that counts: its top left corner and its size, in the tablet's own frame.
+    /// The part of the tablet that counts: its top left corner and its size, in the tablet's own
+    /// frame.
     fn part(&self, whole: Vec2) -> (Vec2, Vec2) {
         let (mut origin, mut size) = (Vec2::ZERO, whole);
         if let Some([x, y, w, h]) = self.area_mm {
@@ -137,7 +149,8 @@ impl Calibration {
             origin = origin.min(whole - size);
         }
         if let Some(aspect) = self.lock_aspect {
-            // What is drawn on stands upright; on a tablet that lies turned its width is the tablet's height.
+            // What is drawn on stands upright; on a tablet that lies turned its width is the
+            // tablet's height.
             let aspect = if self.quarter_turns % 2 == 1 { 1.0 / aspect } else { aspect };
             let cut = vec2(size.x.min(size.y * aspect), size.y.min(size.x / aspect));
             origin += (size - cut) * 0.5;
@@ -152,7 +165,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::DeviceId;
+    use crate::sample::DeviceId;
 
     fn at(c: &Calibration, x: f32, y: f32) -> Pen {
         let pen = Pen {

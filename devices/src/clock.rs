@@ -1,10 +1,11 @@
-//! The daemon's monotonic clock, in microseconds. It can be held and moved by hand, so that tests, replays and the
-//! stepped demo see the same stamps on every run.
+//! The daemon's monotonic clock, in microseconds. It can be held and moved by hand, so that tests,
+//! replays and the stepped demo see the same stamps on every run.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::time::Instant;
 
+/// A clock that counts microseconds from an origin of its own and never runs backward.
 #[derive(Debug, Clone)]
 pub enum Clock {
     /// Microseconds since the clock was made.
@@ -14,15 +15,18 @@ pub enum Clock {
 }
 
 impl Clock {
+    /// A clock that runs, from 0 now on.
     #[allow(clippy::disallowed_methods)] // The one place that reads the machine's clock for the device layer.
     pub fn monotonic() -> Self {
         Clock::Monotonic(Instant::now())
     }
 
+    /// A clock that stands at 0 until [`Clock::set_us`] moves it.
     pub fn manual() -> Self {
         Clock::Manual(Arc::new(AtomicU64::new(0)))
     }
 
+    /// Microseconds since the clock's origin.
     pub fn now_us(&self) -> u64 {
         match self {
             Clock::Monotonic(start) => start.elapsed().as_micros() as u64,

@@ -1,8 +1,8 @@
-//! Steady hands: the One-Euro filter (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens stay raw; their strokes are
-//! smoothed where strokes are.
+//! Steady hands: the One-Euro filter (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens
+//! stay raw; their strokes are smoothed where strokes are.
 //!
-//! A low pass whose cutoff rises with speed: at rest it takes the tremble away, in motion it hardly lags. Units matter: speed
-//! is in mm a second, so `beta` is in Hz for each of them.
+//! A low pass whose cutoff rises with speed: at rest it takes the jitter away, in motion it hardly
+//! lags. Units matter: speed is in mm a second, so `beta` is in Hz for each of them.
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -24,15 +24,15 @@ const DIRECTIONS: usize = 2 + 5;
 pub struct OneEuro {
     /// Hz at rest. Lower: steadier, and slower to set off.
     pub min_cutoff: f32,
-    /// Hz more for each mm a second. Higher: less lag in motion, more tremble in slow motion.
+    /// Hz more for each mm a second. Higher: less lag in motion, more jitter in slow motion.
     pub beta: f32,
     /// Hz of the speed's own low pass.
     pub speed_cutoff: f32,
 }
 
 impl Default for OneEuro {
-    /// At 90 frames a second and 0.2 mm of noise these leave 0.04 mm at rest and lag 23 ms at 50 mm/s, 12 ms at 150 and 5 ms
-    /// at 500; the test prints the table.
+    /// At 90 frames a second and 0.2 mm of noise these leave 0.04 mm at rest and lag 23 ms at 50
+    /// mm/s, 12 ms at 150 and 5 ms at 500; the test prints the table.
     fn default() -> Self {
         OneEuro { min_cutoff: 1.0, beta: 0.04, speed_cutoff: 1.0 }
     }
@@ -82,7 +82,8 @@ struct HandFilter {
     turn: Option<(Quat, f32)>,
 }
 
-/// Filters every hand of a tracker. A hand that appears, or comes back with another id, starts afresh.
+/// Filters every hand of a tracker. A hand that appears, or comes back with another id, starts
+/// afresh.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct HandsFilter {
     /// May be changed at any time.
@@ -91,6 +92,7 @@ pub struct HandsFilter {
 }
 
 impl HandsFilter {
+    /// A filter that has seen no hand yet.
     pub fn new(figures: OneEuro) -> Self {
         HandsFilter { figures, hands: [None; MAX_HANDS] }
     }

@@ -1,14 +1,15 @@
-//! What must hold for any bytes at all. `cargo fuzz` (in `devices/fuzz`) looks for bytes that break it; a test runs the kept
-//! ones.
+//! What must hold for any bytes at all. `cargo fuzz` (in `devices/fuzz`) looks for bytes that break
+//! it; a test runs the kept ones.
 
 use std::sync::OnceLock;
 
 use glam::{Vec2, Vec3};
 
 use crate::catalogue::{Catalogue, Found};
+use crate::descriptor::Descriptor;
 use crate::hid::decoder::Decoder;
-use crate::hid::descriptor::Descriptor;
 use crate::leap::{self, FrameFile, Message};
+use crate::report::Batch;
 use crate::sample::{Body, DeviceId, Hands, Sample};
 use crate::serial::{self, Protocol};
 use crate::sim::PenScript;
@@ -44,7 +45,8 @@ pub fn serial_bytes(data: &[u8]) {
     let protocols = [Protocol::Isdv4, Protocol::WacomIv, Protocol::WacomV, Protocol::SummaMm];
     let protocol = protocols[usize::from(which) % protocols.len()];
     let (facts, _) = crate::sim::serial::stream(protocol, &PenScript::default(), 0..0);
-    let (mut decoder, mut visit) = (serial::Decoder::new(&facts, DeviceId(0)), Visit::default());
+    let (mut decoder, mut visit) =
+        (serial::SerialDecoder::new(&facts, DeviceId(0)), Visit::default());
     for (i, chunk) in line.chunks(16).enumerate() {
         decoder.feed(chunk, i as u64 * 7_000, &mut |s| visit.see(&s));
         if which & 0x80 != 0 {
@@ -62,7 +64,7 @@ pub fn descriptor_bytes(data: &[u8]) {
         let mut report = [0xa5; 64];
         report[0] = data.first().copied().unwrap_or(0);
         for length in [0, 1, 8, 64] {
-            let _ = crate::hid::digitiser::parse(&report[..length], &descriptor);
+            crate::hid::digitiser::parse(&report[..length], &descriptor, &mut Batch::default());
         }
     }
 }
@@ -74,12 +76,7 @@ pub fn report_bytes(data: &[u8]) {
         let catalogue = Catalogue::builtin().unwrap_or_default();
         let ways = |t: &std::sync::Arc<crate::tablet::Tablet>| {
             let tablet = t.clone();
-            (0..t.id.len()).map(move |at| Found {
-                tablet: tablet.clone(),
-                at,
-                note: None,
-                described: false,
-            })
+            (0..t.id.len()).map(move |at| Found::new(tablet.clone(), at))
         };
         catalogue.tablets().iter().flat_map(ways).collect()
     });
@@ -155,7 +152,7 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::sim::tablet::{self, Tablet, TabletConfig};
+    use crate::sim::tablet::{self, SimTablet, TabletConfig};
     use crate::sim::{journal, tracker};
 
     fn corpus() -> PathBuf {
@@ -189,7 +186,8 @@ mod tests {
         }
     }
 
-    /// Run by hand to make the seeds anew: `cargo test -p sculptd-devices --lib write_seeds -- --ignored`.
+    /// Run by hand to make the seeds anew: `cargo test -p sculptd-devices --lib write_seeds --
+    /// --ignored`.
     #[test]
     #[ignore = "writes devices/fuzz/corpus"]
     #[allow(clippy::disallowed_methods)] // Seeds need no care against a crash.
@@ -245,14 +243,14 @@ mod tests {
         let mut families = std::collections::BTreeSet::new();
         for model in catalogue.tablets() {
             for i in 0..model.id.len() {
-                let found = Found { tablet: model.clone(), at: i, note: None, described: false };
+                let found = Found::new(model.clone(), i);
                 let family = found.id().parser;
                 if families.insert(family) {
                     let area = Vec2::new(model.area.width_mm as f32, model.area.height_mm as f32);
                     let script = j.pen.fitted(j.area_mm, area);
                     let config =
                         TabletConfig { rate: 40.0, keeps: 1000, ..TabletConfig::default() };
-                    let (mut sim, mut end) = Tablet::new(&found, script, config);
+                    let (mut sim, mut end) = SimTablet::new(&found, script, config);
                     sim.skip_to(2_100_000);
                     sim.advance(2_900_000);
                     let mut bytes = at.to_le_bytes().to_vec();

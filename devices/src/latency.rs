@@ -1,4 +1,5 @@
-//! How long something takes, as quantiles: four steps an octave, so a figure is at most a quarter too high.
+//! How long something takes, as quantiles: four steps an octave, so a figure is at most a quarter
+//! too high.
 
 use serde::Serialize;
 
@@ -13,8 +14,11 @@ pub struct Latency {
 /// A reading of [`Latency`], in microseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Quantiles {
+    /// Half of all took at most so long.
     pub p50: u64,
+    /// 99 of a hundred took at most so long.
     pub p99: u64,
+    /// All took at most so long.
     pub max: u64,
 }
 
@@ -25,6 +29,7 @@ impl Default for Latency {
 }
 
 impl Latency {
+    /// Adds one duration, in microseconds.
     pub fn record(&mut self, us: u64) {
         self.counts[step(us)] += 1;
     }

@@ -11,11 +11,12 @@
 //! | [`recording`] | recorded bytes through the same objects | none |
 //! | [`sim`] | simulated devices that speak bytes, for anyone's tests | one a device, if it runs by itself |
 //!
-//! Absences: no mesh, no config file, no global state; no reader waits for the consumer except with its own list of kept
-//! samples full of transitions; no port or service is opened that was not named or allowed.
+//! Absences: no mesh, no config file, no global state; no reader waits for the consumer except with
+//! its own list of kept samples full of transitions; no port or service is opened that was not
+//! named or allowed.
 //!
-//! Pens over HID: [`catalogue`] says which model a device is, [`hid`] reads its reports, [`pen_state`] judges them;
-//! [`recording::Player`] plays recorded bytes through the same objects:
+//! Pens over HID: [`catalogue`] says which model a device is, [`hid`] reads its reports,
+//! [`pen_state`] judges them; [`recording::Player`] plays recorded bytes through the same objects:
 //!
 //! ```no_run
 //! # use sculptd_devices::{catalogue::Catalogue, recording::Player, DeviceId};
@@ -28,26 +29,34 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`hid::start`] watches the machine's own tablets and reads each on a thread of its own; [`hid::HidHandle::status`] lists what
-//! is read and what is not, with the reason. A new model is a file in `tablets/`, or in a folder given to
-//! [`catalogue::Catalogue::with_dir`]: [`tablet`] says what stands in it.
+//! [`hid::start`] watches the machine's own tablets and reads each on a thread of its own;
+//! [`hid::HidHandle::status`] lists what is read and what is not, with the reason. A new model is a
+//! file in `tablets/`, or in a folder given to [`catalogue::Catalogue::with_dir`]: [`tablet`] says
+//! what stands in it.
+
+#![warn(missing_docs)]
 
 mod builtin;
 pub mod calibration;
 pub mod catalogue;
 pub mod clock;
+pub mod descriptor;
+mod device_thread;
 pub mod filter;
 #[doc(hidden)]
 pub mod fuzzing;
 pub mod hid;
 pub mod latency;
 pub mod leap;
-mod lifeline;
 pub mod long_array;
+pub mod pad_actions;
 pub mod pen_state;
 pub mod queue;
 pub mod recording;
+pub mod report;
 pub mod sample;
+#[cfg(test)]
+mod scenarios;
 pub mod serial;
 pub mod sim;
 pub mod tablet;

@@ -3,6 +3,7 @@
 use serde::de::{DeserializeOwned, Error};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+/// Writes the array as a sequence.
 pub fn serialize<T: Serialize, S: Serializer, const N: usize>(
     all: &[T; N],
     to: S,

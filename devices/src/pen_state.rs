@@ -1,27 +1,40 @@
 //! What a pen means, the same for every family: proximity, contact, tool, buttons.
 //!
 //! Laws:
-//! * Every visit ends: by the device's word, by silence (where the family never says it), by unplug.
-//! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen leaves.
-//! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins another.
+//! * Every visit ends: by the device's word, by silence (where the family never says it), by
+//!   unplug.
+//! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen
+//!   leaves.
+//! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins
+//!   another.
 //! * Pressure is clamped to 0..1; nothing wraps.
 
 use glam::Vec2;
 
-use crate::hid::report::PenReport;
+use crate::report::PenReport;
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 
-/// Contact begins at this share of the pressure range where there is no tip switch (libinput's figures).
+/// Contact begins at this share of the pressure range where there is no tip switch (libinput's
+/// figures).
 const DOWN: f32 = 0.05;
 /// ... and ends below this one.
 const UP: f32 = 0.01;
 /// A rest pressure above this is a hand pressing, not a worn pen.
 const MOST_OFFSET: f32 = 0.5;
 
+/// Part of an axis by which a pen at the edge may be beyond it.
+const EDGE_SHARE: i64 = 100;
+/// Reports above the stated full pressure that prove it wrong; fewer are taken for noise.
+const PROOF: u32 = 3;
+/// Counts above this are noise and no pressure: no pen has more than 16 bits.
+const MOST_PRESSURE: u32 = 0xffff;
+
 /// What the model's description says of its pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenConfig {
+    /// Number of the device that the samples go out under.
     pub device: DeviceId,
+    /// What its counts mean.
     pub scale: PenScale,
     /// Microseconds of silence that mean "gone"; `None` where the family always says it.
     pub silence_us: Option<u64>,
@@ -34,7 +47,9 @@ pub struct PenConfig {
 pub struct PenScale {
     /// First and last count of the active area.
     pub min: [i32; 2],
+    /// Last count of the active area.
     pub max: [i32; 2],
+    /// Width and height of the active area in mm.
     pub area_mm: Vec2,
     /// 0: the device has no pressure.
     pub max_pressure: u32,
@@ -48,24 +63,48 @@ pub struct PenState {
     cfg: PenConfig,
     pen: Pen,
     last_us: u64,
-    /// The first report of a visit is held back from pressing: its pressure is often the last visit's.
+    /// The first report of a visit is held back from pressing: its pressure is often the last
+    /// visit's.
     fresh: bool,
     /// The rest pressure of a worn pen, as a share.
     offset: f32,
     /// The last tip switch seen, where there is one.
     switch: Option<bool>,
+    /// Reports above the stated full pressure, and the highest of them.
+    over: (u32, u32),
+    /// Full pressure as reports have proved it, where it is more than the stated one.
+    proved_pressure: u32,
+    /// Positions outside the area or pressures above the stated maximum, and all positions.
+    outside: (u64, u64),
 }
 
 impl PenState {
+    /// A pen out of range.
     pub fn new(cfg: PenConfig) -> Self {
         let pressure = (cfg.scale.max_pressure > 0).then_some(0.0);
         let tilt = cfg.tilts.then_some(Vec2::ZERO);
         let pen = Pen { area_mm: cfg.scale.area_mm, pressure, tilt, ..Pen::default() };
-        PenState { cfg, pen, last_us: 0, fresh: true, offset: 0.0, switch: None }
+        PenState {
+            cfg,
+            pen,
+            last_us: 0,
+            fresh: true,
+            offset: 0.0,
+            switch: None,
+            over: (0, 0),
+            proved_pressure: 0,
+            outside: (0, 0),
+        }
     }
 
+    /// Whether the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range
+    }
+
+    /// Positions outside the area or pressures above the stated maximum, and all positions.
+    pub fn outside(&self) -> (u64, u64) {
+        self.outside
     }
 
     /// A firmware shows only as it speaks whether it says when the pen leaves.
@@ -73,7 +112,8 @@ impl PenState {
         self.cfg.silence_us = silence_us;
     }
 
-    /// Another report of the same device has other ranges; a visit does not go from one to the other.
+    /// Another report of the same device has other ranges; a visit does not go from one to the
+    /// other.
     pub fn set_scale(&mut self, scale: PenScale, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         if scale != self.cfg.scale {
             self.leave(t_us, emit);
@@ -92,7 +132,8 @@ impl PenState {
         }
     }
 
-    /// Ends the visit if the pen has been silent for too long. The sample's time is when the silence was over.
+    /// Ends the visit if the pen has been silent for too long. The sample's time is when the
+    /// silence was over.
     pub fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {
         if let Some(due) = self.due_us().filter(|&due| due <= now_us) {
             self.leave(due, emit);
@@ -134,6 +175,7 @@ impl PenState {
         }
         self.pen.in_range = true;
         self.last_us = t_us;
+        self.count_outside(r);
         self.place(r);
         if let Some(d) = r.distance {
             self.pen.distance = Some(d as f32);
@@ -147,6 +189,34 @@ impl PenState {
         self.press(r, entering);
         self.fresh = false;
         self.emit(t_us, emit);
+    }
+
+    fn count_outside(&mut self, r: &PenReport) {
+        let PenScale { min, max, max_pressure, .. } = self.cfg.scale;
+        if let Some(pos) = r.pos {
+            // A pen at the edge may be a little beyond it.
+            let beyond = |i: usize| {
+                let slack = (i64::from(max[i]) - i64::from(min[i])) / EDGE_SHARE;
+                let at = i64::from(pos[i]);
+                at < i64::from(min[i]) - slack || at > i64::from(max[i]) + slack
+            };
+            let over = max_pressure > 0 && r.pressure.is_some_and(|p| p > max_pressure);
+            self.outside.0 += u64::from(beyond(0) || beyond(1) || over);
+            self.outside.1 += 1;
+        }
+    }
+
+    /// Counts at full pressure: as stated, or as reports have proved it. A vendor's figure is wrong
+    /// more often than a pen's: counts above it show the next power of two to be the true one.
+    fn full_pressure(&mut self, counts: u32) -> u32 {
+        let stated = self.cfg.scale.max_pressure;
+        if counts > stated && counts <= MOST_PRESSURE {
+            self.over = (self.over.0 + 1, self.over.1.max(counts));
+            if self.over.0 >= PROOF {
+                self.proved_pressure = self.over.1.next_power_of_two() - 1;
+            }
+        }
+        stated.max(self.proved_pressure)
     }
 
     fn place(&mut self, r: &PenReport) {
@@ -172,14 +242,15 @@ impl PenState {
 
     fn press(&mut self, r: &PenReport, entering: bool) {
         if let (Some(counts), true) = (r.pressure, self.cfg.scale.max_pressure > 0) {
-            let share =
-                (f64::from(counts) / f64::from(self.cfg.scale.max_pressure)).min(1.0) as f32;
+            let full = self.full_pressure(counts);
+            let share = (f64::from(counts) / f64::from(full)).min(1.0) as f32;
             if entering {
                 self.learn_offset(r, share);
             } else if share < self.offset {
                 self.offset = share;
             }
-            // Pressure is told as it is sensed, also in the air: whether it counts is `tip`'s to say.
+            // Pressure is told as it is sensed, also in the air: whether it counts is `tip`'s to
+            // say.
             self.pen.pressure = Some(if self.pen.tool == Tool::Mouse { 0.0 } else { share });
         }
         let felt = self.pen.pressure.map(|p| ((p - self.offset) / (1.0 - self.offset)).max(0.0));
@@ -196,7 +267,8 @@ impl PenState {
         };
     }
 
-    /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip switch.
+    /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip
+    /// switch.
     fn learn_offset(&mut self, r: &PenReport, share: f32) {
         let high = match (r.distance, self.cfg.scale.max_distance) {
             (Some(d), max) if max > 0 => d * 2 >= max,

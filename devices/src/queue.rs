@@ -2,12 +2,14 @@
 //!
 //! Laws kept here:
 //! * The consumer (the tick thread) never waits: [`Receiver::drain`] takes what is there.
-//! * A sample that differs from its device's last one in nothing but motion may be replaced by a newer one while the
-//!   channel is full. A **transition** (contact, proximity, buttons, the set of hands) is kept, in order, until there is
-//!   room; no motion is ever merged across one.
-//! * Every sample is accounted for, by device: `sent = received + coalesced + lost + closed + still on the way`.
+//! * A sample that differs from its device's last one in nothing but motion may be replaced by a
+//!   newer one while the channel is full. A **transition** (contact, proximity, buttons, the set of
+//!   hands) is kept, in order, until there is room; no motion is ever merged across one.
+//! * Every sample is accounted for, by device: `sent = received + coalesced + lost + closed + still
+//!   on the way`.
 //!
-//! Guaranteed: order within a device. Not guaranteed: order between devices (the consumer orders by `t_us`).
+//! Guaranteed: order within a device. Not guaranteed: order between devices (the consumer orders by
+//! `t_us`).
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -18,13 +20,15 @@ use crossbeam_channel as cc;
 use serde::Serialize;
 
 use crate::calibration::Calibration;
-use crate::{DeviceId, Sample};
+use crate::sample::{DeviceId, Sample};
 
-/// Devices that have counters of their own; ids from here up share the last slot, so that counting never allocates.
+/// Devices that have counters of their own; ids from here up share the last slot, so that counting
+/// never allocates.
 pub const COUNTED_DEVICES: usize = 512;
 
-/// Most samples that one sender keeps back while the channel is full. Half of it can be motion (one between two
-/// transitions); 256 transitions are more than ten seconds of a pen tapping as fast as a hand can.
+/// Most samples that one sender keeps back while the channel is full. Half of it can be motion (one
+/// between two transitions); 256 transitions are more than ten seconds of a pen tapping as fast as
+/// a hand can.
 const MAX_PENDING: usize = 512;
 
 /// How long one blocked attempt lasts before the stop flag is looked at again.
@@ -33,7 +37,8 @@ const WAIT_SLICE: Duration = Duration::from_millis(5);
 /// How long a dropped sender goes on trying to hand over what it kept back.
 const DROP_PATIENCE: Duration = Duration::from_millis(500);
 
-/// A channel that holds at most `capacity` samples (at least 1). The factory makes one [`Sender`] for each adaptor.
+/// A channel that holds at most `capacity` samples (at least 1). The factory makes one [`Sender`]
+/// for each adaptor.
 pub fn channel(capacity: usize) -> (SenderFactory, Receiver) {
     let (tx, rx) = cc::bounded(capacity.max(1));
     let stats = Arc::new(Stats::default());
@@ -109,7 +114,8 @@ pub struct Count {
     pub coalesced: u64,
     /// Motion dropped because even the sender's own list was full.
     pub lost_motion: u64,
-    /// Transitions dropped: a sender was dropped, or told to stop, while its consumer stood still. Else always 0.
+    /// Transitions dropped: a sender was dropped, or told to stop, while its consumer stood still.
+    /// Else always 0.
     pub lost_transition: u64,
     /// Samples pushed after the consumer had gone for good.
     pub closed: u64,
@@ -159,6 +165,7 @@ impl SenderFactory {
         }
     }
 
+    /// The counters of every device.
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }
@@ -169,7 +176,8 @@ impl SenderFactory {
 pub struct Sender {
     tx: cc::Sender<Sample>,
     stats: Arc<Stats>,
-    /// The last sample pushed for each device, by which motion is told from a transition. A handful: searched in line.
+    /// The last sample pushed for each device, by which motion is told from a transition. A
+    /// handful: searched in line.
     last: Vec<Sample>,
     pending: VecDeque<Kept>,
     stop: Option<Arc<AtomicBool>>,
@@ -197,6 +205,7 @@ impl Sender {
         }
     }
 
+    /// The counters of every device.
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }
@@ -206,8 +215,9 @@ impl Sender {
         self.pending.len()
     }
 
-    /// Hands one sample over. Never waits for motion. For a transition it waits only when the channel *and* the list of
-    /// kept samples are full, and then it is the caller, a reader thread, that waits.
+    /// Hands one sample over. Never waits for motion. For a transition it waits only when the
+    /// channel *and* the list of kept samples are full, and then it is the caller, a reader thread,
+    /// that waits.
     pub fn push(&mut self, mut sample: Sample) {
         if let Some((_, calibration)) = self.calibrations.iter().find(|(d, _)| *d == sample.device)
         {
@@ -226,8 +236,8 @@ impl Sender {
         self.keep(Kept { sample, motion });
     }
 
-    /// Hands over what was kept back, as far as there is room. True when nothing is left. An adaptor calls it whenever
-    /// its device is silent.
+    /// Hands over what was kept back, as far as there is room. True when nothing is left. An
+    /// adaptor calls it whenever its device is silent.
     pub fn flush(&mut self) -> bool {
         while let Some(kept) = self.pending.front() {
             match self.tx.try_send(kept.sample) {
@@ -312,7 +322,8 @@ impl Sender {
 }
 
 impl Drop for Sender {
-    /// A device's last words (tip up, out of range) are what is most likely still kept back: they get some time.
+    /// A device's last words (tip up, out of range) are what is most likely still kept back: they
+    /// get some time.
     fn drop(&mut self) {
         let mut slices = DROP_PATIENCE.as_millis() / WAIT_SLICE.as_millis();
         while !self.flush() && slices > 0 {
@@ -335,8 +346,8 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Appends at most `max` samples to `out`, never waiting; the number appended. Allocates nothing while `out` has
-    /// room for them.
+    /// Appends at most `max` samples to `out`, never waiting; the number appended. Allocates
+    /// nothing while `out` has room for them.
     pub fn drain(&mut self, max: usize, out: &mut Vec<Sample>) -> usize {
         let before = out.len();
         while out.len() - before < max {
@@ -347,8 +358,8 @@ impl Receiver {
         out.len() - before
     }
 
-    /// The next sample, waiting for it; `None` after `patience`, or at once when every sender has gone. For commands
-    /// that only watch; the tick thread never calls it.
+    /// The next sample, waiting for it; `None` after `patience`, or at once when every sender has
+    /// gone. For commands that only watch; the tick thread never calls it.
     pub fn next_within(&mut self, patience: Duration) -> Option<Sample> {
         let sample = self.rx.recv_timeout(patience).ok()?;
         self.stats.device(sample.device).received.fetch_add(1, Relaxed);
@@ -360,12 +371,11 @@ impl Receiver {
         self.rx.len()
     }
 
+    /// The counters of every device.
     pub fn stats(&self) -> Arc<Stats> {
         self.stats.clone()
     }
 }
 
-#[cfg(test)]
-mod flood;
 #[cfg(test)]
 mod tests;

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 /// Four: two people over one tracker. A Leap tracks two reliably.
 pub const MAX_HANDS: usize = 4;
 
-/// A device as the daemon knows it while it runs. Dense, small, reused after a replug of the *same* device.
+/// A device as the daemon knows it while it runs. Dense, small, reused after a replug of the *same*
+/// device.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default,
 )]
@@ -21,27 +22,37 @@ pub struct DeviceId(pub u16);
 /// What a device said at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
+    /// Which device said it.
     pub device: DeviceId,
-    /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a tracker that stamps its frames:
-    /// when the frame was taken, brought onto our clock ([`crate::leap::ClockMap`]); never later than the read.
+    /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a
+    /// tracker that stamps its frames: when the frame was taken, brought onto our clock
+    /// ([`crate::leap::ClockMap`]); never later than the read.
     pub t_us: u64,
     /// Microseconds on the device's own clock, where it has one (its origin is unknown).
     pub device_t_us: Option<u64>,
+    /// What it said.
     pub body: Body,
 }
 
+/// What a device said.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[allow(clippy::large_enum_variant)] // Copied inline on purpose: a box would be freed on the tick thread.
 pub enum Body {
+    /// A pen over or on its surface.
     Pen(Pen),
+    /// Every hand that a tracker saw.
     Hands(Hands),
+    /// Keys, wheels and strips of a tablet.
     Pad(Pad),
 }
 
+/// What touches or hovers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
 pub enum Tool {
+    /// The tip of a pen.
     #[default]
     Pen,
+    /// The other end of a pen.
     Eraser,
     /// A puck or mouse on the tablet: it moves, it never presses.
     Mouse,
@@ -52,6 +63,7 @@ pub enum Tool {
 /// A pen over or on its surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Pen {
+    /// Which tool it is. It does not change within a visit.
     pub tool: Tool,
     /// The pen is in proximity: position is meaningful. `false` is the last word of a visit.
     pub in_range: bool,
@@ -80,23 +92,27 @@ pub struct Pen {
 pub struct Pad {
     /// Pressed keys, bit 0 the first.
     pub keys: u32,
-    /// Steps turned since the device appeared, clockwise positive, one counter a wheel. A counter and not a step, so that
-    /// a coalesced sample loses nothing.
+    /// Steps turned since the device appeared, clockwise positive, one counter a wheel. A counter
+    /// and not a step, so that a coalesced sample loses nothing.
     pub wheels: [i32; 2],
     /// Position along each touch strip or ring, 0 to 1; `None` while not touched.
     pub strips: [Option<f32>; 2],
 }
 
-/// Every hand that a tracker saw in one frame. mm, right-handed, origin on the tracker, +y up, +z toward the user.
+/// Every hand that a tracker saw in one frame. mm, right-handed, origin on the tracker, +y up, +z
+/// toward the user.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hands {
     /// The tracker's own frame number.
     pub frame: i64,
+    /// How many entries of `hands` are used, at most [`MAX_HANDS`].
     pub count: u8,
+    /// The hands. Entries from `count` on have no meaning.
     pub hands: [Hand; MAX_HANDS],
 }
 
 impl Hands {
+    /// The hands that were seen.
     pub fn as_slice(&self) -> &[Hand] {
         &self.hands[..(self.count as usize).min(MAX_HANDS)]
     }
@@ -108,12 +124,14 @@ impl Default for Hands {
     }
 }
 
+/// One hand. Positions are in mm in the tracker's axes; `None` is what the tracker did not report.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Hand {
     /// The tracker's id; it changes when the tracker loses and finds the hand again.
     pub id: i32,
     /// `None` where the tracker does not say.
     pub left: Option<bool>,
+    /// Middle of the palm.
     pub palm: Vec3,
     /// Out of the palm; unit length, or `None`.
     pub palm_normal: Option<Vec3>,
@@ -131,29 +149,37 @@ pub struct Hand {
     pub time_visible: Option<f32>,
     /// Width over the knuckles.
     pub palm_width: Option<f32>,
-    /// Of the palm, from the tracker's axes to the hand's; absent where neither basis nor normal came.
+    /// Of the palm, from the tracker's axes to the hand's; absent where neither basis nor normal
+    /// came.
     pub orientation: Option<Quat>,
+    /// Middle of the wrist.
     pub wrist: Option<Vec3>,
+    /// Middle of the elbow.
     pub elbow: Option<Vec3>,
     /// Thumb to little finger. A finger that the tracker did not report is `None`.
     pub fingers: [Option<Finger>; 5],
 }
 
+/// One finger. Positions are in mm in the tracker's axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Finger {
-    /// Carpal-metacarpal, knuckle, first and second joint, and the end of the last bone; absent joints are `None`.
+    /// Carpal-metacarpal, knuckle, first and second joint, and the end of the last bone; absent
+    /// joints are `None`.
     pub joints: [Option<Vec3>; 5],
+    /// The finger's tip.
     pub tip: Vec3,
     /// Unit length, along the last bone.
     pub direction: Option<Vec3>,
     /// mm.
     pub width: Option<f32>,
+    /// The finger is stretched out, as the tracker judges it.
     pub extended: Option<bool>,
 }
 
 impl Sample {
-    /// Two samples of one device differ in nothing but motion: the older may be dropped when the channel is full.
-    /// Contact, proximity, tool, buttons, keys, the set of hands: a change of any is a **transition** and is never dropped.
+    /// Two samples of one device differ in nothing but motion: the older may be dropped when the
+    /// channel is full. Contact, proximity, tool, buttons, keys, the set of hands: a change of any
+    /// is a **transition** and is never dropped.
     pub fn only_moved_since(&self, older: &Sample) -> bool {
         if self.device != older.device {
             return false;

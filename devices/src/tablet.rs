@@ -1,9 +1,11 @@
 //! A tablet is data: one TOML file a model, in `devices/tablets/` or in a folder of the user's.
 //!
-//! Strict: an unknown key is an error that names it. Every number is a fact with a source; what a driver must *do* is in
-//! the parser that `parser` names.
+//! Strict: an unknown key is an error that names it. Every number is a fact with a source; what a
+//! driver must *do* is in the parser that `parser` names.
 
 use serde::{Deserialize, Serialize};
+
+use crate::pad_actions::ActionTable;
 
 /// One model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -13,10 +15,16 @@ pub struct Tablet {
     pub name: String,
     /// Where the facts come from.
     pub source: String,
+    /// The active area.
     pub area: Area,
+    /// The pen.
     pub pen: PenFacts,
-    #[serde(default, skip_serializing_if = "Pad::is_empty")]
-    pub pad: Pad,
+    /// The pad. Absent where the tablet has none.
+    #[serde(default, skip_serializing_if = "PadFacts::is_empty")]
+    pub pad: PadFacts,
+    /// What its keys, wheels and pen buttons do by default; see [`crate::pad_actions`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actions: Option<ActionTable>,
     /// How it shows itself; a model may have several firmwares.
     pub id: Vec<Id>,
 }
@@ -25,34 +33,47 @@ pub struct Tablet {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Area {
+    /// Width in mm.
     pub width_mm: f64,
+    /// Height in mm.
     pub height_mm: f64,
+    /// The size is rounded to whole inches, as libwacom's is: a believable size in the report
+    /// descriptor is better.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub nominal: bool,
     /// Counts at the left and top edge.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub min_x: i32,
+    /// Count at the top edge.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub min_y: i32,
-    /// Counts at the right and bottom edge.
+    /// Counts at the right edge. 0 where the report descriptor says it (`parser = "digitiser"`).
     pub max_x: i32,
+    /// Counts at the bottom edge; 0 as with `max_x`.
     pub max_y: i32,
 }
 
+/// What the pen can do.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PenFacts {
     /// Counts at full pressure; 0 where the pen has none.
     pub max_pressure: u32,
+    /// Buttons on the barrel.
     pub buttons: u8,
     /// Counts at the greatest height; 0 where height is not told.
     #[serde(default, skip_serializing_if = "is_zero_u32")]
     pub max_distance: u32,
 }
 
+/// What the pad has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Pad {
+pub struct PadFacts {
+    /// Number of keys.
     #[serde(default)]
     pub keys: u8,
+    /// Number of wheels, dials and rings.
     #[serde(default)]
     pub wheels: u8,
     /// Where the pad's report keeps them, for families with several layouts.
@@ -64,35 +85,46 @@ pub struct Pad {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Id {
+    /// Vendor id.
     pub vid: u16,
+    /// Product id.
     pub pid: u16,
-    /// Longest input report of the pen's interface in bytes, its id included; 0 where the product id alone decides.
+    /// Longest input report of the pen's interface in bytes, its id included; 0 where the product
+    /// id alone decides.
     pub length: u16,
+    /// The parser that reads its reports.
     pub parser: Family,
+    /// USB interface number of the pen; absent where any may be it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<u8>,
     /// Bytes put before each report by the maker's Windows driver.
     #[serde(default, skip_serializing_if = "is_zero_u8")]
     pub skip: u8,
-    /// USB strings that tell models of one id apart, `INDEX=PATTERN`; one of them must match. See [`StringIs`].
+    /// USB strings that tell models of one id apart, `INDEX=PATTERN`; one of them must match. See
+    /// [`StringIs`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub strings: Vec<String>,
     /// Bytes to send before the pen speaks its own protocol, hexadecimal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_feature: Vec<String>,
+    /// Output reports to send, as `init_feature`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_output: Vec<String>,
     /// USB strings whose reading switches the tablet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_strings: Vec<u8>,
+    /// What this model does differently from its family.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub quirks: Vec<Quirk>,
 }
 
-/// A pattern on one USB string: found anywhere, unless `^` holds it to the start or `$` to the end; `#` is any digit.
+/// A pattern on one USB string: found anywhere, unless `^` holds it to the start or `$` to the end;
+/// `#` is any digit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StringIs<'a> {
+    /// Index of the USB string.
     pub index: u8,
+    /// What it must look like.
     pub pattern: &'a str,
 }
 
@@ -103,6 +135,7 @@ impl<'a> StringIs<'a> {
         Some(StringIs { index: index.parse().ok()?, pattern })
     }
 
+    /// Whether a text fits the pattern.
     pub fn matches(&self, text: &str) -> bool {
         let (pattern, start) =
             self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
@@ -124,36 +157,71 @@ impl<'a> StringIs<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
+    /// Intuos 1 to 5, Intuos Pro, most Cintiqs: report 02 or 10 of 10 bytes.
     WacomIntuosV1,
+    /// Bamboo Pen, One by Wacom, Intuos of 2013: report 02 of 9 or 10 bytes.
     WacomSimple,
+    /// Bamboo PadFacts: report 10 of kind 01.
     WacomBambooPad,
+    /// Graphire 1 to 3: report 02 of 8 bytes.
     WacomGraphire,
+    /// Graphire 4: the same with keys and a wheel.
     WacomGraphire4,
+    /// The first Bamboo: the same with keys and a ring.
     WacomBamboo,
+    /// Graphire over Bluetooth: report 03.
     WacomGraphireBluetooth,
+    /// PenPartner: reports 01 and 02.
     WacomPenPartner,
+    /// PL and DTF displays.
     WacomPl,
+    /// PTU displays.
     WacomPtu,
+    /// DTU displays.
     WacomDtu,
+    /// DTU-1031 and its kind.
     WacomDtus,
+    /// Tablet PCs over USB.
     WacomTabletPc,
+    /// Intuos Pro of 2017, Intuos of 2018: report 10.
     WacomIntuosV2,
+    /// Intuos Pro of 2017 over Bluetooth: report 80 with seven frames.
+    WacomProBluetooth,
+    /// Intuos of 2018 over Bluetooth: report 80 with four frames.
+    WacomIntuosBluetooth,
+    /// Intuos Pro of 2025: report 1E.
     WacomIntuosV3,
+    /// Wacom One: report 1F.
     WacomOne,
+    /// UC-Logic's layout of 8 to 12 bytes, also XP-Pen, UGEE and Parblo.
     UcLogic,
+    /// XP-Pen whose pressure counts from 8192.
     XpPenOffset,
+    /// XP-Pen of the second generation: 14 bytes.
     XpPenGen2,
+    /// Huion and Gaomon: report 08 of 12 bytes.
     Huion,
+    /// FlooGoo.
     Floogoo,
+    /// VEIKK: 13 bytes.
     Veikk,
+    /// VEIKK A15: 9 bytes.
     VeikkA15,
+    /// Acepen.
     Acepen,
+    /// Genius and KYE: report 02.
     Kye,
+    /// Genius and KYE: report 10.
     KyePlain,
+    /// 10moons.
     TenMoons,
+    /// Flags, axes and pressure at bytes 1, 2, 4 and 6, and no word when the pen leaves.
     Plain,
+    /// XENX.
     Xenx,
+    /// RobotPen.
     RobotPen,
+    /// ViewSonic WoodPad.
     WoodPad,
     /// From the report descriptor alone.
     Digitiser,
@@ -186,19 +254,29 @@ pub enum Quirk {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PadLayout {
+    /// Eight keys and two strips.
     Intuos3,
+    /// Nine keys and a ring.
     Intuos4,
+    /// Nine keys and a ring, one byte further on.
     Intuos5,
+    /// Nine keys.
     Cintiq13,
+    /// Eighteen keys and two strips.
     Cintiq22,
+    /// Sixteen keys and two rings.
     Cintiq24,
+    /// Four keys.
     Dtk,
 }
 
+/// A tablet file that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{file}: {what}")]
 pub struct TabletError {
+    /// Name of the file.
     pub file: String,
+    /// What is wrong with it.
     pub what: String,
 }
 
@@ -218,7 +296,9 @@ impl Tablet {
                 return Err(format!("area.{name} = {v}: expected 5 to 5000 mm"));
             }
         }
-        if a.max_x <= a.min_x || a.max_y <= a.min_y {
+        let described = self.id.iter().all(|id| id.parser == Family::Digitiser);
+        let empty = a.max_x <= a.min_x || a.max_y <= a.min_y;
+        if empty && !(described && (a.max_x, a.max_y) == (0, 0)) {
             return Err("area: max_x and max_y must exceed min_x and min_y".to_owned());
         }
         if self.pen.max_pressure > 1 << 20 {
@@ -229,6 +309,9 @@ impl Tablet {
         }
         if self.id.is_empty() {
             return Err("no [[id]]: the model could never be found".to_owned());
+        }
+        if let Some(actions) = &self.actions {
+            actions.check()?;
         }
         for id in &self.id {
             if let Some(bad) = id.strings.iter().find(|s| StringIs::parse(s).is_none()) {
@@ -275,12 +358,15 @@ pub fn hex_bytes(text: &str) -> Option<Vec<u8>> {
     Some(digits.chunks(2).map(|p| p[0] << 4 | p[1]).collect())
 }
 
-impl Pad {
+impl PadFacts {
     fn is_empty(&self) -> bool {
-        *self == Pad::default()
+        *self == PadFacts::default()
     }
 }
 
+fn is_false(v: &bool) -> bool {
+    !*v
+}
 fn is_zero(v: &i32) -> bool {
     *v == 0
 }

@@ -22,7 +22,8 @@ pub enum ConfigCommand {
 }
 
 fn load(file: Option<&PathBuf>) -> Result<Resolved, Fail> {
-    Resolved::load(file.map(|f| f.as_path())).map_err(|e: ConfigError| Fail::Config(e.to_string()))
+    Resolved::load(file.map(|f| f.as_path()), crate::presets())
+        .map_err(|e: ConfigError| Fail::Config(e.to_string()))
 }
 
 /// Numbers as a person would write them: a setting of 0.3 is kept in 32 bits, and is no

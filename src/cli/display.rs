@@ -62,6 +62,7 @@ pub fn show(wired: &Wired<'_>) -> Result<(), String> {
         published: wired.live.published.clone(),
         pointer: wired.factory.sender(),
         pointer_id: sculptd_daemon::adaptors::POINTER_ID,
+        presets: crate::presets().clone(),
         clock: wired.clock.clone(),
         stop: wired.stop.clone(),
         devices: Box::new(move || adaptors.describe()),

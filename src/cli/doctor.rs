@@ -24,7 +24,7 @@ struct Answer {
 }
 
 pub fn run(args: &DoctorArgs, json: bool) -> Outcome {
-    let (settings, first) = match Resolved::load(args.config.as_deref()) {
+    let (settings, first) = match Resolved::load(args.config.as_deref(), crate::presets()) {
         Ok(resolved) => {
             (resolved.config, Check::pass("settings", "every file and key is understood"))
         }

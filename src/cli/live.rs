@@ -194,6 +194,7 @@ fn control(
     let host = Host {
         commands: live.commands.clone(),
         published: live.published.clone(),
+        presets: crate::presets().clone(),
         stop: stop.clone(),
         thickness: Arc::default(),
         joining: Arc::default(),

@@ -93,7 +93,7 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let mut config = load_config(args.config.as_deref())?;
     if let Some(kind) = args.brush.filter(|k| *k != config.brush.kind) {
-        config.brush = config.brush.switched(kind);
+        config.brush = config.presets.switched(&config.brush, kind);
     }
     if let Some(path) = &args.export {
         sculptd_geometry::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
@@ -161,7 +161,7 @@ fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
 }
 
 pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
-    match Resolved::load(extra) {
+    match Resolved::load(extra, crate::presets()) {
         Ok(resolved) => Ok(resolved.config),
         Err(ConfigError::Unreadable { path, source })
             if source.kind() == std::io::ErrorKind::PermissionDenied =>

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use sculptd_clay::brush::{BrushKind, BrushSettings};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_devices::calibration::Calibrations;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::HandSettings;
@@ -23,6 +23,9 @@ pub struct Config {
     pub r#loop: LoopConfig,
     pub channel: ChannelConfig,
     pub brush: BrushSettings,
+    /// What each brush begins with; not written in files of configuration.
+    #[serde(skip)]
+    pub presets: Presets,
     pub camera: CameraConfig,
     pub undo: UndoConfig,
     pub hand: HandSettings,
@@ -158,20 +161,20 @@ pub struct Resolved {
 }
 
 impl Resolved {
-    pub fn defaults() -> Self {
-        Resolver::new().finish()
+    pub fn defaults(presets: &Presets) -> Self {
+        Resolver::new(presets).finish()
     }
 
     /// One text over the defaults, and nothing of what the machine's files say.
-    pub fn of_text(text: &str, origin: &str) -> Result<Self, ConfigError> {
-        let mut resolver = Resolver::new();
+    pub fn of_text(text: &str, origin: &str, presets: &Presets) -> Result<Self, ConfigError> {
+        let mut resolver = Resolver::new(presets);
         resolver.text(text, origin)?;
         Ok(resolver.finish())
     }
 
     /// The usual layers, where their files exist, then `extra` (which must exist).
-    pub fn load(extra: Option<&Path>) -> Result<Self, ConfigError> {
-        let mut resolver = Resolver::new();
+    pub fn load(extra: Option<&Path>, presets: &Presets) -> Result<Self, ConfigError> {
+        let mut resolver = Resolver::new(presets);
         for path in usual_files().into_iter().filter(|p| p.is_file()) {
             resolver.file(&path)?;
         }
@@ -204,11 +207,16 @@ pub fn state_dir() -> PathBuf {
 struct Resolver {
     table: toml::Table,
     origins: BTreeMap<String, String>,
+    presets: Presets,
 }
 
 impl Resolver {
-    fn new() -> Self {
-        let mut resolver = Resolver { table: toml::Table::new(), origins: BTreeMap::new() };
+    fn new(presets: &Presets) -> Self {
+        let mut resolver = Resolver {
+            table: toml::Table::new(),
+            origins: BTreeMap::new(),
+            presets: presets.clone(),
+        };
         // The embedded file is checked by a test; a build with a broken one falls back to the same
         // values in code.
         if let Ok(table) = DEFAULTS.parse() {
@@ -225,9 +233,14 @@ impl Resolver {
 
     fn text(&mut self, text: &str, origin: &str) -> Result<(), ConfigError> {
         let invalid = |text: String| ConfigError::Invalid { origin: origin.into(), text };
-        let alone: Config = toml::from_str(text).map_err(|e| invalid(e.to_string()))?;
+        let mut alone: Config = toml::from_str(text).map_err(|e| invalid(e.to_string()))?;
+        let table: toml::Table =
+            text.parse().map_err(|e: toml::de::Error| invalid(e.to_string()))?;
+        // Numbers of its own that the text does not give are those of the brush's preset.
+        if table.get("brush").is_none_or(|b| b.get("extra").is_none()) {
+            alone.brush.extra = self.presets.of(alone.brush.kind).extra;
+        }
         alone.check().map_err(invalid)?;
-        let table = text.parse().map_err(|e: toml::de::Error| invalid(e.to_string()))?;
         self.lay(table, origin);
         Ok(())
     }
@@ -251,7 +264,7 @@ impl Resolver {
         let kind = self.table.get("brush").and_then(|b| b.get("kind")).and_then(|k| k.as_str());
         let Some(kind) = kind.and_then(|k| k.parse::<BrushKind>().ok()) else { return };
         let Some(toml::Value::Table(brush)) = self.table.get_mut("brush") else { return };
-        for (key, value) in kind.preset().table() {
+        for (key, value) in self.presets.get(kind).table() {
             let origin =
                 self.origins.entry(format!("brush.{key}")).or_insert_with(|| "default".into());
             if origin == "default" {
@@ -264,7 +277,11 @@ impl Resolver {
     fn finish(mut self) -> Resolved {
         self.lay_brush();
         // Every layer was read alone before it was laid; keys do not depend on each other.
-        Resolved { config: self.table.try_into().unwrap_or_default(), origins: self.origins }
+        let mut config: Config = self.table.try_into().unwrap_or_default();
+        // The brush may be from one layer and its own numbers from another.
+        config.brush = config.brush.clamped();
+        config.presets = self.presets;
+        Resolved { config, origins: self.origins }
     }
 }
 
@@ -356,7 +373,7 @@ mod tests {
 
     #[test]
     fn an_unknown_key_names_its_line_and_a_value_out_of_range_its_range() {
-        let mut resolver = Resolver::new();
+        let mut resolver = Resolver::new(&Presets::default());
         let e = resolver
             .text("[loop]\nrate_hz = 60\nrate = 3\n", "mine.toml")
             .expect_err("unknown")
@@ -367,8 +384,18 @@ mod tests {
     }
 
     #[test]
+    fn a_brush_alone_is_valid_and_brings_its_own_numbers() {
+        for kind in BrushKind::ALL {
+            let text = format!("[brush]\nkind = \"{kind}\"\n");
+            let presets = Presets::default();
+            let resolved = Resolved::of_text(&text, "mine.toml", &presets).expect("valid");
+            assert_eq!(resolved.config.brush, presets.of(*kind), "{kind}");
+        }
+    }
+
+    #[test]
     fn the_last_layer_wins_and_its_name_is_kept() {
-        let mut resolver = Resolver::new();
+        let mut resolver = Resolver::new(&Presets::default());
         resolver.text("[loop]\nrate_hz = 60\n", "system").expect("fine");
         resolver.text("[loop]\nworkers = 2\n[brush]\nstrength = 0.5\n", "user").expect("fine");
         let r = resolver.finish();

@@ -32,7 +32,7 @@ impl Reload {
     /// Reads the files again. What a running loop can take is taken; the rest is named. Bad files
     /// change nothing.
     pub fn again(&mut self) {
-        let new = match Resolved::load(self.extra.as_deref()) {
+        let new = match Resolved::load(self.extra.as_deref(), &self.now.presets) {
             Ok(resolved) => resolved.config,
             Err(e) => {
                 tracing::error!("settings not taken, the old ones stay: {e}");

@@ -38,6 +38,7 @@ impl Rig {
         let host = Host {
             commands: sender,
             published: Arc::new(ArcSwap::from_pointee(published)),
+            presets: sculptd::presets().clone(),
             thickness: Arc::default(),
             joining: Arc::default(),
             journal: None,

@@ -66,7 +66,7 @@ fn after_thirty_visitors_nothing_of_them_is_left() {
     if passed_alone("kiosk::after_thirty_visitors_nothing_of_them_is_left") {
         return;
     }
-    let config = Resolved::defaults().config;
+    let config = Resolved::defaults(sculptd::presets()).config;
     let plain = Arc::new(shapes::sphere_of_about(10_000));
     let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
     let mut world = startup::world(mesh, &config);
@@ -114,7 +114,7 @@ fn until(what: &str, mut so: impl FnMut() -> bool) {
 #[test]
 fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let dir = tempfile::tempdir().expect("a folder");
-    let config = Resolved::defaults().config;
+    let config = Resolved::defaults(sculptd::presets()).config;
     let plain = Arc::new(shapes::sphere_of_about(5_000));
     let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
     let world = startup::world(mesh, &config);

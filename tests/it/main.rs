@@ -25,7 +25,6 @@ mod service;
 mod sessions;
 mod soak;
 mod synthetic_hands;
-mod tidy;
 
 use std::path::PathBuf;
 

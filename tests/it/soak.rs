@@ -137,7 +137,7 @@ impl Drop for Disk {
 }
 
 fn soak(seed: u64, ticks: u64) -> Result<(), String> {
-    let mut config = Resolved::defaults().config;
+    let mut config = Resolved::defaults(sculptd::presets()).config;
     config.undo.bytes = 8 << 20;
     let dir = tempfile::tempdir().map_err(|e| e.to_string())?;
     let disk = Disk::new(dir.path());

@@ -1,6 +1,8 @@
-//! Runs inside the virtual machine of `tests/vm/run.sh`: a uhid tablet is plugged in, the daemon's own binary records it from
-//! /dev/hidraw*, the kernel's wacom driver decodes it, and both are compared with what was sent and with our decoder. Then the
-//! plug is pulled in mid-stroke and put back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing shown.
+//! Runs inside the virtual machine of `tests/vm/run.sh`: a uhid tablet is plugged in, the daemon's
+//! own binary records it from /dev/hidraw*, the kernel's wacom driver decodes it, and both are
+//! compared with what was sent and with our decoder. Then the plug is pulled in mid-stroke and put
+//! back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing
+//! shown.
 #![cfg(target_os = "linux")]
 #![allow(clippy::print_stdout, clippy::disallowed_methods)] // A test program: it prints its findings and waits for a kernel.
 
@@ -19,11 +21,12 @@ use sculptd_devices::hid::decoder::Decoder;
 use sculptd_devices::hid::transport::Transport;
 use sculptd_devices::recording::raw;
 use sculptd_devices::serial::Protocol;
-use sculptd_devices::sim::{Tablet, TabletConfig, journal};
+use sculptd_devices::sim::{SimTablet, TabletConfig, journal};
 use sculptd_devices::{Body, DeviceId, Pen, Tool};
 
 const MODEL: &str = "Wacom PTK-440";
-/// What such a tablet says of itself, as far as the drivers need it: report 2 in nine opaque bytes, feature 2 in one.
+/// What such a tablet says of itself, as far as the drivers need it: report 2 in nine opaque bytes,
+/// feature 2 in one.
 const DESCRIPTOR: &[u8] = &[
     0x05, 0x0d, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x09, 0x00, 0x75, 0x08, 0x95, 0x09, 0x15, 0x00,
     0x26, 0xff, 0x00, 0x81, 0x02, 0x09, 0x00, 0x95, 0x01, 0xb1, 0x02, 0xc0,
@@ -158,7 +161,7 @@ fn reports(found: &Found) -> Vec<Vec<u8>> {
     let script =
         journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
     let (mut tablet, mut end) =
-        Tablet::new(found, script, TabletConfig { keeps: 100_000, ..TabletConfig::default() });
+        SimTablet::new(found, script, TabletConfig { keeps: 100_000, ..TabletConfig::default() });
     tablet.advance(journal.pen.end_us());
     let mut buf = [0; 64];
     let mut all = Vec::new();

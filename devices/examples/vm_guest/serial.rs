@@ -1,5 +1,6 @@
-//! Serial pens: the same simulated pen twice, each on a pseudo-terminal of its own. The kernel's driver reads one (attached by
-//! `inputattach`), our adaptor the other; after every packet both must say the same.
+//! Serial pens: the same simulated pen twice, each on a pseudo-terminal of its own. The kernel's
+//! driver reads one (attached by `inputattach`), our adaptor the other; after every packet both
+//! must say the same.
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
@@ -34,11 +35,11 @@ pub fn compare(protocol: Protocol, flag: &str, levels: f32) -> io::Result<bool> 
         Command::new("/bin/inputattach").args(["--always", flag, theirs.port()]).spawn()?;
     let clock = Clock::manual();
     let (factory, mut samples) = queue::channel(1024);
-    let config = serial::Config {
+    let config = serial::SerialConfig {
         port: Some(ours.port().into()),
         protocol: Some(protocol),
         device: DeviceId(1),
-        ..serial::Config::default()
+        ..serial::SerialConfig::default()
     };
     let _adaptor = serial::start(config, clock.clone(), factory.sender())?;
     let mut node = None;

@@ -1,56 +1,168 @@
 //! Which model an interface belongs to.
 
-use super::described::described;
-use super::{Catalogue, Found, Identification, Identity, Params};
-use crate::hid::descriptor::Descriptor;
-use crate::tablet::{Id, StringIs, Tablet};
+use std::collections::BTreeMap;
 
-/// A candidate's standing: higher is likelier.
-const STRING: i32 = 1000;
-const NAME: i32 = 200;
-const PARAMS: i32 = 100;
-const EXACT_LENGTH: i32 = 10;
+use super::described::{UC_LOGIC, described};
+use super::found::{Found, Identification};
+use super::identity::Identity;
+use super::params::Params;
+use super::rewritten::rewritten;
+use super::{Catalogue, size};
+use crate::descriptor::{CollectionKind, Descriptor};
+use crate::tablet::{Family, Id, StringIs, Tablet};
+
+/// What each piece of evidence adds to a candidate's score. A contradiction excludes the candidate
+/// and is no number.
+mod score {
+    /// The user added the model.
+    pub(super) const OWN: i32 = 10_000;
+    /// A USB string that tells models of one id apart.
+    pub(super) const STRING: i32 = 1000;
+    /// The device's name ends in the model's.
+    pub(super) const NAME: i32 = 200;
+    /// The same, but for a version at the end of either.
+    pub(super) const BASE_NAME: i32 = 100;
+    /// The descriptor states another size, and that can be believed.
+    pub(super) const OTHER_SIZE: i32 = -150;
+    /// The parameter string agrees.
+    pub(super) const PARAMS: i32 = 100;
+    /// The descriptor has the model's range of coordinates.
+    pub(super) const RANGE: i32 = 20;
+    /// The interface's longest report is as long as the model's.
+    pub(super) const LENGTH: i32 = 10;
+}
+
+/// A pair of ids is shared if it stands for so many models.
+const SHARED: usize = 3;
+/// How far a descriptor's believed size may be from a model's.
+const SIZE_TOLERANCE: f64 = 0.12;
+/// How far counts of one firmware may be from another's of the same model.
+const COUNT_TOLERANCE: f64 = 0.01;
 
 impl Catalogue {
     /// Which model an interface belongs to.
     pub fn identify(&self, who: &Identity) -> Identification {
         let descriptor = Descriptor::parse(&who.descriptor);
+        let d = descriptor.as_ref().ok();
+        if let Some(d) = d.filter(|d| rewritten(who, d).is_some()) {
+            let known = self.model_of_rewritten(who, d);
+            return described(who, d, known);
+        }
+        let (mut best, score) = self.candidates(who, d, false);
+        if best.is_empty() {
+            best = self.candidates(who, d, true).0;
+        } else if score < score::NAME
+            && self.shared(who)
+            && (d.is_some_and(|d| !d.pens.is_empty()) || Params::of(who).is_some())
+        {
+            // Neither a string nor a name speaks for it, its ids stand for many models, and the
+            // device states its own ranges.
+            return self.without_model(who);
+        }
+        match best.len() {
+            0 => self.without_model(who),
+            1 => {
+                let found = best.remove(0);
+                match d {
+                    Some(d) if found.id().parser == Family::Digitiser => {
+                        described(who, d, Some(&found.tablet))
+                    }
+                    _ => Identification::Identified(found),
+                }
+            }
+            _ => Identification::Ambiguous(best),
+        }
+    }
+
+    /// What an interface is if no model is known, or if its reports contradict the known one.
+    pub(crate) fn without_model(&self, who: &Identity) -> Identification {
+        match Descriptor::parse(&who.descriptor) {
+            Err(e) => Identification::Declined(e.to_string()),
+            Ok(d) => described(who, &d, None),
+        }
+    }
+
+    fn shared(&self, who: &Identity) -> bool {
+        self.tablets.iter().filter(|t| of_pid(t, who)).count() >= SHARED
+    }
+
+    /// The candidates with the best score, one for each way of decoding, and that score. `relaxed`:
+    /// a model that is alone with its ids may come with a report length that its file does not
+    /// have.
+    fn candidates(
+        &self,
+        who: &Identity,
+        d: Option<&Descriptor>,
+        relaxed: bool,
+    ) -> (Vec<Found>, i32) {
         let mut best: Vec<Found> = Vec::new();
-        let mut most = i32::MIN;
+        // A negative score is a stranger with a known id.
+        let mut most = 0;
+        // Where a string that is known tells these models apart, a model that it does not match is
+        // another one.
+        let ids = self.tablets.iter().flat_map(|t| &t.id);
+        let shared = self.shared(who);
+        let told_apart = ids
+            .filter(|id| id.vid == who.vid && id.pid == who.pid)
+            .flat_map(|id| id.strings.iter().filter_map(|s| StringIs::parse(s)))
+            .any(|pattern| who.string(pattern.index).is_some());
         for (i, tablet) in self.tablets.iter().enumerate() {
-            for (at, id) in tablet
+            let same_ids = tablet
                 .id
                 .iter()
                 .enumerate()
-                .filter(|(_, id)| id.vid == who.vid && id.pid == who.pid)
-            {
-                let own = if i < self.added { STRING * 10 } else { 0 };
-                let Some(score) = standing(tablet, id, who, descriptor.as_ref().ok()) else {
+                .filter(|(_, id)| id.vid == who.vid && id.pid == who.pid);
+            for (at, id) in same_ids {
+                let own = i < self.added;
+                let unmatched = told_apart && strings(id, who).is_none_or(|n| n == 0);
+                if !fits_length(id, who, d, relaxed) || unmatched && !own {
                     continue;
-                };
-                let score = score + own;
+                }
+                let Some(score) = standing(tablet, id, who, d, shared) else { continue };
+                let score = score + if own { score::OWN } else { 0 };
                 if score > most {
                     best.clear();
                     most = score;
                 }
                 if score == most && !best.iter().any(|f| alike(f, tablet, id)) {
-                    best.push(Found { tablet: tablet.clone(), at, note: None, described: false });
+                    best.push(Found {
+                        tablet: tablet.clone(),
+                        at,
+                        note: None,
+                        described: false,
+                        stated_pressure: Params::of(who).map(|p| p.max_pressure),
+                    });
                 }
             }
         }
-        // A model whose own parameters say otherwise is a stranger with a known id.
-        if most >= 0 {
-            match best.len() {
-                0 => {}
-                1 => return Identification::Identified(best.remove(0)),
-                _ => return Identification::Ambiguous(best),
-            }
-        }
-        match descriptor {
-            Err(e) => Identification::Declined(e.to_string()),
-            Ok(d) => described(who, &d),
-        }
+        (best, most)
     }
+
+    /// The model behind a descriptor that a kernel driver wrote: by the firmware's name, else by
+    /// the product's, else by its ranges where they are one model's only.
+    fn model_of_rewritten(&self, who: &Identity, d: &Descriptor) -> Option<&Tablet> {
+        let of_vendor = |t: &&Tablet| t.id.iter().any(|id| id.vid == who.vid);
+        let all = || self.tablets.iter().map(|t| &**t).filter(of_vendor);
+        let by_string = all().find(|t| {
+            let ids = t.id.iter().filter(|id| id.vid == who.vid);
+            ids.into_iter().any(|id| matches!(strings(id, who), Some(n) if n > 0))
+        });
+        let pen = rewritten(who, d)?;
+        let (x, y) = (pen.x.as_ref()?, pen.y.as_ref()?);
+        let near =
+            |a: i32, b: i32| f64::from(a.abs_diff(b)) <= COUNT_TOLERANCE * f64::from(a.max(b));
+        let agrees = |t: &&Tablet| near(t.area.max_x, x.max) && near(t.area.max_y, y.max);
+        let by_name = || all().find(|t| named(&t.name, &who.name) && agrees(t));
+        by_string.or_else(by_name).or_else(|| {
+            let same = |t: &&Tablet| agrees(t) && of_pid(t, who);
+            let mut many = all().filter(same);
+            many.next().filter(|_| many.next().is_none())
+        })
+    }
+}
+
+fn of_pid(tablet: &Tablet, who: &Identity) -> bool {
+    tablet.id.iter().any(|id| id.vid == who.vid && id.pid == who.pid)
 }
 
 /// Two entries that decode every report alike are one.
@@ -62,58 +174,133 @@ fn alike(f: &Found, tablet: &Tablet, id: &Id) -> bool {
         && f.tablet.pen.max_pressure == tablet.pen.max_pressure
 }
 
-/// `None`: certainly not this one.
-fn standing(tablet: &Tablet, id: &Id, who: &Identity, d: Option<&Descriptor>) -> Option<i32> {
+/// Whether the interface has reports of the length that the model's file has.
+fn fits_length(id: &Id, who: &Identity, d: Option<&Descriptor>, relaxed: bool) -> bool {
+    let has = |n: usize| who.seen_lengths.contains(&n) || d.is_some_and(|d| d.declares_length(n));
+    if relaxed {
+        return id.skip == 0 && usual_lengths(id.parser).iter().any(|n| has(*n));
+    }
+    match usize::from(id.length) {
+        // The product id alone decides, unless the interface is for fingers only.
+        0 => !d.is_some_and(|d| d.kinds.contains(&CollectionKind::Touch) && d.pens.is_empty()),
+        n => has(n),
+    }
+}
+
+/// Lengths of the pen's reports in families whose firmwares differ in them, in bytes with the id.
+fn usual_lengths(family: Family) -> &'static [usize] {
+    match family {
+        Family::WacomSimple => &[9, 10],
+        Family::WacomIntuosV1 => &[10],
+        Family::WacomGraphire | Family::WacomGraphire4 | Family::WacomBamboo => &[8, 9],
+        Family::WacomIntuosV2 => &[17, 27, 33, 64],
+        Family::Kye | Family::KyePlain => &[6, 8],
+        _ => &[],
+    }
+}
+
+/// How many of a model's string patterns match. `None`: one is contradicted. Patterns on one index
+/// are alternatives; of each index one must match, as far as it is known.
+fn strings(id: &Id, who: &Identity) -> Option<i32> {
+    let mut by_index: BTreeMap<u8, bool> = BTreeMap::new();
+    for pattern in id.strings.iter().filter_map(|s| StringIs::parse(s)) {
+        if let Some(text) = who.string(pattern.index) {
+            *by_index.entry(pattern.index).or_default() |= pattern.matches(&text);
+        }
+    }
+    by_index.values().all(|m| *m).then_some(by_index.len() as i32)
+}
+
+/// A candidate's score; `None`: something that the device states contradicts it.
+fn standing(
+    tablet: &Tablet,
+    id: &Id,
+    who: &Identity,
+    d: Option<&Descriptor>,
+    shared: bool,
+) -> Option<i32> {
     if id.interface.is_some() && who.interface.is_some() && id.interface != who.interface {
         return None;
     }
-    let mut score = 0;
+    let matched = strings(id, who)?;
+    let mut score = if matched > 0 { score::STRING + matched } else { 0 };
     let n = usize::from(id.length);
-    let seen = who.seen_lengths.contains(&n);
-    if n > 0 && !seen && !d.is_some_and(|d| d.declares_length(n)) {
-        return None;
-    }
-    if n == 0
-        && d.is_some_and(|d| {
-            d.kinds.contains(&crate::hid::descriptor::Kind::Touch) && d.pens.is_empty()
-        })
-    {
-        return None;
-    }
-    if seen || d.is_some_and(|d| d.longest_input() == n) {
-        score += EXACT_LENGTH;
-    }
-    let patterns: Vec<StringIs> = id.strings.iter().filter_map(|s| StringIs::parse(s)).collect();
-    let known: Vec<(StringIs, String)> =
-        patterns.iter().filter_map(|p| Some((*p, who.string(p.index)?))).collect();
-    if known.iter().any(|(p, text)| p.matches(text)) {
-        score += STRING;
-    } else if !known.is_empty() {
-        return None;
+    if who.seen_lengths.contains(&n) || d.is_some_and(|d| d.longest_input() == n) {
+        score += score::LENGTH;
     }
     if named(&tablet.name, &who.name) {
-        score += NAME;
+        score += score::NAME;
+    } else if named(base(&tablet.name), base(&who.name)) {
+        score += score::BASE_NAME;
     }
-    if let Some(p) = Params::of(who) {
-        let same = tablet.area.max_x == p.max_x as i32 && tablet.area.max_y == p.max_y as i32;
-        let near = |a: i32, b: u32| (f64::from(a) - f64::from(b)).abs() <= 0.01 * f64::from(a);
-        score += match (same, near(tablet.area.max_x, p.max_x) && near(tablet.area.max_y, p.max_y))
-        {
-            (true, _) if tablet.pen.max_pressure == p.max_pressure => PARAMS,
-            (true, _) => PARAMS / 2,
-            (_, true) => 0,
-            _ => -10 * PARAMS,
-        };
+    let uc_logic = UC_LOGIC.contains(&who.vid);
+    let params = if uc_logic { Params::all(who) } else { Vec::new() };
+    if !params.is_empty() {
+        score += params.iter().filter_map(|p| agreement(tablet, p, shared)).max()?;
+    }
+    if uc_logic && params.is_empty() {
+        score += d.map_or(0, |d| by_descriptor(tablet, d));
     }
     Some(score)
 }
 
-/// The device's name holds the model's: its last word, letters and digits only.
+/// What one parameter string adds; `None`: it contradicts the model.
+fn agreement(tablet: &Tablet, p: &Params, shared: bool) -> Option<i32> {
+    let a = &tablet.area;
+    let near =
+        |a: i32, b: u32| (f64::from(a) - f64::from(b)).abs() <= COUNT_TOLERANCE * f64::from(a);
+    let same = a.max_x == p.max_x as i32 && a.max_y == p.max_y as i32;
+    if tablet.pen.max_pressure.abs_diff(p.max_pressure) > 1 {
+        return None;
+    }
+    // Of models that share their ids, the one with the same counts may be of another size. The size
+    // of a model with ids of its own is known better than the resolution that it states.
+    let (w, h) = p.size_mm();
+    if shared && (other_size(w, a.width_mm) || other_size(h, a.height_mm)) {
+        return None;
+    }
+    match (same, near(a.max_x, p.max_x) && near(a.max_y, p.max_y)) {
+        (true, _) => Some(score::PARAMS),
+        (_, true) => Some(0),
+        _ => None,
+    }
+}
+
+/// What the described pen reports add or take away.
+fn by_descriptor(tablet: &Tablet, d: &Descriptor) -> i32 {
+    let mut score = 0;
+    for pen in d.pens.iter().filter(|p| !p.as_mouse) {
+        let (Some(x), Some(y)) = (&pen.x, &pen.y) else { continue };
+        if (x.max, y.max) == (tablet.area.max_x, tablet.area.max_y) {
+            score = score.max(score::RANGE);
+        } else if let Some((w, h)) = size::believed(x, y, true)
+            && (other_size(w, tablet.area.width_mm) || other_size(h, tablet.area.height_mm))
+        {
+            return score::OTHER_SIZE;
+        }
+    }
+    score
+}
+
+fn other_size(a: f64, b: f64) -> bool {
+    (a - b).abs() > SIZE_TOLERANCE * b
+}
+
+/// A name without what stands in parentheses and without a version: `GT-191 V2` is a `GT-191`.
+fn base(name: &str) -> &str {
+    let name = name.split_once('(').map_or(name, |(before, _)| before).trim_end();
+    match name.rsplit_once(' ') {
+        Some((before, v)) if v.len() == 2 && v.starts_with(['V', 'v']) => before,
+        _ => name,
+    }
+}
+
+/// Whether the device's name ends in the model's, letters and digits only, the brand left out.
 fn named(model: &str, device: &str) -> bool {
     let plain = |s: &str| {
         s.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase()
     };
-    let without_maker = model.split_once(' ').map_or(model, |(_, rest)| rest);
-    let (full, device) = (plain(without_maker), plain(device));
+    let without_brand = model.split_once(' ').map_or(model, |(_, rest)| rest);
+    let (full, device) = (plain(without_brand), plain(device));
     full.len() >= 3 && full.chars().any(|c| c.is_ascii_digit()) && device.ends_with(&full)
 }

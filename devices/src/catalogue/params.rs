@@ -1,22 +1,40 @@
-//! The parameters that UC-Logic's tablets keep in USB strings 200 and 100. Layout: Linux `hid-uclogic-params.c`.
+//! The parameters that UC-Logic's tablets keep in USB strings 200 and 100. Layout: Linux
+//! `hid-uclogic-params.c`.
 
-use super::Identity;
+use super::identity::Identity;
 
+/// What a tablet states of its pen. Believed only where every figure is plausible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Params {
+    /// Counts at the right edge.
     pub max_x: u32,
+    /// Counts at the bottom edge.
     pub max_y: u32,
+    /// Counts at full pressure.
     pub max_pressure: u32,
-    /// Lines an inch.
+    /// Lines an inch, the same along both axes.
     pub resolution: u32,
 }
 
 impl Params {
-    /// From string 200 where there is one, else 100. `None` where they are absent, too short or say nothing.
+    /// From string 200 where there is one, else from string 100. `None` where both are absent, too
+    /// short, or hold something else.
     pub fn of(who: &Identity) -> Option<Params> {
+        Params::all(who).first().copied()
+    }
+
+    /// Whether string 200 holds parameters: the tablet speaks the second protocol.
+    pub fn is_long(who: &Identity) -> bool {
+        who.strings.iter().any(|(i, b)| *i == 200 && Params::long(b).is_some())
+    }
+
+    /// What string 200 states, then what string 100 does: a tablet may have both, for its two
+    /// protocols.
+    pub fn all(who: &Identity) -> Vec<Params> {
         let raw =
             |index: u8| who.strings.iter().find(|(i, _)| *i == index).map(|(_, b)| b.as_slice());
-        raw(200).and_then(Params::long).or_else(|| raw(100).and_then(Params::short))
+        let long = raw(200).and_then(Params::long);
+        long.into_iter().chain(raw(100).and_then(Params::short)).collect()
     }
 
     fn long(b: &[u8]) -> Option<Params> {
@@ -56,7 +74,7 @@ impl Params {
         good.then_some(self)
     }
 
-    /// Size of the active area.
+    /// Width and height of the active area in mm.
     pub fn size_mm(&self) -> (f64, f64) {
         let mm = |v: u32| f64::from(v) * 25.4 / f64::from(self.resolution);
         (mm(self.max_x), mm(self.max_y))

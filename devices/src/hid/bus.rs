@@ -19,8 +19,10 @@ pub struct Node {
     pub path: String,
     /// Empty where the device has none.
     pub serial: String,
+    /// What can be read of the interface without opening it.
     pub who: Identity,
-    /// It may hold a pen: a digitiser, a maker's own usage, or an absolute pointer. The others are not even opened.
+    /// It may hold a pen: a digitiser, a maker's own usage, or an absolute pointer. The others are
+    /// not even opened.
     pub may_be_pen: bool,
 }
 
@@ -28,6 +30,10 @@ pub struct Node {
 pub trait Bus: Send {
     /// Everything plugged in now.
     fn nodes(&mut self) -> io::Result<Vec<Node>>;
+    /// Opens an interface.
+    ///
+    /// # Errors
+    /// The interface is gone, or the user may not open it ([`io::ErrorKind::PermissionDenied`]).
     fn open(&mut self, node: &Node) -> io::Result<Box<dyn Transport>>;
     /// A cheap number that changes when something was plugged in or out; `None`: not known, look.
     fn stamp(&self) -> Option<u64> {
@@ -72,6 +78,8 @@ impl Bus for HidApiBus {
                     pid: info.product_id(),
                     interface: u8::try_from(info.interface_number()).ok(),
                     name: info.product_string().unwrap_or_default().to_owned(),
+                    uniq: uevent(&path, "HID_UNIQ"),
+                    driver: uevent(&path, "DRIVER"),
                     descriptor: descriptor_of(&path),
                     ..Identity::default()
                 },
@@ -105,6 +113,22 @@ fn descriptor_of(path: &str) -> Vec<u8> {
         return Vec::new();
     }
     std::fs::read(format!("/sys/class/hidraw/{name}/device/report_descriptor")).unwrap_or_default()
+}
+
+/// A value of the HID device's uevent, where the system shows one: Linux.
+fn uevent(path: &str, key: &str) -> String {
+    let name = path.rsplit('/').next().unwrap_or_default();
+    if !name.starts_with("hidraw") {
+        return String::new();
+    }
+    let text = std::fs::read_to_string(format!("/sys/class/hidraw/{name}/device/uevent"));
+    value_of(&text.unwrap_or_default(), key)
+}
+
+/// The value of `KEY=value` in a uevent.
+fn value_of(uevent: &str, key: &str) -> String {
+    let pairs = uevent.lines().filter_map(|line| line.split_once('='));
+    pairs.filter(|(k, _)| *k == key).map(|(_, v)| v.to_owned()).next().unwrap_or_default()
 }
 
 /// What only an open device tells: the descriptor where it is not known yet, and indexed strings.
@@ -167,5 +191,24 @@ fn to_io(e: HidError) -> io::Error {
             let kind = if denied { io::ErrorKind::PermissionDenied } else { io::ErrorKind::Other };
             io::Error::new(kind, text)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_uevent_names_the_driver_and_the_firmware() {
+        let text = "DRIVER=uclogic\nHID_ID=0003:0000256C:0000006D\nHID_NAME=HUION Huion Tablet\n\
+                    HID_PHYS=usb-1/input0\nHID_UNIQ=HUION_T173_190619\n";
+        assert_eq!(value_of(text, "DRIVER"), "uclogic");
+        assert_eq!(value_of(text, "HID_UNIQ"), "HUION_T173_190619");
+        assert_eq!(value_of(text, "HID_"), "");
+        assert_eq!(value_of("", "DRIVER"), "");
+        let who = Identity { uniq: value_of(text, "HID_UNIQ"), ..Identity::default() };
+        assert_eq!(who.string(201).as_deref(), Some("HUION_T173_190619"));
+        let serial = Identity { uniq: "1ABC23".to_owned(), ..Identity::default() };
+        assert_eq!(serial.string(201), None, "a serial number is no firmware");
     }
 }

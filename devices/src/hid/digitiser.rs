@@ -1,33 +1,63 @@
-//! Any pen that its report descriptor describes.
+//! Any pen and any pad that a report descriptor describes.
 
-use super::descriptor::{Descriptor, PenLayout};
-use super::report::{Parsed, PenReport};
-use crate::Tool;
+use crate::descriptor::{Bits, Descriptor, PadFields, PenLayout};
+use crate::report::{Batch, PadReport, Parsed, PenReport};
+use crate::sample::Tool;
 
-pub fn parse(b: &[u8], descriptor: &Descriptor) -> Parsed {
-    let of_id = |l: &&PenLayout| l.report_id.is_none_or(|id| b.first() == Some(&id));
-    let Some(layout) = descriptor.pens.iter().find(of_id) else { return Parsed::Nothing };
-    let set = |bits: &Option<super::descriptor::Bits>| bits.as_ref().and_then(|f| f.set(b));
-    if set(&layout.in_range) == Some(false) {
-        // The kernel's generic Wacom driver keeps such a pen near, too.
-        return if set(&layout.sense) == Some(true) { Parsed::Nothing } else { Parsed::Away };
+/// Usages of the digitiser page that a selector may press.
+const TIP: u32 = 0x000d_0042;
+const BARREL: u32 = 0x000d_0044;
+const SECOND_BARREL: [u32; 2] = [0x000d_005a, 0x000d_0046];
+
+/// Reads one report, its id first where it has one, by the descriptor.
+pub fn parse(b: &[u8], descriptor: &Descriptor, out: &mut Batch) {
+    let own = |id: Option<u8>| id.is_none_or(|id| b.first() == Some(&id));
+    if let Some(layout) = descriptor.pens.iter().find(|l| own(l.report_id)) {
+        return out.push(pen(b, layout));
     }
-    let read = |bits: &Option<super::descriptor::Bits>| bits.as_ref().and_then(|f| f.read(b));
-    let (Some(x), Some(y)) = (read(&layout.x), read(&layout.y)) else { return Parsed::Broken };
-    let (tip, eraser) = (set(&layout.tip), set(&layout.eraser));
-    let inverted = set(&layout.invert).unwrap_or(false) || eraser.unwrap_or(false);
-    let barrel = |i: usize| u32::from(set(&layout.barrel[i]).unwrap_or(false)) << i;
-    let degrees = |bits: &Option<super::descriptor::Bits>, full: f64| {
-        bits.as_ref().and_then(|f| f.read(b).map(|v| f.degrees(v, full) as f32))
+    if let Some(fields) = descriptor.pads.iter().find(|p| own(p.report_id)) {
+        pad(b, fields, out);
+    }
+}
+
+fn set(bits: &Option<Bits>, b: &[u8]) -> Option<bool> {
+    bits.as_ref().and_then(|f| f.set(b))
+}
+
+fn read(bits: &Option<Bits>, b: &[u8]) -> Option<i32> {
+    bits.as_ref().and_then(|f| f.read(b))
+}
+
+/// The field's value in degrees; `full` is its range where the descriptor states no unit.
+fn degrees(bits: &Option<Bits>, b: &[u8], full: f64) -> Option<f32> {
+    bits.as_ref().and_then(|f| f.read(b).map(|v| f.degrees(v, full) as f32))
+}
+
+fn pen(b: &[u8], layout: &PenLayout) -> Parsed {
+    if set(&layout.in_range, b) == Some(false) {
+        // A pen that is sensed stays near, as it does in the kernel's generic Wacom driver.
+        return if set(&layout.sense, b) == Some(true) { Parsed::Nothing } else { Parsed::Away };
+    }
+    let (Some(x), Some(y)) = (read(&layout.x, b), read(&layout.y, b)) else {
+        return Parsed::Broken;
     };
-    let tilt = match (degrees(&layout.tilt[0], 90.0), degrees(&layout.tilt[1], 90.0)) {
+    let (tip, eraser) = (set(&layout.tip, b), set(&layout.eraser, b));
+    let inverted = set(&layout.invert, b).unwrap_or(false) || eraser.unwrap_or(false);
+    let pressed = layout.selector.as_ref().map(|s| s.pressed(b));
+    let selected = |usage: u32| pressed.map(|p| p == Some(usage));
+    let barrel = |i: usize| u32::from(set(&layout.barrel[i], b).unwrap_or(false)) << i;
+    let second = SECOND_BARREL.iter().any(|u| selected(*u) == Some(true));
+    let buttons = u32::from(selected(BARREL) == Some(true)) | u32::from(second) << 1;
+    let tilt = match (degrees(&layout.tilt[0], b, 90.0), degrees(&layout.tilt[1], b, 90.0)) {
         (Some(x), Some(y)) => Some([x, y]),
         _ => None,
     };
     Parsed::Pen(PenReport {
         tool: Some(if inverted { Tool::Eraser } else { Tool::Pen }),
         tip: match (tip, eraser) {
-            (None, None) => None,
+            // A selector names one control: a pressed barrel button hides the tip, so that a tip
+            // that is not selected says nothing.
+            (None, None) => selected(TIP).filter(|tip| *tip || buttons == 0),
             (a, b) => Some(a.unwrap_or(false) || b.unwrap_or(false)),
         },
         pos: Some([x, y]),
@@ -36,17 +66,50 @@ pub fn parse(b: &[u8], descriptor: &Descriptor) -> Parsed {
             .as_ref()
             .and_then(|f| f.read(b).map(|v| v.saturating_sub(f.min).max(0) as u32)),
         tilt,
-        twist: degrees(&layout.twist, 360.0).map(f32::to_radians),
-        distance: read(&layout.distance).map(|d| d.max(0) as u32),
-        buttons: Some(barrel(0) | barrel(1) | barrel(2)),
+        twist: degrees(&layout.twist, b, 360.0).map(f32::to_radians),
+        distance: read(&layout.distance, b).map(|d| d.max(0) as u32),
+        buttons: Some(barrel(0) | barrel(1) | barrel(2) | buttons),
     })
+}
+
+/// Keys first, then each control that turns: the first two relative ones are wheels, the first two
+/// absolute ones are rings or strips.
+pub(super) fn pad(b: &[u8], fields: &PadFields, out: &mut Batch) {
+    if !fields.keys.is_empty() {
+        let bit = |(n, bits): &(u32, Bits)| u32::from(bits.set(b).unwrap_or(false)) << n;
+        let keys = fields.keys.iter().map(bit).fold(0, |all, one| all | one);
+        out.push(Parsed::Pad(PadReport { keys: Some(keys), ..PadReport::default() }));
+    }
+    let (mut wheels, mut strips) = (0u8, 0u8);
+    for turn in &fields.turns {
+        let Some(v) = turn.bits.read(b) else { continue };
+        if turn.relative {
+            if v != 0 {
+                let turned = Some((wheels, v));
+                out.push(Parsed::Pad(PadReport { turned, ..PadReport::default() }));
+            }
+            wheels += 1;
+        } else {
+            let span = (f64::from(turn.bits.max) - f64::from(turn.bits.min)).max(1.0);
+            let place = ((f64::from(v) - f64::from(turn.bits.min)) / span) as f32;
+            let touched = match &fields.touched {
+                Some(bits) => bits.set(b).unwrap_or(false),
+                // Outside its range the control says that it is not touched.
+                None => (turn.bits.min..=turn.bits.max).contains(&v),
+            };
+            let strip = Some((strips, touched.then_some(place)));
+            out.push(Parsed::Pad(PadReport { strip, ..PadReport::default() }));
+            strips += 1;
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Tip, barrel, eraser, invert, in range, three bits of padding; X and Y in 16 bits, pressure in 16, X tilt in 8.
+    /// Tip, barrel, eraser, invert, in range, three bits of padding; X and Y in 16 bits, pressure
+    /// in 16, X tilt in 8.
     const PEN: &[u8] = &[
         0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x07, 0x09, 0x20, 0xa1, 0x00, 0x09, 0x42, 0x09,
         0x44, 0x09, 0x45, 0x09, 0x3c, 0x09, 0x32, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x05,
@@ -57,8 +120,14 @@ mod tests {
         0x02, 0x81, 0x02, 0xc0, 0xc0,
     ];
 
+    fn first(report: &[u8], descriptor: &Descriptor) -> Parsed {
+        let mut out = Batch::default();
+        parse(report, descriptor, &mut out);
+        out.as_slice().first().copied().unwrap_or_default()
+    }
+
     fn read(report: &[u8]) -> Parsed {
-        parse(report, &Descriptor::parse(PEN).unwrap())
+        first(report, &Descriptor::parse(PEN).unwrap())
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! Which parser reads a report: the closed set of families, each with what it must remember.
 
-use super::descriptor::Descriptor;
-use super::report::{PadReport, Parsed};
 use super::uclogic::Packing;
 use super::{
-    digitiser, makers, uclogic, wacom_bamboo, wacom_display, wacom_graphire, wacom_intuos,
-    wacom_pad, wacom_pro,
+    digitiser, uclogic, vendors, wacom_bamboo, wacom_bluetooth, wacom_display, wacom_graphire,
+    wacom_intuos, wacom_pad, wacom_pro,
 };
+use crate::descriptor::Descriptor;
+use crate::report::{Batch, Parsed};
 use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 
 /// libinput's time of silence after which a pen that never says so has left.
@@ -15,24 +15,40 @@ const SILENCE_US: u64 = 50_000;
 /// A family bound to one model.
 #[derive(Debug, Clone)]
 pub enum Engine {
-    Intuos(wacom_intuos::Traits, wacom_intuos::Memory, Option<PadLayout>),
+    /// Intuos 1 to 5, Intuos Pro, most Cintiqs, with the layout of their pads.
+    Intuos(wacom_intuos::IntuosTraits, wacom_intuos::IntuosMemory, Option<PadLayout>),
+    /// Bamboo, One by Wacom, Intuos of 2013.
     Simple {
+        /// Greatest height in counts; 0 where height is not sent.
         max_distance: u32,
-        memory: wacom_bamboo::Memory,
+        /// The tool of the present visit.
+        memory: wacom_bamboo::BambooMemory,
     },
+    /// Bamboo Pad.
     BambooPad,
-    Graphire(wacom_graphire::Kind),
+    /// Graphire and the tablets that share its layout.
+    Graphire(wacom_graphire::GraphireKind),
+    /// PenPartner.
     PenPartner {
+        /// A report of the newer kind was seen, which says when the pen leaves.
         leaves: bool,
     },
-    Display(wacom_display::Kind, u32, wacom_display::Memory),
-    Pro(wacom_pro::Kind),
-    UcLogic(uclogic::Traits, uclogic::Memory),
+    /// Pen displays of the PL, PTU and DTU series and tablet PCs, with their full pressure.
+    Display(wacom_display::DisplayKind, u32, wacom_display::DisplayMemory),
+    /// Intuos Pro of 2017 and 2025, Intuos of 2018, Wacom One.
+    Pro(wacom_pro::ProKind),
+    /// The same over Bluetooth.
+    Bluetooth(wacom_bluetooth::BluetoothKind, wacom_bluetooth::BluetoothMemory),
+    /// UC-Logic, Huion, XP-Pen and their many brands.
+    UcLogic(uclogic::UcLogicTraits, uclogic::UcLogicMemory),
     /// Families without memory; `leaves`: they say when the pen goes.
-    Maker {
+    Vendor {
+        /// Reads one report.
         parse: fn(&[u8]) -> Parsed,
+        /// The reports say when the pen leaves.
         leaves: bool,
     },
+    /// By the report descriptor.
     Digitiser(Box<Descriptor>),
 }
 
@@ -48,16 +64,22 @@ impl Engine {
             let untilted =
                 described.pens.iter().filter(|p| p.tilt[0].is_none()).filter_map(|p| p.report_id);
             let untilted = untilted.filter(|id| *id < 32).fold(0, |bits, id| bits | 1 << id);
-            let traits =
-                uclogic::Traits { packing, range_bit, no_tilt: quirk(Quirk::NoTilt), untilted };
-            Engine::UcLogic(traits, uclogic::Memory::default())
+            let traits = uclogic::UcLogicTraits {
+                packing,
+                range_bit,
+                no_tilt: quirk(Quirk::NoTilt),
+                untilted,
+            };
+            Engine::UcLogic(traits, uclogic::UcLogicMemory::default())
         };
-        let maker = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Maker { parse, leaves };
-        let display =
-            |kind| Engine::Display(kind, tablet.pen.max_pressure, wacom_display::Memory::default());
+        let vendor = |parse: fn(&[u8]) -> Parsed, leaves| Engine::Vendor { parse, leaves };
+        let display = |kind| {
+            Engine::Display(kind, tablet.pen.max_pressure, wacom_display::DisplayMemory::default())
+        };
+        let bluetooth = |kind| Engine::Bluetooth(kind, wacom_bluetooth::BluetoothMemory::default());
         match id.parser {
             Family::WacomIntuosV1 => Engine::Intuos(
-                wacom_intuos::Traits {
+                wacom_intuos::IntuosTraits {
                     halved: quirk(Quirk::Halved),
                     halved_pressure: tablet.pen.max_pressure < 2047,
                     needs_ready: quirk(Quirk::NeedsReady),
@@ -65,77 +87,85 @@ impl Engine {
                     height_inverted: quirk(Quirk::HeightInverted),
                     max_distance: tablet.pen.max_distance,
                 },
-                wacom_intuos::Memory::default(),
+                wacom_intuos::IntuosMemory::default(),
                 tablet.pad.layout,
             ),
             Family::WacomSimple => Engine::Simple {
                 max_distance: tablet.pen.max_distance,
-                memory: wacom_bamboo::Memory::default(),
+                memory: wacom_bamboo::BambooMemory::default(),
             },
             Family::WacomBambooPad => Engine::BambooPad,
-            Family::WacomGraphire => Engine::Graphire(wacom_graphire::Kind::Graphire),
-            Family::WacomGraphire4 => Engine::Graphire(wacom_graphire::Kind::Graphire4),
-            Family::WacomBamboo => Engine::Graphire(wacom_graphire::Kind::Ring),
-            Family::WacomGraphireBluetooth => Engine::Graphire(wacom_graphire::Kind::Bluetooth),
+            Family::WacomGraphire => Engine::Graphire(wacom_graphire::GraphireKind::Graphire),
+            Family::WacomGraphire4 => Engine::Graphire(wacom_graphire::GraphireKind::Graphire4),
+            Family::WacomBamboo => Engine::Graphire(wacom_graphire::GraphireKind::Ring),
+            Family::WacomGraphireBluetooth => {
+                Engine::Graphire(wacom_graphire::GraphireKind::Bluetooth)
+            }
             Family::WacomPenPartner => Engine::PenPartner { leaves: false },
-            Family::WacomPl => display(wacom_display::Kind::Pl),
-            Family::WacomPtu => display(wacom_display::Kind::Ptu),
-            Family::WacomDtu => display(wacom_display::Kind::Dtu),
-            Family::WacomDtus => display(wacom_display::Kind::Dtus),
-            Family::WacomTabletPc => display(wacom_display::Kind::TabletPc),
-            Family::WacomIntuosV2 => Engine::Pro(wacom_pro::Kind::V2),
-            Family::WacomIntuosV3 => Engine::Pro(wacom_pro::Kind::V3),
-            Family::WacomOne => Engine::Pro(wacom_pro::Kind::One),
+            Family::WacomPl => display(wacom_display::DisplayKind::Pl),
+            Family::WacomPtu => display(wacom_display::DisplayKind::Ptu),
+            Family::WacomDtu => display(wacom_display::DisplayKind::Dtu),
+            Family::WacomDtus => display(wacom_display::DisplayKind::Dtus),
+            Family::WacomTabletPc => display(wacom_display::DisplayKind::TabletPc),
+            Family::WacomIntuosV2 => Engine::Pro(wacom_pro::ProKind::V2),
+            Family::WacomProBluetooth => bluetooth(wacom_bluetooth::BluetoothKind::Pro),
+            Family::WacomIntuosBluetooth => bluetooth(wacom_bluetooth::BluetoothKind::Intuos),
+            Family::WacomIntuosV3 => Engine::Pro(wacom_pro::ProKind::V3),
+            Family::WacomOne => Engine::Pro(wacom_pro::ProKind::One),
             Family::UcLogic => uclogic(Packing::XpPen),
             Family::XpPenOffset => uclogic(Packing::XpPenOffset),
             Family::XpPenGen2 => uclogic(Packing::XpPenGen2),
             Family::Huion => uclogic(Packing::Huion),
             Family::Floogoo => uclogic(Packing::Fma),
-            Family::Veikk => maker(|b| makers::veikk(b, false), true),
-            Family::VeikkA15 => maker(|b| makers::veikk(b, true), true),
-            Family::Acepen => maker(makers::acepen, true),
-            Family::Kye => maker(makers::kye, false),
-            Family::KyePlain => maker(makers::kye_plain, false),
-            Family::TenMoons => maker(makers::ten_moons, false),
-            Family::Plain => maker(makers::plain, false),
-            Family::Xenx => maker(makers::xenx, true),
-            Family::RobotPen => maker(makers::robot_pen, true),
-            Family::WoodPad => maker(makers::wood_pad, true),
+            Family::Veikk => vendor(|b| vendors::veikk(b, false), true),
+            Family::VeikkA15 => vendor(|b| vendors::veikk(b, true), true),
+            Family::Acepen => vendor(vendors::acepen, true),
+            Family::Kye => vendor(vendors::kye, false),
+            Family::KyePlain => vendor(vendors::kye_plain, false),
+            Family::TenMoons => vendor(vendors::ten_moons, false),
+            Family::Plain => vendor(vendors::plain, false),
+            Family::Xenx => vendor(vendors::xenx, true),
+            Family::RobotPen => vendor(vendors::robot_pen, true),
+            Family::WoodPad => vendor(vendors::wood_pad, true),
             Family::Digitiser => Engine::Digitiser(Box::new(described)),
         }
     }
 
-    /// What a report says of the pen, and of the pad where they share it.
-    pub fn parse(&mut self, b: &[u8]) -> (Parsed, Option<PadReport>, Option<PadReport>) {
+    /// Reads one report, its id first where it has one.
+    pub fn parse(&mut self, b: &[u8], out: &mut Batch) {
         match self {
             Engine::Intuos(traits, memory, pad) => {
                 match pad.and_then(|layout| wacom_pad::parse(b, layout)) {
-                    Some([first, second]) => (Parsed::Nothing, Some(first), Some(second)),
-                    None => (wacom_intuos::parse(b, traits, memory), None, None),
+                    Some(halves) => halves.into_iter().for_each(|r| out.push(Parsed::Pad(r))),
+                    None => out.push(wacom_intuos::parse(b, traits, memory)),
                 }
             }
             Engine::Simple { max_distance, memory } => {
-                (wacom_bamboo::parse(b, *max_distance, memory), None, None)
+                out.push(wacom_bamboo::parse(b, *max_distance, memory));
             }
-            Engine::BambooPad => (wacom_bamboo::bamboo_pad(b), None, None),
+            Engine::BambooPad => out.push(wacom_bamboo::bamboo_pad(b)),
             Engine::Graphire(kind) => {
                 let parsed = wacom_graphire::parse(b, *kind);
-                let pad =
-                    if parsed == Parsed::Nothing { None } else { wacom_graphire::pad(b, *kind) };
-                (parsed, pad, None)
+                out.push(parsed);
+                if parsed != Parsed::Nothing {
+                    wacom_graphire::pad(b, *kind)
+                        .into_iter()
+                        .for_each(|r| out.push(Parsed::Pad(r)));
+                }
             }
             Engine::PenPartner { leaves } => {
                 let parsed = wacom_graphire::pen_partner(b);
                 *leaves |= parsed == Parsed::Away;
-                (parsed, None, None)
+                out.push(parsed);
             }
             Engine::Display(kind, max, memory) => {
-                (wacom_display::parse(b, *kind, *max, memory), None, None)
+                out.push(wacom_display::parse(b, *kind, *max, memory));
             }
-            Engine::Pro(kind) => (wacom_pro::parse(b, *kind), None, None),
-            Engine::UcLogic(traits, memory) => (uclogic::parse(b, traits, memory), None, None),
-            Engine::Maker { parse, .. } => (parse(b), None, None),
-            Engine::Digitiser(d) => (digitiser::parse(b, d), None, None),
+            Engine::Pro(kind) => wacom_pro::parse(b, *kind, out),
+            Engine::Bluetooth(kind, memory) => wacom_bluetooth::parse(b, *kind, memory, out),
+            Engine::UcLogic(traits, memory) => out.push(uclogic::parse(b, traits, memory)),
+            Engine::Vendor { parse, .. } => out.push(parse(b)),
+            Engine::Digitiser(d) => digitiser::parse(b, d, out),
         }
     }
 
@@ -147,7 +177,8 @@ impl Engine {
         }
     }
 
-    /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says, in the same layout.
+    /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says,
+    /// in the same layout.
     pub fn follows_descriptor(&self) -> bool {
         matches!(self, Engine::UcLogic(..))
     }
@@ -161,9 +192,9 @@ impl Engine {
     pub fn silence_us(&self) -> Option<u64> {
         let mute = match self {
             Engine::Intuos(..) | Engine::Simple { .. } | Engine::Graphire(_) => false,
-            Engine::Display(..) | Engine::Pro(_) => false,
+            Engine::Display(..) | Engine::Pro(_) | Engine::Bluetooth(..) => false,
             Engine::BambooPad => true,
-            Engine::PenPartner { leaves } | Engine::Maker { leaves, .. } => !leaves,
+            Engine::PenPartner { leaves } | Engine::Vendor { leaves, .. } => !leaves,
             Engine::UcLogic(_, memory) => memory.is_mute(),
             Engine::Digitiser(d) => d.pens.iter().any(|p| p.in_range.is_none()),
         };

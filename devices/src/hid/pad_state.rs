@@ -1,9 +1,10 @@
 //! The pad's complete state, from reports that say a part of it.
 
-use super::report::PadReport;
+use crate::report::PadReport;
 use crate::sample::{Body, DeviceId, Pad, Sample};
 
-/// One pad on one device. A sample is made only when something changed: most reports repeat the last.
+/// One pad on one device. A sample is made only when something changed: most reports repeat the
+/// last.
 #[derive(Debug, Clone)]
 pub struct PadState {
     device: DeviceId,
@@ -11,10 +12,12 @@ pub struct PadState {
 }
 
 impl PadState {
+    /// A pad with nothing pressed and every wheel at 0.
     pub fn new(device: DeviceId) -> Self {
         PadState { device, pad: Pad::default() }
     }
 
+    /// Takes what one report says, and emits the new state if it differs from the last.
     pub fn report(&mut self, r: &PadReport, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         let mut next = self.pad;
         if let Some(keys) = r.keys {

@@ -1,5 +1,5 @@
-//! A dedicated thread that reads one interface. The kernel keeps the oldest 63 reports of a stalled reader and drops the
-//! newest, a pen-up among them: so nothing else is done here, ever.
+//! A dedicated thread that reads one interface. The kernel keeps the oldest 63 reports of a stalled
+//! reader and drops the newest, a pen-up among them: so nothing else is done here, ever.
 
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,47 +8,56 @@ use serde::Serialize;
 
 use super::decoder::Decoder;
 use super::transport::Transport;
-use crate::Clock;
 use crate::catalogue::Found;
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::latency::{Latency, Quantiles};
-use crate::lifeline::{self, Leash, Lifeline};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// How long one read waits: so often is silence looked at, and what the channel did not take offered again.
+/// How long one read waits: so often is silence looked at, and what the channel did not take
+/// offered again.
 const READ_MS: i32 = 10;
 /// Longest report; hidraw's own limit is 4096.
 const MAX_REPORT: usize = 4096;
 
+/// How a reader stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Status {
+pub struct ReaderStatus {
+    /// The device is there and its thread reads it.
     pub connected: bool,
+    /// Reports that were read.
     pub reports: u64,
+    /// Reports that are cut short or contradict themselves.
     pub broken: u64,
+    /// Reports of another id: touch, mouse, battery.
     pub ignored: u64,
+    /// Samples that were made of them.
     pub samples: u64,
     /// From the read of a report to its samples being in the channel.
     pub to_channel_us: Quantiles,
+    /// Why the thread ended, if it did.
     pub last_error: Option<String>,
 }
 
 /// A running reader; dropping it ends its thread.
 #[derive(Debug)]
-pub struct Handle {
-    shared: Arc<Mutex<Shared>>,
-    _thread: Lifeline,
+pub struct ReaderHandle {
+    shared: Arc<Mutex<ReaderShared>>,
+    _thread: DeviceThread,
 }
 
 #[derive(Debug, Default)]
-struct Shared {
-    status: Status,
+struct ReaderShared {
+    status: ReaderStatus,
     to_channel: Latency,
 }
 
-impl Handle {
-    pub fn status(&self) -> Status {
+impl ReaderHandle {
+    /// A copy of the present state.
+    pub fn status(&self) -> ReaderStatus {
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        Status { to_channel_us: shared.to_channel.quantiles(), ..shared.status.clone() }
+        ReaderStatus { to_channel_us: shared.to_channel.quantiles(), ..shared.status.clone() }
     }
 }
 
@@ -63,33 +72,33 @@ pub fn start(
     device: DeviceId,
     clock: Clock,
     sender: Sender,
-) -> io::Result<Handle> {
-    let status = Status { connected: true, ..Status::default() };
-    let shared = Arc::new(Mutex::new(Shared { status, ..Shared::default() }));
+) -> io::Result<ReaderHandle> {
+    let status = ReaderStatus { connected: true, ..ReaderStatus::default() };
+    let shared = Arc::new(Mutex::new(ReaderShared { status, ..ReaderShared::default() }));
     let theirs = shared.clone();
     let decoder = Decoder::new(found, descriptor, device);
-    let thread = lifeline::spawn("hid-pen", move |leash| {
+    let thread = device_thread::spawn("hid-pen", move |stop| {
         let mut sender = sender;
-        sender.stop_when(leash.flag());
-        Reader { transport, decoder, clock, sender, shared: theirs }.run(&leash);
+        sender.stop_when(stop.flag());
+        HidReader { transport, decoder, clock, sender, shared: theirs }.run(&stop);
     })?;
-    Ok(Handle { shared, _thread: thread })
+    Ok(ReaderHandle { shared, _thread: thread })
 }
 
-struct Reader {
+struct HidReader {
     transport: Box<dyn Transport>,
     decoder: Decoder,
     clock: Clock,
     sender: Sender,
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<ReaderShared>>,
 }
 
-impl Reader {
-    fn run(&mut self, leash: &Leash) {
+impl HidReader {
+    fn run(&mut self, stop: &StopToken) {
         let (mut buffer, mut out) = (vec![0; MAX_REPORT], Vec::with_capacity(16));
         let mut error = None;
         self.ask_tool(&mut buffer, &mut out);
-        while !leash.stopped() && error.is_none() {
+        while !stop.stopped() && error.is_none() {
             match self.transport.read(&mut buffer, READ_MS) {
                 Ok(0) => {
                     self.decoder.tick(self.clock.now_us(), &mut |s| out.push(s));
@@ -124,7 +133,7 @@ impl Reader {
         for sample in out.drain(..) {
             self.sender.push(sample);
         }
-        let counts = self.decoder.counts;
+        let counts = self.decoder.counts();
         let taken = read_us.map(|t| self.clock.now_us().saturating_sub(t));
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(us) = taken {

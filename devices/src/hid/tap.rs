@@ -1,4 +1,5 @@
-//! Copies what is read from a bus, byte for byte, without standing in its way: how recordings are made of the live path.
+//! Copies what is read from a bus, byte for byte, without standing in its way: how recordings are
+//! made of the live path.
 
 use std::io;
 
@@ -6,35 +7,47 @@ use crossbeam_channel as cc;
 
 use super::bus::{Bus, Node, read_more};
 use super::transport::Transport;
-use crate::Clock;
 use crate::catalogue::Identity;
+use crate::clock::Clock;
 
 /// Something that was read.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tapped {
     /// An interface was opened; later reports carry its number.
     Opened {
+        /// Number of the interface, from 0 in the order of opening.
         number: usize,
+        /// What is known of it, its strings included.
         who: Identity,
+        /// Serial number; empty where the device has none.
         serial: String,
     },
+    /// A report was read.
     Report {
+        /// Number of the interface.
         number: usize,
+        /// When it was read, in microseconds on the clock of the bus.
         t_us: u64,
+        /// The report, its id first where the device has ids.
         bytes: Vec<u8>,
     },
 }
 
-/// A bus whose every report is also sent to `out`. When nobody takes them they are dropped: reading comes first.
+/// A bus whose every report is also sent to `out`. When nobody takes them they are dropped: reading
+/// comes first.
 #[derive(Debug)]
 pub struct TapBus<B> {
+    /// The bus that is read.
     pub bus: B,
+    /// The clock that stamps reports.
     pub clock: Clock,
+    /// Where copies go. A full channel drops them.
     pub out: cc::Sender<Tapped>,
     opened: usize,
 }
 
 impl<B: Bus> TapBus<B> {
+    /// Copies what is read from `bus` to `out`.
     pub fn new(bus: B, clock: Clock, out: cc::Sender<Tapped>) -> Self {
         TapBus { bus, clock, out, opened: 0 }
     }

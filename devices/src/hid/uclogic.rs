@@ -1,5 +1,6 @@
-//! UC-Logic and its many names: XP-Pen, UGEE, Huion, Gaomon, Parblo, Artisul, Yiynova. One layout, 8 to 14 bytes; what
-//! differs is which bit says "in range", and how pressure and high coordinate bits are packed.
+//! UC-Logic and its many names: XP-Pen, UGEE, Huion, Gaomon, Parblo, Artisul, Yiynova. One layout,
+//! 8 to 14 bytes; what differs is which bit says "in range", and how pressure and high coordinate
+//! bits are packed.
 //!
 //! | report id | in range | out |
 //! |---|---|---|
@@ -10,11 +11,12 @@
 //! | 07 once its keys are switched on (UC-Logic v1) | `80` | `C0` |
 //! | 09 of a plain mouse form | `80` or none | `00` or silence |
 //!
-//! The last three share ids, so the bit is learned: a pressed tip proves that its report's bits mean "in range". Sources: Linux
-//! `hid-uclogic-params.c`, OpenTabletDriver, and the real recordings of all of these.
+//! The last three share ids, so the bit is learned: a pressed tip proves that its report's bits
+//! mean "in range". Sources: Linux `hid-uclogic-params.c`, OpenTabletDriver, and the real
+//! recordings of all of these.
 
-use super::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
+use crate::sample::Tool;
 
 /// How one tablet of the family packs its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -34,7 +36,8 @@ pub enum Packing {
 
 /// What one tablet does differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Traits {
+pub struct UcLogicTraits {
+    /// How the tablet packs its numbers.
     pub packing: Packing,
     /// The descriptor's own in-range bit of byte 1, where it has one: 5, 6 or 7.
     pub range_bit: Option<u8>,
@@ -46,7 +49,7 @@ pub struct Traits {
 
 /// What reports so far have proved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Memory {
+pub struct UcLogicMemory {
     /// `A0` was seen: `C0` means out.
     classic: bool,
     /// `80` with a pressed tip or in motion was seen: it means in range.
@@ -60,7 +63,8 @@ pub struct Memory {
     wheel: Option<u8>,
 }
 
-pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
+/// Reads one report, its id first.
+pub fn parse(b: &[u8], traits: &UcLogicTraits, memory: &mut UcLogicMemory) -> Parsed {
     let id = byte(b, 0);
     if !matches!(id, 0x01 | 0x02 | 0x07 | 0x08 | 0x09 | 0x0a | 0x10) {
         return Parsed::Nothing;
@@ -79,7 +83,13 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
     if in_range(id, flags, &pen, traits, memory) { Parsed::Pen(pen) } else { Parsed::Away }
 }
 
-fn in_range(id: u8, flags: u8, pen: &PenReport, traits: &Traits, memory: &mut Memory) -> bool {
+fn in_range(
+    id: u8,
+    flags: u8,
+    pen: &PenReport,
+    traits: &UcLogicTraits,
+    memory: &mut UcLogicMemory,
+) -> bool {
     let pressed = flags & 1 != 0 && pen.pressure.is_some_and(|p| p > 0);
     let high = flags & 0xe0;
     memory.ranged |= high != 0;
@@ -118,14 +128,14 @@ fn in_range(id: u8, flags: u8, pen: &PenReport, traits: &Traits, memory: &mut Me
     }
 }
 
-impl Memory {
+impl UcLogicMemory {
     /// No report has yet said, or could say, that the pen leaves: silence must.
     pub fn is_mute(&self) -> bool {
         !self.ranged
     }
 }
 
-fn pen(b: &[u8], traits: &Traits) -> PenReport {
+fn pen(b: &[u8], traits: &UcLogicTraits) -> PenReport {
     let flags = b[1];
     // Report 08 is Huion's in every tablet that sends it; its shorter kin are packed as everyone's.
     let packing = match (b[0], traits.packing) {
@@ -146,7 +156,7 @@ fn pen(b: &[u8], traits: &Traits) -> PenReport {
             }
         }
         Packing::Fma => {
-            tilt = Some([super::report::s16_at(b, 8) / 100.0, super::report::s16_at(b, 10) / 100.0])
+            tilt = Some([crate::report::s16_at(b, 8) / 100.0, crate::report::s16_at(b, 10) / 100.0])
         }
         _ => {
             if b.len() >= 12 {
@@ -178,7 +188,7 @@ fn pen(b: &[u8], traits: &Traits) -> PenReport {
 }
 
 /// Keys, dials and rings ride on the pen's reports.
-fn pad(b: &[u8], memory: &mut Memory) -> Parsed {
+fn pad(b: &[u8], memory: &mut UcLogicMemory) -> Parsed {
     let none = PadReport::default();
     match (b[0], b[1]) {
         (0x08, 0xf0) => {
@@ -222,8 +232,8 @@ fn pad(b: &[u8], memory: &mut Memory) -> Parsed {
 mod tests {
     use super::*;
 
-    fn away(id: u8, sequence: &[u8], traits: Traits) -> Vec<bool> {
-        let mut memory = Memory::default();
+    fn away(id: u8, sequence: &[u8], traits: UcLogicTraits) -> Vec<bool> {
+        let mut memory = UcLogicMemory::default();
         let one = |(i, &f): (usize, &u8)| {
             let pressure = if f & 1 != 0 { 100 } else { 0 };
             parse(&[id, f, i as u8, 1, 2, 3, pressure, 0], &traits, &mut memory) == Parsed::Away
@@ -233,7 +243,7 @@ mod tests {
 
     #[test]
     fn each_firmware_leaves_in_its_own_way() {
-        let t = |range_bit| Traits { range_bit, ..Traits::default() };
+        let t = |range_bit| UcLogicTraits { range_bit, ..UcLogicTraits::default() };
         assert_eq!(
             away(0x02, &[0xa0, 0xa1, 0xa0, 0xc0], t(None)),
             [false, false, false, true],
@@ -270,7 +280,8 @@ mod tests {
 
     #[test]
     fn pressure_and_coordinates_are_unpacked() {
-        let read = |b: &[u8], packing| pen(b, &Traits { packing, ..Traits::default() });
+        let read =
+            |b: &[u8], packing| pen(b, &UcLogicTraits { packing, ..UcLogicTraits::default() });
         let long = [2, 0xa1, 1, 0, 2, 0, 0xff, 0x3f, 10, 0xf6, 1, 2];
         let p = read(&long, Packing::XpPenOffset);
         assert_eq!(

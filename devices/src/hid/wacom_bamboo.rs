@@ -1,17 +1,18 @@
-//! Wacom's simple reports: Bamboo Pen, Pen & Touch, One by Wacom, Intuos (2013), and the Bamboo Pad. Layouts from Linux
-//! `wacom_wac.c` (`wacom_bpt_pen`); agrees with its decode of real recordings. Bamboo Pad: OpenTabletDriver.
+//! Wacom's simple reports: Bamboo Pen, Pen & Touch, One by Wacom, Intuos (2013), and the Bamboo
+//! Pad. Layouts from Linux `wacom_wac.c` (`wacom_bpt_pen`); agrees with its decode of real
+//! recordings. Bamboo Pad: OpenTabletDriver.
 
-use super::report::{Parsed, PenReport, byte, u16_at};
-use crate::Tool;
+use crate::report::{Parsed, PenReport, byte, u16_at};
+use crate::sample::Tool;
 
 /// What must be remembered: the tool of this visit, known once the pen was placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Memory {
+pub struct BambooMemory {
     tool: Option<Tool>,
 }
 
 /// `max_distance` turns the count, which grows toward the surface, into height.
-pub fn parse(b: &[u8], max_distance: u32, memory: &mut Memory) -> Parsed {
+pub fn parse(b: &[u8], max_distance: u32, memory: &mut BambooMemory) -> Parsed {
     if b.first() != Some(&2) {
         return Parsed::Nothing;
     }
@@ -67,7 +68,7 @@ mod tests {
 
     #[test]
     fn a_visit_from_sensed_to_gone() {
-        let mut m = Memory::default();
+        let mut m = BambooMemory::default();
         let sensed = [2, 0x80, 0, 0, 0, 0, 0, 0, 0];
         assert_eq!(parse(&sensed, 31, &mut m), Parsed::Nothing, "sensed, never placed");
         let Parsed::Pen(p) = parse(&[2, 0xf1, 0x10, 0x27, 1, 0, 0xff, 3, 30], 31, &mut m) else {

@@ -1,34 +1,42 @@
-//! Wacom's older pen displays and tablet PCs: PL, PTU, DTU, DTUS and the USB form of ISDV4. Layouts from Linux
-//! `wacom_wac.c` (`wacom_pl_irq`, `wacom_ptu_irq`, `wacom_dtu_irq`, `wacom_dtus_irq`, `wacom_tpc_pen`).
+//! Wacom's older pen displays and tablet PCs: PL, PTU, DTU, DTUS and the USB form of ISDV4. Layouts
+//! from Linux `wacom_wac.c` (`wacom_pl_irq`, `wacom_ptu_irq`, `wacom_dtu_irq`, `wacom_dtus_irq`,
+//! `wacom_tpc_pen`).
 
-use super::report::{PadReport, Parsed, PenReport, be16_at, byte, u16_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, be16_at, byte, u16_at};
+use crate::sample::Tool;
 
+/// Which layout the tablet has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum DisplayKind {
+    /// PL and DTF: 7-bit bytes.
     Pl,
+    /// PTU: little-endian axes, pressure of nine bits.
     Ptu,
+    /// DTU: little-endian axes.
     Dtu,
+    /// DTU-1031 and its kind: report 11, big-endian axes.
     Dtus,
+    /// Tablet PCs: report 02.
     TabletPc,
 }
 
 /// What a PL remembers: the tool, decided as the pen enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Memory {
+pub struct DisplayMemory {
     tool: Option<Tool>,
 }
 
-pub fn parse(b: &[u8], kind: Kind, max_pressure: u32, memory: &mut Memory) -> Parsed {
+/// Reads one report, its id first. `max_pressure` is the model's.
+pub fn parse(b: &[u8], kind: DisplayKind, max_pressure: u32, memory: &mut DisplayMemory) -> Parsed {
     match (kind, byte(b, 0)) {
-        (Kind::Dtus, 0x11) => checked(b, 8, |b| dtus(b, memory)),
-        (Kind::Dtus, 0x15) if b.len() >= 2 => {
+        (DisplayKind::Dtus, 0x11) => checked(b, 8, |b| dtus(b, memory)),
+        (DisplayKind::Dtus, 0x15) if b.len() >= 2 => {
             Parsed::Pad(PadReport { keys: Some(u32::from(b[1] & 0x0f)), ..PadReport::default() })
         }
-        (Kind::Pl, 2) => checked(b, 8, |b| pl(b, max_pressure, memory)),
-        (Kind::Ptu, 2) => checked(b, 8, ptu),
-        (Kind::Dtu, 2) => checked(b, 8, |b| entered(b, 1, memory)),
-        (Kind::TabletPc, 2) => checked(b, 8, |b| entered(b, 7, memory)),
+        (DisplayKind::Pl, 2) => checked(b, 8, |b| pl(b, max_pressure, memory)),
+        (DisplayKind::Ptu, 2) => checked(b, 8, ptu),
+        (DisplayKind::Dtu, 2) => checked(b, 8, |b| entered(b, 1, memory)),
+        (DisplayKind::TabletPc, 2) => checked(b, 8, |b| entered(b, 7, memory)),
         _ => Parsed::Nothing,
     }
 }
@@ -37,7 +45,7 @@ fn checked(b: &[u8], least: usize, read: impl FnOnce(&[u8]) -> Parsed) -> Parsed
     if b.len() < least { Parsed::Broken } else { read(b) }
 }
 
-fn pl(b: &[u8], max_pressure: u32, memory: &mut Memory) -> Parsed {
+fn pl(b: &[u8], max_pressure: u32, memory: &mut DisplayMemory) -> Parsed {
     if b[1] & 0x40 == 0 {
         memory.tool = None;
         return Parsed::Away;
@@ -81,7 +89,7 @@ fn ptu(b: &[u8]) -> Parsed {
 }
 
 /// DTU and tablet PC differ in how many high bits of pressure there are.
-fn entered(b: &[u8], high: u8, memory: &mut Memory) -> Parsed {
+fn entered(b: &[u8], high: u8, memory: &mut DisplayMemory) -> Parsed {
     if b[1] & 0x20 == 0 {
         memory.tool = None;
         return Parsed::Away;
@@ -97,7 +105,7 @@ fn entered(b: &[u8], high: u8, memory: &mut Memory) -> Parsed {
     })
 }
 
-fn dtus(b: &[u8], memory: &mut Memory) -> Parsed {
+fn dtus(b: &[u8], memory: &mut DisplayMemory) -> Parsed {
     if b[1] & 0x80 == 0 {
         memory.tool = None;
         return Parsed::Away;
@@ -122,15 +130,21 @@ mod tests {
 
     #[test]
     fn a_pl_pen_is_decided_at_entry() {
-        let mut m = Memory::default();
+        let mut m = DisplayMemory::default();
         let hover = |b4: u8, b7: u8| [2, 0x41, 2, 3, b4, 5, 6, b7];
-        let Parsed::Pen(p) = parse(&hover(0x20, 0x40), Kind::Pl, 511, &mut m) else { panic!() };
+        let Parsed::Pen(p) = parse(&hover(0x20, 0x40), DisplayKind::Pl, 511, &mut m) else {
+            panic!()
+        };
         assert_eq!((p.tool, p.buttons), (Some(Tool::Eraser), Some(0)));
         assert_eq!(p.pos, Some([1 << 14 | 2 << 7 | 3, 5 << 7 | 6]));
-        let Parsed::Pen(p) = parse(&hover(0x00, 0x40), Kind::Pl, 511, &mut m) else { panic!() };
+        let Parsed::Pen(p) = parse(&hover(0x00, 0x40), DisplayKind::Pl, 511, &mut m) else {
+            panic!()
+        };
         assert_eq!(p.tool, Some(Tool::Pen), "it never was an eraser");
-        let Parsed::Pen(p) = parse(&hover(0x20, 0x3f), Kind::Pl, 511, &mut m) else { panic!() };
+        let Parsed::Pen(p) = parse(&hover(0x20, 0x3f), DisplayKind::Pl, 511, &mut m) else {
+            panic!()
+        };
         assert_eq!((p.tool, p.buttons, p.pressure), (Some(Tool::Pen), Some(2), Some(508)));
-        assert_eq!(parse(&[2, 0, 0, 0, 0, 0, 0, 0], Kind::Pl, 511, &mut m), Parsed::Away);
+        assert_eq!(parse(&[2, 0, 0, 0, 0, 0, 0, 0], DisplayKind::Pl, 511, &mut m), Parsed::Away);
     }
 }

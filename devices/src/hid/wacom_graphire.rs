@@ -1,12 +1,14 @@
-//! Wacom Graphire, the first Bamboos, Volito, PenStation and PenPartner. Layouts from Linux `wacom_wac.c`
-//! (`wacom_graphire_irq`, `wacom_penpartner_irq`); agrees with its decode of real recordings.
+//! Wacom Graphire, the first Bamboos, Volito, PenStation and PenPartner. Layouts from Linux
+//! `wacom_wac.c` (`wacom_graphire_irq`, `wacom_penpartner_irq`); agrees with its decode of real
+//! recordings.
 
-use super::report::{PadReport, Parsed, PenReport, byte, u16_at};
-use crate::Tool;
+use crate::report::{PadReport, Parsed, PenReport, byte, u16_at};
+use crate::sample::Tool;
 
 /// How one tablet of the family carries pressure and its pad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Kind {
+pub enum GraphireKind {
+    /// Graphire 1 to 3.
     #[default]
     Graphire,
     /// Graphire 4: keys and wheel in byte 7.
@@ -17,8 +19,9 @@ pub enum Kind {
     Bluetooth,
 }
 
-pub fn parse(b: &[u8], kind: Kind) -> Parsed {
-    let id = if kind == Kind::Bluetooth { 0x03 } else { 0x02 };
+/// Reads the pen or the puck of one report.
+pub fn parse(b: &[u8], kind: GraphireKind) -> Parsed {
+    let id = if kind == GraphireKind::Bluetooth { 0x03 } else { 0x02 };
     if b.first() != Some(&id) {
         return Parsed::Nothing;
     }
@@ -46,7 +49,7 @@ pub fn parse(b: &[u8], kind: Kind) -> Parsed {
         pen.tip = Some(flags & 1 != 0);
         pen.buttons = Some(u32::from(flags >> 1 & 3));
         pen.pressure = Some(match kind {
-            Kind::Bluetooth => u32::from(b[6]) | u32::from(flags & 8) << 5,
+            GraphireKind::Bluetooth => u32::from(b[6]) | u32::from(flags & 8) << 5,
             _ => u32::from(b[6]) | u32::from(b[7] & 3) << 8,
         });
     }
@@ -54,13 +57,13 @@ pub fn parse(b: &[u8], kind: Kind) -> Parsed {
 }
 
 /// The pad shares its reports with the pen.
-pub fn pad(b: &[u8], kind: Kind) -> Option<PadReport> {
+pub fn pad(b: &[u8], kind: GraphireKind) -> Option<PadReport> {
     if b.len() < 8 {
         return None;
     }
     match kind {
-        Kind::Graphire => None,
-        Kind::Graphire4 => {
+        GraphireKind::Graphire => None,
+        GraphireKind::Graphire4 => {
             let steps = i32::from(b[7] >> 3 & 3) - i32::from(b[7] >> 3 & 4);
             Some(PadReport {
                 keys: Some(u32::from(b[7] >> 6)),
@@ -68,7 +71,7 @@ pub fn pad(b: &[u8], kind: Kind) -> Option<PadReport> {
                 strip: None,
             })
         }
-        Kind::Ring => {
+        GraphireKind::Ring => {
             let ring = byte(b, 8);
             let place = (ring & 0x80 != 0).then_some(f32::from(ring & 0x7f) / 71.0);
             Some(PadReport {
@@ -77,7 +80,7 @@ pub fn pad(b: &[u8], kind: Kind) -> Option<PadReport> {
                 strip: Some((0, place.map(|p| p.min(1.0)))),
             })
         }
-        Kind::Bluetooth => {
+        GraphireKind::Bluetooth => {
             Some(PadReport { keys: Some(u32::from(b[7] & 3)), ..PadReport::default() })
         }
     }
@@ -113,14 +116,15 @@ mod tests {
 
     #[test]
     fn tools_are_told_apart_and_leave() {
-        let tool_of = |flags: u8| match parse(&[2, flags, 1, 0, 2, 0, 9, 1], Kind::Graphire) {
+        let tool_of = |flags: u8| match parse(&[2, flags, 1, 0, 2, 0, 9, 1], GraphireKind::Graphire)
+        {
             Parsed::Pen(p) => (p.tool, p.tip, p.pressure),
             other => panic!("{other:?}"),
         };
         assert_eq!(tool_of(0x91), (Some(Tool::Pen), Some(true), Some(265)));
         assert_eq!(tool_of(0xb1), (Some(Tool::Eraser), Some(true), Some(265)));
         assert_eq!(tool_of(0xd1), (Some(Tool::Mouse), Some(false), None));
-        assert_eq!(parse(&[2, 0x10, 0, 0, 0, 0, 0, 0], Kind::Graphire), Parsed::Away);
-        assert_eq!(parse(&[2, 0x91, 0], Kind::Graphire), Parsed::Broken);
+        assert_eq!(parse(&[2, 0x10, 0, 0, 0, 0, 0, 0], GraphireKind::Graphire), Parsed::Away);
+        assert_eq!(parse(&[2, 0x91, 0], GraphireKind::Graphire), Parsed::Broken);
     }
 }

@@ -1,12 +1,13 @@
-//! Wacom's 10-byte reports, ids 02 and 10: Intuos 1 to 5, Intuos Pro, most Cintiqs. Layout and tool numbers from Linux
-//! `wacom_wac.c` (`wacom_intuos_general`, `wacom_intuos_inout`); agrees with its decode of real recordings.
+//! Wacom's 10-byte reports, ids 02 and 10: Intuos 1 to 5, Intuos Pro, most Cintiqs. Layout and tool
+//! numbers from Linux `wacom_wac.c` (`wacom_intuos_general`, `wacom_intuos_inout`); agrees with its
+//! decode of real recordings.
 
-use super::report::{Parsed, PenReport, be16_at};
-use crate::Tool;
+use crate::report::{Parsed, PenReport, be16_at};
+use crate::sample::Tool;
 
 /// What one tablet of the family does differently.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Traits {
+pub struct IntuosTraits {
     /// Intuos 1 halves its coordinates and height.
     pub halved: bool,
     /// 1023 levels: the wire carries twice the pressure.
@@ -23,14 +24,16 @@ pub struct Traits {
 
 /// What must be remembered between reports: the tool is named once, when it enters.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Memory {
-    /// A first-generation Intuos follows two tools at once (bit 0 of byte 1 tells them apart); one is enough for a hand.
+pub struct IntuosMemory {
+    /// A first-generation Intuos follows two tools at once (bit 0 of byte 1 tells them apart); one
+    /// is enough for a hand.
     tool: Option<Tool>,
     reporting: bool,
     noise: bool,
 }
 
-pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
+/// Reads one report, its id first.
+pub fn parse(b: &[u8], traits: &IntuosTraits, memory: &mut IntuosMemory) -> Parsed {
     if b.len() < 10 {
         return if matches!(b.first(), Some(0x02 | 0x10)) {
             Parsed::Broken
@@ -66,8 +69,8 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
         memory.reporting = false;
         return if known.is_some() { Parsed::Away } else { Parsed::Nothing };
     }
-    // A puck's packets are its own. A pen's are an eraser's too: without its name an eraser would draw, so the name is
-    // waited for; it comes with the next entry, or answers the reader's query.
+    // A puck's packets are its own. A pen's are an eraser's too: without its name an eraser would
+    // draw, so the name is waited for; it comes with the next entry, or answers the reader's query.
     let puck = matches!(flags >> 1 & 0x0f, 4 | 6 | 8).then_some(Tool::Mouse);
     let Some(tool) = memory.tool.or(puck) else { return Parsed::Nothing };
     memory.tool = Some(tool);
@@ -79,7 +82,7 @@ pub fn parse(b: &[u8], traits: &Traits, memory: &mut Memory) -> Parsed {
     Parsed::Pen(placed(b, tool, traits))
 }
 
-fn placed(b: &[u8], tool: Tool, traits: &Traits) -> PenReport {
+fn placed(b: &[u8], tool: Tool, traits: &IntuosTraits) -> PenReport {
     let low = u32::from(b[9]);
     let (mut x, mut y) = (be16_at(b, 2) << 1 | (low >> 1 & 1), be16_at(b, 4) << 1 | (low & 1));
     let mut distance = low >> 2;
@@ -155,7 +158,7 @@ mod tests {
     #[test]
     fn a_visit_names_its_tool_then_moves_then_leaves() {
         let (traits, mut memory) =
-            (Traits { max_distance: 63, ..Traits::default() }, Memory::default());
+            (IntuosTraits { max_distance: 63, ..IntuosTraits::default() }, IntuosMemory::default());
         assert_eq!(parse(&ENTER, &traits, &mut memory), Parsed::Nothing);
         let moved = [0x02, 0xe0, 0x10, 0x00, 0x08, 0x00, 0x01, 0xc0, 0x00, 0x2b];
         let Parsed::Pen(pen) = parse(&moved, &traits, &mut memory) else { panic!("no pen") };
@@ -191,9 +194,9 @@ mod tests {
 
     #[test]
     fn a_cut_report_is_broken_and_no_length_panics() {
-        let mut memory = Memory::default();
+        let mut memory = IntuosMemory::default();
         for n in 0..10 {
-            let got = parse(&ENTER[..n], &Traits::default(), &mut memory);
+            let got = parse(&ENTER[..n], &IntuosTraits::default(), &mut memory);
             assert_eq!(got, if n == 0 { Parsed::Nothing } else { Parsed::Broken });
         }
     }

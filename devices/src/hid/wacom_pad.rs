@@ -1,13 +1,14 @@
-//! Keys, rings and strips of Wacom's Intuos and Cintiq tablets: reports 0C, 03 and 11. Layouts from Linux `wacom_wac.c`
-//! (`wacom_intuos_pad`).
+//! Keys, rings and strips of Wacom's Intuos and Cintiq tablets: reports 0C, 03 and 11. Layouts from
+//! Linux `wacom_wac.c` (`wacom_intuos_pad`).
 
-use super::report::{PadReport, byte};
+use crate::report::{PadReport, byte};
 use crate::tablet::PadLayout;
 
 /// Places on a ring.
 const RING: f32 = 71.0;
 
-/// The pad's state if this report is the pad's. A layout has up to two strips; a report here gives the first, `second` the other.
+/// The pad's state if this report is the pad's. A layout has up to two strips; a report here gives
+/// the first, `second` the other.
 pub fn parse(b: &[u8], layout: PadLayout) -> Option<[PadReport; 2]> {
     if !matches!(byte(b, 0), 0x0c | 0x03 | 0x11) || b.len() < 10 {
         return None;

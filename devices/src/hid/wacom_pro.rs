@@ -1,27 +1,51 @@
-//! Wacom's current pens: Intuos Pro 2 and Intuos 2018 (report 10, "V2"), Intuos Pro 2025 (report 1E, "V3"), Wacom One (report
-//! 1F). Layouts from OpenTabletDriver and from these tablets' own report descriptors.
+//! Wacom's current pens: Intuos Pro 2 and Intuos 2018 (report 10, "V2"), Intuos Pro 2025 (report
+//! 1E, "V3"), Wacom One (report 1F). Layouts from OpenTabletDriver and from these tablets' own
+//! report descriptors.
 
-use super::report::{Parsed, PenReport, byte, s8_at, s16_at, u16_at, u24_at};
-use crate::Tool;
+use crate::report::{Batch, PadReport, Parsed, PenReport, byte, s8_at, s16_at, u16_at, u24_at};
+use crate::sample::Tool;
 
+/// Which layout the tablet has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ProKind {
+    /// Report 10: Intuos Pro of 2017, Intuos of 2018.
     V2,
+    /// Report 1E: Intuos Pro of 2025.
     V3,
+    /// Report 1F: Wacom One.
     One,
 }
 
-pub fn parse(b: &[u8], kind: Kind) -> Parsed {
-    match (kind, byte(b, 0)) {
-        (Kind::V2, 0x10) if b.len() < 12 => Parsed::Broken,
-        (Kind::V2, 0x10) => v2(b),
-        (Kind::V3, 0x1e) if b.len() < 15 => Parsed::Broken,
-        (Kind::V3, 0x1e) => v3(b),
-        (Kind::One, 0x1f) if byte(b, 1) != 1 => Parsed::Nothing,
-        (Kind::One, 0x1f) if b.len() < 9 => Parsed::Broken,
-        (Kind::One, 0x1f) => one(b),
+/// Reads a report of the pen, or of the pad that shares its interface.
+pub fn parse(b: &[u8], kind: ProKind, out: &mut Batch) {
+    out.push(match (kind, byte(b, 0)) {
+        (ProKind::V2, 0x10) if b.len() < 12 => Parsed::Broken,
+        (ProKind::V2, 0x10) => v2(b),
+        (ProKind::V2, 0x11) if b.len() < 5 => Parsed::Broken,
+        (ProKind::V2, 0x11) => Parsed::Pad(v2_pad(b)),
+        (ProKind::V3, 0x1e) if b.len() < 15 => Parsed::Broken,
+        (ProKind::V3, 0x1e) => v3(b),
+        (ProKind::One, 0x1f) if byte(b, 1) != 1 => Parsed::Nothing,
+        (ProKind::One, 0x1f) if b.len() < 9 => Parsed::Broken,
+        (ProKind::One, 0x1f) => one(b),
         _ => Parsed::Nothing,
+    });
+}
+
+/// Eight keys, the ring's own key as the ninth, and the ring, whose counts run against the clock.
+fn v2_pad(b: &[u8]) -> PadReport {
+    PadReport {
+        keys: Some(u32::from(b[1]) | u32::from(b[3] & 1) << 8),
+        strip: Some((0, ring_place(b[4]))),
+        ..PadReport::default()
     }
+}
+
+/// The place of a finger on the ring of an Intuos Pro 2, clockwise from the left, 0 to 1; `None`
+/// while it is not touched. Linux `wacom_intuos_pro2_bt_pad`.
+pub(super) fn ring_place(v: u8) -> Option<f32> {
+    let place = (71 - i32::from(v & 0x7f) + 3 * 72 / 16).rem_euclid(72);
+    (v & 0x80 != 0).then_some(place as f32 / 72.0)
 }
 
 fn v2(b: &[u8]) -> Parsed {
@@ -91,14 +115,23 @@ mod tests {
     #[test]
     fn a_v2_pen_is_sensed_then_placed_then_gone() {
         let mut b = [0u8; 27];
+        let parse = |b: &[u8], kind| {
+            let mut out = Batch::default();
+            parse(b, kind, &mut out);
+            out.as_slice().first().copied().unwrap_or_default()
+        };
         b[0] = 0x10;
-        assert_eq!(parse(&b, Kind::V2), Parsed::Away);
+        assert_eq!(parse(&b, ProKind::V2), Parsed::Away);
         b[1] = 0x40;
-        assert_eq!(parse(&b, Kind::V2), Parsed::Nothing);
+        assert_eq!(parse(&b, ProKind::V2), Parsed::Nothing);
         b[1] = 0x61;
         (b[2], b[4], b[10], b[16]) = (1, 1, 0xf6, 5);
-        let Parsed::Pen(p) = parse(&b, Kind::V2) else { panic!() };
+        let Parsed::Pen(p) = parse(&b, ProKind::V2) else { panic!() };
         assert_eq!((p.pos, p.tilt, p.distance), (Some([0x10001, 0]), Some([-10.0, 0.0]), Some(5)));
-        assert_eq!(parse(&b[..9], Kind::V2), Parsed::Broken);
+        assert_eq!(parse(&b[..9], ProKind::V2), Parsed::Broken);
+        let Parsed::Pad(pad) = parse(&[0x11, 0x81, 0, 1, 0x80 | 84, 0], ProKind::V2) else {
+            panic!()
+        };
+        assert_eq!((pad.keys, pad.strip), (Some(0x181), Some((0, Some(0.0)))));
     }
 }

@@ -1,7 +1,14 @@
 //! Finds tablets, sets them up, reads each on its own thread, and finds them again after a replug.
 //!
-//! There is no hot-plug call in hidapi: what is plugged in is looked at again when the device folder changed or a reader
-//! ended, every 200 ms at first and less often while nothing happens, two seconds at most.
+//! On Linux the report descriptor of a closed interface is read from sysfs. On Windows and macOS it
+//! is not shown: there an interface that may be a pen is opened first and asked for its descriptor
+//! through hidapi, and then it is judged. That path was tested with simulated devices only: it has
+//! never run on Windows or macOS. There the system may hold the pen's interface, so that it cannot
+//! be opened; the status then says so.
+//!
+//! There is no hot-plug call in hidapi: what is plugged in is looked at again when the device
+//! folder changed or a reader ended, every 200 ms at first and less often while nothing happens,
+//! two seconds at most.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -12,10 +19,10 @@ use serde::{Deserialize, Serialize};
 
 use super::bus::{Bus, HidApiBus, Node, read_more};
 use super::reader;
-use crate::Clock;
 use crate::calibration::{self, Calibration, Calibrations};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::SenderFactory;
 use crate::sample::DeviceId;
 use crate::tablet::hex_bytes;
@@ -43,24 +50,37 @@ pub struct HidConfig {
 /// One interface, as it stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NodeStatus {
+    /// Where the interface is opened, such as `/dev/hidraw0`.
     pub path: String,
+    /// Vendor id.
     pub vid: u16,
+    /// Product id.
     pub pid: u16,
+    /// Serial number; empty where the device has none.
     pub serial: String,
+    /// USB interface number.
     pub interface: Option<u8>,
+    /// Product name; empty where the device has none.
     pub name: String,
     /// A reader thread reads it.
     pub usable: bool,
+    /// Number under which its samples go out.
     pub device: Option<u16>,
+    /// Name of the model that it is read as.
     pub model: Option<String>,
+    /// Name of the parser that reads it.
     pub parser: Option<String>,
+    /// Width and height of the active area in mm.
     pub area_mm: Option<[f32; 2]>,
     /// Why it is not read, or what is uncertain about it.
     pub reason: Option<String>,
     /// More than one model answers to this: the question for the user.
     pub candidates: Vec<String>,
+    /// Reports that were read.
     pub reports: u64,
+    /// Reports that were cut short or contradicted themselves.
     pub broken: u64,
+    /// Samples that were made of them.
     pub samples: u64,
     /// Times that it was opened.
     pub connections: u32,
@@ -69,8 +89,8 @@ pub struct NodeStatus {
 /// Running readers; dropping it ends all their threads.
 #[derive(Debug)]
 pub struct HidHandle {
-    shared: Arc<Mutex<Shared>>,
-    _thread: Lifeline,
+    shared: Arc<Mutex<WatchShared>>,
+    _thread: DeviceThread,
 }
 
 impl HidHandle {
@@ -81,12 +101,12 @@ impl HidHandle {
 }
 
 #[derive(Debug, Default)]
-struct Shared {
-    open: Vec<Open>,
+struct WatchShared {
+    open: Vec<OpenInterface>,
     closed: Vec<NodeStatus>,
 }
 
-impl Shared {
+impl WatchShared {
     fn now(&self) -> Vec<NodeStatus> {
         let read = self.open.iter().map(|o| {
             let s = o.handle.status();
@@ -105,9 +125,9 @@ impl Shared {
 }
 
 #[derive(Debug)]
-struct Open {
+struct OpenInterface {
     path: String,
-    handle: reader::Handle,
+    handle: reader::ReaderHandle,
     status: NodeStatus,
 }
 
@@ -135,7 +155,7 @@ pub fn start_on(
     clock: Clock,
     factory: SenderFactory,
 ) -> io::Result<HidHandle> {
-    let shared = Arc::new(Mutex::new(Shared::default()));
+    let shared = Arc::new(Mutex::new(WatchShared::default()));
     let mut watcher = Watcher {
         bus,
         config,
@@ -147,7 +167,7 @@ pub fn start_on(
         failures: BTreeMap::new(),
         connections: BTreeMap::new(),
     };
-    let thread = lifeline::spawn("hid-watch", move |leash| watcher.run(&leash))?;
+    let thread = device_thread::spawn("hid-watch", move |stop| watcher.run(&stop))?;
     Ok(HidHandle { shared, _thread: thread })
 }
 
@@ -163,15 +183,23 @@ pub fn list(
     let nodes = bus.nodes()?;
     let one = |node: &Node| {
         let mut status = NodeStatus::of(node);
-        match choose(node, &node.who, config, catalogue) {
+        let mut who = node.who.clone();
+        let mut opened = None;
+        if who.descriptor.is_empty() && refusal(node, config).is_ok() {
+            opened = Some(bus.open(node).map(|mut device| read_more(&mut who, device.as_mut())));
+        }
+        match choose(node, &who, config, catalogue) {
             Ok(found) => {
                 status.found(&found.0, found.1);
-                match bus.open(node) {
-                    Ok(_) => status.usable = true,
+                match opened.unwrap_or_else(|| bus.open(node).map(|_| ())) {
+                    Ok(()) => status.usable = true,
                     Err(e) => status.reason = Some(in_words(&e)),
                 }
             }
-            Err(why) => status.reason = Some(why),
+            Err(why) => {
+                let unopened = opened.and_then(Result::err).map(|e| in_words(&e));
+                status.reason = Some(unopened.unwrap_or(why));
+            }
         }
         status
     };
@@ -184,7 +212,7 @@ struct Watcher {
     catalogue: Catalogue,
     clock: Clock,
     factory: SenderFactory,
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<WatchShared>>,
     /// Which id an interface had: the same one gets it again. Position is the id.
     ids: Vec<(String, Option<String>)>,
     /// How often a node could not be opened or set up.
@@ -193,7 +221,7 @@ struct Watcher {
 }
 
 impl Watcher {
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let (mut wait, mut seen) = (LOOK.0, None);
         loop {
             let ended = self.collect_ended();
@@ -207,7 +235,7 @@ impl Watcher {
             }
             // Looking at the stamp costs microseconds; looking at the bus does not.
             let pause = if stamp.is_some() { LOOK.0 } else { wait };
-            if leash.wait(pause) {
+            if stop.wait(pause) {
                 break;
             }
         }
@@ -268,13 +296,19 @@ impl Watcher {
         news
     }
 
-    fn with<T>(&self, f: impl FnOnce(&mut Shared) -> T) -> T {
+    fn with<T>(&self, f: impl FnOnce(&mut WatchShared) -> T) -> T {
         f(&mut self.shared.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Identifies, opens, sets up and reads one interface.
-    fn take_up(&mut self, node: &Node) -> Result<Open, Refusal> {
-        choose(node, &node.who, &self.config, &self.catalogue).map_err(Refusal::Final)?;
+    fn take_up(&mut self, node: &Node) -> Result<OpenInterface, Refusal> {
+        // Where the system does not show the descriptor of a closed interface, it is opened before it
+        // is judged: a tablet is known by its descriptor as often as by its ids.
+        if node.who.descriptor.is_empty() {
+            refusal(node, &self.config).map_err(Refusal::Final)?;
+        } else {
+            choose(node, &node.who, &self.config, &self.catalogue).map_err(Refusal::Final)?;
+        }
         let mut device = self.bus.open(node).map_err(|e| Refusal::Later(in_words(&e)))?;
         let mut who = node.who.clone();
         read_more(&mut who, device.as_mut());
@@ -302,7 +336,7 @@ impl Watcher {
             reader::start(device, &found, &who.descriptor, number, self.clock.clone(), sender)
                 .map_err(|e| Refusal::Later(e.to_string()))?;
         tracing::info!("{}: {}", node.path, found.in_words());
-        Ok(Open { path: node.path.clone(), handle, status })
+        Ok(OpenInterface { path: node.path.clone(), handle, status })
     }
 
     fn calibration(&self, node: &Node, found: &Found) -> Calibration {
@@ -310,7 +344,8 @@ impl Watcher {
         calibration::find(&self.config.calibration, [&own, &shared, found.tablet.name.as_str()])
     }
 
-    /// The id of an interface: the one it had, while nothing else holds it. Two tablets alike get one each.
+    /// The id of an interface: the one it had, while nothing else holds it. Two tablets alike get
+    /// one each.
     fn number(&mut self, node: &Node) -> DeviceId {
         let key = format!("{}:{:?}", key(node, true), node.who.interface);
         let held: Vec<u16> = self.with(|s| s.open.iter().filter_map(|o| o.status.device).collect());
@@ -334,13 +369,8 @@ enum Refusal {
     Later(String),
 }
 
-/// Which model a node is read as, and the names of all that it may be when that is uncertain.
-fn choose(
-    node: &Node,
-    who: &Identity,
-    config: &HidConfig,
-    catalogue: &Catalogue,
-) -> Result<(Found, Vec<String>), String> {
+/// Why a node is not even opened, where it is not.
+fn refusal(node: &Node, config: &HidConfig) -> Result<(), String> {
     let keys = [key(node, true), key(node, false)];
     if keys.iter().any(|k| config.ignore.contains(k)) {
         return Err("ignored by the configuration".to_owned());
@@ -348,6 +378,18 @@ fn choose(
     if !node.may_be_pen {
         return Err("not a tablet".to_owned());
     }
+    Ok(())
+}
+
+/// Which model a node is read as, and the names of all that it may be when that is uncertain.
+pub(crate) fn choose(
+    node: &Node,
+    who: &Identity,
+    config: &HidConfig,
+    catalogue: &Catalogue,
+) -> Result<(Found, Vec<String>), String> {
+    refusal(node, config)?;
+    let keys = [key(node, true), key(node, false)];
     let told = keys.iter().find_map(|k| config.models.get(k));
     match (catalogue.identify(who), told) {
         (Identification::Declined(why), _) => Err(why),
@@ -429,6 +471,3 @@ impl NodeStatus {
         self.candidates = candidates;
     }
 }
-
-#[cfg(test)]
-mod tests;

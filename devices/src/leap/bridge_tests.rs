@@ -3,8 +3,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use super::{Config, start};
-use crate::Clock;
+use super::{LeapConfig, start};
+use crate::clock::Clock;
 use crate::queue::channel;
 use crate::sample::{Body, Hand};
 
@@ -19,7 +19,7 @@ fn the_webcam_bridge_speaks_the_protocol() {
     let mut url = String::new();
     BufReader::new(child.stdout.take().unwrap()).read_line(&mut url).unwrap();
     let (factory, mut rx) = channel(1024);
-    let config = Config { url: url.trim().into(), ..Config::default() };
+    let config = LeapConfig { url: url.trim().into(), ..LeapConfig::default() };
     let handle = start(config, Clock::monotonic(), factory.sender()).unwrap();
     let mut hands: Vec<Hand> = Vec::new();
     let (mut empty, mut frames) = (0, 0);

@@ -11,17 +11,18 @@ use tungstenite::{Error as WsError, Message as WsMessage, WebSocket};
 
 use super::clock_map::ClockMap;
 use super::frame::{Frame, MAX_MESSAGE, Message, parse_message};
-use crate::Clock;
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::Sender;
 use crate::sample::{Body, DeviceId, Hands, Sample};
 
-/// How long one read waits. Short: between reads, samples that are kept back go out and the stop flag is looked at.
+/// How long one read waits. Short: between reads, samples that are kept back go out and the stop
+/// flag is looked at.
 const READ_SLICE: Duration = Duration::from_millis(10);
 /// For the connection, and for each read of the handshake.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Silence, on our clock, after which hands that were there are held to be gone. A tracker that works sends a frame at
-/// least each 52 ms (the longest gap in real recordings).
+/// Silence, on our clock, after which hands that were there are held to be gone. A tracker that
+/// works sends a frame at least each 52 ms (the longest gap in real recordings).
 const SILENCE_US: u64 = 300_000;
 /// Silence after which the server is asked whether it lives; after twice as much it is given up.
 const PING_US: u64 = 3_000_000;
@@ -33,7 +34,7 @@ const BURST: f64 = 100.0;
 /// Where the tracker's service is, and what it is asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Config {
+pub struct LeapConfig {
     /// The service; the path names the protocol's version, `/v6.json` or `/v7.json`.
     pub url: String,
     /// Whether a service on another machine may be used. Frames are neither encrypted nor signed.
@@ -42,17 +43,17 @@ pub struct Config {
     pub background: bool,
     /// The tracker is worn on the head and looks down the fingers.
     pub optimize_hmd: bool,
-    /// Frames a second beyond which motion is dropped and counted; transitions never are. The fastest tracker known
-    /// gives 200.
+    /// Frames a second beyond which motion is dropped and counted; transitions never are. The
+    /// fastest tracker known gives 200.
     pub max_rate: f32,
     /// Under which id its samples go out.
     #[serde(skip)]
     pub device: DeviceId,
 }
 
-impl Default for Config {
+impl Default for LeapConfig {
     fn default() -> Self {
-        Config {
+        LeapConfig {
             url: "ws://127.0.0.1:6437/v6.json".into(),
             allow_remote: false,
             background: true,
@@ -65,12 +66,14 @@ impl Default for Config {
 
 /// How the connection stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Status {
+pub struct LeapStatus {
+    /// A server is connected.
     pub connected: bool,
     /// The protocol's version as the server stated it.
     pub version: Option<i64>,
     /// What the tracker's service last said of the tracker itself.
     pub attached: Option<bool>,
+    /// The tracker streams, as far as the server said.
     pub streaming: Option<bool>,
     /// Frames decoded and sent on.
     pub frames: u64,
@@ -84,6 +87,7 @@ pub struct Status {
     pub over_rate: u64,
     /// Hands left out of frames.
     pub dropped_hands: u64,
+    /// Times that a connection was made.
     pub connections: u64,
     /// Frames a second, smoothed over about a second.
     pub rate: f32,
@@ -95,13 +99,14 @@ pub struct Status {
 
 /// A running client; dropping it ends its thread.
 #[derive(Debug)]
-pub struct Handle {
-    status: Arc<Mutex<Status>>,
-    _thread: Lifeline,
+pub struct LeapHandle {
+    status: Arc<Mutex<LeapStatus>>,
+    _thread: DeviceThread,
 }
 
-impl Handle {
-    pub fn status(&self) -> Status {
+impl LeapHandle {
+    /// A copy of the present state.
+    pub fn status(&self) -> LeapStatus {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
@@ -110,22 +115,22 @@ impl Handle {
 ///
 /// # Errors
 /// Only if no thread can be started.
-pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
-    let status = Arc::new(Mutex::new(Status::default()));
+pub fn start(config: LeapConfig, clock: Clock, sender: Sender) -> std::io::Result<LeapHandle> {
+    let status = Arc::new(Mutex::new(LeapStatus::default()));
     let shared = status.clone();
-    let thread = lifeline::spawn("leap", move |leash| {
+    let thread = device_thread::spawn("leap", move |stop| {
         let mut sender = sender;
-        sender.stop_when(leash.flag());
-        Client::new(config, clock, sender, shared).run(&leash);
+        sender.stop_when(stop.flag());
+        Client::new(config, clock, sender, shared).run(&stop);
     })?;
-    Ok(Handle { status, _thread: thread })
+    Ok(LeapHandle { status, _thread: thread })
 }
 
 struct Client {
-    config: Config,
+    config: LeapConfig,
     clock: Clock,
     sender: Sender,
-    status: Arc<Mutex<Status>>,
+    status: Arc<Mutex<LeapStatus>>,
     map: ClockMap,
     /// The newest sample of this connection.
     last: Option<Sample>,
@@ -134,7 +139,12 @@ struct Client {
 }
 
 impl Client {
-    fn new(config: Config, clock: Clock, sender: Sender, status: Arc<Mutex<Status>>) -> Self {
+    fn new(
+        config: LeapConfig,
+        clock: Clock,
+        sender: Sender,
+        status: Arc<Mutex<LeapStatus>>,
+    ) -> Self {
         let tokens_at_us = clock.now_us();
         Client {
             config,
@@ -148,13 +158,13 @@ impl Client {
         }
     }
 
-    fn note(&self, change: impl FnOnce(&mut Status)) {
+    fn note(&self, change: impl FnOnce(&mut LeapStatus)) {
         change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let mut wait = BACK_OFF.0;
-        while !leash.stopped() {
+        while !stop.stopped() {
             let why = match connect(&self.config) {
                 Ok(socket) => {
                     self.note(|s| {
@@ -163,7 +173,7 @@ impl Client {
                         s.last_error = None;
                     });
                     let before = self.frames();
-                    let why = self.serve(socket, leash);
+                    let why = self.serve(socket, stop);
                     if self.frames() > before {
                         wait = BACK_OFF.0;
                     }
@@ -182,7 +192,7 @@ impl Client {
             let slices = (wait.as_millis() / READ_SLICE.as_millis()) as u32;
             for _ in 0..slices {
                 self.sender.flush();
-                if leash.wait(READ_SLICE) {
+                if stop.wait(READ_SLICE) {
                     return;
                 }
             }
@@ -196,10 +206,10 @@ impl Client {
     }
 
     /// Greets, then reads until something ends the connection; returns what did.
-    fn serve(&mut self, mut socket: WebSocket<TcpStream>, leash: &Leash) -> String {
+    fn serve(&mut self, mut socket: WebSocket<TcpStream>, stop: &StopToken) -> String {
         self.map = ClockMap::default();
         let (mut heard, mut pinged, mut greeted) = (self.clock.now_us(), false, false);
-        while !leash.stopped() {
+        while !stop.stopped() {
             match socket.read() {
                 Ok(WsMessage::Text(text)) => {
                     (heard, pinged) = (self.clock.now_us(), false);
@@ -243,7 +253,8 @@ impl Client {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).version
     }
 
-    /// One wish a message, each under 32 bytes: one known server copies them into a buffer of that size.
+    /// One wish a message, each under 32 bytes: one known server copies them into a buffer of that
+    /// size.
     fn greet(&self, socket: &mut WebSocket<TcpStream>) -> Result<(), WsError> {
         let (background, hmd) = (self.config.background, self.config.optimize_hmd);
         for wish in [
@@ -317,8 +328,8 @@ impl Client {
         });
     }
 
-    /// A frame that came twice or out of order adds nothing: each holds the whole state, and the newer one is here. A
-    /// number far back is a tracker that started again.
+    /// A frame that came twice or out of order adds nothing: each holds the whole state, and the
+    /// newer one is here. A number far back is a tracker that started again.
     fn is_stale(&self, frame: &Frame) -> bool {
         let Some(Sample { body: Body::Hands(last), device_t_us, .. }) = self.last else {
             return false;
@@ -365,7 +376,7 @@ fn waited(e: &std::io::Error) -> bool {
 }
 
 /// Connects and shakes hands, every step with a time-out.
-fn connect(config: &Config) -> Result<WebSocket<TcpStream>, String> {
+fn connect(config: &LeapConfig) -> Result<WebSocket<TcpStream>, String> {
     let request =
         config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
     if request.uri().scheme_str() != Some("ws") {

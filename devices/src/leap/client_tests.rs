@@ -6,11 +6,11 @@ use super::*;
 use crate::queue::{Receiver, channel};
 use crate::sim::{Faults, Tracker, TrackerConfig, journal};
 
-const SOON: Duration = Duration::from_secs(5);
+const SOON: Duration = Duration::from_secs(60);
 
 struct Rig {
     tracker: Tracker,
-    handle: Handle,
+    handle: LeapHandle,
     rx: Receiver,
     clock: Clock,
     got: Vec<Sample>,
@@ -21,7 +21,7 @@ fn rig(config: TrackerConfig) -> Rig {
     tracker.skip_to(6_500_000);
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
-    let config = Config { url: tracker.url(), device: DeviceId(5), ..Config::default() };
+    let config = LeapConfig { url: tracker.url(), device: DeviceId(5), ..LeapConfig::default() };
     let handle = start(config, clock.clone(), factory.sender()).unwrap();
     assert!(tracker.wait_for_client(SOON));
     Rig { tracker, handle, rx, clock, got: Vec::new() }
@@ -217,18 +217,18 @@ fn a_server_that_breaks_every_rule_is_survived() {
     let (url, server) = hostile(answers);
     let (factory, mut rx) = channel(64);
     let mut client = Client::new(
-        Config { url, ..Config::default() },
+        LeapConfig { url, ..LeapConfig::default() },
         Clock::monotonic(),
         factory.sender(),
-        Arc::new(Mutex::new(Status::default())),
+        Arc::new(Mutex::new(LeapStatus::default())),
     );
     let mut reasons = Vec::new();
     for _ in 0..n {
         // Each attempt by hand: the back-off has its own test and would take a minute here.
         let why = match connect(&client.config) {
             Ok(socket) => {
-                let (_hold, leash) = lifeline::pair();
-                client.serve(socket, &leash)
+                let (_hold, stop) = device_thread::pair();
+                client.serve(socket, &stop)
             }
             Err(why) => why,
         };
@@ -248,7 +248,8 @@ fn a_server_that_breaks_every_rule_is_survived() {
 
 #[test]
 fn another_machine_is_not_asked_unless_allowed_and_only_ws_is_spoken() {
-    let to = |url: &str| connect(&Config { url: url.into(), ..Config::default() }).unwrap_err();
+    let to =
+        |url: &str| connect(&LeapConfig { url: url.into(), ..LeapConfig::default() }).unwrap_err();
     assert!(to("ws://192.0.2.1:6437/v6.json").contains("allow_remote"));
     assert!(to("wss://127.0.0.1:6437/v6.json").contains("only ws://"));
     assert!(to("::::").contains("::::"));

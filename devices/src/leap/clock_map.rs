@@ -1,8 +1,8 @@
 //! From the tracker's clock to ours.
 //!
-//! A frame is read some time after it was taken: the least delay ever seen is the best word on how the two clocks stand to
-//! each other. Frames that came late in a burst get the instants at which they were taken, so that a speed computed from
-//! them is the hand's and not the network's.
+//! A frame is read some time after it was taken: the least delay ever seen is the best word on how
+//! the two clocks stand to each other. Frames that came late in a burst get the instants at which
+//! they were taken, so that a speed computed from them is the hand's and not the network's.
 
 /// Beyond this the clocks are held to have jumped, and the map starts afresh.
 const JUMP_US: i64 = 1_000_000;
@@ -24,8 +24,8 @@ struct Seen {
 }
 
 impl ClockMap {
-    /// When the frame was taken, on our clock: never later than `read_us`, never before the frame that came before it.
-    /// With no stamp of the tracker's it is the instant of the read.
+    /// When the frame was taken, on our clock: never later than `read_us`, never before the frame
+    /// that came before it. With no stamp of the tracker's it is the instant of the read.
     pub fn map(&mut self, device_us: Option<u64>, read_us: u64) -> u64 {
         let taken = match device_us.and_then(|d| i64::try_from(d).ok()) {
             Some(device) => self.taken(device, read_us),

@@ -73,7 +73,8 @@ impl FrameFile {
         }
     }
 
-    /// Time passes with the tracker's stamps; where they run backwards, jump or are missing, at the usual rate.
+    /// Time passes with the tracker's stamps; where they run backwards, jump or are missing, at the
+    /// usual rate.
     fn advance(&mut self, line: &str) {
         let stamp = serde_json::from_str::<Stamp>(line).ok().and_then(|s| s.timestamp);
         let stamp = stamp.filter(|t| *t >= 0.0 && *t < 9e15).map(|t| t as u64);

@@ -8,10 +8,12 @@ use serde::Deserialize;
 use super::loose::{Scalar, Triple};
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// Longest message that is looked at, in bytes. Real frames with two hands and all bones have 14,000.
+/// Longest message that is looked at, in bytes. Real frames with two hands and all bones have
+/// 14,000.
 pub const MAX_MESSAGE: usize = 256 * 1024;
 
-/// Deepest nesting that is looked at. Real frames reach 6 (message, pointables, pointable, bases, matrix, row).
+/// Deepest nesting that is looked at. Real frames reach 6 (message, pointables, pointable, bases,
+/// matrix, row).
 pub const MAX_DEPTH: usize = 16;
 
 /// Hands and fingers past these are not even looked at: 10 people's worth.
@@ -20,12 +22,16 @@ const MAX_LISTED: usize = 128;
 /// Why a message gave nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FrameError {
+    /// The message has so many bytes.
     #[error("message of {0} bytes, more than {MAX_MESSAGE}")]
     TooLong(usize),
+    /// Arrays and objects are nested too deeply, at this byte.
     #[error("nested deeper than {MAX_DEPTH} at byte {0}")]
     TooDeep(usize),
+    /// The text is not JSON; the parser's reason.
     #[error("not JSON: {0}")]
     NotJson(String),
+    /// The text is a message of another kind.
     #[error("a message, but not a frame")]
     NotAFrame,
 }
@@ -38,9 +44,12 @@ pub enum Message {
     Version(Option<i64>),
     /// A tracker was plugged in or out, or began or ceased to stream.
     Device {
+        /// A tracker is plugged in; `None` where the message does not say.
         attached: Option<bool>,
+        /// It streams; `None` where the message does not say.
         streaming: Option<bool>,
     },
+    /// A frame.
     Frame(Frame),
     /// Well-formed, and nothing that this client knows.
     Other,
@@ -49,6 +58,7 @@ pub enum Message {
 /// A decoded frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
+    /// Every hand of the frame.
     pub hands: Hands,
     /// Microseconds on the tracker's clock; its origin is unknown.
     pub device_t_us: Option<u64>,
@@ -160,8 +170,8 @@ pub fn parse_message(json: &str) -> Result<Message, FrameError> {
     Ok(raw.version.map_or(Message::Other, |v| Message::Version(v.int())))
 }
 
-/// Holds size and depth to their caps before anything is built from the text; true if `nan` or `inf` stands in it
-/// outside strings.
+/// Holds size and depth to their caps before anything is built from the text; true if `nan` or
+/// `inf` stands in it outside strings.
 fn check(json: &str) -> Result<bool, FrameError> {
     if json.len() > MAX_MESSAGE {
         return Err(FrameError::TooLong(json.len()));
@@ -273,8 +283,9 @@ fn decode_hand(raw: &RawHand, id: i32, palm: Vec3) -> Hand {
     }
 }
 
-/// The turn that brings the tracker's axes onto the hand's: x across the palm, y out of the back of the hand, z from the
-/// fingers to the wrist. A flat hand, palm down, fingers away from the user, has none.
+/// The turn that brings the tracker's axes onto the hand's: x across the palm, y out of the back of
+/// the hand, z from the fingers to the wrist. A flat hand, palm down, fingers away from the user,
+/// has none.
 fn palm_orientation(direction: Vec3, normal: Vec3) -> Option<Quat> {
     let z = -direction;
     let y = (-normal + z * normal.dot(z)).try_normalize()?;
@@ -286,7 +297,8 @@ fn attach_fingers(hand: &mut Hand, hand_id: i64, fingers: &[RawFinger]) {
         if raw.hand_id.int() != Some(hand_id) || raw.tool.bool() == Some(true) {
             continue;
         }
-        // Some servers leave the type out; the id then says it: ten times the hand's, plus the finger.
+        // Some servers leave the type out; the id then says it: ten times the hand's, plus the
+        // finger.
         let kind =
             raw.kind.int().or_else(|| Some(raw.id.int()?.wrapping_sub(hand_id.wrapping_mul(10))));
         let Some(slot) = kind.and_then(|k| hand.fingers.get_mut(usize::try_from(k).ok()?)) else {

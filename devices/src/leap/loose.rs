@@ -1,4 +1,5 @@
-//! JSON values that a tracker may have got wrong: whatever is not of the expected shape reads as an absence.
+//! JSON values that a tracker may have got wrong: whatever is not of the expected shape reads as an
+//! absence.
 
 use std::fmt;
 

@@ -1,11 +1,13 @@
 //! Tracked hands over the Leap WebSocket protocol, versions 6 and 7.
 //!
 //! Laws kept here:
-//! * Nothing that a server can send panics, allocates without bound, or yields a number that is not finite.
-//! * A field that is missing, null, of the wrong shape or out of reason is an absence, not an error; only a message that
-//!   is not JSON, too large or too deep is one.
+//! * Nothing that a server can send panics, allocates without bound, or yields a number that is not
+//!   finite.
+//! * A field that is missing, null, of the wrong shape or out of reason is an absence, not an
+//!   error; only a message that is not JSON, too large or too deep is one.
 //!
-//! Sources: the leapjs client 1.1.1 (field names and handshake) and recordings of real services (what is missing when).
+//! Sources: the leapjs client 1.1.1 (field names and handshake) and recordings of real services
+//! (what is missing when).
 
 pub mod client;
 pub mod clock_map;
@@ -13,7 +15,7 @@ pub mod file;
 pub mod frame;
 mod loose;
 
-pub use client::{Config, Handle, Status, start};
+pub use client::{LeapConfig, LeapHandle, LeapStatus, start};
 pub use clock_map::ClockMap;
 pub use file::FrameFile;
 pub use frame::{Frame, FrameError, Message, parse_frame, parse_message};

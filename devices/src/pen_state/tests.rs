@@ -53,7 +53,8 @@ fn a_switch_decides_alone() {
     let reports =
         [pen(400, Some(false)), pen(0, Some(true)), pen(0, Some(true)), pen(400, Some(false))];
     let got = run(CFG, &reports);
-    // Pressure in the air is no click, and a pen-down report without pressure does not cut the stroke.
+    // Pressure in the air is no click, and a pen-down report without pressure does not cut the
+    // stroke.
     assert_eq!(tips(&got), [false, true, true, false, false]);
 }
 
@@ -114,7 +115,8 @@ fn a_worn_pen_that_presses_in_the_air_is_learned() {
     let high = |p| PenReport { distance: Some(50), ..pen(p, None) };
     let low = |p| PenReport { distance: Some(5), ..pen(p, None) };
     let got = run(CFG, &[high(80), low(100), low(120), low(140), low(60), low(85)]);
-    // 80 at rest: down at 5 % of what is left, up when it is back at rest; a lower rest is believed at once.
+    // 80 at rest: down at 5 % of what is left, up when it is back at rest; a lower rest is believed
+    // at once.
     assert_eq!(tips(&got), [false, false, false, true, false, false, false]);
     let got = run(CFG, &[high(600), low(600)]);
     assert_eq!(tips(&got), [true, true, false], "more than half is a hand");

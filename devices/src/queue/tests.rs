@@ -4,7 +4,7 @@ use glam::vec2;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Body, Pen};
+use crate::sample::{Body, Pen};
 
 fn pen(device: u16, t_us: u64, tip: bool) -> Sample {
     let pen = Pen { in_range: true, tip, pos_mm: vec2(t_us as f32, 0.0), ..Pen::default() };
@@ -26,7 +26,8 @@ fn a_full_channel_coalesces_motion_and_keeps_every_edge() {
     while !(tx.flush() && rx.waiting() == 0) {
         rx.drain(1, &mut got);
     }
-    // The two that fitted, the newest motion of the first run, then an edge and the newest motion of each later run.
+    // The two that fitted, the newest motion of the first run, then an edge and the newest motion
+    // of each later run.
     let times: Vec<u64> = got.iter().map(|s| s.t_us).collect();
     let mut want = vec![0, 1, 9];
     want.extend((1..10).flat_map(|run| [run * 10, run * 10 + 9]));
@@ -131,7 +132,8 @@ fn what_a_person_set_for_a_tablet_holds_for_that_tablet() {
     assert!(tx.calibrations.is_empty());
 }
 
-/// What a test does to the channel: one device moves or turns its tip over, or the consumer takes some.
+/// What a test does to the channel: one device moves or turns its tip over, or the consumer takes
+/// some.
 #[derive(Debug, Clone)]
 enum Op {
     Move(u16),

@@ -1,5 +1,6 @@
 //! A tracker's recorded frames, decoded by the same parser as a live connection's.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::RecordingError;
@@ -10,6 +11,8 @@ use crate::sample::{Body, DeviceId, Hands, Sample};
 #[derive(Debug, Clone, Default)]
 pub(super) struct HandRecording {
     pub frames: Vec<(u64, Option<u64>, Hands)>,
+    /// Number of the last line, from 1, where it was cut off and therefore left out.
+    pub cut_at: Option<usize>,
 }
 
 /// A file that starts like one: gzipped, or with a JSON object.
@@ -24,11 +27,25 @@ pub(super) fn open(path: &Path) -> Result<HandRecording, RecordingError> {
     let file = FrameFile::open(path)
         .map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
     let mut out = HandRecording::default();
-    for (i, line) in file.enumerate() {
-        let (t_us, text) = line.map_err(|e| broken(i + 1, e.to_string()))?;
-        match parse_message(&text).map_err(|e| broken(i + 1, e.to_string()))? {
-            Message::Frame(f) => out.frames.push((t_us, f.device_t_us, f.hands)),
-            Message::Version(_) | Message::Device { .. } | Message::Other => {}
+    let mut lines = file.enumerate();
+    while let Some((i, line)) = lines.next() {
+        let message = match line {
+            Ok((t_us, text)) => parse_message(&text).map(|m| (t_us, m)).map_err(|e| e.to_string()),
+            // A gzipped file that was cut off ends in this error, again and again.
+            Err(e) if e.kind() == ErrorKind::UnexpectedEof && !out.frames.is_empty() => {
+                out.cut_at = Some(i + 1);
+                break;
+            }
+            Err(e) => return Err(broken(i + 1, e.to_string())),
+        };
+        match message {
+            Ok((t_us, Message::Frame(f))) => out.frames.push((t_us, f.device_t_us, f.hands)),
+            Ok(_) => {}
+            Err(_) if !out.frames.is_empty() && lines.next().is_none() => {
+                out.cut_at = Some(i + 1);
+                break;
+            }
+            Err(why) => return Err(broken(i + 1, why)),
         }
     }
     if out.frames.is_empty() {

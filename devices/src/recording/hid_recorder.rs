@@ -1,5 +1,6 @@
-//! The text that the `hid-recorder` tool writes (hid-tools): `D:` device number, `R:` descriptor, `N:` name, `P:` place,
-//! `I:` bus and ids, `E:` a stamped report. Also read: `# USB-STRING S index bytes`, raw string descriptors by index.
+//! The text that the `hid-recorder` tool writes (hid-tools): `D:` device number, `R:` descriptor,
+//! `N:` name, `P:` place, `I:` bus and ids, `E:` a stamped report. Also read: `# USB-STRING S index
+//! bytes`, raw string descriptors by index.
 
 use super::{HidRecording, Stamped};
 use crate::catalogue::Identity;
@@ -12,15 +13,32 @@ const MAX_REPORT: usize = 4096;
 /// A line that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BadLine {
+    /// Number of the line, from 1.
     pub line: usize,
+    /// What is wrong with it and what was expected.
     pub what: String,
 }
 
-/// Reads a whole file.
+/// Reads a whole file. A last line that has no end and cannot be read was cut off: it is left out,
+/// and [`HidRecording::cut_at`] says so.
+///
+/// # Errors
+/// Any other line that cannot be read, or a file without a descriptor and without a report.
 pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
-    let mut reader = Reader::default();
+    let mut reader = LineReader::default();
+    let unended = (!text.ends_with('\n')).then(|| text.lines().count());
     for (i, line) in text.lines().enumerate() {
-        reader.line(line.trim()).map_err(|what| BadLine { line: i + 1, what })?;
+        let unfinished = !line.contains(':') && !line.starts_with('#') && !line.trim().is_empty();
+        match reader.line(line.trim()) {
+            Ok(()) if unended == Some(i + 1) && unfinished && reader.described => {
+                reader.out.cut_at = Some(i + 1);
+            }
+            Ok(()) => {}
+            Err(_) if unended == Some(i + 1) && reader.described => {
+                reader.out.cut_at = Some(i + 1);
+            }
+            Err(what) => return Err(BadLine { line: i + 1, what }),
+        }
     }
     if !reader.described {
         return Err(BadLine {
@@ -32,7 +50,7 @@ pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
 }
 
 #[derive(Default)]
-struct Reader {
+struct LineReader {
     out: HidRecording,
     /// Device number of each interface, in order of appearance.
     numbers: Vec<u32>,
@@ -45,7 +63,7 @@ struct Reader {
     described: bool,
 }
 
-impl Reader {
+impl LineReader {
     fn line(&mut self, line: &str) -> Result<(), String> {
         let Some((tag, rest)) = line.split_once(':').filter(|(tag, _)| tag.len() == 1) else {
             if let Some(rest) = line.strip_prefix("# USB-STRING S ") {
@@ -199,6 +217,19 @@ mod tests {
         let seen: Vec<_> =
             got.reports.iter().map(|r| (r.t_us, r.interface, r.bytes.len())).collect();
         assert_eq!(seen, [(0, 1, 2), (10_500, 0, 1), (10_500, 0, 0)], "time never runs backward");
+    }
+
+    #[test]
+    fn a_recording_is_read_up_to_the_line_that_was_cut() {
+        let text = "R: 2 05 0d\nE: 0.1 2 01 02\nE: 0.2 2 03 04\n";
+        assert_eq!(parse(text).unwrap().cut_at, None);
+        for length in text.len() - 14..text.len() - 1 {
+            let got = parse(&text[..length]).unwrap();
+            assert_eq!((got.reports.len(), got.cut_at), (1, Some(3)), "{:?}", &text[..length]);
+        }
+        assert_eq!(parse(&text[..text.len() - 1]).unwrap().reports.len(), 2, "only its end is cut");
+        let e = parse("R: 2 05 0d\nE: 0.1 2 01\nE: 0.2 2 03 0").unwrap_err();
+        assert_eq!(e.line, 2, "an earlier line was not cut off");
     }
 
     #[test]

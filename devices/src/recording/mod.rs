@@ -1,5 +1,6 @@
 //! Recordings: raw stamped bytes of real devices, and how they are fed again through the live path.
 
+mod device_info;
 mod hands;
 pub mod hid_recorder;
 mod pens;
@@ -8,13 +9,19 @@ pub mod raw;
 
 use std::path::PathBuf;
 
-pub use player::{DeviceInfo, DeviceKind, Player};
+pub use device_info::{DeviceInfo, DeviceKind};
+pub use player::Player;
 
-/// A HID device as it was recorded: one [`crate::catalogue::Identity`] an interface, and every report in order.
+/// A HID device as it was recorded: one [`crate::catalogue::Identity`] an interface, and every
+/// report in order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct HidRecording {
+    /// What is known of each interface.
     pub interfaces: Vec<crate::catalogue::Identity>,
+    /// Every report, in order of time.
     pub reports: Vec<Stamped>,
+    /// Number of the last line, from 1, where it was cut off and therefore left out.
+    pub cut_at: Option<usize>,
 }
 
 /// One report.
@@ -24,16 +31,37 @@ pub struct Stamped {
     pub t_us: u64,
     /// Index into [`HidRecording::interfaces`].
     pub interface: usize,
+    /// The report, its id first where the device has ids.
     pub bytes: Vec<u8>,
 }
 
+/// Why a recording cannot be played.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
+    /// The file cannot be read.
     #[error("{}: {error}", path.display())]
-    Io { path: PathBuf, error: std::io::Error },
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// A line is not what it should be.
     #[error("{}:{line}: {what}", path.display())]
-    Broken { path: PathBuf, line: usize, what: String },
-    /// No interface of the device is known: one reason each.
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong with it and what was expected.
+        what: String,
+    },
+    /// No interface of the device is known.
     #[error("{}: no known device in this recording ({why})", path.display())]
-    Unknown { path: PathBuf, why: String },
+    Unknown {
+        /// The file.
+        path: PathBuf,
+        /// One reason for each interface.
+        why: String,
+    },
 }

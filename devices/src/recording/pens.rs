@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use super::device_info::{DeviceInfo, DeviceKind};
 use super::{HidRecording, RecordingError};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
 use crate::hid::decoder::Decoder;
 use crate::sample::{Body, DeviceId, Sample};
 
-use super::player::{DeviceInfo, DeviceKind};
+/// One in so many positions may be outside a model's ranges: noise at the edge.
+const MOST_OUTSIDE: u64 = 50;
 
+/// Plays a pen's reports.
 #[derive(Debug)]
 pub(super) struct PenPlayer {
     pub recording: HidRecording,
@@ -28,19 +31,21 @@ impl PenPlayer {
         let mut found: Vec<Option<Found>> = Vec::new();
         for (i, who) in recording.interfaces.iter().enumerate() {
             found.push(match catalogue.identify(who) {
-                Identification::Identified(found) => Some(found),
+                Identification::Identified(found) => {
+                    let sent = reports_of(&recording, i);
+                    Some(unless_contradicted(found, who, sent, catalogue))
+                }
                 Identification::Declined(why) => {
                     notes.push(format!("{} left alone: {why}", label(who, i)));
                     None
                 }
                 Identification::Ambiguous(many) => {
-                    let reports = recording.reports.iter().filter(|r| r.interface == i);
-                    Some(choose(many, reports.map(|r| r.bytes.as_slice()), &who.descriptor))
+                    Some(choose(many, reports_of(&recording, i), &who.descriptor))
                 }
             });
         }
         let known = found.iter().flatten().find(|f| !f.described).cloned();
-        let (mut info, mut decoders) = (None, Vec::new());
+        let (mut info, mut decoders) = (None::<(DeviceInfo, bool, bool)>, Vec::new());
         for ((i, who), found) in recording.interfaces.iter().enumerate().zip(found) {
             let Some(mut found) = found else {
                 decoders.push(None);
@@ -52,18 +57,25 @@ impl PenPlayer {
             notes.push(format!("{}: {}", label(who, i), found.in_words()));
             decoders.push(Some(Decoder::new(&found, &who.descriptor, device)));
             let spoke = recording.reports.iter().any(|r| r.interface == i);
-            if info.is_none() || spoke {
+            let better = match &info {
+                None => true,
+                // The interface that spoke last names the device; a known model goes before one
+                // that is only described.
+                Some((_, heard, described)) => spoke || !heard && *described && !found.described,
+            };
+            if better {
                 let a = found.tablet.area;
-                info = Some(DeviceInfo {
+                let told = DeviceInfo {
                     name: found.tablet.name.clone(),
                     kind: DeviceKind::Pen,
                     area_mm: glam::Vec2::new(a.width_mm as f32, a.height_mm as f32),
                     device,
                     notes: Vec::new(),
-                });
+                };
+                info = Some((told, spoke, found.described));
             }
         }
-        let Some(mut info) = info else {
+        let Some((mut info, ..)) = info else {
             return Err(RecordingError::Unknown { path: path.to_owned(), why: notes.join("; ") });
         };
         info.notes = notes;
@@ -95,6 +107,43 @@ impl PenPlayer {
     }
 }
 
+fn reports_of(recording: &HidRecording, i: usize) -> impl Iterator<Item = &[u8]> {
+    recording.reports.iter().filter(move |r| r.interface == i).map(|r| r.bytes.as_slice())
+}
+
+/// The model, unless what was sent lies outside its ranges: then what the descriptor says.
+fn unless_contradicted<'a>(
+    found: Found,
+    who: &Identity,
+    reports: impl Iterator<Item = &'a [u8]>,
+    catalogue: &Catalogue,
+) -> Found {
+    if found.described {
+        return found;
+    }
+    let mut decoder = Decoder::new(&found, &who.descriptor, DeviceId(0));
+    for (i, report) in reports.enumerate() {
+        decoder.feed(report, i as u64, &mut |_| {});
+    }
+    let counts = decoder.counts();
+    if counts.placed == 0 || counts.outside * MOST_OUTSIDE <= counts.placed {
+        return found;
+    }
+    match catalogue.without_model(who) {
+        Identification::Identified(mut own) => {
+            let name = &found.tablet.name;
+            own.note = Some(format!(
+                "not the {name} that its ids name: {} of {} positions are outside its ranges; {}",
+                counts.outside,
+                counts.placed,
+                own.note.unwrap_or_default()
+            ));
+            own
+        }
+        _ => found,
+    }
+}
+
 fn label(who: &Identity, i: usize) -> String {
     who.interface.map_or_else(|| format!("device {i}"), |n| format!("interface {n}"))
 }
@@ -103,7 +152,8 @@ fn same_device(known: &Found, who: &Identity) -> bool {
     known.id().vid == who.vid && known.id().pid == who.pid
 }
 
-/// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note: it is a choice, not knowledge.
+/// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note:
+/// it is a choice, not knowledge.
 fn choose<'a>(
     mut many: Vec<Found>,
     reports: impl Iterator<Item = &'a [u8]>,

@@ -2,29 +2,12 @@
 
 use std::path::Path;
 
+use super::device_info::{DeviceInfo, DeviceKind};
 use super::hands::HandRecording;
 use super::pens::PenPlayer;
 use super::{HidRecording, RecordingError, hands, hid_recorder, raw};
 use crate::catalogue::Catalogue;
 use crate::sample::{DeviceId, Sample};
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DeviceKind {
-    Pen,
-    Hand,
-}
-
-/// What plays.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeviceInfo {
-    pub name: String,
-    pub kind: DeviceKind,
-    /// Size of the active area of a pen; zero for hands.
-    pub area_mm: glam::Vec2,
-    pub device: DeviceId,
-    /// Which model and parser each interface got and why, for people.
-    pub notes: Vec<String>,
-}
 
 #[derive(Debug)]
 enum Source {
@@ -52,14 +35,15 @@ impl Player {
         let bytes = std::fs::read(path)
             .map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
         if hands::looks_like(&bytes) {
+            let recording = hands::open(path)?;
             let info = DeviceInfo {
                 name: "hand tracker".to_owned(),
                 kind: DeviceKind::Hand,
                 area_mm: glam::Vec2::ZERO,
                 device,
-                notes: Vec::new(),
+                notes: recording.cut_at.map(|line| cut_warning(path, line)).into_iter().collect(),
             };
-            return Ok(Player::with(info, Source::Hands(hands::open(path)?)));
+            return Ok(Player::with(info, Source::Hands(recording)));
         }
         let broken = |line, what| RecordingError::Broken { path: path.to_owned(), line, what };
         if bytes.contains(&0) {
@@ -79,7 +63,9 @@ impl Player {
         device: DeviceId,
         catalogue: &Catalogue,
     ) -> Result<Player, RecordingError> {
-        let (pen, info) = PenPlayer::of(path, recording, device, catalogue)?;
+        let cut_at = recording.cut_at;
+        let (pen, mut info) = PenPlayer::of(path, recording, device, catalogue)?;
+        info.notes.extend(cut_at.map(|line| cut_warning(path, line)));
         Ok(Player::with(info, Source::Pen(pen)))
     }
 
@@ -87,6 +73,7 @@ impl Player {
         Player { info, source, next: 0, offset_us: 0, ended: false }
     }
 
+    /// What the recording is of.
     pub fn device(&self) -> &DeviceInfo {
         &self.info
     }
@@ -104,12 +91,13 @@ impl Player {
         }
     }
 
+    /// Every report was played, and whatever was in range has left.
     pub fn finished(&self) -> bool {
         self.ended
     }
 
-    /// Plays every report due up to `until_us`, relative to the first report, that one included. After the last, whatever
-    /// is in range leaves.
+    /// Plays every report due up to `until_us`, relative to the first report, that one included.
+    /// After the last, whatever is in range leaves.
     pub fn advance(&mut self, until_us: u64, emit: &mut dyn FnMut(Sample)) {
         let mut last = 0;
         while let Some(due) = self.next_due_us().filter(|&due| due <= until_us) {
@@ -131,4 +119,11 @@ impl Player {
         }
         self.ended = done;
     }
+}
+
+/// Warns of a recording whose last line was cut off, and gives the warning for people.
+fn cut_warning(path: &Path, line: usize) -> String {
+    let what = format!("line {line} was cut off and is left out");
+    tracing::warn!("{}: {what}", path.display());
+    what
 }

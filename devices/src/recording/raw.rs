@@ -1,6 +1,7 @@
 //! Our own recordings: raw bytes as they were read, with what was known of the device.
 //!
-//! Text, one thing a line, whole lines only, so that a recording cut off by a crash is good up to its last line:
+//! Text, one thing a line, whole lines only, so that a recording cut off by a crash is good up to
+//! its last line:
 //!
 //! ```text
 //! sculptd-recording 1
@@ -9,9 +10,9 @@
 //! 0 3932 02e01e050bcf00217fc2
 //! ```
 //!
-//! A line with a brace describes an interface, under a number of this file; a report's line has that number, microseconds
-//! since the recording began, and the bytes in hexadecimal. `number` is the interface's own on its device, or absent. A reader
-//! refuses a version that it does not know.
+//! A line with a brace describes an interface, under a number of this file; a report's line has
+//! that number, microseconds since the recording began, and the bytes in hexadecimal. `number` is
+//! the interface's own on its device, or absent. A reader refuses a version that it does not know.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -38,6 +39,10 @@ struct Head {
     name: String,
     #[serde(default)]
     serial: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    uniq: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    driver: String,
     #[serde(default)]
     descriptor: String,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -71,6 +76,8 @@ impl<W: Write> Recorder<W> {
             number: who.interface,
             name: who.name.clone(),
             serial: serial.to_owned(),
+            uniq: who.uniq.clone(),
+            driver: who.driver.clone(),
             descriptor: hex(&who.descriptor),
             strings: who.strings.iter().map(|(i, b)| (*i, hex(b))).collect(),
         };
@@ -111,6 +118,9 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 pub fn parse(text: &str) -> Result<HidRecording, BadLine> {
     let mut out = HidRecording::default();
     let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    if whole.len() + 1 < text.len() {
+        out.cut_at = Some(whole.lines().count() + 1);
+    }
     let bad = |line: usize, what: String| BadLine { line: line + 1, what };
     let mut first_us = None;
     for (i, line) in whole.lines().enumerate() {
@@ -153,6 +163,8 @@ fn head(line: &str, next: usize) -> Result<Identity, String> {
         vid: head.vid,
         pid: head.pid,
         interface: head.number,
+        uniq: head.uniq,
+        driver: head.driver,
         name: head.name,
         descriptor: bytes(&head.descriptor)?,
         strings,
@@ -190,6 +202,8 @@ mod tests {
             name: "A \"pen\"".into(),
             descriptor: vec![5, 0x0d],
             strings: vec![(201, vec![4, 3, b'x', 0])],
+            uniq: "HUION_T173_190619".into(),
+            driver: "uclogic".into(),
             seen_lengths: vec![],
         };
         assert_eq!(r.interface(&who, "S1").unwrap(), 0);
@@ -215,7 +229,9 @@ mod tests {
     fn a_cut_recording_is_good_to_its_last_line_and_a_broken_one_is_named() {
         let text = written();
         let cut = &text[..text.len() - 3];
-        assert_eq!(parse(cut).unwrap().reports.len(), 1);
+        let good = parse(cut).unwrap();
+        assert_eq!((good.reports.len(), good.cut_at), (1, Some(4)));
+        assert_eq!(parse(&text).unwrap().cut_at, None);
         for (from, to, line) in [
             ("recording 1", "recording 2", 1),
             ("\"interface\":0", "\"interface\":7", 2),

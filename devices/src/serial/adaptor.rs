@@ -7,14 +7,15 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::session::{self, PROBE_ORDER, Wire};
-use super::{Counts, Decoder, Facts, Protocol};
-use crate::Clock;
+use super::{Protocol, SerialCounts, SerialDecoder, SerialFacts};
 use crate::calibration::Calibration;
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// A line that is silent for so long has ended its packet: four bytes at 19200, three at 9600 take less or about it.
+/// A line that is silent for so long has ended its packet: four bytes at 19200, three at 9600 take
+/// less or about it.
 const QUIET: Duration = Duration::from_millis(2);
 /// How long a read waits while nothing is held back.
 const READ_SLICE: Duration = Duration::from_millis(20);
@@ -24,11 +25,11 @@ const BACK_OFF: (Duration, Duration) = (Duration::from_millis(500), Duration::fr
 /// Which ports may be opened, and what to expect there.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Config {
+pub struct SerialConfig {
     /// The port that a tablet is on, such as `/dev/ttyS0` or `COM3`.
     pub port: Option<String>,
-    /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking writes to the port, and what
-    /// is there may not like it.
+    /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking
+    /// writes to the port, and what is there may not like it.
     pub probe: Vec<String>,
     /// What it speaks; `None`: found by asking, which takes up to five seconds a port.
     pub protocol: Option<Protocol>,
@@ -43,30 +44,39 @@ pub struct Config {
 
 /// How the line stands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Status {
+pub struct SerialStatus {
+    /// A tablet was found and is read.
     pub connected: bool,
+    /// The port that it is on.
     pub port: Option<String>,
+    /// What it speaks.
     pub protocol: Option<Protocol>,
+    /// What it calls itself.
     pub model: Option<String>,
     /// Width and height of the active area.
     pub area_mm: Option<[f32; 2]>,
-    pub counts: Counts,
+    /// What became of its bytes.
+    pub counts: SerialCounts,
+    /// Samples that were made of them.
     pub samples: u64,
     /// Packets in the last full second.
     pub rate: f32,
+    /// Times that a tablet was found.
     pub connections: u64,
+    /// Why no tablet is read, or what was wrong last.
     pub last_error: Option<String>,
 }
 
 /// A running reader; dropping it ends its thread.
 #[derive(Debug)]
-pub struct Handle {
-    status: Arc<Mutex<Status>>,
-    _thread: Lifeline,
+pub struct SerialHandle {
+    status: Arc<Mutex<SerialStatus>>,
+    _thread: DeviceThread,
 }
 
-impl Handle {
-    pub fn status(&self) -> Status {
+impl SerialHandle {
+    /// A copy of the present state.
+    pub fn status(&self) -> SerialStatus {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
@@ -75,62 +85,62 @@ impl Handle {
 ///
 /// # Errors
 /// Only if no thread can be started.
-pub fn start(config: Config, clock: Clock, sender: Sender) -> std::io::Result<Handle> {
-    let status = Arc::new(Mutex::new(Status::default()));
+pub fn start(config: SerialConfig, clock: Clock, sender: Sender) -> std::io::Result<SerialHandle> {
+    let status = Arc::new(Mutex::new(SerialStatus::default()));
     let shared = status.clone();
-    let thread = lifeline::spawn("serial-pen", move |leash| {
+    let thread = device_thread::spawn("serial-pen", move |stop| {
         let mut sender = sender;
-        sender.stop_when(leash.flag());
+        sender.stop_when(stop.flag());
         sender.calibrate(config.device, config.calibration);
-        Reader { config, clock, sender, status: shared, second: (0, 0) }.run(&leash);
+        SerialReader { config, clock, sender, status: shared, second: (0, 0) }.run(&stop);
     })?;
-    Ok(Handle { status, _thread: thread })
+    Ok(SerialHandle { status, _thread: thread })
 }
 
-struct Reader {
-    config: Config,
+struct SerialReader {
+    config: SerialConfig,
     clock: Clock,
     sender: Sender,
-    status: Arc<Mutex<Status>>,
+    status: Arc<Mutex<SerialStatus>>,
     /// When the present second of counting began, and the packets by then.
     second: (u64, u64),
 }
 
-impl Reader {
-    fn note(&self, change: impl FnOnce(&mut Status)) {
+impl SerialReader {
+    fn note(&self, change: impl FnOnce(&mut SerialStatus)) {
         change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    fn run(&mut self, leash: &Leash) {
+    fn run(&mut self, stop: &StopToken) {
         let mut wait = BACK_OFF.0;
-        while !leash.stopped() {
+        while !stop.stopped() {
             let mut why = "no port is named, and none that may be asked is there".to_owned();
             for name in self.ports() {
-                why = match self.find(&name, leash) {
+                why = match self.find(&name, stop) {
                     Ok((mut wire, facts)) => {
                         wait = BACK_OFF.0;
                         self.found(&name, &facts);
-                        let why = self.read(wire.as_mut(), &facts, leash);
+                        let why = self.read(wire.as_mut(), &facts, stop);
                         self.note(|s| s.connected = false);
                         why
                     }
                     Err(why) => why,
                 };
                 tracing::debug!(port = name, %why, "no serial tablet");
-                if leash.stopped() {
+                if stop.stopped() {
                     return;
                 }
             }
             self.note(|s| s.last_error = Some(why));
             self.sender.flush();
-            if leash.wait(wait) {
+            if stop.wait(wait) {
                 return;
             }
             wait = (wait * 2).min(BACK_OFF.1);
         }
     }
 
-    fn found(&self, name: &str, facts: &Facts) {
+    fn found(&self, name: &str, facts: &SerialFacts) {
         self.note(|s| {
             s.connected = true;
             s.connections += 1;
@@ -161,7 +171,8 @@ impl Reader {
             .into_iter()
             .map(|p| p.port_name)
             .collect();
-        // A pseudo-terminal or a link that is named in full is no "available port", but allowed is allowed.
+        // A pseudo-terminal or a link that is named in full is no "available port", but allowed is
+        // allowed.
         names.extend(self.config.probe.iter().filter(|p| !p.ends_with('*')).cloned());
         names.sort();
         names.dedup();
@@ -169,7 +180,7 @@ impl Reader {
         names
     }
 
-    fn find(&self, name: &str, leash: &Leash) -> Result<(Box<dyn Wire>, Facts), String> {
+    fn find(&self, name: &str, stop: &StopToken) -> Result<(Box<dyn Wire>, SerialFacts), String> {
         let port = serialport::new(name, 9600)
             .timeout(READ_SLICE)
             .open()
@@ -180,7 +191,7 @@ impl Reader {
             None => &PROBE_ORDER[..],
         };
         for &protocol in asked {
-            let found = session::open(wire.as_mut(), protocol, self.config.touch, leash);
+            let found = session::open(wire.as_mut(), protocol, self.config.touch, stop);
             if let Some(facts) = found.map_err(|e| format!("{name}: {e}"))? {
                 return Ok((wire, facts));
             }
@@ -189,12 +200,12 @@ impl Reader {
     }
 
     /// Reads until the line breaks; returns why it did.
-    fn read(&mut self, wire: &mut dyn Wire, facts: &Facts, leash: &Leash) -> String {
-        let mut decoder = Decoder::new(facts, self.config.device);
+    fn read(&mut self, wire: &mut dyn Wire, facts: &SerialFacts, stop: &StopToken) -> String {
+        let mut decoder = SerialDecoder::new(facts, self.config.device);
         let (mut buffer, mut out) = ([0; 512], Vec::with_capacity(64));
         let mut patience = Duration::ZERO;
         let why = loop {
-            if leash.stopped() {
+            if stop.stopped() {
                 break "stopped".to_owned();
             }
             let wanted = if decoder.holds() { QUIET } else { READ_SLICE };
@@ -223,7 +234,7 @@ impl Reader {
         why
     }
 
-    fn send(&mut self, out: &mut Vec<Sample>, decoder: &Decoder) {
+    fn send(&mut self, out: &mut Vec<Sample>, decoder: &SerialDecoder) {
         let n = out.len() as u64;
         for sample in out.drain(..) {
             self.sender.push(sample);

@@ -1,23 +1,23 @@
-//! Bytes of a serial line to samples: framing, then the layout, then the pen's state. No IO; live lines, simulators and
-//! tests use the same object.
+//! Bytes of a serial line to samples: framing, then the layout, then the pen's state. No IO; live
+//! lines, simulators and tests use the same object.
 
 use serde::Serialize;
 
-use super::{Facts, Layout};
-use crate::hid::report::Parsed;
+use super::{SerialFacts, SerialLayout};
 use crate::pen_state::{PenConfig, PenScale, PenState};
+use crate::report::Parsed;
 use crate::sample::{DeviceId, Sample};
 
 /// Longest packet of any protocol (two fingers over ISDV4).
 const MAX_PACKET: usize = 16;
 
-/// All these protocols say when the pen leaves, and stream while it is there. A lost last packet must not leave it there
-/// for ever: this much silence ends the visit.
+/// All these protocols say when the pen leaves, and stream while it is there. A lost last packet
+/// must not leave it there for ever: this much silence ends the visit.
 const SILENCE_US: u64 = 300_000;
 
 /// What became of the bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
+pub struct SerialCounts {
     /// Packets that were read.
     pub packets: u64,
     /// Begun and cut short by the next.
@@ -30,19 +30,22 @@ pub struct Counts {
     pub broken: u64,
 }
 
+/// Reads the bytes of one serial tablet.
 #[derive(Debug, Clone)]
-pub struct Decoder {
-    layout: Layout,
+pub struct SerialDecoder {
+    layout: SerialLayout,
     pen: PenState,
     packet: [u8; MAX_PACKET],
     have: usize,
     /// A whole packet, not yet confirmed by what follows, and when its last byte was read.
     held: Option<(usize, u64)>,
-    pub counts: Counts,
+    /// What became of the bytes so far.
+    pub counts: SerialCounts,
 }
 
-impl Decoder {
-    pub fn new(facts: &Facts, device: DeviceId) -> Self {
+impl SerialDecoder {
+    /// A decoder for a tablet that said these facts of itself.
+    pub fn new(facts: &SerialFacts, device: DeviceId) -> Self {
         let pen = PenState::new(PenConfig {
             device,
             scale: PenScale {
@@ -55,13 +58,13 @@ impl Decoder {
             silence_us: Some(SILENCE_US),
             tilts: facts.layout.tilts(),
         });
-        Decoder {
+        SerialDecoder {
             layout: facts.layout.clone(),
             pen,
             packet: [0; MAX_PACKET],
             have: 0,
             held: None,
-            counts: Counts::default(),
+            counts: SerialCounts::default(),
         }
     }
 
@@ -77,7 +80,7 @@ impl Decoder {
         self.release(emit);
     }
 
-    /// Whether a packet waits for [`Decoder::quiet`].
+    /// Whether a packet waits for [`SerialDecoder::quiet`].
     pub fn holds(&self) -> bool {
         self.held.is_some()
     }
@@ -94,6 +97,7 @@ impl Decoder {
         self.pen.leave(t_us, emit);
     }
 
+    /// Whether the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range()
     }

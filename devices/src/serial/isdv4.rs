@@ -1,35 +1,40 @@
-//! Wacom ISDV4, as in tablet PCs (the kernel's "W8001"): 9-byte pen packets, touch packets of 5, 7 or 13 bytes, control
-//! packets of 11.
+//! Wacom ISDV4, as in tablet PCs (the kernel's "W8001"): 9-byte pen packets, touch packets of 5, 7
+//! or 13 bytes, control packets of 11.
 
 use super::{low7, signed7};
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
+/// Bytes of a pen's packet.
 pub const PEN_LENGTH: usize = 9;
+/// Bytes of an answer.
 pub const CONTROL_LENGTH: usize = 11;
-/// Counts a mm: the protocol's own, not the device's word.
+/// SerialCounts a mm: the protocol's own, not the device's word.
 pub const PER_MM: f32 = 100.0;
 
 /// The reply to `*`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Query {
+pub struct Isdv4Query {
+    /// Largest coordinates.
     pub max: [i32; 2],
+    /// Full pressure in counts.
     pub max_pressure: u32,
     /// Both 0: no tilt.
     pub max_tilt: [u32; 2],
+    /// Version of the firmware.
     pub version: u32,
 }
 
-impl Query {
+impl Isdv4Query {
     /// Reads a control packet; `None` if it is none.
-    pub fn parse(b: &[u8]) -> Option<Query> {
+    pub fn parse(b: &[u8]) -> Option<Isdv4Query> {
         let &[b0, .., v0, v1] = b.first_chunk::<CONTROL_LENGTH>()?;
         if b0 & 0xc0 != 0xc0 {
             return None;
         }
         let (max, max_pressure) = place(b);
         let version = u32::from(v0 & 0x7f) << 7 | u32::from(v1 & 0x7f);
-        (max[0] > 0 && max[1] > 0).then_some(Query {
+        (max[0] > 0 && max[1] > 0).then_some(Isdv4Query {
             max,
             max_pressure,
             max_tilt: [low7(b, 7), low7(b, 8)],
@@ -43,6 +48,7 @@ impl Query {
 pub struct TouchQuery {
     /// 0 to 5; it says how long a touch packet is.
     pub sensor: u8,
+    /// Largest coordinates of a finger.
     pub max: [i32; 2],
 }
 
@@ -79,25 +85,26 @@ fn place(b: &[u8]) -> ([i32; 2], u32) {
 
 /// What the replies made known, and the memory that the third button needs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
-    query: Query,
+pub struct Isdv4Layout {
+    query: Isdv4Query,
     touch: Option<TouchQuery>,
     /// Fingers become samples; else they are read over.
     fingers: bool,
-    visit: Visit,
+    visit: FingerVisit,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Visit {
+enum FingerVisit {
     Nothing,
     Pen,
     Eraser,
     Finger,
 }
 
-impl Layout {
-    pub fn new(query: Query, touch: Option<TouchQuery>, fingers: bool) -> Self {
-        Layout { query, touch, fingers, visit: Visit::Nothing }
+impl Isdv4Layout {
+    /// A layout for a tablet that answered so. `fingers`: touch becomes samples, too.
+    pub fn new(query: Isdv4Query, touch: Option<TouchQuery>, fingers: bool) -> Self {
+        Isdv4Layout { query, touch, fingers, visit: FingerVisit::Nothing }
     }
 
     /// Both maxima must be stated.
@@ -105,6 +112,7 @@ impl Layout {
         self.query.max_tilt.iter().all(|t| *t > 0)
     }
 
+    /// Bytes of a packet that begins with `first`.
     pub fn length(&self, first: u8) -> usize {
         match (first & 0x40 != 0, first & 0x10 != 0) {
             (_, true) => self.touch.map_or(PEN_LENGTH, |t| t.length()),
@@ -113,6 +121,7 @@ impl Layout {
         }
     }
 
+    /// Reads one whole packet.
     pub fn parse(&mut self, b: &[u8]) -> Parsed {
         let Some(&b0) = b.first() else { return Parsed::Broken };
         if b.len() < self.length(b0) {
@@ -125,8 +134,8 @@ impl Layout {
             return Parsed::Nothing;
         }
         if b0 & 0x20 == 0 {
-            let away = self.visit != Visit::Nothing;
-            self.visit = Visit::Nothing;
+            let away = self.visit != FingerVisit::Nothing;
+            self.visit = FingerVisit::Nothing;
             return if away { Parsed::Away } else { Parsed::Nothing };
         }
         let (pos, pressure) = place(b);
@@ -134,14 +143,14 @@ impl Layout {
             return Parsed::Broken;
         }
         let f2 = b0 & 4 != 0;
-        // One bit means two things: set as the pen enters it is the eraser, set later the second button. An eraser whose
-        // bit goes was a pen all along.
+        // One bit means two things: set as the pen enters it is the eraser, set later the second
+        // button. An eraser whose bit goes was a pen all along.
         self.visit = match self.visit {
-            Visit::Nothing | Visit::Finger if f2 => Visit::Eraser,
-            Visit::Eraser if f2 => Visit::Eraser,
-            _ => Visit::Pen,
+            FingerVisit::Nothing | FingerVisit::Finger if f2 => FingerVisit::Eraser,
+            FingerVisit::Eraser if f2 => FingerVisit::Eraser,
+            _ => FingerVisit::Pen,
         };
-        let eraser = self.visit == Visit::Eraser;
+        let eraser = self.visit == FingerVisit::Eraser;
         let second = f2 && !eraser;
         Parsed::Pen(PenReport {
             tool: Some(if eraser { Tool::Eraser } else { Tool::Pen }),
@@ -154,8 +163,9 @@ impl Layout {
         })
     }
 
-    /// Sources disagree on whether tilt is signed: a stated maximum under 64 can only be that of a signed one, as the
-    /// sensor leans further than 64 degrees from end to end; a greater one is the whole span.
+    /// Sources disagree on whether tilt is signed: a stated maximum under 64 can only be that of a
+    /// signed one, as the sensor leans further than 64 degrees from end to end; a greater one is
+    /// the whole span.
     fn tilt(&self, b: &[u8]) -> Option<[f32; 2]> {
         let [x, y] = self.query.max_tilt;
         if !self.tilts() {
@@ -170,15 +180,15 @@ impl Layout {
     /// The first finger, on the pen's scale. A pen that is there has the word.
     fn finger(&mut self, b: &[u8]) -> Parsed {
         let Some(touch) = self.touch.filter(|_| self.fingers) else { return Parsed::Nothing };
-        if matches!(self.visit, Visit::Pen | Visit::Eraser) {
+        if matches!(self.visit, FingerVisit::Pen | FingerVisit::Eraser) {
             return Parsed::Nothing;
         }
         if b[0] & 1 == 0 {
-            let away = self.visit == Visit::Finger;
-            self.visit = Visit::Nothing;
+            let away = self.visit == FingerVisit::Finger;
+            self.visit = FingerVisit::Nothing;
             return if away { Parsed::Away } else { Parsed::Nothing };
         }
-        self.visit = Visit::Finger;
+        self.visit = FingerVisit::Finger;
         let on = |at: usize, axis: usize| {
             let counts = (low7(b, at) << 7 | low7(b, at + 1)) as i32;
             counts.min(touch.max[axis]) * self.query.max[axis] / touch.max[axis].max(1)
@@ -202,16 +212,16 @@ mod tests {
     /// Maxima 25000 x 18000, pressure 255, no tilt.
     const REPLY: [u8; 11] = [0xc0, 48, 106, 35, 20, 127, 0b0000001, 0, 0, 1, 5];
 
-    fn layout(touch: Option<TouchQuery>) -> Layout {
-        Layout::new(Query::parse(&REPLY).unwrap(), touch, true)
+    fn layout(touch: Option<TouchQuery>) -> Isdv4Layout {
+        Isdv4Layout::new(Isdv4Query::parse(&REPLY).unwrap(), touch, true)
     }
 
     #[test]
     fn the_query_reply_reads_and_nonsense_does_not() {
-        let q = Query::parse(&REPLY).unwrap();
+        let q = Isdv4Query::parse(&REPLY).unwrap();
         assert_eq!((q.max, q.max_pressure, q.version), ([25000, 18000], 255, 133));
-        assert_eq!(Query::parse(&REPLY[..10]), None);
-        assert_eq!(Query::parse(&[0x80; 11]), None);
+        assert_eq!(Isdv4Query::parse(&REPLY[..10]), None);
+        assert_eq!(Isdv4Query::parse(&[0x80; 11]), None);
         let touch = [0xc0, 10, 0b0110_0101, 7, 1, 3, 2, 0, 0, 0, 0];
         assert_eq!(TouchQuery::parse(&touch), Some(TouchQuery { sensor: 5, max: [3591, 1544] }));
         assert_eq!(

@@ -5,12 +5,14 @@
 //! ```
 //!
 //! Laws kept here:
-//! * None of these protocols has a checksum; all set bit 7 of a packet's first byte and of no other. A packet becomes a
-//!   point only if it has its full length **and** the next byte begins another, or the line falls silent. So a packet with
-//!   a byte cut, lost or doubled never becomes one; the price is that a point waits 2 ms.
+//! * None of these protocols has a checksum; all set bit 7 of a packet's first byte and of no
+//!   other. A packet becomes a point only if it has its full length **and** the next byte begins
+//!   another, or the line falls silent. So a packet with a byte cut, lost or doubled never becomes
+//!   one; the price is that a point waits 2 ms.
 //! * Only ports that the person named or allowed are ever opened.
 //!
-//! Sources: the Linux drivers `wacom_w8001.c` and `wacom_serial4.c`, `wcmSerial.c` of linuxwacom, `xf86Summa.c` of XFree86.
+//! Sources: the Linux drivers `wacom_w8001.c` and `wacom_serial4.c`, `wcmSerial.c` of linuxwacom,
+//! `xf86Summa.c` of XFree86.
 
 mod adaptor;
 pub mod decoder;
@@ -23,77 +25,89 @@ pub mod wacom_v;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-pub use adaptor::{Config, Handle, Status, start};
-pub use decoder::{Counts, Decoder};
+pub use adaptor::{SerialConfig, SerialHandle, SerialStatus, start};
+pub use decoder::{SerialCounts, SerialDecoder};
 
-use crate::hid::report::Parsed;
+use crate::report::Parsed;
 
 /// What a serial tablet speaks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
+    /// Wacom ISDV4, also called W8001: tablet PCs.
     Isdv4,
+    /// Wacom IV: UD, ArtPad, PenPartner and Graphire on a serial line.
     WacomIv,
+    /// Wacom V: Intuos on a serial line.
     WacomV,
+    /// SummaSketch MM.
     SummaMm,
 }
 
 /// What a tablet said of itself when it was asked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Facts {
+pub struct SerialFacts {
+    /// Name for people.
     pub model: String,
     /// Largest coordinates.
     pub max: [i32; 2],
+    /// Width and height of the active area in mm.
     pub area_mm: Vec2,
     /// 0: no pressure.
     pub max_pressure: u32,
-    pub layout: Layout,
+    /// How its packets are to be read.
+    pub layout: SerialLayout,
 }
 
 /// How its packets are to be read.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Layout {
-    Isdv4(isdv4::Layout),
-    WacomIv(wacom_iv::Layout),
-    WacomV(wacom_v::Layout),
+pub enum SerialLayout {
+    /// ISDV4.
+    Isdv4(isdv4::Isdv4Layout),
+    /// Wacom IV.
+    WacomIv(wacom_iv::WacomIvLayout),
+    /// Wacom V.
+    WacomV(wacom_v::WacomVLayout),
+    /// SummaSketch MM.
     SummaMm,
 }
 
-impl Layout {
+impl SerialLayout {
+    /// The protocol that this is a layout of.
     pub fn protocol(&self) -> Protocol {
         match self {
-            Layout::Isdv4(_) => Protocol::Isdv4,
-            Layout::WacomIv(_) => Protocol::WacomIv,
-            Layout::WacomV(_) => Protocol::WacomV,
-            Layout::SummaMm => Protocol::SummaMm,
+            SerialLayout::Isdv4(_) => Protocol::Isdv4,
+            SerialLayout::WacomIv(_) => Protocol::WacomIv,
+            SerialLayout::WacomV(_) => Protocol::WacomV,
+            SerialLayout::SummaMm => Protocol::SummaMm,
         }
     }
 
     fn tilts(&self) -> bool {
         match self {
-            Layout::Isdv4(l) => l.tilts(),
-            Layout::WacomIv(l) => l.tilt,
-            Layout::WacomV(_) => true,
-            Layout::SummaMm => false,
+            SerialLayout::Isdv4(l) => l.tilts(),
+            SerialLayout::WacomIv(l) => l.tilt,
+            SerialLayout::WacomV(_) => true,
+            SerialLayout::SummaMm => false,
         }
     }
 
     /// Bytes of a packet that begins with `first`.
     fn length(&self, first: u8) -> usize {
         match self {
-            Layout::Isdv4(l) => l.length(first),
-            Layout::WacomIv(l) => l.length(),
-            Layout::WacomV(_) => wacom_v::LENGTH,
-            Layout::SummaMm => summa_mm::LENGTH,
+            SerialLayout::Isdv4(l) => l.length(first),
+            SerialLayout::WacomIv(l) => l.length(),
+            SerialLayout::WacomV(_) => wacom_v::LENGTH,
+            SerialLayout::SummaMm => summa_mm::LENGTH,
         }
     }
 
     fn parse(&mut self, packet: &[u8]) -> Parsed {
         match self {
-            Layout::Isdv4(l) => l.parse(packet),
-            Layout::WacomIv(l) => l.parse(packet),
-            Layout::WacomV(l) => l.parse(packet),
-            Layout::SummaMm => summa_mm::parse(packet),
+            SerialLayout::Isdv4(l) => l.parse(packet),
+            SerialLayout::WacomIv(l) => l.parse(packet),
+            SerialLayout::WacomV(l) => l.parse(packet),
+            SerialLayout::SummaMm => summa_mm::parse(packet),
         }
     }
 }
@@ -108,6 +122,3 @@ fn signed7(b: &[u8], i: usize) -> f32 {
     let v = low7(b, i) as f32;
     if v >= 64.0 { v - 128.0 } else { v }
 }
-
-#[cfg(test)]
-mod tests;

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::{Facts, Layout, Protocol, isdv4, summa_mm, wacom_iv, wacom_v};
-use crate::lifeline::Leash;
+use super::{Protocol, SerialFacts, SerialLayout, isdv4, summa_mm, wacom_iv, wacom_v};
+use crate::device_thread::StopToken;
 
 const MM_PER_INCH: f32 = 25.4;
 /// How long one read of the line waits.
@@ -49,8 +49,8 @@ enum End {
     Line,
 }
 
-/// The order in which protocols are tried on a port whose tablet is not known: the one that answers fastest first, the one
-/// with the oddest line last.
+/// The order in which protocols are tried on a port whose tablet is not known: the one that answers
+/// fastest first, the one with the oddest line last.
 pub(crate) const PROBE_ORDER: [Protocol; 4] =
     [Protocol::Isdv4, Protocol::WacomV, Protocol::WacomIv, Protocol::SummaMm];
 
@@ -59,10 +59,10 @@ pub(crate) fn open(
     wire: &mut dyn Wire,
     protocol: Protocol,
     fingers: bool,
-    leash: &Leash,
-) -> io::Result<Option<Facts>> {
+    stop: &StopToken,
+) -> io::Result<Option<SerialFacts>> {
     wire.set_patience(SLICE)?;
-    let mut s = Session { wire, leash };
+    let mut s = Session { wire, stop };
     match protocol {
         Protocol::Isdv4 => s.isdv4(fingers),
         Protocol::WacomIv | Protocol::WacomV => s.wacom(protocol),
@@ -72,7 +72,7 @@ pub(crate) fn open(
 
 struct Session<'a> {
     wire: &'a mut dyn Wire,
-    leash: &'a Leash,
+    stop: &'a StopToken,
 }
 
 impl Session<'_> {
@@ -83,7 +83,7 @@ impl Session<'_> {
 
     /// Waits, then throws away what came meanwhile.
     fn settle(&mut self, ms: u64) -> io::Result<()> {
-        if self.leash.wait(Duration::from_millis(ms)) {
+        if self.stop.wait(Duration::from_millis(ms)) {
             return Err(io::Error::new(io::ErrorKind::Interrupted, "stopped"));
         }
         self.wire.clear()
@@ -93,7 +93,7 @@ impl Session<'_> {
         self.say(question)?;
         let (mut reply, mut buffer) = (Vec::new(), [0; MAX_REPLY]);
         for _ in 0..PATIENCE.as_millis() / SLICE.as_millis() {
-            if self.leash.stopped() {
+            if self.stop.stopped() {
                 return Err(io::Error::new(io::ErrorKind::Interrupted, "stopped"));
             }
             match self.wire.read(&mut buffer) {
@@ -122,29 +122,29 @@ impl Session<'_> {
     }
 
     /// Two speeds: 38400 for those with touch and most others, 19200 for the first ones.
-    fn isdv4(&mut self, fingers: bool) -> io::Result<Option<Facts>> {
+    fn isdv4(&mut self, fingers: bool) -> io::Result<Option<SerialFacts>> {
         for baud in [38400, 19200] {
             self.wire.set_line(baud, false)?;
             self.say(b"0")?;
             self.settle(250)?;
             let reply = self.ask(b"*", End::Packet(isdv4::CONTROL_LENGTH))?;
-            let Some(query) = isdv4::Query::parse(&reply) else { continue };
+            let Some(query) = isdv4::Isdv4Query::parse(&reply) else { continue };
             let touch =
                 isdv4::TouchQuery::parse(&self.ask(b"%", End::Packet(isdv4::CONTROL_LENGTH))?);
             self.say(b"1")?;
             let area = query.max.map(|m| m as f32 / isdv4::PER_MM);
-            return Ok(Some(Facts {
+            return Ok(Some(SerialFacts {
                 model: format!("ISDV4 tablet, version {}", query.version),
                 max: query.max,
                 area_mm: Vec2::from(area),
                 max_pressure: query.max_pressure,
-                layout: Layout::Isdv4(isdv4::Layout::new(query, touch, fingers)),
+                layout: SerialLayout::Isdv4(isdv4::Isdv4Layout::new(query, touch, fingers)),
             }));
         }
         Ok(None)
     }
 
-    fn wacom(&mut self, protocol: Protocol) -> io::Result<Option<Facts>> {
+    fn wacom(&mut self, protocol: Protocol) -> io::Result<Option<SerialFacts>> {
         self.wire.set_line(9600, false)?;
         self.say(b"\r#")?;
         self.settle(100)?;
@@ -173,13 +173,14 @@ impl Session<'_> {
         })
     }
 
-    fn wacom_iv(&mut self, model: &str, max: [i32; 2]) -> io::Result<Facts> {
+    fn wacom_iv(&mut self, model: &str, max: [i32; 2]) -> io::Result<SerialFacts> {
         let stated =
             answer(&self.ask(b"~R\r", End::Line)?, "~R").map(|a| numbers(&a)).unwrap_or_default();
-        // The answer holds a hexadecimal word, two figures, and then the resolution in lines an inch.
+        // The answer holds a hexadecimal word, two figures, and then the resolution in lines an
+        // inch.
         let usual = if model.starts_with("PL") || model.starts_with("DT") { 508 } else { 1000 };
         let per_inch = |i: usize| stated.get(i).copied().filter(|r| *r > 0).unwrap_or(usual) as f32;
-        let layout = wacom_iv::Layout::new(model, version(model), max);
+        let layout = wacom_iv::WacomIvLayout::new(model, version(model), max);
         match &model[..model.len().min(2)] {
             "CT" => self.say(b"PH1\rST\r")?,
             "PL" | "DT" => self.say(b"OC1\rIT0\rSR\rST\r")?,
@@ -191,32 +192,32 @@ impl Session<'_> {
                 self.say(b"ST\r")?;
             }
         }
-        Ok(Facts {
+        Ok(SerialFacts {
             model: format!("Wacom {model}"),
             max,
             area_mm: Vec2::new(max[0] as f32 / per_inch(3), max[1] as f32 / per_inch(4))
                 * MM_PER_INCH,
             max_pressure: layout.max_pressure(),
-            layout: Layout::WacomIv(layout),
+            layout: SerialLayout::WacomIv(layout),
         })
     }
 
-    fn wacom_v(&mut self, model: &str, max: [i32; 2]) -> io::Result<Facts> {
+    fn wacom_v(&mut self, model: &str, max: [i32; 2]) -> io::Result<SerialFacts> {
         self.say(b"BA38\r")?;
         self.settle(50)?;
         self.wire.set_line(38400, false)?;
         self.say(b"MT1\rID1\rIT0\rST\r")?;
-        Ok(Facts {
+        Ok(SerialFacts {
             model: format!("Wacom {model}"),
             max,
             // All of them have 2540 lines an inch: 100 a mm.
             area_mm: Vec2::new(max[0] as f32, max[1] as f32) / 100.0,
             max_pressure: wacom_v::MAX_PRESSURE,
-            layout: Layout::WacomV(wacom_v::Layout::new(max)),
+            layout: SerialLayout::WacomV(wacom_v::WacomVLayout::new(max)),
         })
     }
 
-    fn summa(&mut self) -> io::Result<Option<Facts>> {
+    fn summa(&mut self) -> io::Result<Option<SerialFacts>> {
         self.wire.set_line(9600, true)?;
         // A break would reset it; a NUL makes it find the speed.
         self.say(&[0])?;
@@ -236,12 +237,12 @@ impl Session<'_> {
         // Absolute, first tablet, origin at the top, binary, streaming.
         self.say(b"F0bzb@")?;
         let mm = |counts: i32| counts as f32 / summa_mm::PER_INCH * MM_PER_INCH;
-        Ok(Some(Facts {
+        Ok(Some(SerialFacts {
             model: format!("SummaSketch {id}"),
             max,
             area_mm: Vec2::new(mm(max[0]), mm(max[1])),
             max_pressure: 0,
-            layout: Layout::SummaMm,
+            layout: SerialLayout::SummaMm,
         }))
     }
 }

@@ -16,9 +16,9 @@ impl Fake {
         Fake { speed, answers, now: 0, out: VecDeque::new(), said: Vec::new() }
     }
 
-    fn open(&mut self, protocol: Protocol) -> Option<Facts> {
-        let (_hold, leash) = crate::lifeline::pair();
-        open(self, protocol, true, &leash).unwrap()
+    fn open(&mut self, protocol: Protocol) -> Option<SerialFacts> {
+        let (_hold, stop) = crate::device_thread::pair();
+        open(self, protocol, true, &stop).unwrap()
     }
 }
 
@@ -154,9 +154,9 @@ fn an_endless_answer_ends() {
             Ok(())
         }
     }
-    let (_hold, leash) = crate::lifeline::pair();
+    let (_hold, stop) = crate::device_thread::pair();
     for protocol in PROBE_ORDER {
-        assert_eq!(open(&mut Babble, protocol, true, &leash).unwrap(), None);
+        assert_eq!(open(&mut Babble, protocol, true, &stop).unwrap(), None);
     }
 }
 

@@ -1,11 +1,13 @@
-//! SummaSketch in MM format: 5 bytes, no pressure. Its proximity bit is turned over: set means away.
+//! SummaSketch in MM format: 5 bytes, no pressure. Its proximity bit is turned over: set means
+//! away.
 
 use super::low7;
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
+/// Bytes of a packet.
 pub const LENGTH: usize = 5;
-/// Counts an inch, as the session asks for.
+/// SerialCounts an inch, as the session asks for.
 pub const PER_INCH: f32 = 500.0;
 
 /// Two 14-bit coordinates, low seven bits first.
@@ -13,6 +15,7 @@ pub fn place(b: &[u8]) -> [i32; 2] {
     [(low7(b, 2) << 7 | low7(b, 1)) as i32, (low7(b, 4) << 7 | low7(b, 3)) as i32]
 }
 
+/// Reads one whole packet.
 pub fn parse(b: &[u8]) -> Parsed {
     if b.len() < LENGTH {
         return Parsed::Broken;

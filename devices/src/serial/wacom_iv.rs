@@ -1,30 +1,33 @@
 //! Wacom protocol IV: UD, ArtPad, PenPartner, Graphire, PL. 7 bytes, 9 with tilt.
 
 use super::{low7, signed7};
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
 /// What differs between models.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct WacomIvLayout {
+    /// Largest coordinates.
     pub max: [i32; 2],
     /// Pressure bits beyond the seven of the last byte: 0, 1 or 2.
     pub extra_bits: u32,
     /// Which button bit is the eraser.
     pub eraser: u32,
+    /// Packets carry tilt.
     pub tilt: bool,
     visit: Option<Tool>,
 }
 
-impl Layout {
-    /// By the model's two letters (`UD`, `ET`, `CT`, `PL`, `DT`, ...) and its ROM's version, 0.0 where unknown.
+impl WacomIvLayout {
+    /// By the model's two letters (`UD`, `ET`, `CT`, `PL`, `DT`, ...) and its ROM's version, 0.0
+    /// where unknown.
     pub fn new(model: &str, version: (u32, u32), max: [i32; 2]) -> Self {
         let graphire = model.starts_with("ET");
         let plain = model.starts_with("UD") && version.0 == 1 && version.1 <= 2;
         let fine = graphire || ["PL-710", "PL-550", "PL-800"].iter().any(|m| model.starts_with(m));
         // From ROM 1.4 on a UD tells tilt.
         let tilt = model.starts_with("UD") && version >= (1, 4);
-        Layout {
+        WacomIvLayout {
             max,
             extra_bits: if fine { 2 } else { u32::from(!plain) },
             eraser: if graphire { 8 } else { 4 },
@@ -33,14 +36,17 @@ impl Layout {
         }
     }
 
+    /// Bytes of a packet.
     pub fn length(&self) -> usize {
         if self.tilt { 9 } else { 7 }
     }
 
+    /// Full pressure in counts.
     pub fn max_pressure(&self) -> u32 {
         (1 << (7 + self.extra_bits)) - 1
     }
 
+    /// Reads one whole packet.
     pub fn parse(&mut self, b: &[u8]) -> Parsed {
         if b.len() < self.length() {
             return Parsed::Broken;
@@ -100,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_packet_reads_and_the_eraser_is_decided_at_entry() {
-        let mut l = Layout::new("UD-0608-R00", (1, 3), [15240, 20320]);
+        let mut l = WacomIvLayout::new("UD-0608-R00", (1, 3), [15240, 20320]);
         assert_eq!((l.length(), l.max_pressure()), (7, 255));
         let Parsed::Pen(r) = l.parse(&[0xe8, 31, 104, 0b0001100, 15, 80, 0x20]) else { panic!() };
         assert_eq!(r.pos, Some([31 << 7 | 104, 15 << 7 | 80]));
@@ -124,7 +130,7 @@ mod tests {
     #[test]
     fn models_differ_in_pressure_eraser_and_tilt() {
         let of = |m, v| {
-            let l = Layout::new(m, v, [1000; 2]);
+            let l = WacomIvLayout::new(m, v, [1000; 2]);
             (l.max_pressure(), l.eraser, l.length())
         };
         assert_eq!(of("UD-1212-R00", (1, 2)), (127, 4, 7));

@@ -1,25 +1,32 @@
-//! Wacom protocol V: serial Intuos and Intuos 2. 9 bytes; the lowest bit of the first is the channel.
+//! Wacom protocol V: serial Intuos and Intuos 2. 9 bytes; the lowest bit of the first is the
+//! channel.
 
 use super::{low7, signed7};
-use crate::hid::report::{Parsed, PenReport};
+use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
+/// Bytes of a packet.
 pub const LENGTH: usize = 9;
+/// Full pressure in counts.
 pub const MAX_PRESSURE: u32 = 1023;
 
+/// How packets are read, and the tool that is near.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct WacomVLayout {
     max: [i32; 2],
-    /// By channel: what lies on it. A tablet follows two tools at once; the first to come has the word.
+    /// By channel: what lies on it. A tablet follows two tools at once; the first to come has the
+    /// word.
     tools: [Option<Tool>; 2],
     leading: Option<usize>,
 }
 
-impl Layout {
+impl WacomVLayout {
+    /// A layout for a tablet with these largest coordinates.
     pub fn new(max: [i32; 2]) -> Self {
-        Layout { max, tools: [None; 2], leading: None }
+        WacomVLayout { max, tools: [None; 2], leading: None }
     }
 
+    /// Reads one whole packet.
     pub fn parse(&mut self, b: &[u8]) -> Parsed {
         if b.len() < LENGTH {
             return Parsed::Broken;
@@ -37,8 +44,8 @@ impl Layout {
             }
             return Parsed::Nothing;
         }
-        // A pen packet has 101 above, an airbrush's second 10110 with its wheel where the pressure is; mice and lens
-        // cursors (101 with bits 3 or 4 set) only move.
+        // A pen packet has 101 above, an airbrush's second 10110 with its wheel where the pressure
+        // is; mice and lens cursors (101 with bits 3 or 4 set) only move.
         if b[0] & 0xa0 != 0xa0 || *self.leading.get_or_insert(channel) != channel {
             return Parsed::Nothing;
         }
@@ -71,7 +78,8 @@ impl Layout {
     }
 }
 
-/// By the twelve bits of the tool's type: pens and their like end in 2 with bit 3 clear, erasers in A, mice in 4, 6 or 7.
+/// By the twelve bits of the tool's type: pens and their like end in 2 with bit 3 clear, erasers in
+/// A, mice in 4, 6 or 7.
 fn tool(id: u32) -> Tool {
     match id & 0xf {
         0xa..=0xb => Tool::Eraser,
@@ -90,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_tool_enters_moves_and_leaves_and_the_first_has_the_word() {
-        let mut l = Layout::new([30480, 24060]);
+        let mut l = WacomVLayout::new([30480, 24060]);
         assert_eq!(l.parse(&enter(0x82a, 0)), Parsed::Nothing);
         let pen = [0xe2, 20, 5, 0b0101010, 9, 0b010_1011, 77, 0x7b, 5];
         let Parsed::Pen(r) = l.parse(&pen) else { panic!() };

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Faults {
+    /// The same seed gives the same faults.
     pub seed: u64,
     /// Never arrives.
     pub drop: f32,
@@ -26,6 +27,7 @@ pub struct Faults {
 /// What happens next on the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event<T> {
+    /// The packet arrives as it was sent.
     Whole(T),
     /// Only this share of the packet's bytes arrives, more than 0 and less than 1.
     Torn(T, f32),
@@ -33,18 +35,22 @@ pub enum Event<T> {
     Stall(u64),
     /// The device's clock moves by this many microseconds.
     ClockJump(i64),
+    /// The device is unplugged.
     Unplug,
 }
 
-/// A small seeded generator (SplitMix64, Steele et al. 2014): good enough to choose faults, the same on every machine.
+/// A small seeded generator (SplitMix64, Steele et al. 2014): good enough to choose faults, the
+/// same on every machine.
 #[derive(Debug, Clone)]
 pub struct Rng(u64);
 
 impl Rng {
+    /// A generator; the same seed gives the same numbers.
     pub fn new(seed: u64) -> Self {
         Rng(seed)
     }
 
+    /// 64 random bits.
     pub fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -74,6 +80,7 @@ pub struct Line<T> {
 }
 
 impl<T: Clone> Line<T> {
+    /// A line with nothing on it.
     pub fn new(faults: Faults) -> Self {
         Line { faults, rng: Rng::new(faults.seed), held: None }
     }
@@ -81,7 +88,8 @@ impl<T: Clone> Line<T> {
     /// Puts a packet on the line.
     pub fn pass(&mut self, packet: T, mut out: impl FnMut(Event<T>)) {
         let f = self.faults;
-        // Each fault draws whether or not an earlier one struck, so that one ratio does not shift another's fate.
+        // Each fault draws whether or not an earlier one struck, so that one ratio does not shift
+        // another's fate.
         let [drop, duplicate, reorder, tear, stall, jump, unplug] =
             [f.drop, f.duplicate, f.reorder, f.tear, f.stall, f.clock_jump, f.unplug]
                 .map(|r| self.rng.unit() < r);

@@ -1,15 +1,16 @@
 //! A simulated hand: bones and joints moved by a few plain figures, as a pure function of time.
 //!
-//! The bone lengths are those of a medium adult hand in mm (means over men and women of Buryanov and Kotiuk 2010 for the
-//! fingers, rounded to whole mm); the joints bend about one axis, the distal one two thirds as far as the middle one, which
-//! is how a hand's tendons couple them.
+//! The bone lengths are those of a medium adult hand in mm (means over men and women of Buryanov
+//! and Kotiuk 2010 for the fingers, rounded to whole mm); the joints bend about one axis, the
+//! distal one two thirds as far as the middle one, which is how a hand's tendons couple them.
 
 use glam::{Mat3, Quat, Vec3, vec3};
 
 use super::pen::smooth;
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// Metacarpal, proximal, middle and distal bone, thumb first; a thumb has no metacarpal of its own in the protocol.
+/// Metacarpal, proximal, middle and distal bone, thumb first; a thumb has no metacarpal of its own
+/// in the protocol.
 const BONES: [[f32; 4]; 5] = [
     [0.0, 46.0, 32.0, 22.0],
     [68.0, 40.0, 23.0, 16.0],
@@ -17,7 +18,8 @@ const BONES: [[f32; 4]; 5] = [
     [58.0, 41.0, 26.0, 17.0],
     [54.0, 33.0, 18.0, 16.0],
 ];
-/// Where each finger leaves the wrist, sideways, thumb side first: mm from the middle of a right hand.
+/// Where each finger leaves the wrist, sideways, thumb side first: mm from the middle of a right
+/// hand.
 const ROOTS: [f32; 5] = [-24.0, -12.0, -3.0, 6.0, 15.0];
 /// Degrees by which each finger spreads from the middle one.
 const SPREAD: [f32; 5] = [-38.0, -7.0, 0.0, 7.0, 14.0];
@@ -29,6 +31,7 @@ const FOREARM: f32 = 260.0;
 /// A hand at one instant of its script; between two keys everything is interpolated smoothly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandKey {
+    /// When, in microseconds since the script began.
     pub t_us: u64,
     /// Seen from this key until the next one.
     pub present: bool,
@@ -63,6 +66,7 @@ impl HandKey {
         HandKey { curl: [curl; 5], ..self }
     }
 
+    /// The same with thumb and index finger pinched, 0 to 1.
     pub fn pinched(self, pinch: f32) -> Self {
         HandKey { pinch, ..self }
     }
@@ -72,6 +76,7 @@ impl HandKey {
         HandKey { curl: [0.05; 5], spread, ..self }
     }
 
+    /// The same turned: yaw, pitch and roll in radians.
     pub fn turned(self, yaw: f32, pitch: f32, roll: f32) -> Self {
         HandKey { yaw_pitch_roll: [yaw, pitch, roll], ..self }
     }
@@ -105,6 +110,7 @@ impl HandKey {
 /// One hand's life over the tracker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Performer {
+    /// A left hand.
     pub left: bool,
     /// In order of time.
     pub keys: Vec<HandKey>,
@@ -130,15 +136,18 @@ impl Performer {
 /// Every hand over one tracker.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HandScript {
+    /// One for each hand, at most [`MAX_HANDS`].
     pub performers: Vec<Performer>,
 }
 
 impl HandScript {
+    /// When the last key is reached, in microseconds.
     pub fn end_us(&self) -> u64 {
         self.performers.iter().filter_map(|p| p.keys.last()).map(|k| k.t_us).max().unwrap_or(0)
     }
 
-    /// Everything that a tracker sees at `t_us`. A hand that comes back has a new id, as with a real tracker.
+    /// Everything that a tracker sees at `t_us`. A hand that comes back has a new id, as with a
+    /// real tracker.
     pub fn at(&self, t_us: u64, frame: i64) -> Hands {
         let mut out = Hands { frame, ..Hands::default() };
         for (i, who) in self.performers.iter().take(MAX_HANDS).enumerate() {
@@ -163,7 +172,8 @@ pub fn skeleton(pose: &HandKey, left: bool) -> Hand {
     let turn =
         Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
     let side = if left { -1.0 } else { 1.0 };
-    // In the hand's own axes the fingers run along -z and the back looks along +y; a left hand is the mirror image.
+    // In the hand's own axes the fingers run along -z and the back looks along +y; a left hand is
+    // the mirror image.
     let place = |v: Vec3| pose.palm + turn * vec3(side * v.x, v.y, v.z);
     let aim = |v: Vec3| turn * vec3(side * v.x, v.y, v.z);
     let mut own = [0, 1, 2, 3, 4].map(|f| chain(f, pose.curl[f], pose.spread));
@@ -230,8 +240,8 @@ fn chain(finger: usize, curl: f32, spread: f32) -> [Vec3; 5] {
     joints
 }
 
-/// Brings the tips of thumb and index finger together, each joint by its share of the way, so that bones keep nearly
-/// their lengths.
+/// Brings the tips of thumb and index finger together, each joint by its share of the way, so that
+/// bones keep nearly their lengths.
 fn pinch(own: &mut [[Vec3; 5]; 5], by: f32) {
     let meet = (own[0][4] + own[1][4]) * 0.5 + vec3(0.0, -12.0, 8.0);
     for (finger, apart) in [(0, vec3(-4.0, -3.0, 0.0)), (1, vec3(4.0, 3.0, 0.0))] {
@@ -242,7 +252,8 @@ fn pinch(own: &mut [[Vec3; 5]; 5], by: f32) {
     }
 }
 
-/// The hand's basis as the protocol gives it: three rows, x across, y out of the back, z toward the wrist.
+/// The hand's basis as the protocol gives it: three rows, x across, y out of the back, z toward the
+/// wrist.
 pub(super) fn basis(hand: &Hand) -> Mat3 {
     hand.orientation.map_or(Mat3::IDENTITY, Mat3::from_quat)
 }

@@ -1,5 +1,5 @@
-//! The performance of the demo and of the ghosts: a pen that shapes a form, a hand that dips in, a serial pen that adds
-//! the finish.
+//! The performance of the demo and of the ghosts: a pen that shapes a form, a hand that dips in, a
+//! serial pen that adds the finish.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -15,7 +15,9 @@ pub struct Journal {
     pub pen: PenScript,
     /// On another of the same size.
     pub serial_pen: PenScript,
+    /// What the hands do over the tracker.
     pub hands: HandScript,
+    /// Width and height of the tablets in mm.
     pub area_mm: Vec2,
     /// When the last of them is done.
     pub duration_us: u64,
@@ -24,8 +26,9 @@ pub struct Journal {
 /// A5, the most common size of tablet, lying across.
 const AREA: Vec2 = Vec2::new(210.0, 148.0);
 
-/// About 20 s: 0 to 9 s the pen (ring, wave, spiral, dots), 7 to 15 s the hand (dips in, pinches, makes a fist, leaves),
-/// 14 to 20 s the serial pen (two arcs and a smile). They overlap, so that each is seen beside another.
+/// About 20 s: 0 to 9 s the pen (ring, wave, spiral, dots), 7 to 15 s the hand (dips in, pinches,
+/// makes a fist, leaves), 14 to 20 s the serial pen (two arcs and a smile). They overlap, so that
+/// each is seen beside another.
 pub fn journal() -> Journal {
     let (pen, serial_pen, hands) = (PenScript::new(pen()), PenScript::new(serial()), hands());
     let duration_us = pen.end_us().max(serial_pen.end_us()).max(hands.end_us());

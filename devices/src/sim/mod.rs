@@ -1,10 +1,13 @@
-//! Simulated devices that speak bytes: what they say goes through the same parsers and reader threads as a real device's.
+//! Simulated devices that speak bytes: what they say goes through the same parsers and reader
+//! threads as a real device's.
 //!
-//! A **script** ([`PenScript`], [`HandScript`]) says where a pen or a hand is at any instant; a **device** ([`Tracker`] and
-//! its fellows) turns that into wire bytes; [`Faults`] spoil them, the same way for the same seed. A device can be stepped
-//! (`advance(until)`), so that with a manual [`crate::Clock`] two runs give the same bits.
+//! A **script** ([`PenScript`], [`HandScript`]) says where a pen or a hand is at any instant; a
+//! **device** ([`Tracker`] and its fellows) turns that into wire bytes; [`Faults`] spoil them, the
+//! same way for the same seed. A device can be stepped (`advance(until)`), so that with a manual
+//! [`crate::Clock`] two runs give the same bits.
 //!
-//! A hand tracker, its client, and every frame of a performance, with no hardware and no waiting for the clock:
+//! A hand tracker, its client, and every frame of a performance, with no hardware and no waiting
+//! for the clock:
 //!
 //! ```
 //! use std::time::Duration;
@@ -13,7 +16,7 @@
 //! let mut tracker = sim::Tracker::new(sim::journal().hands, sim::TrackerConfig::default())?;
 //! let (factory, mut samples) = queue::channel(1024);
 //! let clock = Clock::manual();
-//! let config = leap::Config { url: tracker.url(), ..leap::Config::default() };
+//! let config = leap::LeapConfig { url: tracker.url(), ..leap::LeapConfig::default() };
 //! let _client = leap::start(config, clock.clone(), factory.sender())?;
 //! assert!(tracker.wait_for_client(Duration::from_secs(10)));
 //! for us in (0..200_000).step_by(10_000) {
@@ -28,18 +31,18 @@
 
 pub mod faults;
 pub mod hand;
+pub mod jitter;
 pub mod journal;
 pub mod pen;
 pub mod serial;
 pub mod tablet;
 pub mod tracker;
-pub mod tremble;
 
 pub use faults::Faults;
 pub use hand::{HandKey, HandScript, Performer};
+pub use jitter::{Jitter, JitterState};
 pub use journal::{Journal, journal};
 pub use pen::{PenPose, PenScript, Shape, Stroke};
 pub use serial::{SerialPen, SerialPenConfig};
-pub use tablet::{Tablet, TabletConfig, TabletEnd};
+pub use tablet::{SimTablet, TabletConfig, TabletEnd};
 pub use tracker::{Tracker, TrackerConfig};
-pub use tremble::{Tremble, Trembling};

@@ -2,7 +2,8 @@
 
 use glam::{Vec2, vec2};
 
-/// How high over the surface the pen travels between strokes, as a share of what the device can sense.
+/// How high over the surface the pen travels between strokes, as a share of what the device can
+/// sense.
 const HOVER: f32 = 0.5;
 /// A pause longer than this is spent out of range: the hand rests.
 const REST_US: u64 = 1_200_000;
@@ -14,18 +15,27 @@ const PRESS_US: u64 = 90_000;
 /// A curve on the tablet, in mm from its top left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
+    /// A straight line from one place to another.
     Line(Vec2, Vec2),
-    /// Centre, first and last radius, first and last angle in radians: a circle, an arc or a spiral.
+    /// Centre, first and last radius, first and last angle in radians: a circle, an arc or a
+    /// spiral.
     Turn {
+        /// Centre in mm.
         centre: Vec2,
+        /// First and last radius in mm.
         radius: [f32; 2],
+        /// First and last angle in radians.
         angle: [f32; 2],
     },
     /// From, to, and a sideways swing of so many mm, so many times.
     Wave {
+        /// First place in mm.
         from: Vec2,
+        /// Last place in mm.
         to: Vec2,
+        /// How far it swings to the side, in mm.
         swing: f32,
+        /// How many times it swings.
         times: f32,
     },
 }
@@ -50,13 +60,17 @@ impl Shape {
 /// One touch of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
+    /// When the tip comes down, in microseconds.
     pub from_us: u64,
+    /// When it is lifted, in microseconds.
     pub to_us: u64,
+    /// The way of the tip.
     pub shape: Shape,
     /// Between the fading in and out, 0 to 1.
     pub pressure: f32,
     /// Radians, as in [`crate::Pen::tilt`].
     pub tilt: Vec2,
+    /// The eraser and not the tip.
     pub eraser: bool,
     /// Barrel buttons held down during the stroke.
     pub buttons: u32,
@@ -65,15 +79,21 @@ pub struct Stroke {
 /// A pen at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PenPose {
+    /// The tablet senses the pen.
     pub in_range: bool,
+    /// The tip touches.
     pub tip: bool,
+    /// The eraser points down.
     pub eraser: bool,
+    /// Place in mm from the top left.
     pub pos_mm: Vec2,
     /// 0 to 1; 0 without contact.
     pub pressure: f32,
+    /// Radians, as in [`crate::Pen::tilt`].
     pub tilt: Vec2,
     /// Of the range that the device can sense, 0 on the surface.
     pub height: f32,
+    /// Barrel buttons, bit 0 the lower one.
     pub buttons: u32,
 }
 
@@ -115,6 +135,7 @@ impl PenScript {
         out
     }
 
+    /// The strokes, in order of time.
     pub fn strokes(&self) -> &[Stroke] {
         &self.strokes
     }

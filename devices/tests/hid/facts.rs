@@ -1,11 +1,13 @@
-//! Every descriptor of the corpus, field by field, against what hid-tools reads in it (`hid_tools_facts.py`).
+//! Every descriptor of the corpus, field by field, against what hid-tools reads in it
+//! (`hid_tools_facts.py`).
 
-use sculptd_devices::hid::descriptor::Descriptor;
+use sculptd_devices::descriptor::Descriptor;
 use sculptd_devices::recording::hid_recorder;
 
 const FACTS: &str = include_str!("facts.txt");
 
-/// A maker's own usages are compared by their page: parsers differ in how they go on when a field has more controls than names.
+/// A maker's own usages are compared by their page: parsers differ in how they go on when a field
+/// has more controls than names.
 fn named(usage: u32) -> u32 {
     if usage >= 0xff00_0000 { usage & 0xffff_0000 } else { usage }
 }

@@ -1,4 +1,5 @@
-//! Pens over HID against real devices: the kernel's own decode, every recording, another descriptor parser.
+//! Pens over HID against real devices: the kernel's own decode, every recording, another descriptor
+//! parser.
 
 #![allow(clippy::print_stdout)] // Tests print what they compared and what they skipped.
 
@@ -8,6 +9,7 @@ mod catalogue;
 mod corpus;
 mod facts;
 mod oracle;
+mod plausible;
 
 /// The folder of real recordings, where the environment names one.
 fn devices() -> Option<PathBuf> {

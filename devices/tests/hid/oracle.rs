@@ -65,6 +65,7 @@ fn compare(oracle: &str, recording: &Path) -> Tally {
         tally.check("proximity", kernel_in == ours_in);
         let Some(p) = pen.filter(|_| kernel_in && ours_in) else { continue };
         tally.placed += 1;
+        tally.check("touch", p.tip == (row.n("btn_touch") == 1));
         tally.check("tool", (p.tool == Tool::Eraser) == (row.n("tool_rubber") == 1));
         let pressure = (f64::from(p.pressure.unwrap()) * max_pressure as f64).round() as i64;
         tally.check("pressure", pressure == row.n("pressure"));
@@ -95,7 +96,8 @@ fn every_recording_with_an_oracle_agrees_with_the_kernel() {
     let oracles = super::files(&corpus.join("oracle"), ".csv");
     assert!(oracles.len() >= 8, "{oracles:?}");
     println!(
-        "recording                              reports placed  prox tool press butt    xy  tilt  dist"
+        "recording                              reports placed  prox tool touch press butt    xy  \
+         tilt  dist"
     );
     for path in oracles {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
@@ -105,11 +107,12 @@ fn every_recording_with_an_oracle_agrees_with_the_kernel() {
         let t = compare(&std::fs::read_to_string(&path).unwrap(), &recording);
         let d = |what: &str| t.differ.get(what).copied().unwrap_or(0);
         println!(
-            "{name:38} {:7} {:6} {:5} {:4} {:5} {:4} {:5} {:5.2} {:5.1}",
+            "{name:38} {:7} {:6} {:5} {:4} {:5} {:5} {:4} {:5} {:5.2} {:5.1}",
             t.compared,
             t.placed,
             d("proximity"),
             d("tool"),
+            d("touch"),
             d("pressure"),
             d("buttons"),
             t.worst_xy,

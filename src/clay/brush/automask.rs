@@ -3,15 +3,15 @@
 use glam::Vec3;
 
 use super::dab::Dab;
-use super::stamp::Laid;
+use super::stamp::PlacedStamp;
 use crate::PageIn;
-use crate::brush::surface_query::{Ground, Scratch};
+use crate::brush::surface_query::{SurfaceQuery, Scratch};
 
 /// Faces fade out over this much of the cosine to the eye.
 const FRONT_FADE: f32 = 0.2;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Auto {
+pub struct AutoMasking {
     on: bool,
     eye: Option<Vec3>,
     boundary: bool,
@@ -20,17 +20,17 @@ pub struct Auto {
     cavity: f32,
     /// The image whose connected part was marked.
     connected: Option<usize>,
-    stamp: Option<Laid>,
+    stamp: Option<PlacedStamp>,
 }
 
-impl Auto {
-    pub fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Auto {
+impl AutoMasking {
+    pub fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> AutoMasking {
         let a = &dab.settings.auto;
         if a.topology {
             on.mark_connected(dab);
         }
-        let stamp = Laid::ready(dab);
-        Auto {
+        let stamp = PlacedStamp::ready(dab);
+        AutoMasking {
             on: a.is_on() || stamp.is_some(),
             eye: a.front_faces.then_some(dab.eye),
             boundary: a.boundary,

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct BlobBrush {
@@ -11,13 +12,23 @@ pub struct BlobBrush {
 }
 
 impl Brush for BlobBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "depth",
+            value: 0.6,
+            min: 0.05,
+            max: 2.0,
+            about: "how far below the surface that point lies, in radii",
+        },
+    ];
+
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let plane = on.plane(dab, 0.0);
         BlobBrush { heart: plane.point - plane.normal * (dab.radius * dab.extra(0)) }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let out = (spot.p - self.heart).normalize_or_zero();
-        Change::by(out * (dab.height() * spot.weight))
+        VertexChange::by(out * (dab.height() * spot.weight))
     }
 }

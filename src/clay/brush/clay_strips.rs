@@ -3,8 +3,9 @@
 use glam::Vec3;
 
 use super::clay::coat;
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::{Ground, Plane};
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::{SurfaceQuery, Plane};
 use crate::{PageIn, Reach};
 
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +18,24 @@ pub struct ClayStripsBrush {
 }
 
 impl Brush for ClayStripsBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "lift",
+            value: 0.15,
+            min: 0.0,
+            max: 1.0,
+            about: "how far over the surface the plane stands, in radii, at full strength",
+        },
+        OwnNumber {
+            name: "roundness",
+            value: 0.1,
+            min: 0.0,
+            max: 1.0,
+            about: "0 a square, 1 a disc",
+        },
+    ];
+
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let plane = on.plane(dab, dab.extra(0) * dab.sign * dab.strength);
         let along = dab.along();
         ClayStripsBrush { plane, along, across: along.cross(dab.normal), round: dab.extra(1) }
@@ -40,7 +58,7 @@ impl Brush for ClayStripsBrush {
         dab.settings.falloff.at(r, &dab.settings.curve)
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         coat(&self.plane, dab.sign, spot)
     }
 }

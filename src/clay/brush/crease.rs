@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct CreaseBrush {
@@ -22,15 +23,25 @@ impl CreaseBrush {
 }
 
 impl Brush for CreaseBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "pinch",
+            value: 0.6,
+            min: 0.0,
+            max: 1.0,
+            about: "how much the sides are drawn together",
+        },
+    ];
+
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let along = if dab.motion == Vec3::ZERO { Vec3::ZERO } else { dab.along() };
         CreaseBrush { normal: on.plane(dab, 0.0).normal, along }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let w = spot.weight;
         // Sharper than it is pinched: the groove's floor is a line.
         let cut = self.normal * (dab.height() * w * w);
-        Change::by(cut + self.inward(dab, spot.p) * (dab.extra(0) * dab.strength * w))
+        VertexChange::by(cut + self.inward(dab, spot.p) * (dab.extra(0) * dab.strength * w))
     }
 }

@@ -6,9 +6,10 @@
 
 use glam::Vec3;
 
+use super::preset::OwnNumber;
 use super::BrushSettings;
 use super::stamp::Lens;
-use crate::brush::surface_query::{Ground, Scratch};
+use crate::brush::surface_query::{SurfaceQuery, Scratch};
 use crate::{PageIn, Reach};
 
 /// Images of a dab at most, itself counted.
@@ -94,7 +95,7 @@ impl Dab<'_> {
 
 /// A vertex that a brush looks at.
 #[derive(Debug, Clone, Copy)]
-pub struct Spot<'a> {
+pub struct VertexContext<'a> {
     pub page: &'a PageIn<'a>,
     /// The page's number, and the vertex in it.
     pub number: u32,
@@ -106,7 +107,7 @@ pub struct Spot<'a> {
     pub scratch: &'a Scratch,
 }
 
-impl Spot<'_> {
+impl VertexContext<'_> {
     #[inline]
     pub fn normal(&self) -> Vec3 {
         self.page.normals.get(self.v)
@@ -140,7 +141,7 @@ impl Spot<'_> {
 
 /// What is to change at a vertex. Several images' changes add up.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Change {
+pub struct VertexChange {
     pub by: Vec3,
     /// Where it is to be from where the stroke found it, instead of where it is now.
     pub held: Option<Vec3>,
@@ -150,24 +151,27 @@ pub struct Change {
     pub dye: f32,
 }
 
-impl Change {
+impl VertexChange {
     #[inline(always)]
-    pub fn by(by: Vec3) -> Change {
-        Change { by, ..Change::default() }
+    pub fn by(by: Vec3) -> VertexChange {
+        VertexChange { by, ..VertexChange::default() }
     }
 
-    pub fn held(by: Vec3) -> Change {
-        Change { held: Some(by), ..Change::default() }
+    pub fn held(by: Vec3) -> VertexChange {
+        VertexChange { held: Some(by), ..VertexChange::default() }
     }
 
-    pub fn mask(mask: f32) -> Change {
-        Change { mask, ..Change::default() }
+    pub fn mask(mask: f32) -> VertexChange {
+        VertexChange { mask, ..VertexChange::default() }
     }
 }
 
 /// A brush: one type, one file. A value of it is one dab, made ready.
 pub trait Brush: Copy + Sync {
+    /// How the brush is held.
     const GRIP: Grip = Grip::Surface;
+    /// The numbers that only this brush has, [`super::settings::EXTRAS`] at most.
+    const OWN_NUMBERS: &'static [OwnNumber] = &[];
     /// Whether the mask protects from it; a brush that paints the mask must not be stopped by it.
     const MASKED: bool = true;
     /// Whether triangles may be cut under it: not if it needs to know where vertices were when the
@@ -175,7 +179,7 @@ pub trait Brush: Copy + Sync {
     const CUTS: bool = matches!(Self::GRIP, Grip::Surface | Grip::Tow);
 
     /// What the dab needs to know, found out before anything moves.
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self;
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self;
 
     /// What part of space it concerns.
     fn reach(dab: &Dab<'_>) -> Reach {
@@ -190,7 +194,7 @@ pub trait Brush: Copy + Sync {
         dab.fade((at - dab.centre).length_squared())
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change;
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange;
 
     /// A faster way for a dab without images that overlap and without options; false: there is
     /// none.

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct DrawBrush {
@@ -11,11 +11,11 @@ pub struct DrawBrush {
 }
 
 impl Brush for DrawBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         DrawBrush { offset: on.plane(dab, 0.0).normal * dab.height() }
     }
 
-    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::by(self.offset * spot.weight)
+    fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::by(self.offset * spot.weight)
     }
 }

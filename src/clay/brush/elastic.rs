@@ -15,8 +15,9 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Grip, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
 /// The brush's size as a share of its radius: the circle drawn on the surface is where about a
@@ -66,8 +67,17 @@ impl ElasticBrush {
 
 impl Brush for ElasticBrush {
     const GRIP: Grip = Grip::Anchor;
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "poisson",
+            value: 0.5,
+            min: 0.0,
+            max: 0.5,
+            about: "how far the clay keeps its volume: 0.5 wholly",
+        },
+    ];
 
-    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         ElasticBrush::new(dab.motion * (dab.strength * dab.sign), dab.radius * SIZE, dab.extra(0))
     }
 
@@ -81,8 +91,8 @@ impl Brush for ElasticBrush {
         ((1.0 - far) * 10.0).clamp(0.0, 1.0)
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let before = spot.page.before(spot.v);
-        Change::held(self.at(before - dab.centre) * spot.weight)
+        VertexChange::held(self.at(before - dab.centre) * spot.weight)
     }
 }

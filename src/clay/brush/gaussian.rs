@@ -6,8 +6,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use super::tool::Tool;
 use super::weights::{Weights, exp};
 use crate::{Kernel, PageIn, PageOut};
@@ -48,7 +48,7 @@ impl Kernel for GaussianBrush {
 }
 
 impl Brush for GaussianBrush {
-    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height())
     }
 
@@ -58,8 +58,8 @@ impl Brush for GaussianBrush {
         if d2 < self.radius2 { exp(d2 * self.fall) } else { 0.0 }
     }
 
-    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::by(self.offset * spot.weight)
+    fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::by(self.offset * spot.weight)
     }
 
     fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {

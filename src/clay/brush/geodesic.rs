@@ -28,7 +28,7 @@ struct Block {
 
 /// One walk. Its memory is used again by the next.
 #[derive(Debug, Default)]
-pub struct Walk {
+pub struct Geodesic {
     /// For each page its block plus one, or 0.
     block_of: Vec<u32>,
     blocks: Vec<Block>,
@@ -36,7 +36,7 @@ pub struct Walk {
     heap: BinaryHeap<Reverse<(u32, u32, u16)>>,
 }
 
-impl Walk {
+impl Geodesic {
     /// Forgets everything.
     pub fn begin(&mut self, mesh: &Clay) {
         for b in &self.blocks[..self.used] {

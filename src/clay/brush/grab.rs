@@ -1,7 +1,7 @@
 //! Grab: what was under the brush when the pen came down follows the pen.
 
-use super::dab::{Brush, Change, Dab, Grip, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
 
 #[derive(Debug, Clone, Copy)]
@@ -10,7 +10,7 @@ pub struct GrabBrush;
 impl Brush for GrabBrush {
     const GRIP: Grip = Grip::Anchor;
 
-    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         GrabBrush
     }
 
@@ -19,7 +19,7 @@ impl Brush for GrabBrush {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::held(dab.motion * (dab.strength * dab.sign * spot.weight))
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::held(dab.motion * (dab.strength * dab.sign * spot.weight))
     }
 }

@@ -1,8 +1,8 @@
 //! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all
 //! its dabs, not their sum.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct LayerBrush;
@@ -10,15 +10,15 @@ pub struct LayerBrush;
 impl Brush for LayerBrush {
     const CUTS: bool = false;
 
-    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         LayerBrush
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let normal = spot.page.normal_before(spot.v);
         // How high the stroke has raised it, in the direction of the brush.
         let so_far = (spot.p - spot.page.before(spot.v)).dot(normal) * dab.sign;
         let goal = dab.height().abs() * spot.weight;
-        if goal > so_far { Change::by(normal * ((goal - so_far) * dab.sign)) } else { Change::default() }
+        if goal > so_far { VertexChange::by(normal * ((goal - so_far) * dab.sign)) } else { VertexChange::default() }
     }
 }

@@ -1,7 +1,7 @@
 //! Mask: protects what it paints from other brushes; the other way round it frees it.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct MaskBrush;
@@ -9,11 +9,11 @@ pub struct MaskBrush;
 impl Brush for MaskBrush {
     const MASKED: bool = false;
 
-    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         MaskBrush
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::mask(dab.sign * dab.strength * spot.weight)
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::mask(dab.sign * dab.strength * spot.weight)
     }
 }

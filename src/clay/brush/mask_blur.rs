@@ -1,8 +1,8 @@
 //! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it
 //! sharpens them.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use crate::PageIn;
 
 #[derive(Debug, Clone, Copy)]
@@ -24,11 +24,11 @@ pub(super) fn sharper(page: &PageIn<'_>, v: usize) -> f32 {
 impl Brush for MaskBlurBrush {
     const MASKED: bool = false;
 
-    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         MaskBlurBrush
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let m = spot.page.mask(spot.v);
         let by = if dab.sign > 0.0 {
             slope(spot.page, spot.v)
@@ -37,6 +37,6 @@ impl Brush for MaskBlurBrush {
         } else {
             0.0
         };
-        Change::mask(by * dab.strength * spot.weight)
+        VertexChange::mask(by * dab.strength * spot.weight)
     }
 }

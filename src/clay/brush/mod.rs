@@ -1,6 +1,6 @@
-//! Brushes. A brush is one file here (a type that is a [`Brush`]), one file of settings
-//! (`config/brushes/NAME.toml`), and one line in the table below; nothing else knows how many there
-//! are.
+//! Brushes. A brush is one file here (a type that is a [`Brush`]) and one line in the table below;
+//! nothing else knows how many there are. What a brush begins with is a value, [`Presets`]: the
+//! defaults of the code, or texts that a program brings along.
 //!
 //! * [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]:
 //!   what a brush may ask first.
@@ -35,7 +35,8 @@ pub use drag::Drag;
 pub use falloff::Falloff;
 pub use gaussian::GaussianBrush;
 pub use mask_all::MaskAction;
-pub use options::{AutoMask, Measure, Method, Mirror, PathSettings, Topology};
+pub use options::{AutoMask, Measure, Method, Mirror, PathSettings, TopologySettings};
+pub use preset::{OwnNumber, Preset, Presets};
 pub use palm::Palm;
 pub use push::Push;
 pub use settings::{BrushSettings, PressureCurve};
@@ -63,13 +64,12 @@ macro_rules! brushes {
                 match self { $(BrushKind::$variant => $name,)* }
             }
 
-            /// The text of its settings' file.
-            fn file(self) -> &'static str {
-                match self {
-                    $(BrushKind::$variant => include_str!(concat!("../../../config/brushes/", $name, ".toml")),)*
-                }
+            /// The numbers that only this brush has, in the order of [`BrushSettings::extra`].
+            pub fn own_numbers(self) -> &'static [OwnNumber] {
+                match self { $(BrushKind::$variant => <$module::$brush as Brush>::OWN_NUMBERS,)* }
             }
 
+            /// How the brush is held.
             pub fn grip(self) -> Grip {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::GRIP,)* }
             }

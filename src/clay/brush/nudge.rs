@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct NudgeBrush {
@@ -11,14 +11,14 @@ pub struct NudgeBrush {
 }
 
 impl Brush for NudgeBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let n = on.plane(dab, 0.0).normal;
         let flat = dab.motion - n * dab.motion.dot(n);
         // A stroke that leapt to another part of the form does not tear it along.
         NudgeBrush { by: flat.clamp_length_max(dab.radius) * (dab.strength * dab.sign) }
     }
 
-    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::by(self.by * spot.weight)
+    fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::by(self.by * spot.weight)
     }
 }

@@ -67,7 +67,7 @@ pub enum Measure {
 /// vertices were nowhere then.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Topology {
+pub struct TopologySettings {
     pub by: Measure,
     /// Wanted length of edges as a share of the measure; 0.002 to 1.
     pub edge: f32,
@@ -77,9 +77,9 @@ pub struct Topology {
     pub collapse: bool,
 }
 
-impl Default for Topology {
+impl Default for TopologySettings {
     fn default() -> Self {
-        Topology { by: Measure::Off, edge: 0.15, split: true, collapse: true }
+        TopologySettings { by: Measure::Off, edge: 0.15, split: true, collapse: true }
     }
 }
 

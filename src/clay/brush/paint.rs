@@ -1,17 +1,17 @@
 //! Paint: lays the brush's colour on.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct PaintBrush;
 
 impl Brush for PaintBrush {
-    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         PaintBrush
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change { dye: dab.strength * spot.weight, ..Change::default() }
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange { dye: dab.strength * spot.weight, ..VertexChange::default() }
     }
 }

@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct PinchBrush {
@@ -12,13 +12,13 @@ pub struct PinchBrush {
 }
 
 impl Brush for PinchBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         PinchBrush { normal: on.plane(dab, 0.0).normal }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let d = dab.centre - spot.p;
         let flat = d - self.normal * d.dot(self.normal);
-        Change::by(flat * (dab.sign * dab.strength * spot.weight))
+        VertexChange::by(flat * (dab.sign * dab.strength * spot.weight))
     }
 }

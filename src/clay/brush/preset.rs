@@ -1,122 +1,152 @@
-//! What a brush begins with: `config/brushes/NAME.toml`, embedded.
+//! What each brush begins with.
 //!
-//! A file says in `about` what the brush does, in `[settings]` what differs from
-//! [`BrushSettings::default`], and in `[[extra]]` which numbers of its own it has, each with name,
-//! value, range and meaning, in the order of [`BrushSettings::extra`].
+//! A brush's code declares its own numbers ([`OwnNumber`]: name, default, range, meaning). A
+//! preset is a text of TOML that a program lays over that: `about` says what the brush does,
+//! `[settings]` holds what differs from [`BrushSettings::default`], and `[extra]` gives values to
+//! the brush's own numbers by their names. [`Presets`] is a plain value: who has no texts uses
+//! [`Presets::default`], the defaults of the code alone.
 
-use std::sync::OnceLock;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::settings::EXTRAS;
 use super::{BrushKind, BrushSettings};
 
-/// One of a brush's own numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Extra {
-    pub name: String,
+/// One of the numbers that only one brush has, as the brush's code declares it: this one
+/// declaration feeds checks, clamping, sliders and the listing of brushes. Its place in the
+/// brush's list is its place in [`BrushSettings::extra`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OwnNumber {
+    /// As it is written in a preset's `[extra]` and beside the slider.
+    pub name: &'static str,
+    /// The default.
     pub value: f32,
+    /// The least and the greatest value.
     pub min: f32,
+    /// See [`OwnNumber::min`].
     pub max: f32,
-    pub about: String,
+    /// One line: what it measures, and in which unit.
+    pub about: &'static str,
 }
 
-/// A brush's file, read.
+/// What one brush begins with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preset {
     about: String,
     table: toml::Table,
     settings: BrushSettings,
-    extras: Vec<Extra>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct PresetFile {
     about: String,
     #[serde(default)]
     settings: toml::Table,
     #[serde(default)]
-    extra: Vec<Extra>,
+    extra: toml::Table,
 }
 
 impl Preset {
-    fn read(kind: BrushKind) -> Result<Preset, String> {
-        let file: File = toml::from_str(kind.file()).map_err(|e| e.to_string())?;
-        let mut table = file.settings;
+    /// The defaults of the code, with no word about the brush.
+    fn of_code(kind: BrushKind) -> Preset {
+        let settings = BrushSettings::new(kind);
+        let mut table = toml::Table::new();
         table.insert("kind".into(), kind.name().into());
-        if file.extra.len() > EXTRAS {
-            return Err(format!(
-                "{} numbers of its own; a brush has at most {EXTRAS}",
-                file.extra.len()
-            ));
-        }
-        if !file.extra.is_empty() {
-            let mut values = [0.0; EXTRAS];
-            for (v, e) in values.iter_mut().zip(&file.extra) {
-                *v = e.value;
-            }
-            let values = values.map(|v| toml::Value::Float(f64::from(v)));
-            table.insert("extra".into(), toml::Value::Array(values.to_vec()));
-        }
-        let settings: BrushSettings =
-            table.clone().try_into().map_err(|e| format!("settings: {e}"))?;
-        Ok(Preset { about: file.about, table, settings, extras: file.extra })
+        table.insert("extra".into(), numbers(&settings));
+        Preset { about: String::new(), table, settings }
     }
 
-    /// One line on what the brush does.
+    fn read(kind: BrushKind, text: &str) -> Result<Preset, String> {
+        let mut file: PresetFile = toml::from_str(text).map_err(|e| e.to_string())?;
+        let Preset { table: own, settings: mut blank, .. } = Preset::of_code(kind);
+        for (value, number) in blank.extra.iter_mut().zip(kind.own_numbers()) {
+            if let Some(given) = file.extra.remove(number.name) {
+                *value = given.try_into().map_err(|e| format!("extra.{}: {e}", number.name))?;
+            }
+        }
+        if let Some(key) = file.extra.keys().next() {
+            return Err(format!("extra.{key}: the brush has no number of this name"));
+        }
+        let mut table = file.settings;
+        table.extend(own);
+        table.insert("extra".into(), numbers(&blank));
+        let settings: BrushSettings =
+            table.clone().try_into().map_err(|e| format!("settings: {e}"))?;
+        settings.check()?;
+        Ok(Preset { about: file.about, table, settings })
+    }
+
+    /// One line on what the brush does; empty for the defaults of the code.
     pub fn about(&self) -> &str {
         &self.about
     }
 
+    /// The whole settings.
     pub fn settings(&self) -> BrushSettings {
         self.settings
     }
 
-    /// What the file sets, `kind` and `extra` included: to be laid over the defaults and under what
+    /// What the text sets, `kind` and `extra` included: to be laid over the defaults and under what
     /// a person wrote.
     pub fn table(&self) -> &toml::Table {
         &self.table
     }
+}
 
-    pub fn extras(&self) -> &[Extra] {
-        &self.extras
+fn numbers(settings: &BrushSettings) -> toml::Value {
+    settings.extra.iter().map(|v| toml::Value::Float(f64::from(*v))).collect::<Vec<_>>().into()
+}
+
+/// What every brush begins with. Cloning it is cheap: the presets are shared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Presets {
+    /// In the order of [`BrushKind::ALL`].
+    all: Arc<[Preset]>,
+}
+
+impl Default for Presets {
+    /// The defaults of the code: [`BrushSettings::new`] of each brush.
+    fn default() -> Self {
+        Presets { all: BrushKind::ALL.iter().map(|k| Preset::of_code(*k)).collect() }
     }
 }
 
-impl BrushKind {
-    /// What this brush begins with.
-    pub fn preset(self) -> &'static Preset {
-        static ALL: OnceLock<Vec<Preset>> = OnceLock::new();
-        let all = ALL.get_or_init(|| {
-            let read = |kind: BrushKind| {
-                // A test reads every file; a build with a broken one falls back to the code's
-                // defaults.
-                Preset::read(kind).unwrap_or_else(|_| Preset {
-                    about: String::new(),
-                    table: toml::Table::new(),
-                    settings: BrushSettings { kind, ..BrushSettings::default() },
-                    extras: Vec::new(),
-                })
-            };
-            BrushKind::ALL.iter().map(|k| read(*k)).collect()
-        });
-        &all[self as usize]
-    }
-}
-
-impl BrushSettings {
-    /// As the brush's own file has it.
-    pub fn of(kind: BrushKind) -> BrushSettings {
-        kind.preset().settings()
+impl Presets {
+    /// Reads presets from texts of TOML, each with the name of its brush. A brush without a text
+    /// keeps the defaults of the code; of two texts for one brush the later one holds.
+    ///
+    /// # Errors
+    /// The message names the brush and the key: a name that no brush has, a key that is not known,
+    /// a value out of its range.
+    pub fn read(texts: &[(&str, &str)]) -> Result<Presets, String> {
+        let mut all: Vec<Preset> = BrushKind::ALL.iter().map(|k| Preset::of_code(*k)).collect();
+        for (name, text) in texts {
+            let kind: BrushKind = name.parse()?;
+            all[kind as usize] = Preset::read(kind, text).map_err(|e| format!("{name}: {e}"))?;
+        }
+        Ok(Presets { all: all.into() })
     }
 
-    /// Another brush in the same hand: its own settings, at this size and with these mirrors.
+    /// The preset of one brush.
+    pub fn get(&self, kind: BrushKind) -> &Preset {
+        &self.all[kind as usize]
+    }
+
+    /// The settings that one brush begins with.
+    pub fn of(&self, kind: BrushKind) -> BrushSettings {
+        self.get(kind).settings
+    }
+
+    /// Another brush in the same hand: its own settings, at the size and with the mirrors of `now`.
     #[must_use]
-    pub fn switched(&self, kind: BrushKind) -> BrushSettings {
-        let new = BrushSettings::of(kind);
-        BrushSettings { radius: self.radius, symmetry: self.symmetry, mirror: self.mirror, ..new }
+    pub fn switched(&self, now: &BrushSettings, kind: BrushKind) -> BrushSettings {
+        BrushSettings {
+            radius: now.radius,
+            symmetry: now.symmetry,
+            mirror: now.mirror,
+            ..self.of(kind)
+        }
     }
 }
 
@@ -125,17 +155,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_file_is_valid_and_says_what_its_brush_does() {
+    fn the_defaults_of_the_code_are_valid_for_every_brush() {
+        let presets = Presets::default();
         for kind in BrushKind::ALL {
-            let preset = Preset::read(*kind).unwrap_or_else(|e| panic!("{}: {e}", kind.name()));
-            assert!(preset.about.len() > 20, "{}: says too little", kind.name());
-            preset.settings.check().unwrap_or_else(|e| panic!("{}: {e}", kind.name()));
-            assert_eq!(preset.settings.clamped(), preset.settings, "{}", kind.name());
-            assert_eq!(preset.settings.kind, *kind);
+            let settings = presets.of(*kind);
+            settings.check().unwrap_or_else(|e| panic!("{kind}: {e}"));
+            assert_eq!(settings.clamped(), settings, "{kind}");
+            assert_eq!(settings.kind, *kind);
             assert_eq!(kind.name().parse(), Ok(*kind));
-            for e in &preset.extras {
-                assert!(e.min <= e.value && e.value <= e.max && !e.about.is_empty(), "{e:?}");
+            for n in kind.own_numbers() {
+                assert!(n.min <= n.value && n.value <= n.max && !n.about.is_empty(), "{n:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_text_sets_what_it_names_and_its_faults_are_told() {
+        let text = "about = 'x'\n[settings]\nspacing = 0.07\n[extra]\nfloor = 0.25";
+        let presets = Presets::read(&[("texture", text)]).expect("valid");
+        let texture = presets.of(BrushKind::Texture);
+        assert_eq!((texture.spacing, texture.extra[0], texture.extra[1]), (0.07, 1.0, 0.25));
+        assert_eq!(presets.of(BrushKind::Draw), BrushSettings::new(BrushKind::Draw));
+        for (name, text, word) in [
+            ("brush", "about = 'x'", "no brush 'brush'"),
+            ("draw", "about = 'x'\n[extra]\nscale = 1", "extra.scale"),
+            ("texture", "about = 'x'\n[extra]\nscale = 100.0", "expected 0.1 to 10"),
+            ("texture", "about = 'x'\n[settings]\nspace = 1", "space"),
+        ] {
+            let e = Presets::read(&[(name, text)]).expect_err(word);
+            assert!(e.contains(word) && e.contains(name), "{e}");
         }
     }
 }

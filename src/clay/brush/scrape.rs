@@ -1,7 +1,8 @@
 //! Scrape: hills down to the mean plane, hollows stay; the other way round hollows up to it.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::{Ground, Plane};
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::{SurfaceQuery, Plane};
 
 #[derive(Debug, Clone, Copy)]
 pub struct ScrapeBrush {
@@ -9,15 +10,25 @@ pub struct ScrapeBrush {
 }
 
 impl Brush for ScrapeBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "offset",
+            value: 0.0,
+            min: -1.0,
+            max: 1.0,
+            about: "how far the plane is moved along its normal, in radii",
+        },
+    ];
+
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         ScrapeBrush { plane: on.plane(dab, dab.extra(0)) }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
         if h * dab.sign <= 0.0 {
-            return Change::default();
+            return VertexChange::default();
         }
-        Change::by(self.plane.normal * (-h * dab.strength * spot.weight))
+        VertexChange::by(self.plane.normal * (-h * dab.strength * spot.weight))
     }
 }

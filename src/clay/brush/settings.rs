@@ -1,7 +1,7 @@
 //! What a person sets on a brush. Plain data: it travels in a [`sculptd_engine::command::Command`]
 //! and is part of the world.
 //!
-//! What each brush begins with stands in `config/brushes/NAME.toml`; see [`super::preset`].
+//! What each brush begins with is told by [`super::preset`].
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::BrushKind;
 use super::alpha::Alpha;
 use super::falloff::{CURVE, Falloff};
-use super::options::{AutoMask, Mirror, PathSettings, Topology};
+use super::options::{AutoMask, Mirror, PathSettings, TopologySettings};
 use super::stamp::Stamp;
 
 /// How pressure (0 to 1) becomes a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
@@ -82,7 +82,7 @@ pub struct BrushSettings {
     pub stamp: Stamp,
     pub auto: AutoMask,
     pub path: PathSettings,
-    pub topology: Topology,
+    pub topology: TopologySettings,
     /// The brush's own numbers, as its file names them.
     pub extra: [f32; EXTRAS],
 }
@@ -110,13 +110,23 @@ impl Default for BrushSettings {
             stamp: Stamp::default(),
             auto: AutoMask::default(),
             path: PathSettings::default(),
-            topology: Topology::default(),
+            topology: TopologySettings::default(),
             extra: [0.0; EXTRAS],
         }
     }
 }
 
 impl BrushSettings {
+    /// A brush with the defaults of the code: those of [`BrushSettings::default`], and of its own
+    /// numbers what its file in this folder declares.
+    pub fn new(kind: BrushKind) -> BrushSettings {
+        let mut settings = BrushSettings { kind, ..BrushSettings::default() };
+        for (value, number) in settings.extra.iter_mut().zip(kind.own_numbers()) {
+            *value = number.value;
+        }
+        settings
+    }
+
     /// Every number within its stated range; a NaN becomes the default.
     #[must_use]
     pub fn clamped(mut self) -> Self {
@@ -133,7 +143,7 @@ impl BrushSettings {
         self.mirror.radial = self.mirror.radial.clamp(1, 16);
         self.mirror.axis = self.mirror.axis.min(2);
         self.path.average = self.path.average.min(64);
-        let extras = self.kind.preset().extras();
+        let extras = self.kind.own_numbers();
         for (v, e) in self.extra.iter_mut().zip(extras) {
             *v = if v.is_finite() { v.clamp(e.min, e.max) } else { e.value };
         }
@@ -152,7 +162,7 @@ impl BrushSettings {
                 wrong = Some(format!("brush.{key} = {v}: expected a number from {lo} to {hi}"));
             }
         });
-        for (v, e) in self.extra.iter().zip(self.kind.preset().extras()) {
+        for (v, e) in self.extra.iter().zip(self.kind.own_numbers()) {
             if !(*v >= e.min && *v <= e.max) && wrong.is_none() {
                 wrong = Some(format!(
                     "brush.extra ({}) = {v}: expected {} to {}",

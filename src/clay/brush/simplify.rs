@@ -1,22 +1,22 @@
 //! Simplify: draws small triangles together to the wanted size, and leaves large ones; the form
 //! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::Topology`]); its own file turns
+//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]); its own file turns
 //! it on.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use super::relax::RelaxBrush;
 
 #[derive(Debug, Clone, Copy)]
 pub struct SimplifyBrush(RelaxBrush);
 
 impl Brush for SimplifyBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         SimplifyBrush(RelaxBrush::ready(dab, on))
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         self.0.change(dab, spot)
     }
 }

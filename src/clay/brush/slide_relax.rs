@@ -8,8 +8,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 /// Of the shortest edge about a vertex, the furthest that one dab takes it.
 const SAFE: f32 = 0.3;
@@ -21,13 +21,13 @@ pub struct SlideRelaxBrush {
 }
 
 impl Brush for SlideRelaxBrush {
-    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         SlideRelaxBrush { by: (dab.sign > 0.0).then(|| dab.motion.clamp_length_max(dab.radius)) }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         if !spot.page.is_closed(spot.v) {
-            return Change::default();
+            return VertexChange::default();
         }
         let n = spot.normal();
         let by = self.by.unwrap_or_else(|| spot.middle() - spot.p) * (dab.strength * spot.weight);
@@ -36,13 +36,13 @@ impl Brush for SlideRelaxBrush {
             shortest = shortest.min((spot.page.point(k) - spot.p).length_squared());
         }
         let flat = (by - n * by.dot(n)).clamp_length_max(SAFE * shortest.sqrt());
-        Change::by(put_back(spot, flat))
+        VertexChange::by(put_back(spot, flat))
     }
 }
 
 /// The way to the point of the vertex's own triangles that is nearest to `to` (both from the
 /// vertex, and nearer to it than the far sides of those).
-fn put_back(spot: &Spot<'_>, to: Vec3) -> Vec3 {
+fn put_back(spot: &VertexContext<'_>, to: Vec3) -> Vec3 {
     let ring = spot.page.ring(spot.v);
     let count = ring.len();
     let Some(last) = ring.last() else { return Vec3::ZERO };

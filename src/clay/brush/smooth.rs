@@ -10,8 +10,8 @@
 use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use super::tool::Tool;
 use super::weights::Weights;
 use crate::{Kernel, PageIn, PageOut};
@@ -120,7 +120,7 @@ impl Kernel for SmoothBrush {
 }
 
 impl Brush for SmoothBrush {
-    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         SmoothBrush::new(dab.centre, dab.radius, dab.strength)
     }
 
@@ -130,12 +130,12 @@ impl Brush for SmoothBrush {
         if fade > 0.0 { fade * fade } else { 0.0 }
     }
 
-    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (sum, weights) = around(spot.page, spot.v, spot.p);
         if weights > 0.0 {
-            Change::by(sum * (self.lambda * spot.weight / weights))
+            VertexChange::by(sum * (self.lambda * spot.weight / weights))
         } else {
-            Change::default()
+            VertexChange::default()
         }
     }
 

@@ -1,7 +1,7 @@
 //! Snake hook: draws clay out after the pen, and goes with it.
 
-use super::dab::{Brush, Change, Dab, Grip, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 
 #[derive(Debug, Clone, Copy)]
 pub struct SnakeHookBrush;
@@ -9,11 +9,11 @@ pub struct SnakeHookBrush;
 impl Brush for SnakeHookBrush {
     const GRIP: Grip = Grip::Tow;
 
-    fn ready(_: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         SnakeHookBrush
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::by(dab.motion * (dab.strength * dab.sign * spot.weight))
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::by(dab.motion * (dab.strength * dab.sign * spot.weight))
     }
 }

@@ -87,7 +87,7 @@ impl Lens {
 
 /// A stamp over one dab.
 #[derive(Debug, Clone, Copy)]
-pub struct Laid {
+pub struct PlacedStamp {
     stamp: Stamp,
     alpha: Alpha,
     lens: Lens,
@@ -102,9 +102,9 @@ pub struct Laid {
     reach: f32,
 }
 
-impl Laid {
+impl PlacedStamp {
     /// `None`: there is no stamp.
-    pub fn ready(dab: &Dab<'_>) -> Option<Laid> {
+    pub fn ready(dab: &Dab<'_>) -> Option<PlacedStamp> {
         let stamp = dab.settings.stamp;
         if stamp.by == StampBy::Off {
             return None;
@@ -119,7 +119,7 @@ impl Laid {
             }
         };
         let angle = -stamp.turn_degrees.to_radians();
-        Some(Laid {
+        Some(PlacedStamp {
             stamp,
             alpha: dab.settings.alpha,
             lens: dab.lens,

@@ -13,12 +13,12 @@
 
 use glam::{Quat, Vec3};
 
-use crate::brush::geodesic::{Key, Walk, ring};
+use crate::brush::geodesic::{Key, Geodesic, ring};
 use crate::{Clay, Page, Reach};
 
 /// A sample of a stroke on the surface as it was.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Sample {
+pub struct StrokeSample {
     pub point: Vec3,
     pub normal: Vec3,
     /// Unit, in the tangent plane, along the stroke.
@@ -28,16 +28,16 @@ pub struct Sample {
 
 /// A stroke being unrolled.
 #[derive(Debug, Default)]
-pub struct Unroll {
-    pub walk: Walk,
+pub struct StrokeParameters {
+    pub walk: Geodesic,
     /// Which stroke it is.
     stroke: u32,
-    last: Option<Sample>,
+    last: Option<StrokeSample>,
     /// Samples so far; a vertex remembers which one it belongs to.
     count: u32,
 }
 
-impl Unroll {
+impl StrokeParameters {
     /// The sample that a vertex belongs to, counted from 1.
     pub fn owner(&self, page: u32, v: usize) -> u32 {
         self.walk.owner(page, v)
@@ -49,7 +49,7 @@ impl Unroll {
 
     /// Goes on to a point on the surface as it is now. Returns whether vertices got coordinates: a
     /// stroke has no direction before its second sample, which then also serves the first. The
-    /// first of the two is number [`Unroll::count`] - 1.
+    /// first of the two is number [`StrokeParameters::count`] - 1.
     pub fn step(&mut self, mesh: &Clay, stroke: u32, now: Vec3, normal: Vec3, radius: f32) -> bool {
         if self.stroke != stroke || self.walk.is_stale(mesh) {
             self.walk.begin(mesh);
@@ -57,7 +57,7 @@ impl Unroll {
         }
         let Some((point, normal)) = self.as_it_was(mesh, now, normal, radius) else { return false };
         let Some(last) = self.last else {
-            self.last = Some(Sample { point, normal, along: Vec3::ZERO, u: 0.0 });
+            self.last = Some(StrokeSample { point, normal, along: Vec3::ZERO, u: 0.0 });
             return false;
         };
         let way = point - last.point;
@@ -66,7 +66,7 @@ impl Unroll {
         let along = if last.along == Vec3::ZERO {
             // The first sample takes the direction of the second.
             let back = turn(normal, last.normal, direction);
-            let first = Sample { along: back, ..last };
+            let first = StrokeSample { along: back, ..last };
             self.spread(mesh, &first, radius);
             direction
         } else {
@@ -74,7 +74,7 @@ impl Unroll {
             let before = turn(last.normal, normal, last.along);
             (direction + before).try_normalize().unwrap_or(direction)
         };
-        let sample = Sample { point, normal, along, u: last.u + way.length() };
+        let sample = StrokeSample { point, normal, along, u: last.u + way.length() };
         self.spread(mesh, &sample, radius);
         self.last = Some(sample);
         true
@@ -107,7 +107,7 @@ impl Unroll {
     }
 
     /// Carries coordinates from a sample to every vertex that is nearer to it than to those before.
-    pub fn spread(&mut self, mesh: &Clay, from: &Sample, radius: f32) {
+    pub fn spread(&mut self, mesh: &Clay, from: &StrokeSample, radius: f32) {
         self.count += 1;
         let owner = self.count;
         let walk = &mut self.walk;
@@ -124,7 +124,7 @@ impl Unroll {
         mesh.each_page_before(&near, look);
         let Some((_, key)) = seed else { return };
         // The vertices about the sample are measured from it.
-        let start = |walk: &mut Walk, key: Key| {
+        let start = |walk: &mut Geodesic, key: Key| {
             let page = mesh.before(key.0);
             let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
             let d = (p - from.point).length();

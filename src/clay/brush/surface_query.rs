@@ -6,15 +6,15 @@ use glam::{DVec3, Vec3};
 
 use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
-use crate::brush::geodesic::Walk;
-use crate::brush::stroke_param::Unroll;
+use crate::brush::geodesic::Geodesic;
+use crate::brush::stroke_param::StrokeParameters;
 use crate::{Clay, Reach};
 
 /// Memory kept from dab to dab.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    walks: Vec<Walk>,
-    unrolls: Vec<Unroll>,
+    walks: Vec<Geodesic>,
+    unrolls: Vec<StrokeParameters>,
     /// The alpha that was loaded.
     pub picture: Option<Arc<Picture>>,
 }
@@ -29,19 +29,19 @@ impl Scratch {
         self.picture.as_deref()
     }
 
-    pub fn unrolled(&self, image: usize) -> Option<&Unroll> {
+    pub fn unrolled(&self, image: usize) -> Option<&StrokeParameters> {
         self.unrolls.get(image)
     }
 
-    pub fn walk(&self, image: usize) -> Option<&Walk> {
+    pub fn walk(&self, image: usize) -> Option<&Geodesic> {
         self.walks.get(image)
     }
 
     /// The walk of an image, to be begun anew.
-    pub fn walk_mut(&mut self, image: usize) -> &mut Walk {
+    pub fn walk_mut(&mut self, image: usize) -> &mut Geodesic {
         let image = image.min(IMAGES - 1);
         while self.walks.len() <= image {
-            self.walks.push(Walk::default());
+            self.walks.push(Geodesic::default());
         }
         &mut self.walks[image]
     }
@@ -49,7 +49,7 @@ impl Scratch {
 
 /// The clay before a dab.
 #[derive(Debug)]
-pub struct Ground<'a> {
+pub struct SurfaceQuery<'a> {
     pub mesh: &'a Clay,
     pub scratch: &'a mut Scratch,
     /// Which of the images that act together this is.
@@ -75,7 +75,7 @@ impl Plane {
     }
 }
 
-impl Ground<'_> {
+impl SurfaceQuery<'_> {
     /// The plane through the surface under a dab: middle and mean normal of the vertices within
     /// `normal_radius`, those near the rim counted less, those that face away not at all; moved by
     /// `offset` radii along its normal. In double precision, so that images of one dab agree to the
@@ -118,7 +118,7 @@ impl Ground<'_> {
         let all = &mut self.scratch.unrolls;
         let image = self.image.min(IMAGES - 1);
         while all.len() <= image {
-            all.push(Unroll::default());
+            all.push(StrokeParameters::default());
         }
         let one = &mut all[image];
         if one.step(self.mesh, dab.stroke, dab.centre, dab.normal, dab.radius) {

@@ -5,8 +5,9 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
 #[derive(Debug, Clone, Copy)]
@@ -17,8 +18,24 @@ pub struct TextureBrush {
 
 impl Brush for TextureBrush {
     const CUTS: bool = false;
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "scale",
+            value: 1.0,
+            min: 0.1,
+            max: 10.0,
+            about: "length of one repeat, in widths of the brush",
+        },
+        OwnNumber {
+            name: "floor",
+            value: 0.0,
+            min: 0.0,
+            max: 1.0,
+            about: "the height of the alpha that stays on the surface; what is lower is pressed in",
+        },
+    ];
 
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         TextureBrush { newest: on.unroll(dab) }
     }
 
@@ -33,17 +50,17 @@ impl Brush for TextureBrush {
         if self.newest > 0 && (page.before(v) - dab.centre).length_squared() < far * far { 1.0 } else { 0.0 }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        let Some(unroll) = spot.scratch.unrolled(dab.image) else { return Change::default() };
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        let Some(unroll) = spot.scratch.unrolled(dab.image) else { return VertexChange::default() };
         if unroll.owner(spot.number, spot.v) + 1 < self.newest {
-            return Change::default();
+            return VertexChange::default();
         }
-        let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else { return Change::default() };
+        let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else { return VertexChange::default() };
         let far = unroll.walk.distance(spot.number, spot.v).unwrap_or(0.0);
         // A square of the alpha is as wide as the brush, and `scale` times as long.
         let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / dab.radius);
         let alpha = dab.settings.alpha.at(s, t, spot.scratch.picture());
         let h = dab.height() * (alpha - dab.extra(1)) * dab.fade(far * far) * spot.weight;
-        Change::held(spot.page.normal_before(spot.v) * h)
+        VertexChange::held(spot.page.normal_before(spot.v) * h)
     }
 }

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Grip, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
 
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ pub struct ThumbBrush {
 impl Brush for ThumbBrush {
     const GRIP: Grip = Grip::Anchor;
 
-    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         ThumbBrush { by: (dab.motion - dab.normal * dab.motion.dot(dab.normal)) * (dab.strength * dab.sign) }
     }
 
@@ -22,7 +22,7 @@ impl Brush for ThumbBrush {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius * 1.01 }
     }
 
-    fn change(&self, _: &Dab<'_>, spot: &Spot<'_>) -> Change {
-        Change::held(self.by * spot.weight)
+    fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        VertexChange::held(self.by * spot.weight)
     }
 }

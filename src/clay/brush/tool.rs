@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Grip, IMAGES, Spot};
+use super::dab::{Brush, VertexChange, Dab, Grip, IMAGES, VertexContext};
 use super::stamp::StampBy;
-use crate::brush::automask::Auto;
-use crate::brush::surface_query::{Ground, Scratch};
+use crate::brush::automask::AutoMasking;
+use crate::brush::surface_query::{SurfaceQuery, Scratch};
 use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 
 /// The clay in a brush's hand.
@@ -50,14 +50,14 @@ impl Tool<'_> {
             if of == 0 || (of == 1 && plain && B::alone(&dabs[g], self)) {
                 continue;
             }
-            let mut members: [Option<(Dab<'_>, B, Auto)>; IMAGES] = [const { None }; IMAGES];
+            let mut members: [Option<(Dab<'_>, B, AutoMasking)>; IMAGES] = [const { None }; IMAGES];
             let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let mut n = 0;
             for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
                 let mut on =
-                    Ground { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
+                    SurfaceQuery { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
                 members[n] =
-                    Some((dabs[i], B::ready(&dabs[i], &mut on), Auto::ready(&dabs[i], &mut on)));
+                    Some((dabs[i], B::ready(&dabs[i], &mut on), AutoMasking::ready(&dabs[i], &mut on)));
                 lo = lo.min(balls[i].0 - balls[i].1);
                 hi = hi.max(balls[i].0 + balls[i].1);
                 n += 1;
@@ -71,7 +71,7 @@ impl Tool<'_> {
             let limit = first.settings.saturation * first.settings.strength * first.radius;
             let limit = if first.settings.saturation > 0.0 { limit } else { f32::INFINITY };
             let scratch = std::mem::take(self.scratch);
-            self.run(&reach, &Each { members: &members[..n], scratch: &scratch, limit });
+            self.run(&reach, &BrushKernel { members: &members[..n], scratch: &scratch, limit });
             *self.scratch = scratch;
         }
     }
@@ -87,17 +87,17 @@ fn ball(reach: &Reach) -> (Vec3, f32) {
     }
 }
 
-struct Each<'a, B> {
-    members: &'a [Option<(Dab<'a>, B, Auto)>],
+struct BrushKernel<'a, B> {
+    members: &'a [Option<(Dab<'a>, B, AutoMasking)>],
     scratch: &'a Scratch,
     limit: f32,
 }
 
-impl<B: Brush> Kernel for Each<'_, B> {
+impl<B: Brush> Kernel for BrushKernel<'_, B> {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for v in 0..page.own() {
             let p = page.positions.get(v);
-            let mut sum = Change::default();
+            let mut sum = VertexChange::default();
             let mut within = false;
             for (dab, brush, auto) in self.members.iter().flatten() {
                 let share = brush.share(dab, page, v, p);
@@ -112,7 +112,7 @@ impl<B: Brush> Kernel for Each<'_, B> {
                     continue;
                 }
                 let spot =
-                    Spot { page, number: page.number(), v, p, weight, scratch: self.scratch };
+                    VertexContext { page, number: page.number(), v, p, weight, scratch: self.scratch };
                 let c = brush.change(dab, &spot);
                 sum.by += c.by;
                 if let Some(by) = c.held {

@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Change, Dab, Grip, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct TopologicalBrush;
 impl Brush for TopologicalBrush {
     const GRIP: Grip = Grip::Anchor;
 
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         on.measure_before(dab);
         TopologicalBrush
     }
@@ -27,10 +27,10 @@ impl Brush for TopologicalBrush {
         if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius { 1.0 } else { 0.0 }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let walk = spot.scratch.walk(dab.image);
-        let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else { return Change::default() };
+        let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else { return VertexChange::default() };
         let w = dab.fade(d * d) * spot.weight;
-        Change::held(dab.motion * (dab.strength * dab.sign * w))
+        VertexChange::held(dab.motion * (dab.strength * dab.sign * w))
     }
 }

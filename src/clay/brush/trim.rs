@@ -2,8 +2,9 @@
 //! whatever is deep within the brush comes to lie on the plane at once. The other way round it
 //! fills to a plane set over the surface.
 
-use super::dab::{Brush, Change, Dab, Spot};
-use crate::brush::surface_query::{Ground, Plane};
+use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::preset::OwnNumber;
+use crate::brush::surface_query::{SurfaceQuery, Plane};
 
 #[derive(Debug, Clone, Copy)]
 pub struct TrimBrush {
@@ -11,16 +12,26 @@ pub struct TrimBrush {
 }
 
 impl Brush for TrimBrush {
-    fn ready(dab: &Dab<'_>, on: &mut Ground<'_>) -> Self {
+    const OWN_NUMBERS: &'static [OwnNumber] = &[
+        OwnNumber {
+            name: "depth",
+            value: 0.1,
+            min: 0.0,
+            max: 1.0,
+            about: "how far below the surface it cuts, in radii, at full strength",
+        },
+    ];
+
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         TrimBrush { plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength) }
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
         if h * dab.sign <= 0.0 {
-            return Change::default();
+            return VertexChange::default();
         }
         // A knife has no soft edge: a third of the falloff is all the fading there is.
-        Change::by(self.plane.normal * (-h * (spot.weight * 3.0).min(1.0)))
+        VertexChange::by(self.plane.normal * (-h * (spot.weight * 3.0).min(1.0)))
     }
 }

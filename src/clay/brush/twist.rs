@@ -3,8 +3,8 @@
 
 use glam::Quat;
 
-use super::dab::{Brush, Change, Dab, Grip, Spot};
-use crate::brush::surface_query::Ground;
+use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
 
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +15,7 @@ pub struct TwistBrush {
 impl Brush for TwistBrush {
     const GRIP: Grip = Grip::Anchor;
 
-    fn ready(dab: &Dab<'_>, _: &mut Ground<'_>) -> Self {
+    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         let drawn = dab.motion.dot(dab.right) / dab.radius;
         TwistBrush { angle: drawn * dab.strength * dab.sign * dab.hand }
     }
@@ -25,9 +25,9 @@ impl Brush for TwistBrush {
         dab.ball(1.01)
     }
 
-    fn change(&self, dab: &Dab<'_>, spot: &Spot<'_>) -> Change {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let arm = spot.page.before(spot.v) - dab.centre;
         let turned = Quat::from_axis_angle(dab.normal, self.angle * spot.weight) * arm;
-        Change::held(turned - arm)
+        VertexChange::held(turned - arm)
     }
 }

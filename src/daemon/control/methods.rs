@@ -311,7 +311,7 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             let other = other.transpose().map_err(|e| RpcError::new(Code::BadParams, e))?;
             // Another brush comes with its own settings; what else is said is laid over them.
             let base = match other.filter(|k| *k != state.brush.kind) {
-                Some(kind) => state.brush.switched(kind),
+                Some(kind) => host.presets.switched(&state.brush, kind),
                 None => state.brush,
             };
             let brush = merge(&base, params)?;
@@ -345,8 +345,13 @@ pub fn call(host: &Host, method: &str, params: Value) -> Result<Value, RpcError>
             Ok(BrushKind::ALL
                 .iter()
                 .map(|k| {
-                    let p = k.preset();
-                    json!({ "name": k.name(), "about": p.about(), "settings": p.settings(), "extra": p.extras() })
+                    let p = host.presets.get(*k);
+                    json!({
+                        "name": k.name(),
+                        "about": p.about(),
+                        "settings": p.settings(),
+                        "extra": k.own_numbers(),
+                    })
                 })
                 .collect::<Vec<_>>()
                 .into())

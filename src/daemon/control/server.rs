@@ -22,6 +22,8 @@ use sculptd_devices::Clock;
 pub struct Host {
     pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
+    /// What each brush begins with.
+    pub presets: sculptd_clay::brush::Presets,
     /// The wall thickness of the work, as last asked for.
     pub thickness: Arc<Mutex<Option<sculptd_clay::live_thickness::LiveMap>>>,
     /// The Boolean under way.

@@ -66,8 +66,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
             for kind in kinds {
                 let response = picture(ui, kind, brush.kind == kind);
-                if response.on_hover_text(kind.preset().about()).clicked() && brush.kind != kind {
-                    brush = brush.switched(kind);
+                if response.on_hover_text(view.presets.get(kind).about()).clicked() && brush.kind != kind {
+                    brush = view.presets.switched(&brush, kind);
                 }
             }
         });
@@ -119,9 +119,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
         }
         ui.checkbox(&mut brush.auto.front_faces, "Front faces only");
         ui.checkbox(&mut brush.auto.topology, "Only what hangs together");
-        for (value, extra) in brush.extra.iter_mut().zip(brush.kind.preset().extras()) {
-            ui.add(egui::Slider::new(value, extra.min..=extra.max).text(extra.name.as_str()))
-                .on_hover_text(extra.about.as_str());
+        for (value, extra) in brush.extra.iter_mut().zip(brush.kind.own_numbers()) {
+            ui.add(egui::Slider::new(value, extra.min..=extra.max).text(extra.name))
+                .on_hover_text(extra.about);
         }
     });
     if brush != view.state.brush {

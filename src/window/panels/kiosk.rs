@@ -168,7 +168,7 @@ fn tools(
                 let alike = smooths == (now.kind == BrushKind::Smooth);
                 let chosen = alike && (smooths || now.negative == negative);
                 if ui.add(large(name, 24.0, 160.0).selected(chosen)).clicked() {
-                    let mut brush = if alike { now } else { now.switched(kind) };
+                    let mut brush = if alike { now } else { view.presets.switched(&now, kind) };
                     brush.negative = negative;
                     out.push(UiRequest::World(Command::Brush(brush)));
                     screen.desk.touched.store(true, Relaxed);

@@ -45,6 +45,8 @@ use sculptd_engine::hand::MenuItem;
 #[derive(Debug)]
 pub struct View<'a> {
     pub state: &'a Published,
+    /// What each brush begins with.
+    pub presets: &'a sculptd_clay::brush::Presets,
     /// The camera as the window has it: the world's own follows a tick later.
     pub camera: Camera,
     /// One line a device, as the adaptors describe themselves.

@@ -293,6 +293,7 @@ impl WindowState {
         let input = self.egui.take_egui_input(&self.window);
         let view = View {
             state,
+            presets: &wiring.presets,
             camera: self.camera,
             devices: &self.devices,
             session: wiring.session.as_deref(),

@@ -6,7 +6,7 @@ use winit::keyboard::ModifiersState;
 
 use super::overlay;
 use super::window::{WindowState, Wiring};
-use sculptd_clay::brush::{BrushKind, BrushSettings};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_devices::{Body, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
 use sculptd_engine::stroke::CurveAction;
@@ -165,7 +165,7 @@ impl WindowState {
             let brush = state.brush;
             let mut now = brush;
             if draft.is_empty() {
-                now = lent(brush, self.mods);
+                now = lent(brush, self.mods, &wiring.presets);
             }
             if now != brush {
                 self.pointer.lent = Some(brush);
@@ -178,10 +178,10 @@ impl WindowState {
 
 /// The brush for one stroke with these keys down: Shift evens, Ctrl and Alt turn it round.
 /// Slide-relax evens by itself.
-fn lent(brush: BrushSettings, mods: ModifiersState) -> BrushSettings {
+fn lent(brush: BrushSettings, mods: ModifiersState, presets: &Presets) -> BrushSettings {
     let mut now = match (mods.shift_key(), brush.kind) {
         (true, BrushKind::SlideRelax) => BrushSettings { negative: !brush.negative, ..brush },
-        (true, _) => brush.switched(BrushKind::Smooth),
+        (true, _) => presets.switched(&brush, BrushKind::Smooth),
         (false, _) => brush,
     };
     now.negative ^= mods.control_key() || mods.alt_key();
@@ -194,7 +194,9 @@ mod tests {
 
     #[test]
     fn shift_evens_and_slide_relax_relaxes() {
-        let of = BrushSettings::of;
+        let presets = Presets::default();
+        let of = |kind| presets.of(kind);
+        let lent = |brush, mods| super::lent(brush, mods, &presets);
         assert_eq!(lent(of(BrushKind::Draw), ModifiersState::SHIFT).kind, BrushKind::Smooth);
         let relaxing = lent(of(BrushKind::SlideRelax), ModifiersState::SHIFT);
         assert!(relaxing.kind == BrushKind::SlideRelax && relaxing.negative);

@@ -42,6 +42,8 @@ pub struct Wiring {
     /// The pointer's own way into the channel.
     pub pointer: Sender,
     pub pointer_id: DeviceId,
+    /// What each brush begins with.
+    pub presets: sculptd_clay::brush::Presets,
     pub clock: Clock,
     /// Raised from outside, or by closing the window.
     pub stop: Arc<AtomicBool>,

@@ -42,6 +42,7 @@ fn asked_watched_and_ended_over_the_socket() {
     let host = Host {
         commands: live.commands.clone(),
         published: live.published.clone(),
+        presets: sculptd::presets().clone(),
         thickness: Arc::default(),
         joining: Arc::default(),
         journal: None,

@@ -8,7 +8,7 @@ use sculptd_engine::stroke::CurveAction;
 use super::{Studio, form};
 
 fn studio(workers: usize) -> Studio {
-    let mut brush = BrushSettings { radius: 0.12, ..BrushSettings::of(BrushKind::Draw) };
+    let mut brush = BrushSettings { radius: 0.12, ..sculptd::presets().of(BrushKind::Draw) };
     brush.path.method = Method::Curve;
     Studio::new(&form(20_000), brush, workers)
 }
@@ -128,7 +128,7 @@ fn a_curve_that_is_put_away_leaves_nothing() {
     // By another method, also while the pen is down.
     s.sample(Vec2::new(0.5, 0.5), 0.8, true);
     s.sample(Vec2::new(0.55, 0.5), 0.8, true);
-    s.tell(Command::Brush(BrushSettings::of(BrushKind::Draw)));
+    s.tell(Command::Brush(sculptd::presets().of(BrushKind::Draw)));
     s.sample(Vec2::new(0.6, 0.5), 0.8, true);
     s.sample(Vec2::new(0.6, 0.5), 0.0, false);
     s.rest(2);
@@ -144,7 +144,7 @@ fn a_curve_that_is_put_away_leaves_nothing() {
 fn another_brush_may_follow_the_curve_that_is_laid() {
     let mut s = studio(1);
     pen(&mut s, &[(0.4, 0.5), (0.5, 0.45), (0.6, 0.55)]);
-    let mut paint = BrushSettings { radius: 0.1, ..BrushSettings::of(BrushKind::Paint) };
+    let mut paint = BrushSettings { radius: 0.1, ..sculptd::presets().of(BrushKind::Paint) };
     paint.path.method = Method::Curve;
     s.tell(Command::Brush(paint));
     assert_eq!(views(&s).len(), 5);

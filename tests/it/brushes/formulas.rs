@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::elastic::ElasticBrush;
 use sculptd_clay::brush::{
-    BrushKind, BrushSettings, GaussianBrush, PressureCurve, SmoothBrush, Topology,
+    BrushKind, BrushSettings, GaussianBrush, PressureCurve, SmoothBrush, TopologySettings,
 };
 use sculptd_clay::{Clay, Reach, Workers};
 use sculptd_geometry::job::Job;
@@ -146,7 +146,7 @@ fn even(kind: BrushKind, radius: f32, strength: f32) -> BrushSettings {
         strength,
         pressure_radius: firm,
         pressure_strength: firm,
-        ..BrushSettings::of(kind)
+        ..sculptd::presets().of(kind)
     }
 }
 
@@ -211,9 +211,9 @@ fn symmetric_strokes_mirror() {
     let start = shapes::icosphere(1.0, 40);
     for kind in BrushKind::ALL {
         for symmetry in [[true, false, false], [true, true, true]] {
-            let mut brush = BrushSettings { symmetry, radius: 0.12, ..BrushSettings::of(*kind) };
+            let mut brush = BrushSettings { symmetry, radius: 0.12, ..sculptd::presets().of(*kind) };
             // Cuts are made one image after another, and are not symmetric to the bit.
-            brush.topology = Topology::default();
+            brush.topology = TopologySettings::default();
             let mut studio = Studio::new(&start, brush, 1);
             // From the right over the mirror to the left: images overlap half of the way.
             let points: Vec<_> =
@@ -330,7 +330,7 @@ fn kelvinlets_hold_the_point_and_keep_the_volume_as_the_paper_says() {
     };
     let start = shapes::icosphere(1.0, 80);
     let change = |nu: f32| {
-        let mut brush = BrushSettings { radius: 0.2, ..BrushSettings::of(BrushKind::Elastic) };
+        let mut brush = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Elastic) };
         brush.extra[0] = nu;
         let mut studio = Studio::new(&start, brush, 1);
         let from = studio.view(Vec3::new(0.8, 0.0, 0.6));

@@ -158,8 +158,8 @@ fn hold(name: &str, now: &Facts) {
 #[test]
 fn every_brush_draws_as_it_did() {
     for kind in BrushKind::ALL {
-        let brush = BrushSettings { radius: 0.2, ..BrushSettings::of(*kind) };
-        let now = facts(kind.preset().about(), &brush, &|studio| {
+        let brush = BrushSettings { radius: 0.2, ..sculptd::presets().of(*kind) };
+        let now = facts(sculptd::presets().get(*kind).about(), &brush, &|studio| {
             if *kind == BrushKind::MaskBlur {
                 // There must be a mask to blur.
                 studio.tell(Command::Mask(MaskAction::Cavity(0.1)));
@@ -174,8 +174,8 @@ fn every_brush_draws_as_it_did() {
 
 #[test]
 fn every_option_draws_as_it_did() {
-    let base = BrushSettings { radius: 0.2, ..BrushSettings::of(BrushKind::Gaussian) };
-    let draw = BrushSettings { radius: 0.2, ..BrushSettings::of(BrushKind::Draw) };
+    let base = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Gaussian) };
+    let draw = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Draw) };
     let options: Vec<(&str, BrushSettings)> = vec![
         ("negative", BrushSettings { negative: true, ..base }),
         ("symmetric", BrushSettings { symmetry: [true, true, true], ..base }),
@@ -270,7 +270,7 @@ fn every_option_draws_as_it_did() {
 #[test]
 fn every_measure_alpha_and_stamp_draws_as_it_did() {
     let of = |kind: BrushKind, set: &dyn Fn(&mut BrushSettings)| {
-        let mut b = BrushSettings { radius: 0.2, ..BrushSettings::of(kind) };
+        let mut b = BrushSettings { radius: 0.2, ..sculptd::presets().of(kind) };
         set(&mut b);
         b
     };

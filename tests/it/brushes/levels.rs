@@ -31,8 +31,8 @@ fn volume(mesh: &TriMesh) -> f64 {
 #[test]
 fn detail_survives_strokes_on_a_coarser_level() {
     let start = shapes::icosphere(1.0, 16);
-    let fine = BrushSettings { radius: 0.06, strength: 0.1, ..BrushSettings::of(BrushKind::Draw) };
-    let coarse = BrushSettings { radius: 0.5, strength: 0.4, ..BrushSettings::of(BrushKind::Grab) };
+    let fine = BrushSettings { radius: 0.06, strength: 0.1, ..sculptd::presets().of(BrushKind::Draw) };
+    let coarse = BrushSettings { radius: 0.5, strength: 0.4, ..sculptd::presets().of(BrushKind::Grab) };
     let mut studio = Studio::new(&start, fine, 1);
     assert_eq!(go(&mut studio, true), (1, 2));
     assert_eq!(go(&mut studio, true), (2, 3));
@@ -87,7 +87,7 @@ fn detail_survives_strokes_on_a_coarser_level() {
 fn mask_and_colour_go_up_and_down_with_the_level() {
     let mut studio = Studio::new(
         &shapes::icosphere(1.0, 16),
-        BrushSettings { radius: 0.3, ..BrushSettings::of(BrushKind::Mask) },
+        BrushSettings { radius: 0.3, ..sculptd::presets().of(BrushKind::Mask) },
         1,
     );
     studio.stroke(&s_curve());
@@ -112,7 +112,7 @@ fn mask_and_colour_go_up_and_down_with_the_level() {
     studio.tell(Command::Brush(BrushSettings {
         radius: 0.3,
         colour: [200, 10, 20, 255],
-        ..BrushSettings::of(BrushKind::Paint)
+        ..sculptd::presets().of(BrushKind::Paint)
     }));
     studio.stroke(&s_curve());
     let painted = all(&mut studio);
@@ -133,7 +133,7 @@ fn mask_and_colour_go_up_and_down_with_the_level() {
 
 #[test]
 fn cut_triangles_end_the_levels() {
-    let mut brush = BrushSettings { radius: 0.15, ..BrushSettings::of(BrushKind::Draw) };
+    let mut brush = BrushSettings { radius: 0.15, ..sculptd::presets().of(BrushKind::Draw) };
     brush.topology.by = Measure::Brush;
     let mut studio = Studio::new(&shapes::icosphere(1.0, 16), brush, 1);
     go(&mut studio, true);

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use sculptd_clay::Clay;
 use sculptd_clay::brush::{
     BrushKind, BrushSettings, Falloff, Grip, MaskAction, Measure, Method, PressureCurve, StampBy,
-    Topology,
+    TopologySettings,
 };
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_geometry::job::Job;
@@ -19,7 +19,7 @@ use super::{Studio, form};
 fn any_brush(dice: &mut Dice) -> BrushSettings {
     let mut pick = |n: usize| ((dice.next() * n as f32) as usize).min(n - 1);
     let kind = BrushKind::ALL[pick(BrushKind::ALL.len())];
-    let mut b = BrushSettings::of(kind);
+    let mut b = sculptd::presets().of(kind);
     b.falloff = Falloff::ALL[pick(Falloff::ALL.len())];
     b.negative = pick(3) == 0;
     b.symmetry = std::array::from_fn(|_| pick(4) == 0);
@@ -145,8 +145,8 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
             pressure_strength: none,
             pressure_radius: firm,
             // Vertices are told by their numbers here.
-            topology: Topology::default(),
-            ..BrushSettings::of(*kind)
+            topology: TopologySettings::default(),
+            ..sculptd::presets().of(*kind)
         };
         let mut studio = Studio::new(&start, brush, 1);
         let (a, b) = (Vec2::new(0.48, 0.5), Vec2::new(0.52, 0.5));
@@ -201,7 +201,7 @@ fn changed(studio: &Studio, count: usize) -> Vec<bool> {
 #[test]
 fn no_brush_allocates_in_the_steady_state_of_a_stroke() {
     for kind in BrushKind::ALL {
-        let mut brush = BrushSettings { radius: 0.1, ..BrushSettings::of(*kind) };
+        let mut brush = BrushSettings { radius: 0.1, ..sculptd::presets().of(*kind) };
         // Where triangles are cut, pages are built anew: that is no steady state.
         brush.topology.by = Measure::Off;
         brush.auto.topology = true;
@@ -234,7 +234,7 @@ fn no_brush_allocates_in_the_steady_state_of_a_stroke() {
 fn a_masked_vertex_stays() {
     let start = shapes::icosphere(1.0, 40);
     for kind in BrushKind::ALL {
-        let mut studio = Studio::new(&start, BrushSettings::of(*kind), 1);
+        let mut studio = Studio::new(&start, sculptd::presets().of(*kind), 1);
         studio.tell(Command::Mask(MaskAction::Fill));
         studio.stroke(&super::s_curve());
         assert!(studio.positions() == start.positions, "{kind}");
@@ -244,7 +244,7 @@ fn a_masked_vertex_stays() {
 #[test]
 fn the_mask_of_the_whole_work() {
     let start = form(8_000);
-    let mut studio = Studio::new(&start, BrushSettings::of(BrushKind::Mask), 2);
+    let mut studio = Studio::new(&start, sculptd::presets().of(BrushKind::Mask), 2);
     let sum = |s: &Studio| -> f64 {
         let mesh = s.world.mesh();
         (0..mesh.page_count() as u32)
@@ -285,7 +285,7 @@ fn the_method_may_change_in_the_middle_of_a_stroke() {
         for first in methods {
             for second in methods {
                 let of = |method| {
-                    let mut b = BrushSettings { radius: 0.1, ..BrushSettings::of(kind) };
+                    let mut b = BrushSettings { radius: 0.1, ..sculptd::presets().of(kind) };
                     b.path.method = method;
                     b
                 };

@@ -27,7 +27,7 @@ fn stroke() -> Vec<(Vec2, f32)> {
 
 fn cell(kind: BrushKind) -> Picture {
     let held = if kind.grip() == Grip::Surface { 0.14 } else { 0.25 };
-    let mut brush = BrushSettings { radius: held, ..BrushSettings::of(kind) };
+    let mut brush = BrushSettings { radius: held, ..sculptd::presets().of(kind) };
     if kind == BrushKind::Texture {
         brush.alpha = Alpha::Rope;
         brush.strength = 0.35;
@@ -65,7 +65,7 @@ fn cell(kind: BrushKind) -> Picture {
         let mask = BrushSettings {
             radius: 0.14,
             falloff: Falloff::Constant,
-            ..BrushSettings::of(BrushKind::Mask)
+            ..sculptd::presets().of(BrushKind::Mask)
         };
         studio.tell(Command::Brush(mask));
         studio.stroke(&stroke());

@@ -12,7 +12,7 @@ use super::{Studio, form};
 fn drawn(start: &TriMesh, negative: bool, times: usize) -> TriMesh {
     let mut studio = Studio::new(
         start,
-        BrushSettings { radius: 0.25, negative, ..BrushSettings::of(BrushKind::SlideRelax) },
+        BrushSettings { radius: 0.25, negative, ..sculptd::presets().of(BrushKind::SlideRelax) },
         1,
     );
     for _ in 0..times {

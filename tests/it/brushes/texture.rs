@@ -176,7 +176,7 @@ fn an_alpha_becomes_relief_of_its_height_and_carves_the_other_way_round() {
             negative,
             alpha: Alpha::Waves,
             pressure_strength: firm,
-            ..BrushSettings::of(BrushKind::Texture)
+            ..sculptd::presets().of(BrushKind::Texture)
         };
         let mut studio = Studio::new(&flat, brush, 2);
         let (a, b) =

@@ -116,7 +116,7 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
 
 #[test]
 fn cuts_are_taken_back_by_undo_and_done_again_by_redo() {
-    let brush = BrushSettings { radius: 0.15, ..BrushSettings::of(BrushKind::Draw) };
+    let brush = BrushSettings { radius: 0.15, ..sculptd::presets().of(BrushKind::Draw) };
     let mut brush = brush;
     brush.topology.by = Measure::Brush;
     brush.topology.edge = 0.12;

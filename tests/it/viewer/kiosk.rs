@@ -29,6 +29,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
     let show = move |ui: &mut egui::Ui, s: &mut State| {
         let view = sculptd_window::panels::View {
             state: &s.published,
+            presets: sculptd::presets(),
             camera: s.published.camera,
             devices: &s.devices,
             session: None,

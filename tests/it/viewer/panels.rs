@@ -43,6 +43,7 @@ pub(super) fn state(tab: Tab) -> State {
 pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
     let view = View {
         state: &s.published,
+        presets: sculptd::presets(),
         camera: s.published.camera,
         devices: &s.devices,
         session: None,

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::serial::{Facts, Layout, Protocol, isdv4, summa_mm, wacom_iv, wacom_v};
+use crate::serial::{Protocol, SerialFacts, SerialLayout, isdv4, summa_mm, wacom_iv, wacom_v};
 use crate::sim::pen::PenPose;
 
 const TILT_LIMIT: f32 = 60.0;
@@ -10,7 +10,7 @@ const TILT_LIMIT: f32 = 60.0;
 /// A tablet of one protocol: what it says of itself, and how it writes a pose.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
-    pub(super) facts: Facts,
+    pub(super) facts: SerialFacts,
     protocol: Protocol,
     eraser_in: Option<bool>,
 }
@@ -30,19 +30,21 @@ impl Model {
         let max = counts_of(area_mm, per_mm);
         let layout = match protocol {
             Protocol::Isdv4 => {
-                let query = isdv4::Query {
+                let query = isdv4::Isdv4Query {
                     max,
                     max_pressure,
                     max_tilt: [TILT_LIMIT as u32; 2],
                     version: 1,
                 };
-                Layout::Isdv4(isdv4::Layout::new(query, None, false))
+                SerialLayout::Isdv4(isdv4::Isdv4Layout::new(query, None, false))
             }
-            Protocol::WacomIv => Layout::WacomIv(wacom_iv::Layout::new("UD", (1, 4), max)),
-            Protocol::WacomV => Layout::WacomV(wacom_v::Layout::new(max)),
-            Protocol::SummaMm => Layout::SummaMm,
+            Protocol::WacomIv => {
+                SerialLayout::WacomIv(wacom_iv::WacomIvLayout::new("UD", (1, 4), max))
+            }
+            Protocol::WacomV => SerialLayout::WacomV(wacom_v::WacomVLayout::new(max)),
+            Protocol::SummaMm => SerialLayout::SummaMm,
         };
-        let facts = Facts { model: "simulated".into(), max, area_mm, max_pressure, layout };
+        let facts = SerialFacts { model: "simulated".into(), max, area_mm, max_pressure, layout };
         Model { facts, protocol, eraser_in: None }
     }
 
@@ -129,7 +131,8 @@ impl Model {
         }
     }
 
-    /// The answer to what the host has written so far, which is taken out of `said`; and whether the stream is on.
+    /// The answer to what the host has written so far, which is taken out of `said`; and whether
+    /// the stream is on.
     pub(super) fn answer(&self, said: &mut Vec<u8>, streaming: &mut bool) -> Vec<u8> {
         let (mut reply, words) = (Vec::new(), std::mem::take(said));
         let [x, y] = self.facts.max.map(|m| m as u32);
@@ -180,7 +183,8 @@ impl Model {
                 }
                 Protocol::SummaMm if is(b"@", &mut rest) => *streaming = true,
                 Protocol::SummaMm if is(b"B", &mut rest) => *streaming = false,
-                // A question that has not wholly come yet is kept; a word that is none of the questions is read over.
+                // A question that has not wholly come yet is kept; a word that is none of the
+                // questions is read over.
                 _ if rest.len() < 3
                     && [&b"~"[..], b"~C", b"~R", b"S", b"ST", b"\r", b"z", b"h"]
                         .contains(&rest) =>

@@ -13,18 +13,18 @@ use serialport::{SerialPort, TTYPort};
 use self::encode::Model;
 use super::faults::{Faults, Rng};
 use super::pen::PenScript;
-use crate::Clock;
-use crate::lifeline::{self, Lifeline};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread};
 use crate::sample::DeviceId;
-use crate::serial::{Decoder, Facts, Protocol};
+use crate::serial::{Protocol, SerialDecoder, SerialFacts};
 
-/// The packets that a pen on this script gives over a span of time, and what its tablet says of itself: for tests that need
-/// bytes and no port.
+/// The packets that a pen on this script gives over a span of time, and what its tablet says of
+/// itself: for tests that need bytes and no port.
 pub fn stream(
     protocol: Protocol,
     script: &PenScript,
     span_us: std::ops::Range<u64>,
-) -> (Facts, Vec<Vec<u8>>) {
+) -> (SerialFacts, Vec<Vec<u8>>) {
     let mut model = Model::new(protocol, vec2(210.0, 148.0));
     let packets = span_us.step_by(7_500).flat_map(|t| model.packets(&script.at(t))).collect();
     (model.facts, packets)
@@ -35,9 +35,12 @@ const LISTEN: Duration = Duration::from_millis(3);
 /// Attempts of 100 ms each before a reader that does not read is given up.
 const WRITE_ATTEMPTS: usize = 20;
 
+/// What a simulated serial pen is and how well its line works.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SerialPenConfig {
+    /// What it speaks.
     pub protocol: Protocol,
+    /// Width and height of its active area in mm.
     pub area_mm: Vec2,
     /// Packets a second: 133 is what an ISDV4 screen gives, 38400 baud carry 400.
     pub rate: f32,
@@ -48,6 +51,7 @@ pub struct SerialPenConfig {
 }
 
 impl SerialPenConfig {
+    /// A pen at the usual rate on a good line.
     pub fn new(protocol: Protocol, area_mm: Vec2) -> Self {
         SerialPenConfig {
             protocol,
@@ -77,8 +81,8 @@ pub struct SerialPen {
     stalled_until_us: u64,
     backlog: Vec<u8>,
     /// What a reader makes of the same bytes: by it the expected samples are counted.
-    reader: Decoder,
-    listener: Option<Lifeline>,
+    reader: SerialDecoder,
+    listener: Option<DeviceThread>,
 }
 
 impl SerialPen {
@@ -95,9 +99,9 @@ impl SerialPen {
         let mut ears = master.try_clone_native()?;
         ears.set_timeout(LISTEN)?;
         let (their_model, on) = (Mutex::new(model.clone()), streaming.clone());
-        let listener = lifeline::spawn("sim-serial", move |leash| {
+        let listener = device_thread::spawn("sim-serial", move |stop| {
             let (mut said, mut buffer) = (Vec::new(), [0; 64]);
-            while !leash.stopped() {
+            while !stop.stopped() {
                 match ears.read(&mut buffer) {
                     Ok(0) => return,
                     Ok(n) => said.extend_from_slice(&buffer[..n]),
@@ -111,7 +115,7 @@ impl SerialPen {
                 let _ = write_all(&mut ears, &reply);
             }
         })?;
-        let reader = Decoder::new(&model.facts, DeviceId(0));
+        let reader = SerialDecoder::new(&model.facts, DeviceId(0));
         Ok(SerialPen {
             rng: Rng::new(config.faults.seed),
             spoilt: false,
@@ -142,9 +146,9 @@ impl SerialPen {
 
     /// Waits until a reader has asked for the stream; false if none has in time.
     pub fn wait_for_reader(&self, patience: Duration) -> bool {
-        let (_hold, leash) = lifeline::pair();
+        let (_hold, stop) = device_thread::pair();
         let slices = patience.as_millis() / LISTEN.as_millis();
-        (0..slices).any(|_| self.streaming() || leash.wait(LISTEN)) || self.streaming()
+        (0..slices).any(|_| self.streaming() || stop.wait(LISTEN)) || self.streaming()
     }
 
     /// Leaves out everything before `us`.
@@ -152,7 +156,8 @@ impl SerialPen {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Pulls the plug: a reader sees the line break. What was in range leaves: gives the samples to expect.
+    /// Pulls the plug: a reader sees the line break. What was in range leaves: gives the samples to
+    /// expect.
     pub fn unplug(&mut self) -> u32 {
         self.streaming.store(false, SeqCst);
         self.listener = None;
@@ -162,8 +167,8 @@ impl SerialPen {
         n
     }
 
-    /// Writes every packet due up to `until_us`, that one included; nothing before a reader has asked for the stream.
-    /// Gives how many samples must come out of its adaptor for them.
+    /// Writes every packet due up to `until_us`, that one included; nothing before a reader has
+    /// asked for the stream. Gives how many samples must come out of its adaptor for them.
     pub fn advance(&mut self, until_us: u64) -> u32 {
         let step = (1e6 / f64::from(self.config.rate.clamp(1.0, 100_000.0))) as u64;
         let mut bytes = Vec::new();
@@ -201,8 +206,9 @@ impl SerialPen {
         if stall {
             self.stalled_until_us = at + 20_000 + self.rng.below(280_000);
         }
-        // Two faults in a row can make a whole packet out of two broken ones, which no reader can tell from a good one:
-        // these protocols have no checksum. One at a time is what a line's noise is, too.
+        // Two faults in a row can make a whole packet out of two broken ones, which no reader can
+        // tell from a good one: these protocols have no checksum. One at a time is what a line's
+        // noise is, too.
         self.spoilt = !self.spoilt && (cut || lost || doubled);
         let mut bytes = packet;
         if self.spoilt {
@@ -233,8 +239,8 @@ impl SerialPen {
     /// If no thread can be started.
     pub fn play(mut self, clock: Clock) -> io::Result<PlayingPen> {
         let (port, start) = (self.name.clone(), clock.now_us());
-        let thread = lifeline::spawn("sim-serial-pen", move |leash| {
-            while !leash.wait(Duration::from_millis(2)) {
+        let thread = device_thread::spawn("sim-serial-pen", move |stop| {
+            while !stop.wait(Duration::from_millis(2)) {
                 self.advance(clock.now_us().saturating_sub(start));
             }
         })?;
@@ -245,8 +251,9 @@ impl SerialPen {
 /// A simulated pen that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct PlayingPen {
+    /// The port that a reader opens.
     pub port: String,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 fn waited(e: &io::Error) -> bool {

@@ -1,8 +1,9 @@
-//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read. Facts and sources stand there.
+//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read. Facts
+//! and sources stand there.
 
 use glam::Vec2;
 
-use super::reports::{self, Counts};
+use super::reports::{self, PoseCounts};
 use crate::catalogue::Found;
 use crate::sim::pen::PenPose;
 use crate::tablet::{Area, Family, Quirk};
@@ -81,7 +82,7 @@ impl Encoder {
         let counts = self.counts(pose);
         let quirk = |q| self.quirks.contains(&q);
         match self.family {
-            Family::WacomIntuosV1 => reports::intuos(&Counts {
+            Family::WacomIntuosV1 => reports::intuos(&PoseCounts {
                 p: if self.max_pressure < 2047 { counts.p << 1 } else { counts.p },
                 height: match () {
                     () if quirk(Quirk::HeightInverted) => self.max_distance - counts.height,
@@ -107,14 +108,14 @@ impl Encoder {
         }
     }
 
-    fn counts(&self, pose: &PenPose) -> Counts {
+    fn counts(&self, pose: &PenPose) -> PoseCounts {
         let a = &self.area;
         let size = Vec2::new(a.width_mm as f32, a.height_mm as f32);
         let share = (pose.pos_mm / size).clamp(Vec2::ZERO, Vec2::ONE);
         let axis =
             |s: f32, min: i32, max: i32| (min as f32 + s * (max - min) as f32).round() as u32;
         let degrees = |r: f32| r.to_degrees().round().clamp(-TILT_LIMIT, TILT_LIMIT) as i32;
-        Counts {
+        PoseCounts {
             x: axis(share.x, a.min_x, a.max_x),
             y: axis(share.y, a.min_y, a.max_y),
             p: (pose.pressure.clamp(0.0, 1.0) * self.max_pressure as f32).round() as u32,

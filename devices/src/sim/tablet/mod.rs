@@ -1,4 +1,5 @@
-//! A virtual pen tablet: report bytes of its family behind the transport that a real one is read through.
+//! A virtual pen tablet: report bytes of its family behind the transport that a real one is read
+//! through.
 
 mod encode;
 mod reports;
@@ -12,17 +13,18 @@ use crossbeam_channel as cc;
 use self::encode::Encoder;
 use super::faults::{Event, Faults, Line};
 use super::pen::PenScript;
-use crate::Clock;
 use crate::catalogue::{Catalogue, Found, Identity};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread};
 use crate::hid::decoder::Decoder;
 use crate::hid::transport::Transport;
-use crate::lifeline::{self, Lifeline};
 use crate::sample::DeviceId;
 use crate::tablet::Family;
 
 /// Reports that wait for a reader: what the kernel's hidraw keeps. The newest is dropped, as there.
 const KERNEL_KEEPS: usize = 63;
 
+/// How a simulated tablet behaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TabletConfig {
     /// Reports a second: 133 to 330 in real ones.
@@ -31,6 +33,7 @@ pub struct TabletConfig {
     pub repeat_us: Option<u64>,
     /// Reports that wait for a reader before the newest are dropped.
     pub keeps: usize,
+    /// How well its line works.
     pub faults: Faults,
 }
 
@@ -45,7 +48,8 @@ impl Default for TabletConfig {
     }
 }
 
-/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`: no model of this name.
+/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`:
+/// no model of this name.
 pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
     let tablet = catalogue.tablets().iter().find(|t| t.name == name)?;
     let id = tablet.id.first()?;
@@ -59,7 +63,8 @@ pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
     })
 }
 
-/// A tablet that no file describes: it is read by its report descriptor alone. A5, tilt, 8192 levels of pressure.
+/// A tablet that no file describes: it is read by its report descriptor alone. A5, tilt, 8192
+/// levels of pressure.
 pub fn generic_identity() -> Identity {
     Identity {
         vid: 0x1209, // The id that is lent to projects without their own.
@@ -73,7 +78,7 @@ pub fn generic_identity() -> Identity {
 
 /// The device, stepped by its owner.
 #[derive(Debug)]
-pub struct Tablet {
+pub struct SimTablet {
     config: TabletConfig,
     script: PenScript,
     encoder: Encoder,
@@ -89,7 +94,8 @@ pub struct Tablet {
     asked: Arc<Mutex<Vec<Vec<u8>>>>,
 }
 
-/// The report descriptor that a reader of a simulated tablet is given: empty but for the generic one, which is read by it.
+/// The report descriptor that a reader of a simulated tablet is given: empty but for the generic
+/// one, which is read by it.
 pub fn descriptor(found: &Found) -> &'static [u8] {
     if found.id().parser == Family::Digitiser { reports::GENERIC_DESCRIPTOR } else { &[] }
 }
@@ -101,12 +107,12 @@ pub struct TabletEnd {
     asked: Arc<Mutex<Vec<Vec<u8>>>>,
 }
 
-impl Tablet {
+impl SimTablet {
     /// A tablet as its file describes it, and the end that a reader is given.
     pub fn new(found: &Found, script: PenScript, config: TabletConfig) -> (Self, TabletEnd) {
         let (tx, rx) = cc::bounded(config.keeps.max(1));
         let asked = Arc::new(Mutex::new(Vec::new()));
-        let tablet = Tablet {
+        let tablet = SimTablet {
             encoder: Encoder::new(found),
             line: Line::new(config.faults),
             config,
@@ -122,8 +128,8 @@ impl Tablet {
         (tablet, TabletEnd { rx, asked })
     }
 
-    /// Whether its reports say when the pen leaves; else only silence does, and [`Tablet::advance`] counts on a reader
-    /// that looks at its clock.
+    /// Whether its reports say when the pen leaves; else only silence does, and
+    /// [`SimTablet::advance`] counts on a reader that looks at its clock.
     pub fn says_away(&self) -> bool {
         self.encoder.says_away()
     }
@@ -138,7 +144,8 @@ impl Tablet {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Pulls the plug: a reader gets an error, and what was in range leaves. Gives the samples to expect.
+    /// Pulls the plug: a reader gets an error, and what was in range leaves. Gives the samples to
+    /// expect.
     pub fn unplug(&mut self) -> u32 {
         self.tx = None;
         let mut n = 0;
@@ -146,8 +153,8 @@ impl Tablet {
         n
     }
 
-    /// Sends every report due up to `until_us`, that one included. Gives how many samples must come out of its reader for
-    /// them; that holds while the reader keeps up.
+    /// Sends every report due up to `until_us`, that one included. Gives how many samples must come
+    /// out of its reader for them; that holds while the reader keeps up.
     pub fn advance(&mut self, until_us: u64) -> u32 {
         let step = (1e6 / f64::from(self.config.rate.clamp(1.0, 100_000.0))) as u64;
         let mut expected = 0;
@@ -209,8 +216,8 @@ impl Tablet {
     /// If no thread can be started.
     pub fn play(mut self, clock: Clock) -> io::Result<PlayingTablet> {
         let start = clock.now_us();
-        let thread = lifeline::spawn("sim-tablet", move |leash| {
-            while !leash.wait(Duration::from_millis(2)) {
+        let thread = device_thread::spawn("sim-tablet", move |stop| {
+            while !stop.wait(Duration::from_millis(2)) {
                 self.advance(clock.now_us().saturating_sub(start));
             }
         })?;
@@ -221,7 +228,7 @@ impl Tablet {
 /// A simulated tablet that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct PlayingTablet {
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 impl Transport for TabletEnd {

@@ -4,7 +4,7 @@ use crate::tablet::Family;
 
 /// A pose in the device's counts.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Counts {
+pub(super) struct PoseCounts {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) p: u32,
@@ -51,7 +51,7 @@ fn bit(set: bool, value: u8) -> u8 {
     if set { value } else { 0 }
 }
 
-impl Counts {
+impl PoseCounts {
     fn flags(&self) -> u8 {
         u8::from(self.tip) | (self.buttons as u8) << 1
     }
@@ -86,6 +86,8 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
         }
         Family::WacomDtus => of(8, &[0x11]),
         Family::WacomIntuosV2 => of(27, &[0x10]),
+        Family::WacomProBluetooth => of(361, &[0x80, 0x80]),
+        Family::WacomIntuosBluetooth => of(51, &[0x80, 0x80]),
         Family::WacomIntuosV3 => of(26, &[0x1e]),
         Family::WacomOne => of(14, &[0x1f, 0x01]),
         Family::UcLogic | Family::XpPenOffset => of(12, &[0x02, 0xc0]),
@@ -106,7 +108,7 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
     }
 }
 
-pub(super) fn intuos(c: &Counts) -> Vec<u8> {
+pub(super) fn intuos(c: &PoseCounts) -> Vec<u8> {
     let (x, y) = (be(c.x >> 1), be(c.y >> 1));
     let tilt = c.tilt.map(|t| (t + 64) as u32);
     let b1 = 0xe0 | c.buttons << 1 | c.p & 1;
@@ -117,14 +119,14 @@ pub(super) fn intuos(c: &Counts) -> Vec<u8> {
     vec![0x02, b1 as u8, x[0], x[1], y[0], y[1], b6, b7, b8, b9]
 }
 
-pub(super) fn simple(c: &Counts, max_distance: u32) -> Vec<u8> {
+pub(super) fn simple(c: &PoseCounts, max_distance: u32) -> Vec<u8> {
     let (x, y, p) = (le(c.x), le(c.y), le(c.p));
     let near = max_distance.saturating_sub(c.height) as u8;
     vec![0x02, 0xe0 | bit(c.eraser, 8) | c.flags(), x[0], x[1], y[0], y[1], p[0], p[1], near, 0]
 }
 
 /// Pressure is signed here, its low bits spread over two bytes.
-pub(super) fn pl(c: &Counts, max_pressure: u32) -> Vec<u8> {
+pub(super) fn pl(c: &PoseCounts, max_pressure: u32) -> Vec<u8> {
     let mut q = c.p as i32 - (max_pressure as i32 + 1) / 2;
     let mut b4 = (c.y >> 14) as u8 & 3 | bit(c.tip, 8) | bit(c.buttons & 1 != 0, 0x10);
     b4 |= bit(c.eraser || c.buttons & 2 != 0, 0x20);
@@ -148,7 +150,7 @@ pub(super) fn pl(c: &Counts, max_pressure: u32) -> Vec<u8> {
 }
 
 /// 8 bytes, 10 with tilt, 12 with high coordinate bytes; pressure may count from 8192.
-pub(super) fn uclogic(c: &Counts, length: usize, offset: bool) -> Vec<u8> {
+pub(super) fn uclogic(c: &PoseCounts, length: usize, offset: bool) -> Vec<u8> {
     let (x, y, p, t) = (le24(c.x), le24(c.y), le(c.p | if offset { 0x2000 } else { 0 }), c.tilt8());
     let mut b = vec![0x02, 0xa0 | bit(c.eraser, 8) | c.flags(), x[0], x[1], y[0], y[1], p[0], p[1]];
     b.extend([t[0], t[1], x[2], y[2]]);
@@ -162,7 +164,7 @@ pub(super) fn uclogic(c: &Counts, length: usize, offset: bool) -> Vec<u8> {
     b
 }
 
-pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
+pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
     let (x, y, p, t) = (le24(c.x), le24(c.y), le(c.p), c.tilt8());
     let f = c.flags();
     match family {
@@ -230,6 +232,19 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
             b.extend(x.into_iter().chain(y).chain(p).chain(t));
             b.resize(27, 0);
             b[16] = c.height as u8;
+            b
+        }
+        // One frame of those that fit.
+        Family::WacomProBluetooth | Family::WacomIntuosBluetooth => {
+            let pro = family == Family::WacomProBluetooth;
+            let mut b = vec![0x80, 0xe0 | bit(c.eraser, 0x10) | f];
+            b.extend(le(c.x).into_iter().chain(le(c.y)).chain(p));
+            if pro {
+                b.extend(t);
+            }
+            b.resize(if pro { 14 } else { 8 }, 0);
+            b.push(c.height as u8);
+            b.resize(if pro { 361 } else { 51 }, 0);
             b
         }
         Family::WacomIntuosV3 => {
@@ -326,6 +341,6 @@ pub(super) fn other(family: Family, c: &Counts) -> Vec<u8> {
 }
 
 /// Bits 1 and 4, as tablet PCs have them.
-fn two_buttons(c: &Counts) -> u8 {
+fn two_buttons(c: &PoseCounts) -> u8 {
     bit(c.buttons & 1 != 0, 2) | bit(c.buttons & 2 != 0, 0x10)
 }

@@ -1,25 +1,25 @@
 use std::time::Duration;
 
-use crate::Clock;
 use crate::catalogue::{Catalogue, Found, Identification};
+use crate::clock::Clock;
 use crate::hid::reader;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
-use crate::sim::{Faults, PenScript, Tablet, TabletConfig, journal};
+use crate::sim::{Faults, PenScript, SimTablet, TabletConfig, journal};
 use crate::tablet::Family;
 
 const SOON: Duration = Duration::from_secs(5);
 
 struct Rig {
-    tablet: Tablet,
-    handle: reader::Handle,
+    tablet: SimTablet,
+    handle: reader::ReaderHandle,
     rx: Receiver,
     clock: Clock,
     got: Vec<Sample>,
 }
 
 fn rig(found: &Found, config: TabletConfig) -> Rig {
-    let (tablet, end) = Tablet::new(found, script(found), config);
+    let (tablet, end) = SimTablet::new(found, script(found), config);
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
     let handle = reader::start(
@@ -122,7 +122,8 @@ fn an_unplug_ends_the_visit_and_a_bad_line_no_more_than_that() {
     assert!(!rig.handle.status().connected);
 }
 
-/// Every model that is known, in every way it shows itself: what its simulator writes, its parser reads.
+/// Every model that is known, in every way it shows itself: what its simulator writes, its parser
+/// reads.
 #[test]
 fn every_model_reads_what_it_writes() {
     let catalogue = Catalogue::builtin().unwrap();
@@ -132,7 +133,10 @@ fn every_model_reads_what_it_writes() {
     };
     for tablet in catalogue.tablets() {
         for at in 0..tablet.id.len() {
-            generic.push(Found { tablet: tablet.clone(), at, note: None, described: false });
+            // A model that is read by its descriptor has no counts of its own.
+            if tablet.area.max_x > 0 {
+                generic.push(Found::new(tablet.clone(), at));
+            }
         }
     }
     let (mut families, mut bad) = (std::collections::BTreeMap::<_, u32>::new(), Vec::new());

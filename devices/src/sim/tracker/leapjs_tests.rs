@@ -5,8 +5,8 @@ use serde_json::Value;
 
 use crate::sim::{Tracker, TrackerConfig, journal};
 
-/// A client that is not ours takes every frame of the simulated tracker for a real one's. `devices/tests/leapjs/run` sets
-/// it up.
+/// A client that is not ours takes every frame of the simulated tracker for a real one's.
+/// `devices/tests/leapjs/run` sets it up.
 #[test]
 fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
     let Some(dir) = std::env::var_os("SCULPTD_LEAPJS").map(PathBuf::from) else {
@@ -23,12 +23,12 @@ fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
         tracker.wait_for_client(std::time::Duration::from_secs(20)),
         "leapjs has not connected"
     );
-    let (_hold, leash) = crate::lifeline::pair();
+    let (_hold, stop) = crate::device_thread::pair();
     let mut us = 10_400_000;
     while tracker.clients() > 0 && us < 20_000_000 {
         us += 9_091;
         tracker.advance(us);
-        leash.wait(std::time::Duration::from_millis(4));
+        stop.wait(std::time::Duration::from_millis(4));
     }
     let out = child.wait_with_output().unwrap();
     let text = String::from_utf8_lossy(&out.stdout);

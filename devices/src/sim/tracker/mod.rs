@@ -1,7 +1,7 @@
 //! A virtual hand tracker: serves frames over a loopback WebSocket as the real service does.
 //!
-//! Unlike the services seen in the wild it binds the loopback interface only, lets in no web page whose origin is not on a
-//! list, and reads no message longer than 4 KiB.
+//! Unlike the services seen in the wild it binds the loopback interface only, lets in no web page
+//! whose origin is not on a list, and reads no message longer than 4 KiB.
 
 mod encode;
 mod server;
@@ -14,9 +14,9 @@ use serde::{Deserialize, Serialize};
 use self::server::Server;
 use super::faults::{Event, Faults, Line};
 use super::hand::HandScript;
-use super::tremble::{Tremble, Trembling};
-use crate::Clock;
-use crate::lifeline::{self, Lifeline};
+use super::jitter::{Jitter, JitterState};
+use crate::clock::Clock;
+use crate::device_thread::{self, DeviceThread};
 use crate::sample::Hands;
 
 pub use self::encode::frame_json;
@@ -24,6 +24,7 @@ pub use self::encode::frame_json;
 /// What the tracker's own clock says when the simulation begins: no real one begins at nought.
 const CLOCK_ORIGIN_US: u64 = 3_600_000_000;
 
+/// How a simulated tracker behaves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrackerConfig {
@@ -31,13 +32,15 @@ pub struct TrackerConfig {
     pub port: u16,
     /// Frames a second; 110 is what real recordings have.
     pub rate: f32,
-    /// Web pages that may connect, as `scheme://host[:port]`. A client that names no origin is no web page.
+    /// Web pages that may connect, as `scheme://host[:port]`. A client that names no origin is no
+    /// web page.
     pub origins: Vec<String>,
     /// The script begins again after so long; `None` ends with it: no hands from then on.
     pub repeat_us: Option<u64>,
+    /// How well its line works.
     pub faults: Faults,
     /// How well it sees.
-    pub tremble: Tremble,
+    pub jitter: Jitter,
 }
 
 impl Default for TrackerConfig {
@@ -48,7 +51,7 @@ impl Default for TrackerConfig {
             origins: Vec::new(),
             repeat_us: None,
             faults: Faults::default(),
-            tremble: Tremble::default(),
+            jitter: Jitter::default(),
         }
     }
 }
@@ -60,14 +63,14 @@ pub struct Tracker {
     script: HandScript,
     server: Server,
     line: Line<Packet>,
-    trembling: Trembling,
+    jitter_state: JitterState,
     next_us: u64,
     frame: i64,
     /// By which the device's clock is off.
     jumped_us: i64,
     stalled_until_us: u64,
     backlog: Vec<Packet>,
-    seen: Seen,
+    seen: ClientSeen,
 }
 
 #[derive(Debug, Clone)]
@@ -78,13 +81,14 @@ struct Packet {
     hands: u8,
 }
 
-/// What a client that keeps to the rules has taken in so far; by it the expected samples are counted.
+/// What a client that keeps to the rules has taken in so far; by it the expected samples are
+/// counted.
 #[derive(Debug, Default)]
-struct Seen {
+struct ClientSeen {
     last: Option<(i64, u64, u8)>,
 }
 
-impl Seen {
+impl ClientSeen {
     fn whole(&mut self, p: &Packet) -> u32 {
         if let Some((frame, stamp, _)) = self.last
             && (0..100).contains(&(frame - p.frame))
@@ -110,19 +114,19 @@ impl Tracker {
     pub fn new(script: HandScript, config: TrackerConfig) -> std::io::Result<Self> {
         let server = Server::bind(config.port, config.origins.clone())?;
         let line = Line::new(config.faults);
-        let trembling = Trembling::new(config.tremble);
+        let jitter_state = JitterState::new(config.jitter);
         Ok(Tracker {
             config,
             script,
             server,
             line,
-            trembling,
+            jitter_state,
             next_us: 0,
             frame: 0,
             jumped_us: 0,
             stalled_until_us: 0,
             backlog: Vec::new(),
-            seen: Seen::default(),
+            seen: ClientSeen::default(),
         })
     }
 
@@ -141,6 +145,7 @@ impl Tracker {
         self.server.wait_for_clients(1, patience)
     }
 
+    /// How many clients are connected.
     pub fn clients(&self) -> usize {
         self.server.clients()
     }
@@ -166,9 +171,9 @@ impl Tracker {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Sends every frame due up to `until_us`, that one included, since the simulation began. Gives how many samples must
-    /// come out of one client's adaptor for them; that holds for steps of at most half a second (more frames at once are
-    /// over the adaptor's cap on the rate).
+    /// Sends every frame due up to `until_us`, that one included, since the simulation began. Gives
+    /// how many samples must come out of one client's adaptor for them; that holds for steps of at
+    /// most half a second (more frames at once are over the adaptor's cap on the rate).
     pub fn advance(&mut self, until_us: u64) -> u32 {
         let step = (1e6 / f64::from(self.config.rate.clamp(1.0, 10_000.0))) as u64;
         let mut expected = 0;
@@ -176,8 +181,8 @@ impl Tracker {
             let at = self.next_us;
             self.next_us += step;
             self.frame += 1;
-            let stamp =
-                (CLOCK_ORIGIN_US + self.trembling.stamp(at)).saturating_add_signed(self.jumped_us);
+            let stamp = (CLOCK_ORIGIN_US + self.jitter_state.stamp(at))
+                .saturating_add_signed(self.jumped_us);
             let hands = self.hands_at(at);
             let text = frame_json(&hands, stamp, self.config.rate);
             let packet = Packet { text, frame: self.frame, stamp, hands: hands.count };
@@ -196,7 +201,7 @@ impl Tracker {
 
     fn hands_at(&mut self, at: u64) -> Hands {
         let at = self.config.repeat_us.filter(|p| *p > 0).map_or(at, |p| at % p);
-        self.trembling.apply(&self.script.at(at, self.frame))
+        self.jitter_state.apply(&self.script.at(at, self.frame))
     }
 
     fn happen(&mut self, event: Event<Packet>, at: u64) -> u32 {
@@ -235,8 +240,8 @@ impl Tracker {
     /// If no thread can be started.
     pub fn play(mut self, clock: Clock) -> std::io::Result<Playing> {
         let (address, start) = (self.address(), clock.now_us());
-        let thread = lifeline::spawn("sim-tracker", move |leash| {
-            while !leash.wait(Duration::from_millis(2)) {
+        let thread = device_thread::spawn("sim-tracker", move |stop| {
+            while !stop.wait(Duration::from_millis(2)) {
                 self.advance(clock.now_us().saturating_sub(start));
             }
         })?;
@@ -247,8 +252,9 @@ impl Tracker {
 /// A simulated device that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct Playing {
+    /// Where it serves.
     pub address: SocketAddr,
-    _thread: Lifeline,
+    _thread: DeviceThread,
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use tungstenite::http::StatusCode;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Message, WebSocket};
 
-use crate::lifeline::{self, Leash, Lifeline};
+use crate::device_thread::{self, DeviceThread, StopToken};
 
 /// Nothing that a client may say is longer than a few dozen bytes.
 const MAX_FROM_CLIENT: usize = 4096;
@@ -22,7 +22,7 @@ const ACCEPT_SLICE: Duration = Duration::from_millis(5);
 const PATIENCE: Duration = Duration::from_millis(500);
 
 #[derive(Debug, Default)]
-struct Shared {
+struct ServerShared {
     clients: Mutex<Clients>,
     arrived: Condvar,
 }
@@ -36,8 +36,8 @@ struct Clients {
 #[derive(Debug)]
 pub(super) struct Server {
     address: SocketAddr,
-    shared: Arc<Shared>,
-    _thread: Lifeline,
+    shared: Arc<ServerShared>,
+    _thread: DeviceThread,
 }
 
 impl Server {
@@ -45,10 +45,11 @@ impl Server {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(ServerShared::default());
         let theirs = shared.clone();
-        let thread =
-            lifeline::spawn("sim-ws", move |leash| accept(&listener, &origins, &theirs, &leash))?;
+        let thread = device_thread::spawn("sim-ws", move |stop| {
+            accept(&listener, &origins, &theirs, &stop)
+        })?;
         Ok(Server { address, shared, _thread: thread })
     }
 
@@ -113,8 +114,8 @@ fn hear(
     heard
 }
 
-fn accept(listener: &TcpListener, origins: &[String], shared: &Shared, leash: &Leash) {
-    while !leash.wait(ACCEPT_SLICE) {
+fn accept(listener: &TcpListener, origins: &[String], shared: &ServerShared, stop: &StopToken) {
+    while !stop.wait(ACCEPT_SLICE) {
         while let Ok((stream, _)) = listener.accept() {
             match welcome(stream, origins) {
                 Ok(client) => {
@@ -166,7 +167,8 @@ fn welcome(stream: TcpStream, origins: &[String]) -> Result<WebSocket<TcpStream>
     Ok(client)
 }
 
-/// Why a request is not answered: a page of another origin, or a path that is none of the protocol's.
+/// Why a request is not answered: a page of another origin, or a path that is none of the
+/// protocol's.
 fn refuse(request: &Request, origins: &[String]) -> Option<StatusCode> {
     if let Some(origin) = request.headers().get("origin")
         && !origins.iter().any(|o| o.as_bytes() == origin.as_bytes())

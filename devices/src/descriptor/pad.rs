@@ -1,0 +1,76 @@
+//! Where the keys, wheels and rings of a pad lie in one input report.
+
+use hidreport::{FieldAttributes, VariableField};
+
+use super::bits::Bits;
+use super::page_id;
+
+/// Keys past this one are not reported: a state holds 32.
+const MAX_KEYS: u32 = 32;
+
+/// A control that turns or slides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turn {
+    /// Where its value lies.
+    pub bits: Bits,
+    /// The value is a number of steps since the last report, and not a position.
+    pub relative: bool,
+}
+
+/// One input report that carries a pad's controls and no pen.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PadFields {
+    /// The report's id; `None` where the descriptor uses no report ids.
+    pub report_id: Option<u8>,
+    /// Key number, from 0, and its bit.
+    pub keys: Vec<(u32, Bits)>,
+    /// Rings, strips, dials and wheels, in the order of the descriptor.
+    pub turns: Vec<Turn>,
+    /// A finger is on the ring or strip, where the report says it.
+    pub touched: Option<Bits>,
+}
+
+impl PadFields {
+    /// Adds a field if it lies in a pad's collection: tablet function keys (0x0D:0x39) or a keypad
+    /// (0x01:0x07), which is what Linux `hid-uclogic`, the HID-BPF fixes and Wacom describe pads
+    /// as. Usages of Wacom's own page (0xFF0D): Linux `wacom_wac.h`.
+    pub(super) fn take(&mut self, f: &VariableField) {
+        let of_pad = |usage: u32| matches!(page_id(usage), (0x0d | 0xff0d, 0x39) | (0x01, 0x07));
+        let usages = f.collections.iter().flat_map(|c| c.usages());
+        if !usages.map(u32::from).any(of_pad) {
+            return;
+        }
+        match page_id(u32::from(&f.usage)) {
+            (0x09, button @ 1..=MAX_KEYS) if f.bits.len() == 1 => {
+                self.keys.push((button - 1, Bits::of(f)));
+            }
+            (0x0d | 0xff0d, 0x33) | (0xff0d, 0x139) if self.touched.is_none() => {
+                self.touched = Some(Bits::of(f));
+            }
+            // Wacom's own page: express keys, then what lies behind the keys of the frame.
+            (0xff0d, key @ 0x910..=0x91f) if f.bits.len() == 1 => {
+                self.keys.push((key - 0x910, Bits::of(f)));
+            }
+            (0xff0d, key @ 0x980..=0x983) if f.bits.len() == 1 => {
+                self.keys.push((16 + key - 0x980, Bits::of(f)));
+            }
+            (0xff0d, key @ 0x990..=0x995) if f.bits.len() == 1 => {
+                self.keys.push((20 + key - 0x990, Bits::of(f)));
+            }
+            // Wacom's own page: strips, rings, finger wheels.
+            (0xff0d, 0x136..=0x138 | 0xd03) => {
+                self.turns.push(Turn { bits: Bits::of(f), relative: f.is_relative() });
+            }
+            // Dial, wheel, and the horizontal wheel of the consumer page.
+            (0x01, 0x37 | 0x38) | (0x0c, 0x238) => {
+                self.turns.push(Turn { bits: Bits::of(f), relative: f.is_relative() });
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether the report has no control of a pad.
+    pub fn is_empty(&self) -> bool {
+        self.keys.is_empty() && self.turns.is_empty()
+    }
+}

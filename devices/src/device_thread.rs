@@ -1,0 +1,70 @@
+//! A thread that ends when its owner lets go of it.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam_channel as cc;
+
+/// The owner's end: dropping it tells the thread to stop and waits until it has.
+#[derive(Debug)]
+pub(crate) struct DeviceThread {
+    flag: Arc<AtomicBool>,
+    hold: Option<cc::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// The thread's end.
+#[derive(Debug, Clone)]
+pub(crate) struct StopToken {
+    flag: Arc<AtomicBool>,
+    released: cc::Receiver<()>,
+}
+
+/// Starts a named thread on a stop.
+pub(crate) fn spawn(
+    name: &str,
+    body: impl FnOnce(StopToken) + Send + 'static,
+) -> io::Result<DeviceThread> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let (hold, released) = cc::bounded(0);
+    let stop = StopToken { flag: flag.clone(), released };
+    let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || body(stop))?;
+    Ok(DeviceThread { flag, hold: Some(hold), thread: Some(thread) })
+}
+
+/// A stop with nothing at its other end but what the caller holds.
+pub(crate) fn pair() -> (cc::Sender<()>, StopToken) {
+    let (hold, released) = cc::bounded(0);
+    (hold, StopToken { flag: Arc::new(AtomicBool::new(false)), released })
+}
+
+impl StopToken {
+    pub(crate) fn stopped(&self) -> bool {
+        self.flag.load(Relaxed)
+    }
+
+    /// Waits; true if the thread is to stop, and then at once.
+    pub(crate) fn wait(&self, time: Duration) -> bool {
+        matches!(self.released.recv_timeout(time), Err(cc::RecvTimeoutError::Disconnected))
+            || self.stopped()
+    }
+
+    pub(crate) fn flag(&self) -> Arc<AtomicBool> {
+        self.flag.clone()
+    }
+}
+
+impl Drop for DeviceThread {
+    fn drop(&mut self) {
+        self.flag.store(true, Relaxed);
+        drop(self.hold.take());
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            tracing::error!("a device thread panicked");
+        }
+    }
+}
