@@ -1,55 +1,129 @@
 //! # sculptd: the map
 //!
-//! `sculptd` turns the movements of a hand into clay, in real time. Pen tablets (HID), serial pens
+//! `sculptd` turns the movements of a hand into clay, in real time. HID pen tablets, serial pens
 //! and a Leap-style hand-tracking feed are read by adaptors; their samples pass one bounded
 //! lock-free channel into a sculpt loop that runs at a fixed rate on the CPU; Booleans, thickness
 //! and distance run on background threads against immutable snapshots; a wgpu viewer with egui
 //! panels draws the snapshots.
 //!
-//! ## Three laws
+//! Read first: this page, then `sculptd_engine::command` (what can be asked),
+//! `sculptd_engine::world` (what one step does), `sculptd_daemon::live` (the loop around it). Each
+//! crate's `lib.rs` says where to start in it. `CONTRIBUTING.md` says how to build and where things
+//! are added.
+//!
+//! ## Five laws
 //! 1. **Two things change the world: a `Sample` (what a device said) and a `Command` (what was
 //!    asked).** A panel's click, a control-socket call, a finished Boolean, an undo: each is a
-//!    [`sculptd_engine::command::Command`]. Both are plain data and serialise.
+//!    [`sculptd_engine::command::Command`]. Both are plain data and serialise whole: a large
+//!    payload is named by an id and lies in the [`sculptd_engine::payload::PayloadStore`] beside
+//!    the world; no channel, lock or thread handle is part of one.
 //!    [`sculptd_engine::world::World::step`] is the only writer. It has no clock, no IO, no threads
-//!    of its own making, and never fails. So live running, replay, recovery, golden tests, fuzzing
-//!    and bug reports are one mechanism.
+//!    of its own making, and never fails. So live running, replay, crash recovery, golden tests,
+//!    fuzzing and bug reports are one mechanism.
 //! 2. **Cost follows what moved, never what exists.** A dab costs what its vertices cost, on a mesh
 //!    of a thousand vertices or of ten million. No tick touches the whole mesh: not for normals,
-//!    not for the trees, not to publish, not for undo.
+//!    not for the BVH, not for the spatial query, not to publish a snapshot, not for undo. A local
+//!    Boolean costs what its region costs.
 //! 3. **The tick thread never waits.** No locks held by others, no IO, no unbounded work; after
 //!    warm-up it neither allocates nor frees in the steady state of a stroke. A contact or
 //!    proximity change is never lost; motion may be coalesced, and every loss is counted and shown.
+//!    Nothing large is freed on the tick thread, whatever is full: see
+//!    [`sculptd_clay::GarbageSink`].
+//! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
+//!    state; only replay from the start may be refused, by name. A file is written beside and
+//!    renamed.
+//! 5. **Nothing happens when nothing happens.** An idle daemon and an idle window use no processor
+//!    time that a person could measure.
 //!
-//! ## The path of one pen sample: four rooms, two doors
-//! `devices` (read, stamp, parse, pen state: a [`sculptd_devices::Sample`], complete state in mm,
-//! 0..1 and radians) -> **door 1**, the channel [`sculptd_devices::queue`] -> [`daemon`]'s tick
-//! loop (drain at most N, order by time) -> [`world`] ([`stroke`]: view ray, resampling ->
-//! [`brush`]: dabs -> [`mesh`]: pages) -> **door 2**, the [`mesh::Snapshot`] in
-//! [`daemon::Published`] -> the viewer (upload dirty pages, draw).
+//! ## The path of one pen sample: four crates and two hand-offs
+//! `sculptd-devices` reads, stamps and parses: a [`sculptd_devices::Sample`] holds complete state,
+//! never a delta, in mm, 0 to 1 and radians. The channel [`sculptd_devices::queue`] hands it to the
+//! tick loop in [`sculptd_daemon::live`], which drains at most N samples and orders them by time.
+//! [`sculptd_engine::world`] turns them into view rays, a resampled stroke and dabs;
+//! [`sculptd_clay::Clay::dab`] moves vertices in pages. The [`sculptd_clay::Snapshot`] in
+//! [`sculptd_daemon::Published`] hands the result to the viewer, which uploads the pages that
+//! changed and draws.
 //!
-//! ## Rooms, and who may know whom
-//! * `sculptd-devices` (a crate of its own, `devices/`) and [`mesh`] know nobody.
-//! * [`stroke`], [`brush`], [`hand`], [`analysis`] build on them. [`world`] joins them.
-//! * `panels` (egui only) and `viewer` (wgpu only), behind the feature `viewer`, see snapshots and
-//!   send commands.
-//! * [`daemon`] wires all; [`cli`] reads arguments and prints; [`config`] turns what was written
-//!   into what it means.
+//! ## Crates, from the bottom up
+//! The compiler holds the arrows between them; `tests/tidy` refuses circles between the files of a
+//! crate.
 //!
-//! `tests/it/tidy.rs` holds these walls.
+//! * `sculptd-geometry` (`src/geometry`) knows nobody: meshes, files, repair, BVH, Booleans,
+//!   thickness, distance, jobs that can be cancelled.
+//! * `sculptd-devices` (`devices`) knows nobody: everything between a wire and a `Sample`; tablets
+//!   as data.
+//! * `sculptd-clay` (`src/clay`) knows geometry: pages, dabs, brushes, dynamic topology,
+//!   multiresolution, undo, snapshots, local Booleans.
+//! * `sculptd-engine` (`src/engine`) knows devices, geometry, clay: commands, payloads, the world,
+//!   camera, strokes, hands.
+//! * `sculptd-daemon` (`src/daemon`) knows the four above: the tick loop, simulated time, sessions,
+//!   control socket, kiosk, metrics.
+//! * `sculptd-window` (`src/window`) knows all but the command line: panels (egui) and viewer
+//!   (wgpu): they see snapshots and send commands.
+//! * `sculptd` (`src/main.rs`, `src/cli`) knows all: the command line: reads arguments, calls,
+//!   prints.
 //!
 //! ## Threads
-//! | thread | made by | does | waits for |
-//! |---|---|---|---|
-//! | main | the process | the window's event loop, or waits for a signal | the window system |
-//! | `sculptd-tick` | [`daemon::live`] | drain, `World::step`, publish | its own clock only |
-//! | workers | [`mesh::Workers`] | parts of a large dab | the tick thread |
-//! | one a tablet, one a serial port, one a tracker | the adaptors in `devices` | read, parse, push | its device |
-//! | `sculptd-join` | [`daemon::joiner`] | Booleans of the work with the thing in the hands, sent back as commands | a wish |
-//! | `sculptd-preview`, `-distance`, `-thickness`, `-measure` | `viewer::wishes`, `viewer::work` | follow the newest snapshot for the window | a wish; a newer one replaces it |
-//! | `sculptd-tail` | [`daemon::session`] | copies input to memory that outlives the process | the tick thread's data |
-//! | journal | [`daemon::session`] | writes samples and commands in groups | that thread's data, the disk |
-//! | `sculptd-history` | [`daemon::session::history`] | writes the pages of each step; fetches them for undo | the tick thread's moments, the disk |
-//! | `sculptd-drop` | [`daemon::live`] | frees what was replaced | the tick thread's leavings |
+//! The core crates (geometry's Booleans apart) start no thread of their own accord: the daemon asks
+//! for the workers of [`sculptd_clay::Workers`] and passes the sink of
+//! [`sculptd_daemon::garbage_thread`] in.
+//!
+//! * main, made by the process: the window's event loop, or waits for a signal. Waits for: the
+//!   window system.
+//! * `sculptd-tick`, made by `daemon::live`: drains samples and commands, steps the world,
+//!   publishes. Waits for: its own clock only.
+//! * `sculptd-worker-N`, made by `clay::Workers`, for the tick thread: parts of a large dab. Waits
+//!   for: the tick thread.
+//! * `sculptd-drop`, made by `daemon::garbage_thread`: frees what the tick thread no longer needs.
+//!   Waits for: the tick thread.
+//! * one a tablet, one a serial port, one a tracker, made by `devices::lifeline`, for the adaptors:
+//!   reads, parses, sends samples. Waits for: its device.
+//! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the object in the
+//!   hands, sent back as commands. Waits for: a choice in the hands' menu.
+//! * `sculptd-global`, made by `geometry::boolean::global`: the slow exact route of a Boolean, so
+//!   that it can be given up. Waits for: its Boolean.
+//! * `sculptd-tail`, made by `daemon::session::writer`: copies input to memory that outlives the
+//!   process. Waits for: the tick thread.
+//! * `sculptd-journal`, made by `daemon::session::writer`: writes samples and commands in groups.
+//!   Waits for: the tail, the disk.
+//! * `sculptd-sync`, made by `daemon::session::syncer`: asks the disk to keep what was written.
+//!   Waits for: the journal, the disk.
+//! * `sculptd-history`, made by `daemon::session::history`: writes the pages of each step; fetches
+//!   them for undo. Waits for: the tick thread, the disk.
+//! * `sculptd-control`, made by `daemon::control::server`: accepts clients of the control socket.
+//!   Waits for: the socket.
+//! * `sculptd-client`, made by `daemon::control::server`: answers one client's requests. Waits for:
+//!   that client.
+//! * `sculptd-events`, made by `daemon::control::events`: sends events to one client. Waits for:
+//!   the published state.
+//! * `sculptd-metrics`, made by `daemon::metrics`: answers requests for metrics. Waits for: its
+//!   socket.
+//! * `sculptd-service`, made by `daemon::service`: the watchdog of systemd, reload on SIGHUP. Waits
+//!   for: time, a signal.
+//! * `sculptd-kiosk`, made by `daemon::kiosk::keeper`: the cycle of an installation: attract,
+//!   sculpt, reset. Waits for: time, the published state.
+//! * `sculptd-gallery`, made by `daemon::kiosk::spool`: brings finished sculptures to their place.
+//!   Waits for: the disk, the network.
+//! * `sculptd-share`, made by `daemon::kiosk::share`: serves a visitor's sculpture for download.
+//!   Waits for: its socket.
+//! * `sculptd-player`, made by `cli::live`: plays recordings as devices. Waits for: the clock.
+//! * `sculptd-limit`, made by `cli::live`: ends a run after `--for`. Waits for: the clock.
+//! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
+//!   `window::viewer::work`: read and write files for the window. Waits for: the disk.
+//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, made by `window::viewer::work`: changes of
+//!   the whole object that the window asked for, sent as commands. Waits for: the loop's answer.
+//! * `sculptd-dialog`, made by `window::viewer::work`: the desktop's file dialog. Waits for: a
+//!   person.
+//! * `sculptd-thickness`, made by `window::viewer::work`: the live thickness map. Waits for: a
+//!   request; a newer one replaces it.
+//! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by
+//!   `window::viewer::background`: follow the newest snapshot for the window. Waits for: a request;
+//!   a newer one replaces it.
+//! * `sculptd-sights`, made by `window::viewer::history_tree`: reads thumbnails of the history.
+//!   Waits for: the disk.
+//!
+//! Long computations outside the tick (Booleans, thickness, repair) also use the threads of rayon's
+//! global pool.
 //!
 //! ## Determinism
 //! The same binary, the same start mesh, the same samples and commands give the same bits, with any

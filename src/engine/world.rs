@@ -8,8 +8,6 @@
 
 mod saved;
 mod stroke_context;
-#[cfg(test)]
-mod tests;
 
 use std::sync::Arc;
 
@@ -666,3 +664,6 @@ impl World {
         self.mesh.verify_invariants()
     }
 }
+
+#[cfg(test)]
+mod tests;
