@@ -142,9 +142,7 @@ pub enum MaskAction {
     Shrink,
     /// Protects what is hollow by at least so much: mean curvature, times a tenth of the object's
     /// bounding radius.
-    Cavity(
-        #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32,
-    ),
+    Cavity(#[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32),
 }
 
 /// Parameters of `curve`.
@@ -236,10 +234,10 @@ impl StrokeParams {
                     return wrong(": expected [x, y, z, pressure, t_ms]".into());
                 }
             };
-            let numbers = place.iter().map(|v| (*v, range)).chain([
-                (pressure, SHARE),
-                (ms, Range { min: earliest, max: STROKE_MS.max }),
-            ]);
+            let numbers = place
+                .iter()
+                .map(|v| (*v, range))
+                .chain([(pressure, SHARE), (ms, Range { min: earliest, max: STROKE_MS.max })]);
             for (k, (value, Range { min, max })) in numbers.enumerate() {
                 if !(Range { min, max }).contains(value) {
                     return wrong(format!(
@@ -262,13 +260,9 @@ pub const MIN_STROKE_STEP_MS: f64 = 1.0;
 #[serde(untagged)]
 pub enum StrokePoint {
     /// x, y of the view ([`crate::range::VIEW`]), pressure, milliseconds.
-    View(
-        #[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 4],
-    ),
+    View(#[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 4]),
     /// x, y, z of space ([`crate::range::COORDINATE`]), pressure, milliseconds.
-    World(
-        #[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 5],
-    ),
+    World(#[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 5]),
 }
 
 /// What the coordinates of a stroke's points are.

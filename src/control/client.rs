@@ -213,9 +213,9 @@ pub fn default_path() -> PathBuf {
 pub fn user_id() -> u32 {
     use std::os::unix::fs::MetadataExt;
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let real = status.lines().find_map(|line| {
-        line.strip_prefix("Uid:")?.split_ascii_whitespace().next()?.parse().ok()
-    });
+    let real = status
+        .lines()
+        .find_map(|line| line.strip_prefix("Uid:")?.split_ascii_whitespace().next()?.parse().ok());
     let of_home = || Some(PathBuf::from(std::env::var_os("HOME")?).metadata().ok()?.uid());
     real.or_else(of_home).unwrap_or(0)
 }

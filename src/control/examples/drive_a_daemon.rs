@@ -31,8 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let pressure = (along * std::f64::consts::PI).sin();
         StrokePoint::View([0.3 + 0.4 * along, 0.5, pressure, 10.0 * f64::from(i)])
     });
-    let stroke =
-        StrokeParams { points: points.collect(), space: StrokeSpace::View, brush: None };
+    let stroke = StrokeParams { points: points.collect(), space: StrokeSpace::View, brush: None };
     let made = daemon.call::<Stroke>(&stroke)?;
     println!("{} samples, taken by tick {}", made.samples, made.tick);
 
