@@ -5,6 +5,7 @@
 //! waits for it. Where the work was changed meanwhile elsewhere, a cut is made all the same; where
 //! it was changed there, it is computed again: nothing that was sculpted is lost.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -138,17 +139,17 @@ pub struct BooleanJobs {
 impl BooleanJobs {
     /// # Errors
     /// If no thread can be started.
-    pub fn start(
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) -> std::io::Result<Self> {
+    pub fn start(shown: Arc<ArcSwap<Published>>, commands: CommandSender) -> std::io::Result<Self> {
         let (asked, todo) = cc::bounded::<MenuItem>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
             for choice in todo {
-                match at_rest(&shown, choice, &Job::default(), &commands) {
-                    Ok(_) => {}
-                    Err(JoinError::Ended) => return,
-                    Err(e) => tracing::warn!("{}: {e}", choice.label()),
+                // A bug in one Boolean must not end those that follow.
+                let join = || at_rest(&shown, choice, &Job::default(), &commands);
+                match catch_unwind(AssertUnwindSafe(join)) {
+                    Ok(Ok(_)) => {}
+                    Ok(Err(JoinError::Ended)) => return,
+                    Ok(Err(e)) => tracing::warn!("{}: {e}", choice.label()),
+                    Err(_) => tracing::error!("{}: the Boolean ended by a bug", choice.label()),
                 }
             }
         })?;
@@ -173,14 +174,23 @@ pub struct Joined {
     pub tries: usize,
 }
 
-/// Joins the work as it is now with the thing in the hands.
+/// Joins the work as it is now with the thing in the hands, by a choice of the hands' menu.
 pub fn at_rest(
     shown: &ArcSwap<Published>,
     choice: MenuItem,
     job: &Job,
     commands: &CommandSender,
 ) -> Result<Joined, JoinError> {
-    let operation = operation(choice).ok_or(JoinError::Empty)?;
+    join_held(shown, operation(choice).ok_or(JoinError::Empty)?, job, commands)
+}
+
+/// A Boolean of the object as it is now and what the hands hold.
+pub fn join_held(
+    shown: &ArcSwap<Published>,
+    operation: Operation,
+    job: &Job,
+    commands: &CommandSender,
+) -> Result<Joined, JoinError> {
     let held =
         |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
     carry_out(shown, held, true, operation, job, commands)

@@ -11,7 +11,7 @@ use sculptd_devices::queue::Sender;
 use sculptd_devices::recording::Player;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::{World, WorldOptions};
-use sculptd_geometry::io::{ReadError, read_mesh};
+use sculptd_geometry::io::{MAX_FILE, ReadError, read_mesh_within};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -42,18 +42,31 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads a work from a file, or makes the ball that a session starts with.
+/// Reads a mesh from a file, or makes the ball that a session starts with.
 pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
-    let (plain, mut warnings, name) = match path {
-        Some(path) => {
-            let loaded = read_mesh(path, job)?;
-            let (plain, _) = loaded.mesh.triangulate();
-            (plain, loaded.warnings, path.display().to_string())
+    match path {
+        Some(path) => load_within(path, MAX_FILE, job),
+        None => {
+            let ball = shapes::sphere_of_about(START_VERTICES);
+            build(ball, vec![], "the start ball".into(), job)
         }
-        None => (shapes::sphere_of_about(START_VERTICES), vec![], "the start ball".into()),
-    };
-    let mesh =
-        Clay::build(&plain, job).map_err(|source| StartupError::Build { path: name, source })?;
+    }
+}
+
+/// Reads a mesh from a regular file of at most `limit` bytes.
+pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, StartupError> {
+    let loaded = read_mesh_within(path, limit, job)?;
+    let (plain, _) = loaded.mesh.triangulate();
+    build(plain, loaded.warnings, path.display().to_string(), job)
+}
+
+fn build(
+    plain: TriMesh,
+    mut warnings: Vec<String>,
+    path: String,
+    job: &Job,
+) -> Result<Loaded, StartupError> {
+    let mesh = Clay::build(&plain, job).map_err(|source| StartupError::Build { path, source })?;
     warnings.extend(mesh.warnings().iter().cloned());
     Ok(Loaded { plain, mesh, warnings })
 }

@@ -13,10 +13,10 @@ use super::film::Film;
 #[cfg(unix)]
 use super::share;
 use super::spool::Spool;
-use crate::command_queue::{CommandSender, QueuedCommand};
 use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
+use crate::command_queue::{CommandSender, QueuedCommand};
 use sculptd_clay::Clay;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::catalogue::Catalogue;

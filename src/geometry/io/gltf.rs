@@ -194,11 +194,7 @@ fn fetch(uri: &str, name: &Path, n: usize) -> Result<Vec<u8>, Stop> {
     if !path.starts_with(folder.canonicalize().map_err(told)?) {
         return Err(refused("it leads elsewhere"));
     }
-    let meta = std::fs::metadata(&path).map_err(told)?;
-    if !meta.is_file() || meta.len() > super::MAX_FILE {
-        return Err(refused("no plain file of a sane size"));
-    }
-    std::fs::read(&path).map_err(told)
+    super::read_regular(&path, super::MAX_FILE).map_err(told)
 }
 
 fn percent(uri: &str) -> Option<String> {

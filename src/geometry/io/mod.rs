@@ -12,6 +12,7 @@ mod obj;
 mod off;
 mod ply;
 pub mod problem;
+mod regular;
 mod stl;
 mod text;
 mod threemf;
@@ -22,6 +23,7 @@ use std::path::Path;
 
 pub use beside::write_beside;
 pub use problem::{At, Problem, ReadError, Stop, WriteError};
+pub use regular::read_regular;
 pub use write::{encode, writable_format, write_mesh};
 
 use super::PolyMesh;
@@ -73,25 +75,23 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads the mesh at `path`. Every vertex is finite in single precision too, every face has at
-/// least three corners, every index is in range; nothing else is promised: it may be open, crossed
-/// or inside out ([`super::check::report`] tells).
+/// Reads the mesh at `path`, a regular file of at most [`MAX_FILE`] bytes. Every vertex is finite
+/// in single precision too, every face has at least three corners, every index is in range; nothing
+/// else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
 pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
-    let io = |source| ReadError::Io { path: path.into(), source };
-    let meta = std::fs::metadata(path).map_err(io)?;
-    if meta.is_dir() {
-        return Err(io(std::io::Error::new(
-            std::io::ErrorKind::IsADirectory,
-            "expected a mesh file, found a folder",
-        )));
-    }
-    if meta.len() > MAX_FILE {
-        let found =
-            format!("{} bytes; the file and its mesh must both fit into memory", meta.len());
-        let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
-        return Err(ReadError::Format { path: path.into(), problem });
-    }
-    let bytes = std::fs::read(path).map_err(io)?;
+    read_mesh_within(path, MAX_FILE, job)
+}
+
+/// As [`read_mesh`], of at most `limit` bytes.
+pub fn read_mesh_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, ReadError> {
+    let bytes = read_regular(path, limit).map_err(|source| match source.kind() {
+        std::io::ErrorKind::FileTooLarge => {
+            let problem =
+                Problem::new(At::File, format!("at most {limit} bytes"), source.to_string());
+            ReadError::Format { path: path.into(), problem }
+        }
+        _ => ReadError::Io { path: path.into(), source },
+    })?;
     job.progress(0.1);
     parse(&bytes, path, job).map_err(|stop| match stop {
         Stop::Problem(problem) => ReadError::Format { path: path.into(), problem },

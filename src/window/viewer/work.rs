@@ -143,12 +143,7 @@ impl Work {
 
     /// Joins the thing in the hands with the work; the result takes the work's place, and undo
     /// brings the work back.
-    pub fn join(
-        &self,
-        choice: MenuItem,
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn join(&self, choice: MenuItem, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
             let (text, wrong) =
@@ -190,12 +185,7 @@ impl Work {
     }
 
     /// The work one level finer or coarser.
-    pub fn level(
-        &self,
-        finer: bool,
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
             Ok((vec![command], format!("Level {} of {of}", at + 1)))

@@ -353,16 +353,9 @@ impl Keeping {
             return Ok(None);
         };
         let from = (self.ledger.now.object_id(), self.ledger.now.revision());
-        let jump = |pages, other| Jump {
-            node: to,
-            from,
-            object_id: node.object_id,
-            pages,
-            other,
-        };
-        let queued = |jump, payload| {
-            QueuedCommand::with_payload(Command::Jump(Box::new(jump)), payload)
-        };
+        let jump = |pages, other| Jump { node: to, from, object_id: node.object_id, pages, other };
+        let queued =
+            |jump, payload| QueuedCommand::with_payload(Command::Jump(Box::new(jump)), payload);
         match way {
             Way::Pages(pages) => {
                 let mut got = Vec::with_capacity(pages.len());
