@@ -4,16 +4,16 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::points::Points;
+use super::points::PointSet;
 use crate::boolean::box_tree::Span;
 use crate::boolean::broad_phase;
-use crate::boolean::broad_phase::Surface;
+use crate::boolean::broad_phase::SurfaceView;
 use crate::job::{Cancelled, Job};
 use crate::{PolyMesh, triangulate};
 
 /// The operands, ready to meet.
 pub struct Common {
-    pub points: Points,
+    pub points: PointSet,
     /// Corners over the points.
     pub meshes: [PolyMesh; 2],
     pub triangles: [Vec<[u32; 3]>; 2],
@@ -38,11 +38,11 @@ pub fn common(
         || split(operands[1], &operands[1].positions, job),
     );
     let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
-    let surface = |s: usize, triangles| Surface { triangles, at: &operands[s].positions, base: 0 };
+    let surface = |s: usize, triangles| SurfaceView { triangles, at: &operands[s].positions, base: 0 };
     let mut pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
-    lap("near");
+    lap("broad_phase");
     let mut points =
-        Points::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
+        PointSet::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
     let mut names: Vec<u32> = (0..points.at.len() as u32).collect();
     let corners = |t: &[[u32; 3]], of: &dyn Fn(&(u32, u32)) -> u32| -> Vec<u32> {
         let mut near: Vec<u32> = pairs.iter().flat_map(|p| t[of(p) as usize]).collect();
@@ -83,7 +83,7 @@ pub fn common(
         };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
     if again {
-        let surface = |triangles| Surface { triangles, at: &points.at, base: 0 };
+        let surface = |triangles| SurfaceView { triangles, at: &points.at, base: 0 };
         pairs = broad_phase::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
     }
     lap("weld");
