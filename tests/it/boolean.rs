@@ -9,6 +9,7 @@ mod random;
 mod scenes;
 mod socket;
 mod solids;
+mod truth;
 
 use glam::{DMat3, DVec3};
 use sculptd_geometry::boolean::{BooleanOptions, BooleanReport, BooleanSolid as Made, Operation, compute};

@@ -56,6 +56,8 @@ const COARSEST: f64 = 1e-4;
 /// Rounded places can be this many coordinate errors apart: two points at 2 sqrt(3) errors, and as
 /// much again where a point was computed from rounded ones.
 const ERRORS: f64 = 8.0;
+/// Values with fewer digits are not rounded ones.
+const LEAST_DIGITS: i32 = 5;
 /// Vertices that are looked at.
 const SAMPLES: usize = 512;
 
@@ -114,7 +116,8 @@ pub fn resolution(mesh: &PolyMesh) -> Resolution {
         return if full { single } else { double };
     }
     // Single precision in a text file: the number nearest to it that the digits allow.
-    let (mut near_single, mut most, mut count, mut long) = (true, 0i32, Vec::new(), 0);
+    let (mut near_single, mut long) = (true, 0);
+    let mut short: Vec<(i32, i32, i32)> = Vec::new();
     for &v in &values {
         let (digits, decimals) = decimal(v);
         if digits > 12 {
@@ -126,16 +129,15 @@ pub fn resolution(mesh: &PolyMesh) -> Resolution {
             continue;
         }
         near_single &= (v - f64::from(v as f32)).abs() <= 0.5 * 10f64.powi(-decimals);
-        // Decimals of the largest values: smaller ones may have more, where digits are counted.
-        if v.abs() * 10.0 >= reach {
-            most = most.max(decimals);
-            count.push(decimals);
-        }
+        short.push((digits - decimals, digits, decimals));
     }
+    // Decimals of the largest values: smaller ones have more where digits are counted.
+    let Some(&(largest, ..)) = short.iter().max_by_key(|d| d.0) else { return double };
+    let most = short.iter().filter(|d| d.0 == largest).map(|d| d.2).max().unwrap_or(0);
     let error = 0.5 * 10f64.powi(-most);
-    let used = count.iter().filter(|d| **d == most).count() * 2 >= count.len();
-    let size = extent(mesh);
-    let rounded = used && count.len() >= 6 && 2.0 * error <= COARSEST * size;
+    let full = short.iter().filter(|d| d.1 >= LEAST_DIGITS && d.2 >= most).count();
+    let used = short.len() >= 6 && full * 2 >= short.len();
+    let rounded = used && 2.0 * error <= COARSEST * extent(mesh);
     match (rounded, near_single) {
         (true, true) if error < single.error => single,
         (true, _) => Resolution { precision: Precision::Decimal, error },
@@ -190,6 +192,14 @@ mod tests {
         assert_eq!((digits.precision, digits.error), (Precision::Decimal, 0.5e-8));
         let written = resolution(&mapped(&m, |v| nine(f64::from(v as f32))));
         assert_eq!(written.precision, Precision::Single);
+    }
+
+    #[test]
+    fn digits_are_counted_from_the_largest_value() {
+        let nine = |v: f64| format!("{v:.8e}").parse::<f64>().expect("a number");
+        let mut m = turned();
+        m.positions.iter_mut().for_each(|p| *p += DVec3::new(10.3, -7.7, 0.01));
+        assert_eq!(resolution(&mapped(&m, nine)).error, 0.5e-7);
     }
 
     #[test]
