@@ -43,7 +43,8 @@ pub fn local(
         let eps = (wanted * factor).max(floor);
         let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(&around), job, &mut |_| ())?;
         if a.doubt.is_none()
-            && let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job) {
+            && let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job)
+        {
             job.check()?;
             return Ok(Some(Cut::new(
                 clay,
@@ -126,7 +127,8 @@ impl Patch {
         let mut from: Vec<Option<u32>> = Vec::new();
         a.faces(operation, keep_contact, job, |origin, corners, state| {
             let clay = origin.operand == 0;
-            if clay && state == FaceState::Whole && self.mesh.face(origin.face as usize) == corners {
+            if clay && state == FaceState::Whole && self.mesh.face(origin.face as usize) == corners
+            {
                 kept[origin.face as usize] = true;
                 return;
             }

@@ -73,7 +73,14 @@ pub struct BooleanArgs {
     pub solve: Option<Solve>,
     /// Write polygons where faces were cut. Without it, triangles come out where triangles went in,
     /// and convex polygons where polygons did.
-    #[arg(long, value_enum, value_name = "SHAPE", num_args = 0..=1, default_missing_value = "convex")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "SHAPE",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "convex"
+    )]
     pub polygons: Option<Polygons>,
     /// Leave out the look for triangles that cross within an operand.
     #[arg(long)]
@@ -388,8 +395,7 @@ fn operand(
     // Whether the faces' directions say what is inside.
     let directed = facts.closed && facts.oriented && facts.volume.is_some_and(|v| v > 0.0);
     if args.solve.is_some() && (!directed || crossed > 0 || args.trust || facts.components > 1) {
-        let oriented =
-            if directed { Default::default() } else { repair::orient_shells(&mut mesh) };
+        let oriented = if directed { Default::default() } else { repair::orient_shells(&mut mesh) };
         let turned = oriented.turned;
         if oriented.guessed > 0 && oriented.crossing > 0 {
             out.warnings.push(format!(

@@ -83,6 +83,21 @@ pub(super) fn write_checked(
         return file_facts(path, Some(made.crossings), warnings, job);
     }
     write_mesh(path, mesh)?;
+    if mesh.face_count() == 0 {
+        // An empty solid: a valid file of its format, which no reader takes for a mesh.
+        return Ok(FileFacts {
+            vertices: mesh.positions.len(),
+            faces: 0,
+            volume: Some(0.0),
+            area: 0.0,
+            components: 0,
+            genus: None,
+            closed: true,
+            manifold: true,
+            self_intersections: crossings.map(|_| 0),
+            warnings,
+        });
+    }
     file_facts(path, None, warnings, job)
 }
 
@@ -99,32 +114,25 @@ fn file_facts(
         repair::weld(&mut mesh, 0.0);
     }
     let facts = check::report(&mesh, false, job).map_err(|e| Fail::Input(e.to_string()))?;
-    let empty = mesh.face_count() == 0;
-    let (closed, manifold) = (facts.closed || empty, facts.manifold || empty);
-    if closed && !manifold {
+    if facts.closed && !facts.manifold {
         warnings.push(format!("{} is closed but not manifold as it was written", path.display()));
     }
     Ok(FileFacts {
         vertices: facts.vertices,
         faces: facts.faces,
-        volume: if empty { Some(0.0) } else { facts.volume },
+        volume: facts.volume,
         area: facts.area,
         components: facts.components,
         genus: facts.genus,
-        closed,
-        manifold,
+        closed: facts.closed,
+        manifold: facts.manifold,
         self_intersections,
         warnings,
     })
 }
 
 /// Writes `mesh` and says so: the end of every command that makes a mesh.
-pub(super) fn deliver(
-    path: &Path,
-    mesh: &PolyMesh,
-    warnings: Vec<String>,
-    json: bool,
-) -> Outcome {
+pub(super) fn deliver(path: &Path, mesh: &PolyMesh, warnings: Vec<String>, json: bool) -> Outcome {
     if mesh.positions.iter().any(|p| !p.as_vec3().is_finite()) {
         return Err(Fail::Check(
             "the result has coordinates beyond 3.4e38; nothing was written".into(),
@@ -192,7 +200,10 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
         done(filled.left, "open borders that are no simple loop left as they are");
         if oriented.crossing + oriented.nested > 0 {
             done(oriented.crossing, "pairs of shells that cross made one solid");
-            done(oriented.nested, "shells within others that face outwards made one solid with them");
+            done(
+                oriented.nested,
+                "shells within others that face outwards made one solid with them",
+            );
             match boolean::solve(&mesh, &job) {
                 Ok(solved) => mesh = solved,
                 Err(e) => return Err(Fail::Check(format!("shells overlap and {e}"))),
@@ -200,10 +211,7 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
         }
     }
     if args.triangulate {
-        let (triangles, of) = mesh.triangles();
-        mesh.corners = triangles.into_iter().flatten().collect();
-        mesh.face_starts = (0..=of.len() as u32).map(|t| t * 3).collect();
-        mesh.groups = mesh.groups.map(|g| of.iter().map(|&f| g[f as usize]).collect());
+        mesh = written::triangulated(&mesh);
     }
     deliver(&args.output, &mesh, warnings, json)
 }

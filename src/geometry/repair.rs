@@ -1,5 +1,5 @@
-//! Mending: one vertex for one place, no faces without extent, all faces outwards, no holes.
-//! Each works in place and says how much it changed; none moves a vertex.
+//! Repair: one vertex for one place, no faces without extent, all faces outwards, no holes. Each
+//! function works in place and returns how much it changed; none moves a vertex.
 
 use std::collections::BTreeSet;
 
@@ -313,7 +313,8 @@ fn turn_out(
         (0..shells).map(|s| if closed[s] { around(s) } else { Vec::new() }).collect();
     let mut out = OrientedShells { crossing: crossing.len(), ..Default::default() };
     let outermost = |s: usize| closed[s] && holders[s].is_empty();
-    let wrong = (0..shells).filter(|&s| closed[s] && (!known[s] || (outermost(s) && volume[s] < 0.0)));
+    let wrong =
+        (0..shells).filter(|&s| closed[s] && (!known[s] || (outermost(s) && volume[s] < 0.0)));
     out.guessed = wrong.count();
     if out.guessed == 0 {
         let same = |&s: &usize| {
@@ -352,7 +353,9 @@ fn crossing_shells(
 /// What [`fill_holes`] did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Filled {
+    /// Loops of open edges that were closed.
     pub holes: usize,
+    /// Triangles that were added.
     pub faces: usize,
     /// Open edges that belong to no simple loop, or to one longer than asked for.
     pub left: usize,

@@ -1,8 +1,8 @@
 //! What a file will hold: a mesh in the format's faces and precision, without triangles that cross.
 //!
-//! Rounding moves each vertex on its own, so a mesh that crosses nothing may cross itself once it is
-//! written. Here it is rounded first, looked at with exact predicates ([`crate::self_intersection`]),
-//! and repaired by local operations: an edge is flipped, an edge no longer than a few steps of the
+//! Rounding moves each vertex on its own, so a mesh that crosses nothing may cross itself once it
+//! is written. Here it is rounded first, checked with exact predicates
+//! ([`crate::self_intersection`]), and repaired by local operations: an edge is flipped, an edge no longer than a few steps of the
 //! precision is collapsed, or a vertex is moved by a few steps. An operation is kept only where
 //! fewer pairs cross after it (the greedy scheme of Attene, "A lightweight approach to repairing
 //! digitized polygon meshes", 2010).
@@ -31,8 +31,8 @@ pub struct WrittenMesh<'a> {
 const MOST_PAIRS: usize = 3000;
 const ROUNDS: usize = 6;
 
-/// `mesh` as a file with the ending `kind` will hold it (STL and GLB have single precision; they and
-/// 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision or
+/// `mesh` as a file with the ending `kind` will hold it (STL and GLB have single precision; they
+/// and 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision or
 /// four times `tolerance`, and only where triangles cross.
 ///
 /// # Errors
@@ -61,8 +61,7 @@ pub fn for_file<'a>(
     }
     let reach = out.positions.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
     let step = reach * 2f64.powi(if single { -23 } else { -52 });
-    let mut local =
-        LocalMesh::new(out.positions.clone(), triangles, single, step, tolerance, job)?;
+    let mut local = LocalMesh::new(out.positions.clone(), triangles, single, step, tolerance, job)?;
     let mut left = pairs;
     for _ in 0..ROUNDS {
         let before = left.len();
@@ -207,7 +206,8 @@ impl LocalMesh {
         while size <= self.limit {
             for t in pair {
                 for v in self.triangles[t as usize] {
-                    for d in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z]
+                    for d in
+                        [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z]
                     {
                         if self.shift(v, d * size) {
                             return;
@@ -261,9 +261,7 @@ impl LocalMesh {
     fn beside(&self, a: u32, b: u32) -> Option<(u32, u32)> {
         let mut found = self.around[a as usize].iter().filter_map(|&t| {
             let c = self.triangles[t as usize];
-            (0..3)
-                .find(|&k| c[k] == a && c[(k + 1) % 3] == b)
-                .map(|k| (t, c[(k + 2) % 3]))
+            (0..3).find(|&k| c[k] == a && c[(k + 1) % 3] == b).map(|k| (t, c[(k + 2) % 3]))
         });
         let one = found.next();
         if found.next().is_some() { None } else { one }

@@ -12,13 +12,19 @@ mod solids;
 mod truth;
 
 use glam::{DMat3, DVec3};
-use sculptd_geometry::boolean::{BooleanOptions, BooleanReport, BooleanSolid as Made, Operation, compute};
+use scenes::{Scene, scenes, turn};
+use sculptd_geometry::boolean::{
+    BooleanOptions, BooleanReport, BooleanSolid as Made, Operation, compute,
+};
 use sculptd_geometry::check;
 use sculptd_geometry::job::Job;
-use scenes::{Scene, scenes, turn};
 use solids::{Solid, expected};
 
-fn all(a: &Solid, b: &Solid, options: &BooleanOptions) -> Result<(Vec<Made>, BooleanReport), String> {
+fn all(
+    a: &Solid,
+    b: &Solid,
+    options: &BooleanOptions,
+) -> Result<(Vec<Made>, BooleanReport), String> {
     compute([&a.mesh, &b.mesh], &Operation::ALL, options, &Job::default(), || 0.0)
         .map_err(|e| e.to_string())
 }

@@ -1,4 +1,5 @@
-//! Both surfaces cut at each other, and each piece in its place: from this every result is chosen.
+//! Both surfaces cut at each other and each piece classified: every result is a selection of these
+//! pieces.
 
 use glam::DVec3;
 
@@ -29,16 +30,19 @@ pub enum FaceState {
 /// How often a surface goes around a point, where the operand at hand is only a part of it.
 pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
 
+/// Both operands over common points, each face cut where the other surface crosses it, and each
+/// piece classified.
 #[derive(Debug)]
 pub struct Arrangement {
+    /// Where every corner is.
     pub points: PointSet,
     /// The operands, corners over the common points.
     pub meshes: [PolyMesh; 2],
     triangles: [Vec<[u32; 3]>; 2],
     starts: [Vec<u32>; 2],
-    /// Of the faces that something cuts, or may.
+    /// Pieces of the faces that the other operand cuts or may cut.
     pieces: [Vec<FacePiece>; 2],
-    /// Of all other faces.
+    /// Classification of all other faces.
     classification: [Classification; 2],
     meeting: Intersections,
     /// Corners below this are the operands' own: those of A, then those of B.
@@ -164,7 +168,7 @@ impl Arrangement {
         for s in 0..2 {
             let cells: Vec<&FacePiece> =
                 self.pieces[s].iter().filter(|p| !matches!(p.shape, PieceShape::Whole)).collect();
-            // Cells of one face with one fate are one again.
+            // Cells of one face with one classification are joined again.
             for group in cells.chunk_by(|p, q| p.face == q.face) {
                 for side in [false, true] {
                     let own: Vec<&FacePiece> =

@@ -102,7 +102,7 @@ fn shares(mesh: &PolyMesh, face: usize, place: DVec3) -> [(u32, f64); 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Operation, BooleanOptions, compute};
+    use super::super::{BooleanOptions, Operation, compute};
     use super::*;
     use crate::job::Job;
     use crate::shapes::cuboid;

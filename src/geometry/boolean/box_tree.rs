@@ -7,25 +7,32 @@ use crate::job::{Cancelled, Job};
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy)]
 pub struct Span {
+    /// The least coordinates.
     pub lo: DVec3,
+    /// The largest coordinates.
     pub hi: DVec3,
 }
 
 impl Span {
+    /// The box of nothing.
     pub const EMPTY: Span = Span { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
 
+    /// The least box around the points.
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Span {
         points.into_iter().fold(Span::EMPTY, |s, p| Span { lo: s.lo.min(p), hi: s.hi.max(p) })
     }
 
+    /// The least box around both.
     pub fn join(self, o: Span) -> Span {
         Span { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
     }
 
+    /// Whether the boxes have a point in common.
     pub fn meets(&self, o: &Span) -> bool {
         self.lo.cmple(o.hi).all() && o.lo.cmple(self.hi).all()
     }
 
+    /// The box, larger by a length on every side.
     pub fn grown(self, by: f64) -> Span {
         Span { lo: self.lo - by, hi: self.hi + by }
     }
@@ -52,6 +59,7 @@ const LEAF: usize = 4;
 const FORK: usize = 8192;
 
 impl SpanTree {
+    /// Builds the tree over one box an item.
     pub fn build(spans: &[Span], job: &Job) -> Result<SpanTree, Cancelled> {
         let mut items: Vec<(u32, DVec3)> =
             spans.iter().enumerate().map(|(i, s)| (i as u32, s.lo + s.hi)).collect();
@@ -191,8 +199,9 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> 
     let mut out = Vec::with_capacity(1 + l.len() + r.len());
     let (one, two) = (1, 1 + l.len() as u32);
     out.push(SpanNode { span, at: two, count: 0 });
-    let shifted =
-        |by: u32| move |n: SpanNode| SpanNode { at: if n.count == 0 { n.at + by } else { n.at }, ..n };
+    let shifted = |by: u32| {
+        move |n: SpanNode| SpanNode { at: if n.count == 0 { n.at + by } else { n.at }, ..n }
+    };
     out.extend(l.into_iter().map(shifted(one)));
     out.extend(r.into_iter().map(shifted(two)));
     out

@@ -1,6 +1,6 @@
-//! Which triangles of two surfaces may meet. Most of a surface is nowhere near the other: a coarse
-//! grid over the box that both are in says so at a few operations a triangle, and only what is left
-//! gets a tree.
+//! Which triangles of two surfaces may intersect. Most of a surface is far from the other: a coarse
+//! grid over the common box rejects it at a few operations a triangle, and only the rest gets a
+//! tree.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,17 +16,21 @@ const FEW: usize = 2048;
 /// Triangles over places of their own.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfaceView<'a> {
+    /// Corners of each triangle, counter-clockwise.
     pub triangles: &'a [[u32; 3]],
+    /// Where the corners are.
     pub at: &'a [DVec3],
     /// Taken off each corner before it is looked up.
     pub base: u32,
 }
 
 impl SurfaceView<'_> {
+    /// Where the corners of a triangle are.
     pub fn corners(&self, t: u32) -> [DVec3; 3] {
         self.triangles[t as usize].map(|v| self.at[(v - self.base) as usize])
     }
 
+    /// The box around a triangle.
     pub fn span(&self, t: u32) -> Span {
         let [a, b, c] = self.corners(t);
         Span { lo: a.min(b).min(c), hi: a.max(b).max(c) }

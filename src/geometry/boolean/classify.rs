@@ -1,5 +1,6 @@
-//! Where each part of a surface lies as seen from the other solid: faces in contact by their
-//! borders, all else by one winding number for each part that the cut leaves connected.
+//! Where each part of a surface lies relative to the other solid. Faces in contact are found by
+//! equal borders; every other connected part between cuts is classified by one winding number, and
+//! then checked by the winding numbers of samples on it.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -7,7 +8,7 @@ use robust::orient3d;
 
 use super::arrange::Around;
 use super::pieces::{FacePiece, Placement, triangles as parts_of};
-use super::points::{Map, PointSet, DisjointSets};
+use super::points::{DisjointSets, Map, PointSet};
 use crate::PolyMesh;
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::boolean::broad_phase::SurfaceView;
@@ -15,7 +16,7 @@ use crate::boolean::intersect::{Intersections, c3};
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;
 
-/// Places of the faces that nothing cuts, each that of the connected part that it is in.
+/// Placements of the faces that nothing cuts: each has that of the connected part that it is in.
 #[derive(Debug, Default)]
 pub struct Classification {
     /// Part of each face; `NONE` for faces that are in pieces.
@@ -26,6 +27,7 @@ pub struct Classification {
 const NONE: u32 = u32::MAX;
 
 impl Classification {
+    /// Where a face lies; None for a face that is in pieces.
     pub fn of(&self, face: u32) -> Option<Placement> {
         self.placements.get(self.part[face as usize] as usize).copied()
     }
@@ -283,8 +285,8 @@ impl<'a> WindingOracle<'a> {
         }
     }
 
-    /// As [`WindingOracle::winding`], but None for a point so near to the surface that the tolerance
-    /// decides where it is.
+    /// As [`WindingOracle::winding`], but None for a point so near to the surface that the
+    /// tolerance decides where it is.
     pub(super) fn clear_winding(&mut self, o: DVec3, job: &Job) -> Result<Option<i32>, Cancelled> {
         let winding = self.winding(o, job)?;
         let slack = 4.0 * self.eps;
@@ -355,8 +357,7 @@ fn distance_squared([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a))
 }
 
-/// A place in a triangle that nobody draws an edge through: an edge of the other surface may lie in
-/// this one.
+/// A place in a triangle with weights that are unlikely to be on an edge of the other surface.
 fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
 }

@@ -11,19 +11,24 @@ use crate::boolean::broad_phase::SurfaceView;
 use crate::job::{Cancelled, Job};
 use crate::{PolyMesh, triangulate};
 
-/// The operands, ready to meet.
+/// Both operands over common points.
 pub struct Common {
+    /// All points of both.
     pub points: PointSet,
     /// Corners over the points.
     pub meshes: [PolyMesh; 2],
+    /// Triangles of each operand.
     pub triangles: [Vec<[u32; 3]>; 2],
     /// First triangle of each face, and the number of all.
     pub starts: [Vec<u32>; 2],
+    /// The box around each operand.
     pub bounds: [Span; 2],
     /// Triangles whose boxes are within the tolerance of each other, ascending.
     pub pairs: Vec<(u32, u32)>,
 }
 
+/// Puts places of the operands that are within `eps` of each other on one point, where the surfaces
+/// are near each other. `lap` is called as each phase ends.
 pub fn common(
     operands: [&PolyMesh; 2],
     eps: f64,
@@ -38,7 +43,8 @@ pub fn common(
         || split(operands[1], &operands[1].positions, job),
     );
     let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
-    let surface = |s: usize, triangles| SurfaceView { triangles, at: &operands[s].positions, base: 0 };
+    let surface =
+        |s: usize, triangles| SurfaceView { triangles, at: &operands[s].positions, base: 0 };
     let mut pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
     lap("broad_phase");
     let mut points =

@@ -15,13 +15,16 @@ use crate::triangulate::area_vector;
 pub struct FaceOrigin {
     /// 0 for A, 1 for B.
     pub operand: u8,
+    /// The operand's face.
     pub face: u32,
 }
 
 /// Facts of a result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BooleanFacts {
+    /// In cubic units; 0 of an empty result.
     pub volume: f64,
+    /// In square units.
     pub area: f64,
     /// Connected shells.
     pub components: usize,

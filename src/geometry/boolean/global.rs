@@ -1,6 +1,6 @@
-//! The other route: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always
+//! The fallback: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always
 //! gives a closed manifold. It knows no tolerance and leaves sheets where faces only nearly touch,
-//! so it is asked only where the first route found no consistent answer. Its *Exact* engine alone
+//! so it is used only where the arrangement gives no consistent answer. Its *Exact* engine alone
 //! keeps what is not cut; its status is read, for it drops bad operands silently, and a panic
 //! within it (an index out of its arrays, on operands that cross themselves) is an error like any
 //! other. A result of no faces is a value.
@@ -139,12 +139,7 @@ impl GlobalEngine {
 
 impl HeldOperands {
     /// Triangles of one input face as that face again, or in as few polygons as join.
-    fn polygons(
-        &self,
-        gl: &MeshGL64,
-        triangles: bool,
-        job: &Job,
-    ) -> Result<Made, Cancelled> {
+    fn polygons(&self, gl: &MeshGL64, triangles: bool, job: &Job) -> Result<Made, Cancelled> {
         let at = points(gl);
         let mut names: Vec<u32> = (0..at.len() as u32).collect();
         for (&from, &to) in gl.merge_from_vert.iter().zip(&gl.merge_to_vert) {
@@ -164,7 +159,8 @@ impl HeldOperands {
         for ((operand, face, _), rings) in groups {
             let source = &self.meshes[operand as usize];
             let flat = !triangles
-                && rings.len() > 1 && is_flat(source, face as usize, &source.positions, self.eps);
+                && rings.len() > 1
+                && is_flat(source, face as usize, &source.positions, self.eps);
             let rings = if flat { joined_rings(rings, &at) } else { rings };
             for r in rings {
                 mesh.push_face(&r);
@@ -264,9 +260,12 @@ mod tests {
         let job = Job::default();
         let cube = crate::shapes::cuboid(DVec3::ZERO, DVec3::ONE);
         let far = crate::shapes::cuboid(DVec3::splat(5.0), DVec3::splat(6.0));
-        let engine = GlobalEngine::new([&cube, &far], 1e-9, &job).expect("not cancelled").expect("taken");
-        let (mesh, _, facts) =
-            engine.run(Operation::Intersection, false, &job).expect("not cancelled").expect("a result");
+        let engine =
+            GlobalEngine::new([&cube, &far], 1e-9, &job).expect("not cancelled").expect("taken");
+        let (mesh, _, facts) = engine
+            .run(Operation::Intersection, false, &job)
+            .expect("not cancelled")
+            .expect("a result");
         assert_eq!((mesh.face_count(), facts.volume, facts.components), (0, 0.0, 0));
     }
 }

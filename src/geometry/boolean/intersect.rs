@@ -1,5 +1,5 @@
-//! Where two surfaces meet: points of one on vertices, edges and faces of the other, each found
-//! once and known by all triangles around it; then the segments that cut each triangle.
+//! Where two surfaces intersect: points of one on vertices, edges and faces of the other, each
+//! computed once and shared by all triangles around it; then the segments that cut each triangle.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
@@ -7,26 +7,32 @@ use robust::{Coord3D, orient3d};
 use super::points::{Map, PointSet};
 use crate::job::{Cancelled, Job};
 
-/// What happened to one triangle.
+/// What the other surface does to one triangle.
 #[derive(Debug, Default, Clone)]
 pub struct TriangleMarks {
+    /// Points within it.
     pub inner: Vec<u32>,
+    /// Cuts through it, between points of its border or within it.
     pub segments: Vec<(u32, u32)>,
     /// It lies, within the tolerance, on a face of the other side.
     pub flat: bool,
 }
 
+/// An edge of a triangle and what lies on it.
 #[derive(Debug)]
 pub struct CutEdge {
+    /// The lesser point first.
     pub ends: [u32; 2],
     /// From `ends[0]` to `ends[1]`, once sorted.
     pub inner: Vec<u32>,
 }
 
-/// All that the two sides share.
+/// Everything that the two surfaces have in common.
 #[derive(Debug, Default)]
 pub struct Intersections {
+    /// Numbers of the edges, by their ends.
     pub edge_ids: Map<(u32, u32), u32>,
+    /// Every edge of a triangle that may be crossed.
     pub edges: Vec<CutEdge>,
     /// Triangle to its marks, a side each.
     pub marks: [Map<u32, TriangleMarks>; 2],
@@ -37,6 +43,7 @@ pub struct Intersections {
     pub shared: Vec<bool>,
 }
 
+/// A point as `robust` takes it.
 pub fn c3(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }
@@ -49,7 +56,7 @@ struct Finder<'a> {
     piercings: Map<(u32, u32, u32), Option<u32>>,
 }
 
-/// Where the triangles of the pairs (ascending) meet.
+/// Intersects the triangles of the pairs (ascending).
 pub fn intersect(
     triangles: [&[[u32; 3]]; 2],
     mut pairs: Vec<(u32, u32)>,
@@ -125,9 +132,7 @@ impl Finder<'_> {
         }
         let (o, d, x) = (self.p(a), self.p(b) - self.p(a), self.p(p));
         let t = (x - o).dot(d) / d.length_squared();
-        t > 0.0
-            && t < 1.0
-            && self.points.contact.compared((o + d * t).distance(x), self.eps)
+        t > 0.0 && t < 1.0 && self.points.contact.compared((o + d * t).distance(x), self.eps)
     }
 
     fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2]) {
@@ -266,6 +271,7 @@ impl Finder<'_> {
 }
 
 impl Intersections {
+    /// The number of an edge, whichever way it runs.
     pub fn edge_of(&self, a: u32, b: u32) -> Option<u32> {
         self.edge_ids.get(&(a.min(b), a.max(b))).copied()
     }

@@ -1,5 +1,5 @@
-//! Cells of one face with one fate, joined again into as few simple polygons as can be had by
-//! dropping borders between two.
+//! Cells of one face with the same classification, joined into as few simple polygons as dropping
+//! the borders between two gives.
 
 use glam::DVec3;
 
@@ -11,14 +11,23 @@ use crate::triangulate::area_vector;
 /// A polygon of the result over the common points.
 #[derive(Debug, Clone)]
 pub struct ResultPolygon {
+    /// The operand that it comes from, 0 or 1.
     pub side: u8,
+    /// The operand's face.
     pub face: u32,
+    /// Counter-clockwise, over the common points.
     pub corners: Vec<u32>,
 }
 
 /// Polygons of all pieces in cells of one face and place. `flat` says that the face is a plane, so
 /// that cells may be joined.
-pub fn polygons(side: u8, face: u32, group: &[&FacePiece], flat: bool, at: &[DVec3]) -> Vec<ResultPolygon> {
+pub fn polygons(
+    side: u8,
+    face: u32,
+    group: &[&FacePiece],
+    flat: bool,
+    at: &[DVec3],
+) -> Vec<ResultPolygon> {
     let mut rings: Vec<Vec<u32>> = Vec::new();
     for p in group {
         match &p.shape {
@@ -57,10 +66,7 @@ pub fn joined_rings(rings: Vec<Vec<u32>>, at: &[DVec3]) -> Vec<Vec<u32>> {
 }
 
 /// As [`joined_rings`], where `accept` takes the polygon that two become.
-pub fn joined_rings_where(
-    rings: Vec<Vec<u32>>,
-    accept: impl Fn(&[u32]) -> bool,
-) -> Vec<Vec<u32>> {
+pub fn joined_rings_where(rings: Vec<Vec<u32>>, accept: impl Fn(&[u32]) -> bool) -> Vec<Vec<u32>> {
     let mut rings: Vec<Option<Vec<u32>>> = rings.into_iter().map(Some).collect();
     let mut owner: Map<(u32, u32), usize> = Map::default();
     let edges = |r: &[u32]| (0..r.len()).map(|i| (r[i], r[(i + 1) % r.len()])).collect::<Vec<_>>();

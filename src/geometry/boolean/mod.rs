@@ -1,21 +1,34 @@
 //! Booleans of polygon meshes: union, intersection and both differences from one arrangement.
 //!
-//! The way: both surfaces are brought over common points (places within the tolerance are one
-//! point), so that faces that a person means to be coplanar *are*, by the identity of their points;
-//! then each point where an edge of one meets an edge or a face of the other is found once (signs
-//! decided exactly, Shewchuk 1997) and known to every triangle around it; each crossed triangle is
-//! cut into the cells of its plane graph; the parts of each surface between cuts are placed by one
-//! winding number each; contact is found by equal borders. Cells of one face with one fate are
-//! joined again, so that a face that is not crossed comes out as it went in. Every result is
-//! checked before it is given: closed, and volumes that add up.
+//! The steps, one file each:
 //!
-//! Not promised: operands that cross themselves (asked for by [`BooleanError`]); features smaller than the
-//! tolerance.
+//! 1. `precision`: the tolerance, from what the coordinates of the operands can resolve.
+//! 2. `common`: places within the tolerance become one point, so that faces that are meant to be
+//!    coplanar share points.
+//! 3. `intersect`: each point where an edge of one operand crosses an edge or a face of the other
+//!    is computed once and shared by every triangle around it. Signs are exact (Shewchuk 1997).
+//! 4. `pieces`, `planar`: each crossed triangle is cut into the cells of its plane graph.
+//! 5. `classify`: each connected part of a surface between cuts is inside or outside by one winding
+//!    number; faces in contact have equal borders. Samples on the parts are classified again, each
+//!    by a winding number of its own.
+//! 6. `merge`, `simplify`, `emit`: cells of one face are joined, planes are triangulated again, and
+//!    the result is made a closed manifold.
+//!
+//! Every result is checked before it is returned: closed, samples that agree with the winding
+//! number of the other operand, and volumes that add up (union and intersection give A and B, difference
+//! and intersection give A). Where a check fails, other tolerances are tried, then the exact engine
+//! of the crate `manifold-rust` (`global`); where that fails too, the answer is an error. Where the
+//! answer depends on the tolerance, [`BooleanReport`] says so.
+//!
+//! Not promised: a meaning for operands that cross themselves ([`solve`] makes them solids);
+//! features smaller than the tolerance.
 
+/// Both surfaces cut at each other, and the result of each operation from that.
 pub mod arrange;
 mod attributes;
 pub(crate) mod box_tree;
 mod broad_phase;
+/// Inside or outside, for each part of a surface.
 pub mod classify;
 mod common;
 mod curve;
@@ -27,6 +40,7 @@ mod merge;
 mod parts;
 mod pieces;
 mod planar;
+/// Points with an identity, and a hash map with a fixed order of hashing.
 pub mod points;
 mod precision;
 mod simplify;
@@ -41,10 +55,10 @@ pub use attributes::mixed;
 use box_tree::Span;
 pub use emit::{BooleanFacts, FaceOrigin};
 pub use parts::{shells, split};
-pub use points::Contact;
-pub use solve::solve;
-pub use precision::{DefaultTolerance, Precision, Resolution, default_tolerance, resolution};
 use pieces::Placement;
+pub use points::Contact;
+pub use precision::{DefaultTolerance, Precision, Resolution, default_tolerance, resolution};
+pub use solve::solve;
 
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
@@ -434,21 +448,23 @@ fn attempt(
         mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
         let mut cut: Vec<simplify::CutFace> = Vec::new();
         let triangles = options.faces.triangles(operands);
-        a.faces(operation, options.keep_contact, job, |origin, corners, state| match options.faces {
-            _ if state != FaceState::Cut && (!triangles || corners.len() == 3) => {
-                mesh.push_face(corners);
-                origins.push(origin);
-            }
-            ResultFaces::ConvexPolygons => {
-                for ring in simplify::convex(corners, &a.points.at) {
-                    mesh.push_face(&ring);
+        a.faces(operation, options.keep_contact, job, |origin, corners, state| {
+            match options.faces {
+                _ if state != FaceState::Cut && (!triangles || corners.len() == 3) => {
+                    mesh.push_face(corners);
                     origins.push(origin);
                 }
-            }
-            _ if triangles => cut.push(simplify::CutFace { origin, corners: corners.to_vec() }),
-            _ => {
-                mesh.push_face(corners);
-                origins.push(origin);
+                ResultFaces::ConvexPolygons => {
+                    for ring in simplify::convex(corners, &a.points.at) {
+                        mesh.push_face(&ring);
+                        origins.push(origin);
+                    }
+                }
+                _ if triangles => cut.push(simplify::CutFace { origin, corners: corners.to_vec() }),
+                _ => {
+                    mesh.push_face(corners);
+                    origins.push(origin);
+                }
             }
         });
         job.check()?;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::points::DisjointSets;
-use super::{BooleanError, Operation, BooleanOptions, BooleanReport, BooleanSolid, compute};
+use super::{BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, compute};
 use crate::PolyMesh;
 use crate::boolean::box_tree::Span;
 use crate::job::Job;
@@ -120,7 +120,8 @@ mod tests {
         let ([above, below], _) = far.expect("two parts");
         assert_eq!((above.mesh.face_count(), below.mesh.face_count()), (0, ball.face_count()));
         assert!(
-            split(&ball, DVec3::ZERO, 0.0, &BooleanOptions::default(), &Job::default(), || 0.0).is_err()
+            split(&ball, DVec3::ZERO, 0.0, &BooleanOptions::default(), &Job::default(), || 0.0)
+                .is_err()
         );
     }
 

@@ -19,13 +19,18 @@ pub enum Placement {
     Against,
 }
 
+/// A part of a face that lies on one side of the other operand as a whole.
 #[derive(Debug, Clone)]
 pub struct FacePiece {
+    /// The operand's face.
     pub face: u32,
+    /// Which part of the face it is.
     pub shape: PieceShape,
+    /// Where it lies.
     pub place: Placement,
 }
 
+/// Which part of a face a piece is.
 #[derive(Debug, Clone)]
 pub enum PieceShape {
     /// The face as it came.
@@ -71,7 +76,8 @@ pub fn cut(
         if n % 1024 == 0 {
             job.check()?;
         }
-        let mut push = |shape| out.push(FacePiece { face: f as u32, shape, place: Placement::Outside });
+        let mut push =
+            |shape| out.push(FacePiece { face: f as u32, shape, place: Placement::Outside });
         let range = starts[f]..starts[f + 1];
         let own = &triangles[range.start as usize..range.end as usize];
         let split =

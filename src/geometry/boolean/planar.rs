@@ -6,12 +6,14 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-use super::points::{Map, DisjointSets};
+use super::points::{DisjointSets, Map};
 
 /// A cell: counter-clockwise border, clockwise holes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PlanarCell {
+    /// The border, counter-clockwise.
     pub outer: Vec<u32>,
+    /// Clockwise.
     pub holes: Vec<Vec<u32>>,
 }
 
@@ -38,7 +40,11 @@ pub fn flatten(n: DVec3) -> impl Fn(DVec3) -> Coord<f64> + Copy {
 
 /// Cells of the polygon `ring` (counter-clockwise) cut by `segments`; both over global points
 /// placed by `at`. Segments that separate nothing are left out.
-pub fn cells(ring: &[u32], segments: &[(u32, u32)], at: impl Fn(u32) -> Coord<f64>) -> Vec<PlanarCell> {
+pub fn cells(
+    ring: &[u32],
+    segments: &[(u32, u32)],
+    at: impl Fn(u32) -> Coord<f64>,
+) -> Vec<PlanarCell> {
     let mut ids: Map<u32, usize> = Map::default();
     let mut names: Vec<u32> = Vec::new();
     let mut id = |v: u32| {

@@ -36,6 +36,7 @@ impl Hasher for Mix {
     }
 }
 
+/// A hash map with a fixed hash.
 pub type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mix>>;
 
 /// All points, and a grid of those that may be met again.
@@ -50,10 +51,12 @@ pub struct PointSet {
 }
 
 impl PointSet {
+    /// Points with a tolerance; none of them is listed yet.
     pub fn new(at: Vec<DVec3>, eps: f64) -> PointSet {
         PointSet { at, contact: Contact::default(), eps, cells: Map::default() }
     }
 
+    /// Length within which two places are one point.
     pub fn tolerance(&self) -> f64 {
         self.eps
     }
@@ -143,10 +146,12 @@ impl Contact {
 pub struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
+    /// As many sets of one element each.
     pub fn new(n: usize) -> DisjointSets {
         DisjointSets((0..n as u32).collect())
     }
 
+    /// The least element of a set found so far.
     pub fn root(&mut self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {
             let up = self.0[self.0[i as usize] as usize];
@@ -156,6 +161,7 @@ impl DisjointSets {
         i
     }
 
+    /// Makes one set of two.
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);

@@ -213,7 +213,8 @@ impl Region<'_> {
 
     /// Takes points out of straight edges and planes. Returns whether any went.
     fn collapse(&mut self, own: usize, flat: f64) -> bool {
-        let mut made: Vec<u32> = self.around.keys().copied().filter(|v| *v as usize >= own).collect();
+        let mut made: Vec<u32> =
+            self.around.keys().copied().filter(|v| *v as usize >= own).collect();
         made.sort_unstable();
         let mut any = false;
         for _ in 0..4 {
@@ -386,16 +387,22 @@ mod tests {
     fn a_square_cut_in_strips_is_two_triangles_again() {
         // Four own corners; points of the cut on two sides and inside.
         let at: Vec<DVec3> = [
-            (0., 0.), (4., 0.), (4., 4.), (0., 4.),
-            (1., 0.), (1., 4.), (2., 0.), (2., 4.), (1., 2.), (2., 2.),
+            (0., 0.),
+            (4., 0.),
+            (4., 4.),
+            (0., 4.),
+            (1., 0.),
+            (1., 4.),
+            (2., 0.),
+            (2., 4.),
+            (1., 2.),
+            (2., 2.),
         ]
         .map(|(x, y)| DVec3::new(x, y, 0.0))
         .to_vec();
         let rings: [&[u32]; 3] = [&[0, 4, 8, 5, 3], &[4, 6, 9, 7, 5, 8], &[6, 1, 2, 7, 9]];
-        let cut = rings.map(|r| CutFace {
-            origin: FaceOrigin { operand: 0, face: 0 },
-            corners: r.to_vec(),
-        });
+        let cut = rings
+            .map(|r| CutFace { origin: FaceOrigin { operand: 0, face: 0 }, corners: r.to_vec() });
         let made = retriangulated(cut.to_vec(), 4, &at, 1e-12, |_| 0);
         // Points on the open border stay, for the faces beyond it have them; those inside go.
         assert_eq!(made.len(), 6);

@@ -94,7 +94,8 @@ fn differs(before: &PolyMesh, after: &PolyMesh, job: &Job) -> Result<Option<Stri
         for t in triangles.iter().step_by(triangles.len().div_ceil(FACES).max(1)) {
             let (area, place) = probe(&[t], &mesh.positions);
             let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
-            let beside = (b - a).cross(c - a).normalize_or_zero() * (area.sqrt() * 1e-3).max(16.0 * eps);
+            let beside =
+                (b - a).cross(c - a).normalize_or_zero() * (area.sqrt() * 1e-3).max(16.0 * eps);
             for p in [place + beside, place - beside] {
                 if let Some(why) = compare(p)? {
                     return Ok(Some(why));

@@ -1,11 +1,11 @@
 //! Results held against winding numbers of the operands: a face of a result lies on one operand,
 //! and is there only because of how often the other goes around it.
 
+use super::BooleanSolid;
 use super::box_tree::Span;
 use super::broad_phase::SurfaceView;
 use super::classify::{WindingOracle, probe};
 use super::pieces::Placement;
-use super::BooleanSolid;
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 

@@ -230,7 +230,8 @@ fn a_long_sequence_on_one_mesh() {
         let tool = placed(&tool, dice.turn(), on);
         // Carve, add, carve, so that it neither vanishes nor fills.
         let what = if n % 2 == 0 { Operation::Difference } else { Operation::Union };
-        match compute([&clay, &tool], &[what], &BooleanOptions::default(), &Job::default(), || 0.0) {
+        match compute([&clay, &tool], &[what], &BooleanOptions::default(), &Job::default(), || 0.0)
+        {
             Ok((mut made, _)) => {
                 let m = made.remove(0);
                 let facts = check::report(&m.mesh, false, &Job::default()).expect("not cancelled");

@@ -21,8 +21,7 @@ pub enum Stored {
     Single,
 }
 
-const ALL: [Stored; 4] =
-    [Stored::Double, Stored::NineDigits, Stored::SixDecimals, Stored::Single];
+const ALL: [Stored; 4] = [Stored::Double, Stored::NineDigits, Stored::SixDecimals, Stored::Single];
 
 fn long() -> bool {
     std::env::var_os("SCULPTD_LONG").is_some()
@@ -68,7 +67,7 @@ fn shift_faults(name: &str, mesh: &PolyMesh, length: f64, how: Stored) -> Option
     let snapped = report.contact.farthest > 1e-3 * report.tolerance;
     if identities > bound || va - i > layer || i - va > layer {
         Some(format!(
-            "{name} by {length:e}, {how:?}: A {va}, U {u}, I {i}, A - B {d}, bound {bound:.1e}: {:?}",
+            "{name} by {length:e}, {how:?}: A {va}, U {u}, I {i}, A - B {d}, {bound:.1e}: {:?}",
             report.warnings
         ))
     } else if moved && snapped && !report.depends_on_tolerance {
@@ -146,14 +145,13 @@ pub fn scene_faults(how: Stored, triangles: bool) -> Vec<String> {
                 (a, b) = (written::triangulated(&a), written::triangulated(&b));
             }
             let options = BooleanOptions::default();
-            let (made, report) =
-                match compute([&a, &b], &Operation::ALL, &options, &job, || 0.0) {
-                    Ok(made) => made,
-                    Err(e) => {
-                        out.push(format!("{} {how:?} {angle}: {e}", s.name));
-                        continue;
-                    }
-                };
+            let (made, report) = match compute([&a, &b], &Operation::ALL, &options, &job, || 0.0) {
+                Ok(made) => made,
+                Err(e) => {
+                    out.push(format!("{} {how:?} {angle}: {e}", s.name));
+                    continue;
+                }
+            };
             for (k, m) in made.iter().enumerate() {
                 let facts = check::report(&m.mesh, false, &job).expect("a report");
                 let near = report.tolerance * want[0].1 + 1e-9 * want[0].0;
@@ -162,7 +160,7 @@ pub fn scene_faults(how: Stored, triangles: bool) -> Vec<String> {
                     && facts.components == s.components[k];
                 if !good {
                     out.push(format!(
-                        "{} {how:?} {angle} {}: volume {} for {}, area {} for {}, {} components for {}",
+                        "{} {how:?} {angle} {}: volume {} for {}, area {} for {}, {} shells for {}",
                         s.name,
                         m.operation.name(),
                         m.facts.volume,
