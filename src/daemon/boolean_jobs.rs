@@ -20,7 +20,7 @@ use sculptd_engine::command::{Carving, Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::boolean;
-use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
@@ -36,7 +36,7 @@ pub enum JoinError {
     #[error("nothing is in the hands")]
     Empty,
     #[error(transparent)]
-    Boolean(#[from] boolean::Error),
+    Boolean(#[from] boolean::BooleanError),
     #[error("this part of the view holds nothing that could be cut off")]
     NoPart,
     #[error(transparent)]
@@ -71,7 +71,7 @@ pub fn join(
     operation: Operation,
     job: &Job,
 ) -> Result<Vec<QueuedCommand>, JoinError> {
-    let options = Options::default();
+    let options = BooleanOptions::default();
     if let Some(cut) = sculptd_clay::local_boolean::local(work, tool, operation, &options, job)?
         && cut.page_count() <= MOST_PAGES
         && cut.can_be_made(work)
@@ -81,7 +81,7 @@ pub fn join(
     }
     let masks = work.masks();
     let work = work.to_tri().to_poly();
-    job.check().map_err(boolean::Error::from)?;
+    job.check().map_err(boolean::BooleanError::from)?;
     let (solids, _) = boolean::compute([&work, tool], &[operation], &options, job, || 0.0)?;
     let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
     if solid.mesh.face_count() == 0 {
@@ -224,7 +224,7 @@ pub fn carry_out(
     for tries in 1..=TRIES {
         let before = shown.load_full();
         let mut done = join(&before.mesh, &tool(&before)?, held, operation, job)?;
-        job.check().map_err(boolean::Error::from)?;
+        job.check().map_err(boolean::BooleanError::from)?;
         if let [QueuedCommand { command: Command::Cut(_), result, .. }] = &mut done[..] {
             let (answer, made) = cc::bounded(1);
             *result = Some(answer);

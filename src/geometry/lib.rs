@@ -34,5 +34,6 @@ pub mod thickness;
 pub mod triangulate;
 mod unfold;
 pub mod winding;
+pub mod written;
 
 pub use flat::{PolyMesh, TriMesh};

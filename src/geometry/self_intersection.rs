@@ -119,6 +119,12 @@ pub fn count(
     Ok(Crossings { pairs: found.len(), triangles: crossed.len() })
 }
 
+/// Whether the insides of two triangles have a line or an area in common, beyond the corners that
+/// they share.
+pub fn crosses(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> bool {
+    meet(positions, s, t) != Meet::No
+}
+
 fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     let at = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     orient3d(at(a), at(b), at(c), at(d))

@@ -2,7 +2,7 @@
 //! polyhedra against exact arithmetic, long sequences on one mesh.
 
 use glam::{DMat3, DQuat, DVec3};
-use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, shapes};
@@ -84,7 +84,7 @@ impl Tally {
     fn pair(&mut self, name: &str, a: &PolyMesh, b: &PolyMesh) {
         let job = Job::default();
         let (made, report) =
-            match compute([a, b], &Operation::ALL, &Options::default(), &job, || 0.0) {
+            match compute([a, b], &Operation::ALL, &BooleanOptions::default(), &job, || 0.0) {
                 Ok(x) => x,
                 Err(e) => return self.faults.push(format!("{name}: {e}")),
             };
@@ -190,7 +190,7 @@ fn small_integer_polyhedra() {
         let (made, report) = match compute(
             [&ma, &mb],
             &Operation::ALL,
-            &Options::default(),
+            &BooleanOptions::default(),
             &Job::default(),
             || 0.0,
         ) {
@@ -230,7 +230,8 @@ fn a_long_sequence_on_one_mesh() {
         let tool = placed(&tool, dice.turn(), on);
         // Carve, add, carve, so that it neither vanishes nor fills.
         let what = if n % 2 == 0 { Operation::Difference } else { Operation::Union };
-        match compute([&clay, &tool], &[what], &Options::default(), &Job::default(), || 0.0) {
+        match compute([&clay, &tool], &[what], &BooleanOptions::default(), &Job::default(), || 0.0)
+        {
             Ok((mut made, _)) => {
                 let m = made.remove(0);
                 let facts = check::report(&m.mesh, false, &Job::default()).expect("not cancelled");
