@@ -9,8 +9,8 @@ use serde::Serialize;
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::bvh::REACH;
-use sculptd_geometry::distance::{Sign, Solid};
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::distance::{DistanceSolid, Sign};
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 
@@ -69,7 +69,7 @@ struct GridFacts {
 }
 
 /// Reads a mesh as triangles and makes it ready; with the reader's warnings.
-pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fail> {
+pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, DistanceSolid, Vec<String>), Fail> {
     let loaded = read_mesh(path, job)?;
     let (mesh, _) = loaded.mesh.triangulate();
     if mesh.triangles.is_empty() {
@@ -83,7 +83,7 @@ pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fa
             path.display()
         )));
     }
-    let solid = Solid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
+    let solid = DistanceSolid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
     let mut warnings = loaded.warnings;
     if !solid.topology.closed {
         warnings.push(
@@ -167,12 +167,12 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     } else {
         let (lo, hi) = solid.tree.bounds();
         let side = args.grid.unwrap_or(30) as usize;
-        let layout = Grid::layout(
+        let layout = DistanceGrid::layout(
             (lo.as_dvec3(), hi.as_dvec3()),
             side,
             args.margin.min((side / 2).saturating_sub(1)),
         );
-        let (grid, seconds) = timed(|| Grid::sample(&solid, layout, &job));
+        let (grid, seconds) = timed(|| DistanceGrid::sample(&solid, layout, &job));
         let grid = grid.map_err(cancelled)?;
         if let Some(file) = &args.out {
             write_beside(file, |w| grid.write_npy(w)).map_err(|e| Fail::io(file, &e))?;

@@ -11,7 +11,7 @@ use super::thickness::{How, load};
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::measure::{measures, projected_area};
-use sculptd_geometry::thickness::check::{Limits, check};
+use sculptd_geometry::thickness::check::{ThicknessLimits, check};
 
 #[derive(Debug, clap::Args)]
 pub struct MeasureArgs {
@@ -49,7 +49,7 @@ struct Statistics {
 
 /// Millimetres.
 #[derive(Debug, Serialize)]
-struct Answer {
+struct MeasureAnswer {
     volume: f64,
     area: f64,
     dimensions: [f64; 3],
@@ -79,10 +79,11 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let (part, notes) = load(&args.mesh, &args.how, &job)?;
     let clock = Clock::monotonic();
     let file = args.mesh.display().to_string();
-    let checked = check(&file, &part, &args.how.settings(), Limits::default(), &job, || {
-        clock.now_us() as f64 * 1e-6
-    })
-    .map_err(|e| Fail::Usage(e.to_string()))?;
+    let checked =
+        check(&file, &part, &args.how.settings(), ThicknessLimits::default(), &job, || {
+            clock.now_us() as f64 * 1e-6
+        })
+        .map_err(|e| Fail::Usage(e.to_string()))?;
     let m = measures(&part.mesh);
     let along =
         |d: Vec3| projected_area(&part.mesh, d, &job).map_err(|e| Fail::Input(e.to_string()));
@@ -90,7 +91,7 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let mut warnings = notes;
     warnings.extend(checked.answer.warnings);
     let faults = checked.thickness.surface.faults;
-    let out = Answer {
+    let out = MeasureAnswer {
         volume: m.volume,
         area: m.area,
         dimensions: m.dimensions,

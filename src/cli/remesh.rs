@@ -9,7 +9,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::io::{writable_format, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::remesh::{RemeshError, Settings, remesh};
+use sculptd_geometry::remesh::{RemeshError, RemeshSettings, remesh};
 
 #[derive(Debug, clap::Args)]
 pub struct RemeshArgs {
@@ -84,7 +84,7 @@ pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
     let job = Job::default();
     writable_format(&args.out)?;
     let (mesh, solid, warnings) = solid(&args.mesh, &job)?;
-    let settings = Settings { side: args.how.side, sharp: args.sharp };
+    let settings = RemeshSettings { side: args.how.side, sharp: args.sharp };
     let (made, seconds) = timed(|| remesh(&mesh, &solid, settings, &job));
     warn(&args.mesh, &warnings);
     finish(&args.out, &made?, seconds, warnings, json)

@@ -3,11 +3,11 @@
 
 use glam::DVec3;
 
-use super::grid::Grid;
+use super::grid::DistanceGrid;
 
 /// Nearer to the surface than this is a hit, where the caller does not say: a thousandth of a unit,
 /// but never more than a fiftieth of the spacing.
-pub fn default_epsilon(grid: &Grid) -> f64 {
+pub fn default_epsilon(grid: &DistanceGrid) -> f64 {
     (grid.spacing * 0.02).min(1e-3)
 }
 
@@ -18,7 +18,7 @@ const MOST_STEPS: usize = 4096;
 /// enters it; `None` once it has passed the grid's box. Trilinear interpolation errs by about
 /// `spacing^2` times the curvature: rays that pass the outline within a voxel may be judged
 /// otherwise than by the mesh.
-pub fn march(grid: &Grid, origin: DVec3, dir: DVec3, epsilon: f64) -> Option<f64> {
+pub fn march(grid: &DistanceGrid, origin: DVec3, dir: DVec3, epsilon: f64) -> Option<f64> {
     let (lo, hi) = (grid.origin, grid.end());
     let inverse = dir.recip();
     let (a, b) = ((lo - origin) * inverse, (hi - origin) * inverse);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::TriMesh;
 use crate::job::{Cancelled, Job};
 
-/// Strips that a projection is cut into.
+/// Strips that a projection is cut into: see [`projected_area`].
 const STRIPS: usize = 2048;
 
 /// Lengths in the mesh's unit.
@@ -15,6 +15,7 @@ pub struct Measures {
     /// Enclosed volume; of an open mesh, what the divergence theorem says of it, which means
     /// little.
     pub volume: f64,
+    /// The sum of the triangles' areas.
     pub area: f64,
     /// Extent along x, y and z.
     pub dimensions: [f64; 3],

@@ -5,9 +5,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::orient3d;
 
+use crate::disjoint_sets::DisjointSets;
 use super::arrange::Around;
 use super::pieces::{Piece, Place, triangles as parts_of};
-use super::points::{Map, Points, Sets};
+use super::points::{Map, Points};
 use crate::PolyMesh;
 use crate::boolean::box_tree::{Span, Tree};
 use crate::boolean::broad_phase::Surface;
@@ -124,7 +125,7 @@ fn one_side(
 ) -> Result<Fates, Cancelled> {
     let shared = |v: u32| m.shared[v as usize];
     let base = at.len() as u32;
-    let mut sets = Sets::new(at.len() + pieces.len());
+    let mut sets = DisjointSets::new(at.len() + pieces.len());
     let mut part = vec![0; mesh.face_count()];
     pieces.iter().for_each(|p| part[p.face as usize] = NONE);
     for (f, corners) in mesh.faces().enumerate() {

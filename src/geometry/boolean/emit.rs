@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::fans;
-use super::points::Sets;
+use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;
@@ -43,7 +43,7 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Can
     };
     job.check()?;
     let count = || {
-        let mut shells = Sets::new(mesh.positions.len());
+        let mut shells = DisjointSets::new(mesh.positions.len());
         for (i, f) in mesh.faces().enumerate() {
             // What a cancelled job counts is thrown away.
             if i % 65_536 == 0 && job.cancelled() {
@@ -104,7 +104,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
     job.check()?;
     let mut closed = true;
     let mut several: Vec<(u32, u32)> = Vec::new();
-    let mut sets = Sets::new(n);
+    let mut sets = DisjointSets::new(n);
     let mut i = 0;
     while i < n {
         let mut j = i + 1;

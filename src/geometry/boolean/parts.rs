@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::points::Sets;
 use super::{Error, Operation, Options, Report, Solid, compute};
+use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::boolean::box_tree::Span;
 use crate::job::Job;
@@ -54,7 +54,7 @@ fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
 /// Each connected shell as a mesh of its own, in the order of their first faces, colours and groups
 /// with it.
 pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
-    let mut sets = Sets::new(mesh.positions.len());
+    let mut sets = DisjointSets::new(mesh.positions.len());
     for f in mesh.faces() {
         f.windows(2).for_each(|w| sets.join(w[0], w[1]));
     }

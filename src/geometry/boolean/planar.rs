@@ -6,7 +6,8 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-use super::points::{Map, Sets};
+use crate::disjoint_sets::DisjointSets;
+use super::points::Map;
 
 /// A cell: counter-clockwise border, clockwise holes.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -140,7 +141,7 @@ fn assemble(
     };
     let outside = of[1];
     // Connected parts, so that a hole is looked for only in other parts.
-    let mut parts = Sets::new(spots.len());
+    let mut parts = DisjointSets::new(spots.len());
     for (e, &(a, b)) in edges.iter().enumerate() {
         if of[2 * e] != usize::MAX {
             parts.join(a as u32, b as u32);

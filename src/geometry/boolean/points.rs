@@ -98,27 +98,3 @@ impl Points {
         })
     }
 }
-
-/// Disjoint sets.
-#[derive(Debug)]
-pub struct Sets(Vec<u32>);
-
-impl Sets {
-    pub fn new(n: usize) -> Sets {
-        Sets((0..n as u32).collect())
-    }
-
-    pub fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}

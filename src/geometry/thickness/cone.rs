@@ -21,6 +21,7 @@ pub enum Outliers {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
+    /// Every ray counts the same.
     Plain,
     /// The inverse of the ray's angle to the axis (Shapira, Shamir, Cohen-Or 2008); the axis itself
     /// counts as one degree.
@@ -31,7 +32,9 @@ pub enum Weights {
 /// spiral).
 #[derive(Debug, Clone)]
 pub struct Cone {
+    /// Of unit length, the axis first.
     pub dirs: Vec<Vec3>,
+    /// What each ray counts in the mean, one a direction.
     pub weights: Vec<f32>,
 }
 
@@ -72,6 +75,7 @@ pub fn frame(n: Vec3) -> (Vec3, Vec3) {
 /// What a cone's values come to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Folded {
+    /// The weighted mean of the kept values.
     pub value: f32,
     /// Standard error of the mean of the kept values; 0 of a single one.
     pub error: f32,

@@ -6,16 +6,18 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::check::{Answer, Checked, Part, Verdict};
+use super::check::{CheckedPart, ThicknessAnswer, Verdict};
 use super::colour::{NONE, colour};
-use super::{Correction, Method};
+use super::{Correction, ThicknessMethod};
+use crate::CentredMesh;
 use crate::picture::{Camera, Picture, draw};
 
 /// What the page cannot know by itself.
 #[derive(Debug, Clone, Copy)]
-pub struct Origin<'a> {
+pub struct ReportOrigin<'a> {
     /// FNV-1a, 64 bits, of the file's bytes.
     pub hash: u64,
+    /// The file's length.
     pub bytes: u64,
     /// The program's name and version.
     pub program: &'a str,
@@ -30,9 +32,9 @@ pub fn fnv(bytes: &[u8]) -> u64 {
 
 /// The whole page.
 pub fn html(
-    part: &Part,
-    checked: &Checked,
-    origin: Origin<'_>,
+    part: &CentredMesh,
+    checked: &CheckedPart,
+    origin: ReportOrigin<'_>,
 ) -> Result<String, image::ImageError> {
     let a = &checked.answer;
     let scale = checked.thickness.scale();
@@ -81,11 +83,11 @@ details{margin:.5rem 0}@media print{main{padding:0;max-width:none}h2{break-after
 details>summary{display:none}.verdict{print-color-adjust:exact}}";
 
 /// The page is for others: where the file lies on this machine is not theirs.
-fn name_of(a: &Answer) -> Cow<'_, str> {
+fn name_of(a: &ThicknessAnswer) -> Cow<'_, str> {
     Path::new(&a.file).file_name().map_or(a.file.as_str().into(), |n| n.to_string_lossy())
 }
 
-fn verdict(out: &mut String, a: &Answer) {
+fn verdict(out: &mut String, a: &ThicknessAnswer) {
     let (class, word) = match a.verdict {
         Verdict::Pass => ("pass", "Pass"),
         Verdict::Warn => ("warn", "Warning"),
@@ -161,7 +163,7 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
     );
 }
 
-fn statistics(out: &mut String, a: &Answer) {
+fn statistics(out: &mut String, a: &ThicknessAnswer) {
     let s = &a.summary;
     let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4} mm"));
     let [x, y, z] = a.dimensions;
@@ -184,7 +186,7 @@ fn statistics(out: &mut String, a: &Answer) {
     out.push_str("</tbody></table>");
 }
 
-fn histogram(out: &mut String, a: &Answer) {
+fn histogram(out: &mut String, a: &ThicknessAnswer) {
     let counts = &a.summary.histogram;
     let most = counts.iter().copied().max().unwrap_or(0).max(1);
     let max = a.summary.max.unwrap_or(0.0);
@@ -237,8 +239,8 @@ fn histogram(out: &mut String, a: &Answer) {
 
 fn worst(
     out: &mut String,
-    part: &Part,
-    checked: &Checked,
+    part: &CentredMesh,
+    checked: &CheckedPart,
     colours: &[[u8; 3]],
 ) -> Result<(), image::ImageError> {
     out.push_str("<h2>Worst spots</h2>");
@@ -279,14 +281,14 @@ fn worst(
     Ok(())
 }
 
-fn method(out: &mut String, a: &Answer, origin: Origin<'_>) {
+fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     let s = &a.settings;
     let how = match s.method {
-        Method::Sphere => "Thickness is the diameter of the largest sphere that lies in the wall and touches the surface at the \
+        ThicknessMethod::Sphere => "Thickness is the diameter of the largest sphere that lies in the wall and touches the surface at the \
                            place; in a convex edge it goes to zero, so places held by an edge follow the edge policy."
             .to_string(),
-        Method::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, opposite the surface's normal.".into(),
-        Method::Ray => {
+        ThicknessMethod::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, opposite the surface's normal.".into(),
+        ThicknessMethod::Ray => {
             let corrected = match s.correction {
                 Correction::None => "The rays' own lengths are averaged, which is up to 32 % too much at 120 degrees.",
                 Correction::Angle => "Each length is corrected by the angle between the ray and the hit face.",

@@ -3,38 +3,49 @@
 
 use glam::Vec3;
 
-use super::{Correction, Method, Reason, Thickness};
+use super::{Correction, Reason, Thickness, ThicknessMethod};
 
 /// Classes of the histogram: the first counts missing values, the other hundred run from 0 to the
 /// maximum.
 pub const CLASSES: usize = 101;
 
+/// The statistics of a map of thickness. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, serde::Serialize)]
-pub struct Summary {
+pub struct ThicknessSummary {
     /// Over the vertices with a value; `null` where none has one.
     pub min: Option<f32>,
+    /// The largest value.
     pub max: Option<f32>,
+    /// The mean.
     pub mean: Option<f32>,
+    /// The median.
     pub median: Option<f32>,
     /// Share of the vertices that belong to a face and have a value, 0 to 1.
     pub valid: f32,
+    /// [`CLASSES`] counts of vertices.
     pub histogram: Vec<u64>,
     /// Where the smallest value is.
     pub thinnest: Option<[f32; 3]>,
+    /// Where the largest value is.
     pub thickest: Option<[f32; 3]>,
     /// Vertices without a value, by the reason.
-    pub missing: Missing,
+    pub missing: MissingCounts,
     /// Vertices on sharp edges, whose value follows the edge policy.
     pub edge_vertices: u64,
-    /// See [`error_bound`].
+    /// See [`Thickness::error_bound`].
     pub error_bound: f32,
 }
 
+/// Vertices without a value, counted by the reason; see [`Reason`].
 #[derive(Debug, Clone, Copy, Default, serde::Serialize)]
-pub struct Missing {
+pub struct MissingCounts {
+    /// No wall lies ahead.
     pub nothing_ahead: u64,
+    /// The faces around the vertex cancel each other.
     pub no_normal: u64,
+    /// The vertex belongs to no face of any area.
     pub no_face: u64,
+    /// The vertex lies on a sharp edge, and the policy is [`super::EdgePolicy::Neutral`].
     pub edge: u64,
 }
 
@@ -52,8 +63,9 @@ impl Thickness {
         })
     }
 
-    pub fn summary(&self) -> Summary {
-        let mut missing = Missing::default();
+    /// The statistics over the welded vertices, each once.
+    pub fn summary(&self) -> ThicknessSummary {
+        let mut missing = MissingCounts::default();
         let mut edge_vertices = 0;
         let mut known: Vec<(f32, Vec3)> = Vec::with_capacity(self.values.len());
         for (value, reason, at) in self.each() {
@@ -79,7 +91,7 @@ impl Thickness {
             let share = v / max.filter(|&m| m > 0.0).unwrap_or(1.0);
             histogram[1 + ((share * 100.0) as usize).min(99)] += 1;
         }
-        Summary {
+        ThicknessSummary {
             min: known.first().map(|v| v.0),
             max,
             mean: (n > 0)
@@ -117,8 +129,8 @@ impl Thickness {
         } else {
             1.0
         };
-        let biased =
-            self.settings.method == Method::Ray && self.settings.correction == Correction::None;
+        let biased = self.settings.method == ThicknessMethod::Ray
+            && self.settings.correction == Correction::None;
         let mut bounds: Vec<f32> = Vec::with_capacity(self.values.len());
         for (i, &w) in s.weld.iter().enumerate() {
             let (value, v) = (self.values[i], w as usize);

@@ -4,6 +4,8 @@
 use glam::Vec3;
 
 use crate::TriMesh;
+use crate::disjoint_sets::DisjointSets;
+use crate::weld::weld_positions;
 
 /// Marks a triangle that is left out: degenerate, a duplicate, or with an index or a coordinate
 /// that means nothing.
@@ -12,9 +14,10 @@ pub const DROPPED: u32 = u32::MAX;
 /// A welded view of a mesh. Triangle indices are the mesh's own; vertex indices are of the welded
 /// vertices.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub struct WeldedSurface {
     /// Welded vertex of each of the mesh's vertices.
     pub weld: Vec<u32>,
+    /// The welded vertices, in the order of their first appearance.
     pub positions: Vec<Vec3>,
     /// Welded corners of each triangle; `[DROPPED; 3]` where it is left out.
     pub triangles: Vec<[u32; 3]>,
@@ -25,18 +28,24 @@ pub struct Surface {
     pub normals: Vec<Vec3>,
     /// The triangles around vertex `v` are `around[starts[v]..starts[v + 1]]`.
     pub starts: Vec<u32>,
+    /// Triangles, vertex by vertex, see `starts`.
     pub around: Vec<u32>,
     /// An edge at this vertex turns by more than the crease angle.
     pub sharp: Vec<bool>,
-    pub faults: Faults,
+    /// What is wrong with the mesh.
+    pub faults: MeshFaults,
 }
 
 /// What is wrong with a mesh, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Faults {
+pub struct MeshFaults {
+    /// Triangles with an index out of range or a coordinate that is not finite.
     pub broken: usize,
+    /// Triangles without area.
     pub degenerate: usize,
+    /// Triangles with the same three corners as an earlier one.
     pub duplicate: usize,
+    /// Vertices at the position of an earlier one.
     pub welded: usize,
     /// Edges of one face only.
     pub boundary_edges: usize,
@@ -44,18 +53,19 @@ pub struct Faults {
     pub crowded_edges: usize,
     /// Edges of two faces that run along them the same way: one of the two is inverted.
     pub inverted_edges: usize,
+    /// Sets of triangles that hang together by their edges.
     pub shells: usize,
     /// The enclosed volume is negative: the whole mesh is inside out.
     pub inside_out: bool,
 }
 
-impl Surface {
+impl WeldedSurface {
     /// `crease` is in radians.
-    pub fn new(mesh: &TriMesh, crease: f32) -> Surface {
-        let mut faults = Faults::default();
-        let (weld, positions) = weld(&mesh.positions);
+    pub fn new(mesh: &TriMesh, crease: f32) -> WeldedSurface {
+        let mut faults = MeshFaults::default();
+        let (weld, positions) = weld_positions(&mesh.positions);
         faults.welded = mesh.positions.len() - positions.len();
-        let mut s = Surface {
+        let mut s = WeldedSurface {
             weld,
             positions,
             triangles: Vec::with_capacity(mesh.triangles.len()),
@@ -97,10 +107,12 @@ impl Surface {
         s
     }
 
+    /// The kept triangles at welded vertex `v`.
     pub fn around(&self, v: usize) -> &[u32] {
         &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
+    /// The positions of triangle `t`; `None` where it is left out.
     pub fn corners(&self, t: usize) -> Option<[Vec3; 3]> {
         let corners = self.triangles[t];
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
@@ -176,7 +188,7 @@ impl Surface {
     fn edges(&mut self, crease: f32) {
         let turn = crease.cos();
         let mut sharp = vec![false; self.positions.len()];
-        let mut shells = Shells::new(self.positions.len());
+        let mut shells = DisjointSets::new(self.positions.len());
         // The edges at `v` that lead to a higher vertex: (other end, triangle, this triangle runs v
         // -> other).
         let mut out: Vec<(u32, u32, bool)> = Vec::new();
@@ -271,59 +283,4 @@ impl Surface {
 pub fn corner_angle(p: [Vec3; 3], c: usize) -> f32 {
     let (e, f) = (p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
     e.cross(f).length().atan2(e.dot(f))
-}
-
-/// Vertices at bit-equal positions become one (-0 counts as 0), numbered by first appearance.
-fn weld(positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
-    let size = (positions.len() * 2).next_power_of_two().max(2);
-    let shift = 64 - size.trailing_zeros();
-    let mut table = vec![u32::MAX; size];
-    let mut unique: Vec<Vec3> = Vec::with_capacity(positions.len());
-    let map = positions
-        .iter()
-        .map(|&p| {
-            let p = p + 0.0;
-            let key = p.to_array().map(f32::to_bits);
-            let bits = key.map(u64::from);
-            let mix = (bits[0] | bits[1] << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-                ^ bits[2].rotate_left(17);
-            let mut slot = (mix.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> shift) as usize;
-            loop {
-                let at = table[slot];
-                if at == u32::MAX {
-                    table[slot] = unique.len() as u32;
-                    unique.push(p);
-                    return unique.len() as u32 - 1;
-                }
-                if unique[at as usize].to_array().map(f32::to_bits) == key {
-                    return at;
-                }
-                slot = (slot + 1) & (size - 1);
-            }
-        })
-        .collect();
-    (map, unique)
-}
-
-/// Union-find over the vertices.
-struct Shells(Vec<u32>);
-
-impl Shells {
-    fn new(n: usize) -> Self {
-        Shells((0..n as u32).collect())
-    }
-
-    fn root(&mut self, mut v: u32) -> u32 {
-        while self.0[v as usize] != v {
-            self.0[v as usize] = self.0[self.0[v as usize] as usize];
-            v = self.0[v as usize];
-        }
-        v
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        // The lower index is the root, so the result does not depend on the order.
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

@@ -1,0 +1,50 @@
+//! A mesh in its own frame: about the middle of its box, in single precision.
+//!
+//! Single precision has 24 bits whatever the distance from the origin. A part of 100 mm that lies
+//! a kilometre away keeps steps of 60 micrometres there, but steps of 6 nanometres about its own
+//! middle. So every analysis that works in single precision works in this frame, and gives
+//! positions back through [`CentredMesh::to_file`] in double precision.
+
+use glam::{DVec3, Vec3};
+
+use crate::{Aabb, PolyMesh, TriMesh};
+
+/// A file's mesh about its own centre, scaled.
+///
+/// ```
+/// use glam::DVec3;
+/// use sculptd_geometry::{CentredMesh, shapes};
+///
+/// // A cube of one millimetre, a thousand kilometres away.
+/// let far = DVec3::splat(1e9);
+/// let part = CentredMesh::new(&shapes::cuboid(far, far + 1.0), 1.0);
+/// assert_eq!(part.mesh.bounds().1, glam::Vec3::splat(0.5));
+/// assert_eq!(part.to_file(glam::Vec3::splat(0.25)), far + 0.75);
+/// ```
+#[derive(Debug, Clone)]
+pub struct CentredMesh {
+    /// The triangles, about the origin.
+    pub mesh: TriMesh,
+    /// Vertices and triangles in the file.
+    pub counts: [usize; 2],
+    /// Added to the mesh's coordinates, gives the file's, scaled.
+    pub centre: DVec3,
+}
+
+impl CentredMesh {
+    /// `scale` is the wanted unit (millimetres, as a rule) per unit of the file. Polygons are cut
+    /// into triangles. The frame's centre is the middle of the box of all finite vertices.
+    pub fn new(poly: &PolyMesh, scale: f64) -> CentredMesh {
+        let finite = poly.positions.iter().filter(|p| p.is_finite());
+        let centre = Aabb::of(finite.copied()).centre();
+        let (mut mesh, _) = poly.triangulate();
+        mesh.positions = poly.positions.iter().map(|&p| ((p - centre) * scale).as_vec3()).collect();
+        let counts = [mesh.positions.len(), mesh.triangles.len()];
+        CentredMesh { mesh, counts, centre: centre * scale }
+    }
+
+    /// A point of this frame in the file's coordinates, scaled.
+    pub fn to_file(&self, p: Vec3) -> DVec3 {
+        p.as_dvec3() + self.centre
+    }
+}
