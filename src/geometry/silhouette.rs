@@ -1,5 +1,5 @@
 //! The outline of a mesh seen along a direction: a chain of directed edges, and the region that it
-//! goes around.
+//! goes around (the non-zero rule, resolved in whole numbers by the crate `i_overlay`).
 //!
 //! The triangles that face the viewer cover each point of the plane as often as their common border
 //! goes around it. So the shadow is the region where the border's winding number is not zero, and
