@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use serde::Serialize;
 
-use super::distance::{solid, timed, warn};
+use super::distance::{Ready, solid, timed, warn};
 use super::measure::direction;
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::grid::DistanceGrid;
@@ -106,7 +106,7 @@ struct Answer {
 pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     let job = Job::default();
     let cancelled = |e: Cancelled| Fail::Input(e.to_string());
-    let (_, solid, warnings) = solid(&args.mesh, &job)?;
+    let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
     let plane = ProjectionPlane::along(args.direction.as_dvec3(), args.turn.to_radians())
         .ok_or_else(|| Fail::Usage("expected a direction that is not zero".into()))?;
     let mut out = Answer {
@@ -128,7 +128,10 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     } else {
         let grid = match (args.method, &args.field) {
             (MethodArg::March, Some(file)) => {
-                Some(DistanceGrid::read_npy(file).map_err(|e| Fail::Input(e.to_string()))?)
+                let mut grid =
+                    DistanceGrid::read_npy(file).map_err(|e| Fail::Input(e.to_string()))?;
+                grid.origin -= part.centre;
+                Some(grid)
             }
             (MethodArg::March, None) => {
                 let (lo, hi) = solid.tree.bounds();

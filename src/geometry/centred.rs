@@ -36,7 +36,12 @@ impl CentredMesh {
     /// into triangles. The frame's centre is the middle of the box of all finite vertices.
     pub fn new(poly: &PolyMesh, scale: f64) -> CentredMesh {
         let finite = poly.positions.iter().filter(|p| p.is_finite());
-        let centre = Aabb::of(finite.copied()).centre();
+        CentredMesh::about(poly, Aabb::of(finite.copied()).centre(), scale)
+    }
+
+    /// The same in a frame whose origin is at `centre`, in the file's unit: for a mesh that is
+    /// measured against another.
+    pub fn about(poly: &PolyMesh, centre: DVec3, scale: f64) -> CentredMesh {
         let (mut mesh, _) = poly.triangulate();
         mesh.positions = poly.positions.iter().map(|&p| ((p - centre) * scale).as_vec3()).collect();
         let counts = [mesh.positions.len(), mesh.triangles.len()];

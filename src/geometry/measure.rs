@@ -9,7 +9,7 @@ use crate::job::{Cancelled, Job};
 /// Strips that a projection is cut into: see [`projected_area`].
 const STRIPS: usize = 2048;
 
-/// Lengths in the mesh's unit.
+/// What [`measures`] gives. Lengths in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {
     /// Enclosed volume; of an open mesh, what the divergence theorem says of it, which means

@@ -109,10 +109,57 @@ pub struct Hollow {
     pub spacing: f64,
 }
 
-/// Hollows `mesh` to a wall of `wall`: the old surface is kept, and a cavity everywhere further
-/// than `wall` inside is cut out, together with every partition within it that is thinner than the
-/// wall. So the wall is nowhere thinner than that by more than the chord of a cavity's triangle,
-/// `spacing^2 / (4 wall)`, except at the old surface's own sharp edges. [`RemeshError::Empty`]
+/// The cavity everywhere further than `depth` inside, without partitions thinner than `wall`.
+fn cavity_at(
+    solid: &DistanceSolid,
+    depth: f64,
+    wall: f64,
+    side: usize,
+    job: &Job,
+) -> Result<OffsetSurface, RemeshError> {
+    let deep = at_distance(solid, -depth, side, job)?;
+    let h = deep.spacing;
+    let deep = OffsetSurface { faces: without_specks(&deep.points, deep.faces, h), ..deep };
+    if deep.faces.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    closed(deep, wall * 0.5, job)
+}
+
+/// Rounds of [`hollow`] after which the wall is as it is: the second, as a rule, finds nothing.
+const ROUNDS: usize = 4;
+
+/// The least distance from the solid's surface to a cavity, at the corners, the middles of the edges
+/// and the centre of each of its triangles.
+fn least_wall(
+    solid: &DistanceSolid,
+    cavity: &OffsetSurface,
+    job: &Job,
+) -> Result<f64, RemeshError> {
+    let least = cavity
+        .faces
+        .par_chunks(256)
+        .map(|faces| {
+            job.check()?;
+            let mut least = f64::INFINITY;
+            for face in faces {
+                let [a, b, c] = face.map(|v| cavity.points[v as usize].as_dvec3());
+                let middles = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0];
+                for p in [a, b, c].into_iter().chain(middles) {
+                    // A bound makes the search faster: what is farther does not matter.
+                    least = solid.tree.nearest(p, least).map_or(least, |n| least.min(n.distance()));
+                }
+            }
+            Ok(least)
+        })
+        .collect::<Result<Vec<f64>, RemeshError>>()?;
+    Ok(least.into_iter().fold(f64::INFINITY, f64::min))
+}
+
+/// Hollows `mesh` to a wall of at least `wall`: the old surface is kept, and a cavity everywhere
+/// further than `wall` inside is cut out, together with every partition within it that is thinner
+/// than the wall. The wall is measured at seven points of each of the cavity's triangles, and the
+/// cavity is made again, deeper, until none is nearer than `wall`. [`RemeshError::Empty`]
 /// where the solid is nowhere thick enough for a cavity.
 pub fn hollow(
     mesh: &TriMesh,
@@ -121,13 +168,18 @@ pub fn hollow(
     side: usize,
     job: &Job,
 ) -> Result<Hollow, RemeshError> {
-    let deep = at_distance(solid, -wall, side, job)?;
-    let h = deep.spacing;
-    let deep = OffsetSurface { faces: without_specks(&deep.points, deep.faces, h), ..deep };
-    if deep.faces.is_empty() {
-        return Err(RemeshError::Empty);
+    // A cavity's chords come nearer to the old surface than its vertices do: what is missing of the
+    // wall is measured and added until nothing is.
+    let (mut depth, mut cavity) = (wall, cavity_at(solid, wall, wall, side, job)?);
+    for _ in 0..ROUNDS {
+        let missing = wall - least_wall(solid, &cavity, job)?;
+        if missing <= 0.0 {
+            break;
+        }
+        depth += missing * 1.05 + cavity.spacing * 1e-4;
+        cavity = cavity_at(solid, depth, wall, side, job)?;
     }
-    let OffsetSurface { points: inner, faces, .. } = closed(deep, wall * 0.5, job)?;
+    let OffsetSurface { points: inner, faces, spacing: h } = cavity;
     let mut out = mesh.clone();
     let base = out.positions.len() as u32;
     // Only the points that a cavity kept uses, in their order.

@@ -154,13 +154,22 @@ fn outliers(text: &str) -> Result<Outliers, String> {
         "keep" => Ok(Outliers::Keep),
         "sigma-mean" => Ok(Outliers::SigmaMean),
         "sigma-median" => Ok(Outliers::SigmaMedian),
+        _ if text.starts_with("within:") => {
+            let shares = text["within:".len()..].split_once('-');
+            shares
+                .and_then(|(low, high)| Some((low.parse().ok()?, high.parse().ok()?)))
+                .filter(|&(low, high): &(f32, f32)| 0.0 <= low && low < high && high <= 1.0)
+                .map(|(low, high)| Outliers::Within(low, high))
+                .ok_or_else(|| "expected two shares of the range, such as within:0.1-0.9".into())
+        }
         _ => text
             .strip_prefix("range:")
             .and_then(|s| s.parse().ok())
             .filter(|s| (0.1..=0.9).contains(s))
             .map(Outliers::Range)
             .ok_or_else(|| {
-                "expected keep, range:0.1 to range:0.9, sigma-mean or sigma-median".into()
+                "expected keep, within:0.1-0.9, range:0.1 to range:0.9, sigma-mean or sigma-median"
+                    .into()
             }),
     }
 }

@@ -3,7 +3,8 @@
 //! *Exact*: the silhouette edges resolved into polygons, right to about 4e-9 of the extent.
 //! *Sample*: random points of the plane, told inside from outside by rays; the area has the
 //! standard error of a binomial share, the outline is the points' alpha shape. *March*: the same
-//! with rays through a sampled distance instead of the mesh.
+//! with rays through a sampled distance; those that pass nearer to the surface than the samples are
+//! exact are decided by the mesh, so that the stated error is the points' alone.
 
 mod draw;
 
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 use super::alpha_shape::alpha_shape;
 use super::distance::DistanceSolid;
 use super::grid::DistanceGrid;
-use super::march::march;
+use super::march::{MarchOutcome, march};
 pub use super::silhouette::{PlaneRegion, ProjectionPlane, outline};
 use crate::bvh::Ray;
 use crate::job::{Cancelled, Job};
@@ -93,11 +94,15 @@ pub fn classify(
         job.check()?;
         for (o, &p) in out.iter_mut().zip(points) {
             let origin = plane.solid(p) + back;
+            let by_mesh =
+                || solid.tree.any_hit(Ray::new(origin.as_vec3(), dir.as_vec3()), |_| true);
             *o = match by {
-                PointTest::Rays => {
-                    solid.tree.any_hit(Ray::new(origin.as_vec3(), dir.as_vec3()), |_| true)
-                }
-                PointTest::Marching(grid, epsilon) => march(grid, origin, dir, epsilon).is_some(),
+                PointTest::Rays => by_mesh(),
+                PointTest::Marching(grid, epsilon) => match march(grid, origin, dir, epsilon) {
+                    MarchOutcome::Hit(_) => true,
+                    MarchOutcome::Miss => false,
+                    MarchOutcome::Unsure => by_mesh(),
+                },
             };
         }
         Ok(())

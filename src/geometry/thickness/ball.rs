@@ -55,7 +55,7 @@ impl Caster<'_> {
             let limit = r * (1.0 - SETTLED);
             let accept = |t: u32| {
                 self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE
-                    && !site.own.contains(&t)
+                    && !site.owns(t)
             };
             let query = BallSearch { tree: self.tree, centre, limit, accept };
             let Some(q) = wide::dispatch(self.tree.scalar(), query) else { break };
@@ -75,7 +75,9 @@ impl Caster<'_> {
         let q = touch?;
         let centre = site.point - site.away * r;
         let cos = (q - centre).normalize_or_zero().dot(site.away);
-        Some(InscribedBall { diameter: 2.0 * r, in_corner: cos > CORNER })
+        // On an open mesh nothing else bounds the ball.
+        let diameter = (2.0 * r).min(self.longest(site));
+        Some(InscribedBall { diameter, in_corner: cos > CORNER })
     }
 }
 

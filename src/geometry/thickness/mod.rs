@@ -176,6 +176,9 @@ impl ThicknessSettings {
             return say("the crease angle", self.crease, "from 0 to 180 degrees");
         }
         match self.outliers {
+            Outliers::Within(low, high) if !(0.0 <= low && low < high && high <= 1.0) => {
+                say("the outliers' range", low, "two shares from 0 to 1, the lower first")
+            }
             Outliers::Range(share) if !(0.1..=0.9).contains(&share) => {
                 say("the outliers' share of the range", share, "from 0.1 to 0.9")
             }
@@ -200,6 +203,10 @@ pub struct Thickness {
     pub face_values: Vec<f32>,
     /// Why each of `face_values` is what it is.
     pub face_reasons: Vec<Reason>,
+    /// One a triangle, for statistics by area, which must not depend on how the part is meshed: the
+    /// mean of the corners that were measured themselves; where all lie on sharp edges, the value at
+    /// the centroid. NaN without a value.
+    pub area_values: Vec<f32>,
     /// Rays and ball queries asked for.
     pub queries: u64,
     /// The welded mesh that was measured.
@@ -284,19 +291,37 @@ pub fn measure_prepared(
     let mut welded = scattered(&order, surface.positions.len(), job, (0.2, 0.8), at_vertex)?;
     edges::apply(&caster, &surface, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
-    if settings.at == MeasuredPlaces::VerticesAndFaces {
-        let at_face = |t: usize, scratch: &mut ConeScratch| -> SiteValue {
-            let Some([a, b, c]) = surface.corners(t) else {
-                return SiteValue::missing(Reason::NoFace);
-            };
-            let own = [t as u32];
-            let site = Site {
-                point: (a + b + c) / 3.0,
-                away: surface.face_normals[t] * caster.sign,
-                own: &own,
-            };
-            one(&caster, &site, settings, false, scratch)
+    let at_face = |t: usize, scratch: &mut ConeScratch| -> SiteValue {
+        let Some([a, b, c]) = surface.corners(t) else {
+            return SiteValue::missing(Reason::NoFace);
         };
+        let own = [t as u32];
+        let site = Site {
+            point: (a + b + c) / 3.0,
+            away: surface.face_normals[t] * caster.sign,
+            own: &own,
+        };
+        one(&caster, &site, settings, false, scratch)
+    };
+    // (value, whether the triangle's centroid is to be measured)
+    let by_corners = |t: usize| -> (f32, bool) {
+        if surface.triangles[t][0] == surface::DROPPED {
+            return (f32::NAN, false);
+        }
+        let corners = surface.triangles[t].map(|v| welded[v as usize]);
+        let measured = corners.iter().filter(|v| v.reason == Reason::Measured);
+        let (sum, n) = measured.fold((0.0f32, 0.0f32), |(s, n), v| (s + v.value, n + 1.0));
+        let edges = corners.iter().any(|v| v.reason == Reason::Edge);
+        if n > 0.0 { (sum / n, false) } else { (f32::NAN, edges) }
+    };
+    let (mut area_values, alone): (Vec<f32>, Vec<bool>) =
+        (0..surface.triangles.len()).map(by_corners).unzip();
+    let alone: Vec<u32> = (0..alone.len() as u32).filter(|&t| alone[t as usize]).collect();
+    let centroids = scattered(&alone, area_values.len(), job, (0.8, 0.8), at_face)?;
+    for &t in &alone {
+        area_values[t as usize] = centroids[t as usize].value;
+    }
+    if settings.at == MeasuredPlaces::VerticesAndFaces {
         let order: Vec<u32> = tree
             .packs()
             .iter()
@@ -308,7 +333,7 @@ pub fn measure_prepared(
         face_reasons = faces.iter().map(|v| v.reason).collect();
     }
     let per_site = if settings.method == ThicknessMethod::Ray { settings.rays } else { 1 };
-    let queries = (order.len() + face_values.len()) as u64 * per_site as u64;
+    let queries = (order.len() + alone.len() + face_values.len()) as u64 * per_site as u64;
     let (lo, hi) = tree.bounds();
     let rounding = if tree.is_empty() { 0.0 } else { lo.abs().max(hi.abs()).max_element() * 1e-6 };
     let of =
@@ -324,6 +349,7 @@ pub fn measure_prepared(
         errors,
         face_values,
         face_reasons,
+        area_values,
         queries,
         surface: surface.into_owned(),
         rounding,

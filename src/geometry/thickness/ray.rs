@@ -41,7 +41,16 @@ pub struct Site<'a> {
     /// Away from what is measured, of unit length.
     pub away: Vec3,
     /// Triangles that the point lies on.
+    /// Rising.
     pub own: &'a [u32],
+}
+
+impl Site<'_> {
+    /// Whether the site lies on triangle `t`. Thousands of triangles may share a vertex.
+    #[inline(always)]
+    pub(super) fn owns(&self, t: u32) -> bool {
+        if self.own.len() <= 16 { self.own.contains(&t) } else { self.own.binary_search(&t).is_ok() }
+    }
 }
 
 /// What stays the same from site to site.
@@ -87,7 +96,13 @@ impl Caster<'_> {
     }
 
     fn faces(&self, site: &Site<'_>, t: u32) -> bool {
-        self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.own.contains(&t)
+        self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.owns(t)
+    }
+
+    /// How far the box of the mesh reaches along the site's axis: no wall is thicker.
+    pub(super) fn longest(&self, site: &Site<'_>) -> f32 {
+        let (lo, hi) = self.tree.bounds();
+        (hi - lo).dot(site.away.abs()) * 1.000_01
     }
 
     /// The cone's value, and whether the wall that the axis ray meets is turned by more than
@@ -95,6 +110,7 @@ impl Caster<'_> {
     pub fn measure(&self, site: &Site<'_>, scratch: &mut ConeScratch) -> Option<(Folded, bool)> {
         let ConeScratch { values: scratch, rays, hits, stack } = scratch;
         scratch.clear();
+        let longest = self.longest(site);
         let mut turned = false;
         let (x, y) = frame(site.away);
         let mut first = None::<Vec3>;
@@ -136,7 +152,8 @@ impl Caster<'_> {
                         scratch.push((hit.t, weight));
                     } else if along > 0.1 {
                         let depth = -(dir * hit.t).dot(both) / along;
-                        if depth > 0.0 {
+                        // A wall that bends towards the axis sends the chord's depth beyond the part.
+                        if depth > 0.0 && depth <= longest {
                             scratch.push((depth, weight));
                         }
                     }

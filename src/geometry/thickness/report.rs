@@ -169,8 +169,8 @@ fn statistics(out: &mut String, a: &ThicknessAnswer) {
     let [x, y, z] = a.dimensions;
     let rows = [
         ("Minimum", n(s.min)),
-        ("Median", n(s.median)),
-        ("Mean", n(s.mean)),
+        ("Median by area", n(s.median)),
+        ("Mean by area", n(s.mean)),
         ("Maximum", n(s.max)),
         ("Places with a value", format!("{:.2} % of {}", s.valid * 100.0, a.places)),
         ("Error bound (95 % of the places)", format!("{:.4} mm", s.error_bound)),
@@ -188,15 +188,16 @@ fn statistics(out: &mut String, a: &ThicknessAnswer) {
 
 fn histogram(out: &mut String, a: &ThicknessAnswer) {
     let counts = &a.summary.histogram;
-    let most = counts.iter().copied().max().unwrap_or(0).max(1);
+    let most = counts.iter().copied().fold(0.0f64, f64::max);
+    let most = if most > 0.0 { most } else { 1.0 };
     let max = a.summary.max.unwrap_or(0.0);
     let _ = write!(
         out,
-        "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 230\" aria-label=\"Histogram of thickness from 0 \
+        "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 230\" aria-label=\"Area by thickness from 0 \
          to {max:.3} millimetres in 100 classes; the same numbers are in the table below\">"
     );
     for (i, &c) in counts.iter().enumerate() {
-        let h = 190.0 * c as f64 / most as f64;
+        let h = 190.0 * c / most;
         let fill = if i == 0 { hex(NONE) } else { "#5b4a3f".into() };
         let _ = write!(
             out,
@@ -224,15 +225,15 @@ fn histogram(out: &mut String, a: &ThicknessAnswer) {
     );
     out.push_str(
         "<details><summary>The same as a table (classes that are not empty)</summary><table><thead><tr>\
-                  <th scope=col>Class<th scope=col class=n>Places</thead><tbody>",
+                  <th scope=col>Class<th scope=col class=n>Area, mm²</thead><tbody>",
     );
-    for (i, &c) in counts.iter().enumerate().filter(|(_, c)| **c > 0) {
+    for (i, &c) in counts.iter().enumerate().filter(|(_, c)| **c > 0.0) {
         let class = if i == 0 {
             "no value".into()
         } else {
             format!("{:.3} to {:.3} mm", max * (i - 1) as f32 / 100.0, max * i as f32 / 100.0)
         };
-        let _ = write!(out, "<tr><th scope=row>{class}<td class=n>{c}");
+        let _ = write!(out, "<tr><th scope=row>{class}<td class=n>{c:.3}");
     }
     out.push_str("</tbody></table></details>");
 }

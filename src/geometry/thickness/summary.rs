@@ -5,8 +5,8 @@ use glam::Vec3;
 
 use super::{Correction, Reason, Thickness, ThicknessMethod};
 
-/// Classes of the histogram: the first counts missing values, the other hundred run from 0 to the
-/// maximum.
+/// Classes of the histogram: the first is the area without a value, the other hundred run from 0 to
+/// the maximum.
 pub const CLASSES: usize = 101;
 
 /// The statistics of a map of thickness. Lengths are in the mesh's unit.
@@ -16,14 +16,14 @@ pub struct ThicknessSummary {
     pub min: Option<f32>,
     /// The largest value.
     pub max: Option<f32>,
-    /// The mean.
+    /// The mean over the area, see [`Thickness::area_values`].
     pub mean: Option<f32>,
-    /// The median.
+    /// Half of the area is thinner.
     pub median: Option<f32>,
     /// Share of the vertices that belong to a face and have a value, 0 to 1.
     pub valid: f32,
-    /// [`CLASSES`] counts of vertices.
-    pub histogram: Vec<u64>,
+    /// The area in each of [`CLASSES`] classes, in the square of the unit.
+    pub histogram: Vec<f64>,
     /// Where the smallest value is.
     pub thinnest: Option<[f32; 3]>,
     /// Where the largest value is.
@@ -63,7 +63,8 @@ impl Thickness {
         })
     }
 
-    /// The statistics over the welded vertices, each once.
+    /// The statistics. Least and most are over the welded vertices; mean, median and histogram are
+    /// weighted by area, so that a finer mesh of the same part says the same.
     pub fn summary(&self) -> ThicknessSummary {
         let mut missing = MissingCounts::default();
         let mut edge_vertices = 0;
@@ -82,27 +83,21 @@ impl Thickness {
             }
         }
         known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mean, median) = self.by_area();
         let n = known.len();
         let absent = missing.nothing_ahead + missing.no_normal + missing.edge;
         let max = known.last().map(|v| v.0);
-        let mut histogram = vec![0u64; CLASSES];
-        histogram[0] = absent;
-        for &(v, _) in &known {
-            let share = v / max.filter(|&m| m > 0.0).unwrap_or(1.0);
-            histogram[1 + ((share * 100.0) as usize).min(99)] += 1;
+        let mut histogram = vec![0.0f64; CLASSES];
+        for (value, area) in self.areas() {
+            let share = value / max.filter(|&m| m > 0.0).unwrap_or(1.0);
+            let class = if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 };
+            histogram[class] += area;
         }
         ThicknessSummary {
             min: known.first().map(|v| v.0),
             max,
-            mean: (n > 0)
-                .then(|| (known.iter().map(|v| v.0 as f64).sum::<f64>() / n as f64) as f32),
-            median: (n > 0).then(|| {
-                if n % 2 == 1 {
-                    known[n / 2].0
-                } else {
-                    (known[n / 2 - 1].0 + known[n / 2].0) * 0.5
-                }
-            }),
+            mean,
+            median,
             valid: n as f32 / (n as f32 + absent as f32).max(1.0),
             histogram,
             thinnest: known.first().map(|v| v.1.to_array()),
@@ -111,6 +106,30 @@ impl Thickness {
             edge_vertices,
             error_bound: self.error_bound(),
         }
+    }
+
+    /// The value and the area of each triangle.
+    fn areas(&self) -> impl Iterator<Item = (f32, f64)> + '_ {
+        self.area_values.iter().enumerate().filter_map(|(t, &value)| {
+            self.surface.corners(t).map(|corners| (value, triangle_area(corners)))
+        })
+    }
+
+    /// Mean and median over the area that has values; `None` where none has.
+    fn by_area(&self) -> (Option<f32>, Option<f32>) {
+        let mut known: Vec<(f32, f64)> = self.areas().filter(|v| v.0.is_finite()).collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let all: f64 = known.iter().map(|v| v.1).sum();
+        if !(all > 0.0) {
+            return (None, None);
+        }
+        let sum: f64 = known.iter().map(|&(v, area)| v as f64 * area).sum();
+        let mut below = 0.0;
+        let median = known.iter().find(|v| {
+            below += v.1;
+            below >= all * 0.5
+        });
+        (Some((sum / all) as f32), median.or(known.last()).map(|v| v.0))
     }
 
     /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three

@@ -77,6 +77,8 @@ impl WeldedSurface {
             faults,
         };
         let mut volume = 0.0f64;
+        // Triangles without area but with three vertices: no wall, but part of the closed surface.
+        let mut flat = Vec::new();
         for t in &mesh.triangles {
             let welded = t.map(|v| s.weld.get(v as usize).copied().unwrap_or(DROPPED));
             let mut keep = welded;
@@ -93,6 +95,10 @@ impl WeldedSurface {
                 if normal == Vec3::ZERO {
                     s.faults.degenerate += 1;
                     keep = [DROPPED; 3];
+                    let [a, b, c] = welded;
+                    if a != b && b != c && c != a {
+                        flat.push(welded);
+                    }
                 }
                 volume += a.dot(b.cross(c));
             }
@@ -103,6 +109,9 @@ impl WeldedSurface {
         s.drop_duplicates();
         s.find_normals();
         s.edges(crease);
+        if !flat.is_empty() {
+            s.count_edges_with(&flat);
+        }
         s.faults.inside_out = volume < 0.0 && s.faults.boundary_edges == 0;
         s
     }
@@ -140,25 +149,47 @@ impl WeldedSurface {
         (self.starts, self.around) = (starts, around);
     }
 
+    /// Counts the edges' faults again, with the triangles without area: where one closes the gap
+    /// between a long edge and two short ones, the surface is closed, though nothing is measured
+    /// there.
+    fn count_edges_with(&mut self, flat: &[[u32; 3]]) {
+        let kept = self.triangles.iter().filter(|t| t[0] != DROPPED);
+        let mut half_edges: Vec<(u32, u32, bool)> = kept
+            .chain(flat)
+            .flat_map(|t| {
+                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
+                    .map(|(a, b)| (a.min(b), a.max(b), a < b))
+            })
+            .collect();
+        half_edges.sort_unstable();
+        let faults = &mut self.faults;
+        (faults.boundary_edges, faults.crowded_edges, faults.inverted_edges) = (0, 0, 0);
+        for edge in half_edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            match edge {
+                [_] => faults.boundary_edges += 1,
+                [a, b] => faults.inverted_edges += (a.2 == b.2) as usize,
+                _ => faults.crowded_edges += 1,
+            }
+        }
+    }
+
     /// Of triangles with the same three corners the first stays.
     fn drop_duplicates(&mut self) {
         let mut found = Vec::new();
+        let mut fan: Vec<([u32; 3], u32)> = Vec::new();
         for v in 0..self.positions.len() {
-            let around = self.around(v);
-            for (i, &t) in around.iter().enumerate() {
-                let mut mine = self.triangles[t as usize];
-                mine.sort_unstable();
+            fan.clear();
+            fan.extend(self.around(v).iter().filter_map(|&t| {
+                let mut corners = self.triangles[t as usize];
+                corners.sort_unstable();
                 // Seen from its lowest corner only, so each pair is met once.
-                if mine[0] as usize != v {
-                    continue;
-                }
-                let twin = around[..i].iter().any(|&u| {
-                    let mut other = self.triangles[u as usize];
-                    other.sort_unstable();
-                    other == mine
-                });
-                if twin {
-                    found.push(t as usize);
+                (corners[0] as usize == v).then_some((corners, t))
+            }));
+            // Sorted, not compared each with each: thousands of triangles may share a vertex.
+            fan.sort_unstable();
+            for pair in fan.windows(2) {
+                if pair[0].0 == pair[1].0 {
+                    found.push(pair[1].1 as usize);
                 }
             }
         }
