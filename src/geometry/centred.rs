@@ -53,3 +53,29 @@ impl CentredMesh {
         p.as_dvec3() + self.centre
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::DistanceSolid;
+    use crate::job::Job;
+    use crate::shapes::icosphere;
+
+    #[test]
+    fn a_million_sizes_from_the_origin_a_distance_is_exact() {
+        let mut ball = icosphere(1.0, 8).to_poly();
+        let far = DVec3::new(1e6, -2e6, 3e6);
+        let asked = DVec3::new(0.3, 1.7, -0.4);
+        let distance = |part: &CentredMesh, p: DVec3| {
+            let solid = DistanceSolid::build(&part.mesh, &Job::default()).expect("built");
+            solid.signed_distance(p - part.centre)
+        };
+        let near = distance(&CentredMesh::new(&ball, 1.0), asked);
+        ball.positions.iter_mut().for_each(|p| *p += far);
+        let moved = distance(&CentredMesh::new(&ball, 1.0), asked + far);
+        assert!((moved - near).abs() < 1e-6, "{moved} for {near}");
+        // About the origin single precision cannot hold the ball at all.
+        let lost = distance(&CentredMesh::about(&ball, DVec3::ZERO, 1.0), asked + far);
+        assert!((lost - near).abs() > 1e-3, "{lost} for {near}");
+    }
+}

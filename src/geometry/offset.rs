@@ -292,3 +292,29 @@ pub fn smooth_union(
     job.progress(1.0);
     Ok(TriMesh { positions, triangles, colours: None })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::icosphere;
+
+    #[test]
+    fn the_wall_is_nowhere_thinner_than_asked() {
+        let ball = icosphere(10.0, 12);
+        let job = Job::default();
+        let solid = DistanceSolid::build(&ball, &job).unwrap();
+        let made = hollow(&ball, &solid, 2.0, 32, &job).unwrap();
+        let cavity = &made.mesh.triangles[made.mesh.triangles.len() - made.cavity..];
+        let mut least = f64::INFINITY;
+        for t in cavity {
+            let [a, b, c] = t.map(|v| made.mesh.positions[v as usize].as_dvec3());
+            // Other places than those that the cavity was made by.
+            for (u, v) in [(0.25, 0.0), (0.25, 0.25), (0.6, 0.2), (0.1, 0.45)] {
+                let p = a + (b - a) * u + (c - a) * v;
+                let near = solid.tree.nearest(p, f64::INFINITY).unwrap();
+                least = least.min(near.distance());
+            }
+        }
+        assert!((1.999..2.2).contains(&least), "{least}");
+    }
+}

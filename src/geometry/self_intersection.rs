@@ -117,19 +117,14 @@ pub fn pairs(
 /// Pairs of triangles that share an edge cross only where they lie in one plane, on the same side of
 /// the edge. The triangles at each edge are sorted by their direction around it, so that thousands
 /// at one edge are not compared each with each.
-fn along_shared_edges(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    out: &mut Vec<(u32, u32)>,
-) {
+fn along_shared_edges(positions: &[DVec3], triangles: &[[u32; 3]], out: &mut Vec<(u32, u32)>) {
     // (lower vertex, upper vertex, triangle)
     let mut uses: Vec<(u32, u32, u32)> = triangles
         .iter()
         .enumerate()
         .filter(|(_, t)| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
         .flat_map(|(i, t)| {
-            [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
-                .map(|(a, b)| (a.min(b), a.max(b), i as u32))
+            [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (a.min(b), a.max(b), i as u32))
         })
         .collect();
     uses.par_sort_unstable();
@@ -139,6 +134,11 @@ fn along_shared_edges(
         let third = |t: u32| triangles[t as usize].into_iter().find(|v| *v != a && *v != b);
         let mut fan: Vec<(u32, DVec3)> =
             edge.iter().filter_map(|e| Some((e.2, p(third(e.2)?)))).collect();
+        // Three points on a line are no triangle, and tell no direction.
+        fan.retain(|&(_, q)| !on_a_line(p(a), p(b), q));
+        if fan.is_empty() {
+            continue;
+        }
         let meets = |x: DVec3, y: DVec3| {
             side(p(a), p(b), x, y) == 0.0 && overlap([p(a), p(b), x], [p(a), p(b), y])
         };
@@ -180,6 +180,14 @@ fn along_shared_edges(
             }
         }
     }
+}
+
+/// Whether three points lie on one line, exactly.
+fn on_a_line(a: DVec3, b: DVec3, c: DVec3) -> bool {
+    (0..3).all(|axis| {
+        let flat = |p: DVec3| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
+        orient2d(flat(a), flat(b), flat(c)) == 0.0
+    })
 }
 
 /// Counts the pairs of [`pairs`].

@@ -264,7 +264,46 @@ fn negative_share(mut v: [f32; 3]) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
+    use super::super::refine::refine;
+    use super::super::{EdgePolicy, ThicknessSettings, measure};
     use super::negative_share;
+    use crate::job::Job;
+    use crate::shapes::{cone, cuboid};
+
+    #[test]
+    fn statistics_do_not_depend_on_the_meshing() {
+        let half = DVec3::new(50.0, 50.0, 1.5);
+        let slab = cuboid(-half, half).triangulate().0;
+        // Two faces of 100 by 100, 3 thick; four rims of 100 by 3, 100 thick.
+        let mean = (20_000.0 * 3.0 + 1_200.0 * 100.0) / 21_200.0;
+        for mesh in [slab.clone(), refine(&slab, 12.0), refine(&slab, 5.0)] {
+            let s = measure(&mesh, &ThicknessSettings::default(), &Job::default())
+                .expect("measured")
+                .summary();
+            assert!((s.median.expect("walls") - 3.0).abs() < 1e-3, "{:?}", s.median);
+            assert!((s.mean.expect("walls") / mean - 1.0).abs() < 0.01, "{:?}", s.mean);
+            assert!((s.histogram.iter().sum::<f64>() - 21_200.0).abs() < 1.0);
+        }
+    }
+
+    #[test]
+    fn no_wall_is_thicker_than_the_part() {
+        let mesh = cone(30.0, 50.0, 48).triangulate().0;
+        let settings = ThicknessSettings {
+            rays: 100,
+            opening: 120.0,
+            edges: EdgePolicy::Raw,
+            ..Default::default()
+        };
+        let t = measure(&mesh, &settings, &Job::default()).expect("measured");
+        let (lo, hi) = mesh.bounds();
+        for (&value, normal) in t.values.iter().zip(&t.surface.normals) {
+            let most = (hi - lo).dot(normal.abs()) * 1.001;
+            assert!(value.is_nan() || value <= most, "{value} in {most}");
+        }
+    }
 
     #[test]
     fn the_share_below_is_exact() {

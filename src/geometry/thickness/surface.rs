@@ -157,8 +157,7 @@ impl WeldedSurface {
         let mut half_edges: Vec<(u32, u32, bool)> = kept
             .chain(flat)
             .flat_map(|t| {
-                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
-                    .map(|(a, b)| (a.min(b), a.max(b), a < b))
+                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (a.min(b), a.max(b), a < b))
             })
             .collect();
         half_edges.sort_unstable();
@@ -314,4 +313,45 @@ impl WeldedSurface {
 pub fn corner_angle(p: [Vec3; 3], c: usize) -> f32 {
     let (e, f) = (p[(c + 1) % 3] - p[c], p[(c + 2) % 3] - p[c]);
     e.cross(f).length().atan2(e.dot(f))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_triangle_without_area_keeps_the_surface_closed() {
+        // A tetrahedron, one edge of which has a vertex in its middle on one side only: a flat
+        // triangle closes the gap.
+        let positions = vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0, Vec3::X];
+        let mut triangles = vec![[0, 2, 4], [4, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [0, 4, 1]];
+        let faults = |triangles: &[[u32; 3]]| {
+            let mesh = TriMesh {
+                positions: positions.clone(),
+                triangles: triangles.to_vec(),
+                colours: None,
+            };
+            WeldedSurface::new(&mesh, 0.7).faults
+        };
+        let with = faults(&triangles);
+        assert_eq!((with.degenerate, with.boundary_edges, with.inverted_edges), (1, 0, 0));
+        triangles.pop();
+        assert_eq!(faults(&triangles).boundary_edges, 3);
+    }
+
+    #[test]
+    fn copies_at_a_crowded_vertex_are_found() {
+        let n = 3000u32;
+        let mut positions = vec![Vec3::Z];
+        positions.extend((0..n).map(|i| {
+            let (s, c) = (i as f32 * std::f32::consts::TAU / n as f32).sin_cos();
+            Vec3::new(c, s, 0.0) * 100.0
+        }));
+        let mut triangles: Vec<[u32; 3]> = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
+        triangles.extend([[2, 0, 1], [7, 8, 0]]);
+        let mesh = TriMesh { positions, triangles, colours: None };
+        let s = WeldedSurface::new(&mesh, 0.7);
+        assert_eq!(s.faults.duplicate, 2);
+        assert_eq!(s.triangles[n as usize..], [[DROPPED; 3]; 2]);
+    }
 }
