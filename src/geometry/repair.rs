@@ -8,7 +8,8 @@ use glam::DVec3;
 use super::PolyMesh;
 use super::boolean::box_tree::Span;
 use super::boolean::classify::crossings;
-use super::edges::{Edges, Sets};
+use super::disjoint_sets::DisjointSets;
+use super::edges::EdgeTable;
 use super::job::Job;
 use super::{self_intersection, triangulate};
 
@@ -65,7 +66,7 @@ fn without_repeats(face: &[u32], out: &mut Vec<u32>) {
 pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     let n = mesh.positions.len();
     let p = |i: u32| mesh.positions[i as usize];
-    let mut sets = Sets::new(n);
+    let mut sets = DisjointSets::new(n);
     if distance > 0.0 {
         // Cells of the distance's size: what is near lies in the same or a neighbouring cell.
         let cell = |q: DVec3| (q / distance).floor();
@@ -101,7 +102,7 @@ pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     }
     let merged = n - sets.count();
     if merged > 0 {
-        let home: Vec<u32> = (0..n as u32).map(|i| sets.find(i)).collect();
+        let home: Vec<u32> = (0..n as u32).map(|i| sets.root(i)).collect();
         rebuild(mesh, |face, out| {
             let moved: Vec<u32> = face.iter().map(|&c| home[c as usize]).collect();
             without_repeats(&moved, out);
@@ -204,20 +205,20 @@ pub fn orient(mesh: &mut PolyMesh) -> usize {
 /// around an odd number of times face inwards; a shell that crosses another is not within it.
 /// A one-sided surface keeps a seam; [`super::check::report`] then still says so.
 pub fn orient_shells(mesh: &mut PolyMesh) -> OrientedShells {
-    let edges = Edges::of(mesh);
+    let edges = EdgeTable::of(mesh);
     let faces = mesh.face_count();
     // Neighbours across edges of exactly two faces, and whether they run along it in the same
     // direction (so disagree).
     let mut links: Vec<(u32, u32, bool)> = Vec::new();
     let mut open = Vec::new();
-    for sides in edges.each() {
-        let face = |i: usize| edges.face_of[sides[i].corner as usize];
-        if let [a, b] = sides {
+    for half_edges in edges.each() {
+        let face = |i: usize| edges.face_of[half_edges[i].corner as usize];
+        if let [a, b] = half_edges {
             let same = mesh.corners[a.corner as usize] == mesh.corners[b.corner as usize];
             links.push((face(0), face(1), same));
             links.push((face(1), face(0), same));
         } else {
-            open.extend((0..sides.len()).map(face));
+            open.extend((0..half_edges.len()).map(face));
         }
     }
     links.sort_unstable();
@@ -367,7 +368,7 @@ const LEAST_AREA: usize = 160;
 /// Closes every loop of open edges of at most `longest` edges with triangles: of least total area
 /// (Barequet and Sharir 1995) for loops up to 160 edges, by ears in the loop's mean plane beyond.
 pub fn fill_holes(mesh: &mut PolyMesh, longest: usize) -> Filled {
-    let edges = Edges::of(mesh);
+    let edges = EdgeTable::of(mesh);
     // Of each open edge: from, to, as the hole's face will run along it.
     let mut open: Vec<(u32, u32)> = edges
         .each()

@@ -6,9 +6,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::orient3d;
 
+use crate::disjoint_sets::DisjointSets;
 use super::arrange::Around;
 use super::pieces::{FacePiece, Placement, triangles as parts_of};
-use super::points::{DisjointSets, Map, PointSet};
+use super::points::{Map, PointSet};
 use crate::PolyMesh;
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::boolean::broad_phase::SurfaceView;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::fans;
-use super::points::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::points::DisjointSets;
 use super::{BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, compute};
+use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::boolean::box_tree::Span;
 use crate::job::Job;

@@ -140,30 +140,3 @@ impl Contact {
         distance <= eps
     }
 }
-
-/// Disjoint sets.
-#[derive(Debug)]
-pub struct DisjointSets(Vec<u32>);
-
-impl DisjointSets {
-    /// As many sets of one element each.
-    pub fn new(n: usize) -> DisjointSets {
-        DisjointSets((0..n as u32).collect())
-    }
-
-    /// The least element of a set found so far.
-    pub fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
-    /// Makes one set of two.
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}

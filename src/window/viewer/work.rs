@@ -27,7 +27,7 @@ use sculptd_engine::payload::Payload;
 use sculptd_geometry::io::{write_beside, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
-use sculptd_geometry::projection::Polygon;
+use sculptd_geometry::projection::PlaneRegion;
 
 /// What slow work says when it is done.
 #[derive(Debug)]
@@ -193,7 +193,7 @@ impl Work {
     }
 
     /// Writes the shadow's outline.
-    pub fn outline(&self, path: PathBuf, outline: &[Polygon]) {
+    pub fn outline(&self, path: PathBuf, outline: &[PlaneRegion]) {
         let (say, drawing) = (self.say.clone(), projection::svg(outline));
         thread("sculptd-outline", move || {
             let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {

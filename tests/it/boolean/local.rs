@@ -16,7 +16,7 @@ fn placed(mesh: &PolyMesh, scale: f64, turn: DMat3, shift: DVec3) -> PolyMesh {
     out
 }
 
-fn facts(mesh: &PolyMesh) -> check::Report {
+fn facts(mesh: &PolyMesh) -> check::MeshReport {
     check::report(mesh, false, &Job::default()).expect("not cancelled")
 }
 

@@ -58,7 +58,7 @@ fn solids(most: usize) -> Vec<(String, PolyMesh)> {
             }
             let facts = check::report(&mesh, true, &job).ok()?;
             let sound = facts.closed && facts.volume? > 0.0 && facts.self_intersections == Some(0);
-            let (lo, hi) = (DVec3::from(facts.bounds.min), DVec3::from(facts.bounds.max));
+            let (lo, hi) = (facts.bounds.min, facts.bounds.max);
             let size = (hi - lo).max_element();
             mesh.positions.iter_mut().for_each(|p| *p = (*p - (lo + hi) * 0.5) / size);
             sound.then(|| (f.file_stem().unwrap_or_default().to_string_lossy().into_owned(), mesh))
