@@ -22,8 +22,11 @@ pub struct BadPage;
 /// What clay is besides its pages.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ObjectState {
+    /// How many pages there are.
     pub pages: u32,
+    /// As [`Clay::revision`].
     pub revision: u64,
+    /// As [`Clay::object_id`].
     pub object_id: u32,
     /// The numbers that the next new vertex and triangle get.
     pub next: [u32; 2],
@@ -32,6 +35,7 @@ pub struct ObjectState {
 }
 
 impl PageTopology {
+    /// The topology as bytes (postcard).
     pub fn to_bytes(&self) -> Vec<u8> {
         // Plain data always serialises.
         postcard::to_stdvec(self).unwrap_or_default()

@@ -26,7 +26,9 @@ use sculptd_geometry::TriMesh;
 pub enum HistoryEvent {
     /// A stroke, a mask, a cut: one step of undo.
     Step,
+    /// A step was taken back.
     Undo,
+    /// A step was done again.
     Redo,
     /// Another work took its place.
     Replace,
@@ -39,30 +41,41 @@ pub enum HistoryEvent {
 /// A deed, and the work right after it.
 #[derive(Debug, Clone)]
 pub struct HistoryEntry {
+    /// What was done.
     pub deed: HistoryEvent,
+    /// The clay right after it.
     pub work: Snapshot,
     /// Middle and bounding radius of the work when it was put in place.
     pub middle: glam::Vec3,
+    /// The bounding radius of the object then.
     pub extent: f32,
 }
 
 /// Large things that seldom change, kept beside the state and named by it.
 #[derive(Debug, Clone)]
-pub enum Side {
+pub enum SideData {
+    /// What the hands hold.
     HeldObject(Arc<TriMesh>),
+    /// The picture of heights of the alpha `picture`.
     Picture(Arc<Picture>),
+    /// The multiresolution levels that are not shown.
     Levels(Arc<Levels>),
 }
 
 /// A world at rest.
 #[derive(Debug, Clone)]
 pub struct Saved {
+    /// The tick after which it was saved.
     pub tick: u64,
+    /// What the clay is besides its pages.
     pub rest: ObjectState,
     /// Everything small, as bytes.
     pub core: Vec<u8>,
+    /// What the hands hold; its place is in `core`.
     pub thing: Option<Arc<TriMesh>>,
+    /// The picture of heights of the alpha `picture`.
     pub picture: Option<Arc<Picture>>,
+    /// The multiresolution levels that are not shown.
     pub levels: Option<Arc<Levels>>,
     /// Steps that could be taken back and done again then; a world made of this has none.
     pub steps: (u32, u32),
