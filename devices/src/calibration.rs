@@ -1,8 +1,7 @@
-//! What a person sets for one tablet: which part of it counts, how it lies, and how hard their hand
-//! is.
+//! What a person sets for one tablet: the active area, its rotation, and a pressure curve.
 //!
-//! Kept by the device's serial number, so that two tablets alike keep apart; where a device has
-//! none, by its name.
+//! Settings are stored by the device's serial number, so that two tablets of one model have their
+//! own; where a device has no serial number, by its name.
 
 use std::collections::BTreeMap;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -87,7 +86,8 @@ impl Calibration {
                 && [w, h].iter().all(|v| (LEAST_SIDE..5000.0).contains(v)))
         {
             return fail(format!(
-                "area_mm = [{x}, {y}, {w}, {h}]: expected left and top from 0, sides from {LEAST_SIDE} mm"
+                "area_mm = [{x}, {y}, {w}, {h}]: expected left and top from 0, sides from \
+                 {LEAST_SIDE} mm"
             ));
         }
         if self.quarter_turns > 3 {
@@ -100,7 +100,8 @@ impl Calibration {
         let rises = (0.0..1.0).contains(&start) && full > start && full <= 1.0;
         if !(rises && (0.1..=10.0).contains(&gamma)) {
             return fail(format!(
-                "pressure = start {start}, full {full}, gamma {gamma}: expected 0 <= start < full <= 1 and gamma from 0.1 to 10"
+                "pressure = start {start}, full {full}, gamma {gamma}: expected 0 <= start < \
+                 full <= 1 and gamma from 0.1 to 10"
             ));
         }
         Ok(())
@@ -231,7 +232,8 @@ mod tests {
 
     #[test]
     fn a_config_reads_by_serial_number_and_nonsense_is_named() {
-        let text = "[\"7AB01\"]\nquarter_turns = 2\n[\"7AB01\".pressure]\nstart = 0.1\nfull = 0.8\n[\"Wacom One\"]\nleft_handed = true\n";
+        let text = "[\"7AB01\"]\nquarter_turns = 2\n[\"7AB01\".pressure]\nstart = 0.1\n\
+                    full = 0.8\n[\"Wacom One\"]\nleft_handed = true\n";
         let all: Calibrations = toml::from_str(text).unwrap();
         assert_eq!(find(&all, ["7AB01", "Wacom One"]).quarter_turns, 2);
         assert!(find(&all, ["other", "Wacom One"]).left_handed);
@@ -260,14 +262,23 @@ mod tests {
         fn the_pen_stays_on_its_area_and_pressure_in_its_range(
             x in 0f32..=200.0, y in 0f32..=100.0, turns in 0u8..4, left: bool,
             area in prop::option::of([0f32..300.0, 0f32..300.0, 5f32..300.0, 5f32..300.0]),
-            aspect in prop::option::of(0.1f32..10.0), start in 0f32..0.5, full in 0.6f32..1.0, gamma in 0.1f32..10.0,
+            aspect in prop::option::of(0.1f32..10.0), start in 0f32..0.5, full in 0.6f32..1.0,
+            gamma in 0.1f32..10.0,
         ) {
             let pressure = PressureCurve { start, full, gamma };
-            let c = Calibration { area_mm: area, quarter_turns: turns, left_handed: left, lock_aspect: aspect, pressure };
+            let c = Calibration {
+                area_mm: area,
+                quarter_turns: turns,
+                left_handed: left,
+                lock_aspect: aspect,
+                pressure,
+            };
             prop_assert!(c.check().is_ok());
             let p = at(&c, x, y);
-            prop_assert!(p.pos_mm.cmpge(Vec2::ZERO).all() && p.pos_mm.cmple(p.area_mm).all(), "{:?}", p);
-            prop_assert!((0.0..=1.0).contains(&p.pressure.unwrap()) && p.area_mm.min_element() > 0.0);
+            let (low, high) = (Vec2::ZERO, p.area_mm);
+            prop_assert!(p.pos_mm.cmpge(low).all() && p.pos_mm.cmple(high).all(), "{:?}", p);
+            prop_assert!((0.0..=1.0).contains(&p.pressure.unwrap()));
+            prop_assert!(p.area_mm.min_element() > 0.0);
             prop_assert_eq!((pressure.apply(0.0), pressure.apply(1.0)), (0.0, 1.0));
         }
     }

@@ -16,7 +16,8 @@ pub enum Clock {
 
 impl Clock {
     /// A clock that runs, from 0 now on.
-    #[allow(clippy::disallowed_methods)] // The one place that reads the machine's clock for the device layer.
+    // The only place in this crate that reads the machine's clock.
+    #[allow(clippy::disallowed_methods)]
     pub fn monotonic() -> Self {
         Clock::Monotonic(Instant::now())
     }

@@ -1,4 +1,4 @@
-//! A thread that ends when its owner lets go of it.
+//! A thread that stops when its handle is dropped.
 
 use std::io;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-/// The owner's end: dropping it tells the thread to stop and waits until it has.
+/// The handle: dropping it asks the thread to stop and waits until it has stopped.
 #[derive(Debug)]
 pub(crate) struct DeviceThread {
     flag: Arc<AtomicBool>,
@@ -16,14 +16,14 @@ pub(crate) struct DeviceThread {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The thread's end.
+/// Tells the thread whether it is to stop.
 #[derive(Debug, Clone)]
 pub(crate) struct StopToken {
     flag: Arc<AtomicBool>,
     released: cc::Receiver<()>,
 }
 
-/// Starts a named thread on a stop.
+/// Starts a named thread.
 pub(crate) fn spawn(
     name: &str,
     body: impl FnOnce(StopToken) + Send + 'static,
@@ -35,7 +35,7 @@ pub(crate) fn spawn(
     Ok(DeviceThread { flag, hold: Some(hold), thread: Some(thread) })
 }
 
-/// A stop with nothing at its other end but what the caller holds.
+/// A token without a thread: it stops when the caller drops the sender.
 pub(crate) fn pair() -> (cc::Sender<()>, StopToken) {
     let (hold, released) = cc::bounded(0);
     (hold, StopToken { flag: Arc::new(AtomicBool::new(false)), released })

@@ -1,5 +1,5 @@
-//! Steady hands: the One-Euro filter (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens
-//! stay raw; their strokes are smoothed where strokes are.
+//! The One-Euro filter for tracked hands (Casiez, Roussel and Vogel, CHI 2012) on every joint. Pens
+//! are not filtered here: their strokes are smoothed later.
 //!
 //! A low pass whose cutoff rises with speed: at rest it takes the jitter away, in motion it hardly
 //! lags. Units matter: speed is in mm a second, so `beta` is in Hz for each of them.
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// A direction trembles as a place at the end of a lever of so many mm does.
+/// A direction is filtered like a position at the end of a lever of this length, in mm.
 const LEVER: f32 = 100.0;
-/// After a longer gap the past says nothing of the present, and the filter starts afresh.
+/// After a longer gap, in microseconds, the filter starts anew.
 const STALE_US: u64 = 250_000;
 /// Joints, tips and bones of one hand: three of the arm, six a finger.
 const PLACES: usize = 3 + 5 * 6;
@@ -51,7 +51,7 @@ pub struct PlaceFilter {
 }
 
 impl PlaceFilter {
-    /// The steadied place, `dt` seconds after the last one.
+    /// The filtered position, `dt` seconds after the last one.
     pub fn apply(&mut self, f: &OneEuro, new: Vec3, dt: f32) -> Vec3 {
         let Some((place, speed)) = self.last else {
             self.last = Some((new, Vec3::ZERO));
@@ -97,7 +97,7 @@ impl HandsFilter {
         HandsFilter { figures, hands: [None; MAX_HANDS] }
     }
 
-    /// Steadies every joint in place; `t_us` is the sample's. Allocates nothing.
+    /// Filters every joint in place; `t_us` is the sample's. Allocates nothing.
     pub fn apply(&mut self, hands: &mut Hands, t_us: u64) {
         let count = (hands.count as usize).min(MAX_HANDS);
         let before = self.hands;

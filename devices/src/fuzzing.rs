@@ -205,12 +205,14 @@ mod tests {
         put(
             "leap",
             "device",
-            br#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"X","streaming":true}}}"#,
+            br#"{"event":{"type":"deviceEvent",
+                "state":{"attached":true,"id":"X","streaming":true}}}"#,
         );
         put(
             "leap",
             "nan",
-            br#"{"id":1,"hands":[{"id":1,"palmPosition":[nan,1,-inf],"type":"left"}],"pointables":[]}"#,
+            br#"{"id":1,"hands":[{"id":1,"palmPosition":[nan,1,-inf],"type":"left"}],
+                "pointables":[]}"#,
         );
         put(
             "leap",

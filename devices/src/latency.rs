@@ -34,7 +34,7 @@ impl Latency {
         self.counts[step(us)] += 1;
     }
 
-    /// Half, 99 of a hundred, and all took at most so long; nought if nothing was recorded.
+    /// The median, the 99th percentile and the maximum; 0 if nothing was recorded.
     pub fn quantiles(&self) -> Quantiles {
         let all: u64 = self.counts.iter().sum();
         let at = |share: f64| {

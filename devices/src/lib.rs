@@ -1,40 +1,65 @@
-//! Everything between a wire and a [`Sample`].
+//! Reads pen tablets, serial pens and hand trackers: from the bytes on the wire to [`Sample`]s.
 //!
-//! | room | what it does | its threads |
+//! **Read first:** [`sample`], the type that comes out; then [`catalogue`], how a model is
+//! recognised; then [`hid`], how its reports are read. `examples/decode.rs` shows all three.
+//!
+//! | module | what it does | its threads |
 //! |---|---|---|
-//! | [`hid`] with [`catalogue`], [`tablet`] | pen tablets: which model, its reports, plug and replug | one watcher, one reader an interface |
+//! | [`sample`] | the state of a device at one instant: mm, 0 to 1, radians | none |
+//! | [`hid`] | pen tablets over HID: parsers, readers, replug | one, and one an interface |
+//! | [`catalogue`], [`tablet`] | the facts of each model, and which model a device is | none |
+//! | [`descriptor`], [`report`] | report descriptors; what a parser reads in a report | none |
+//! | [`pen_state`] | proximity, contact, tool and buttons, for every family alike | none |
+//! | [`pad_actions`] | what keys, wheels, rings, barrel buttons and the eraser do | none |
 //! | [`serial`] | serial pens: four protocols, resync, probing of allowed ports only | one a port |
 //! | [`leap`] | tracked hands: WebSocket client, frames, the tracker's clock | one a service |
-//! | [`pen_state`] | what a pen means, alike for every family | none |
-//! | [`calibration`], [`filter`] | what a person set for a tablet; steady hands | none |
-//! | [`queue`] | the one door out: bounded, lock-free, no transition lost | none |
-//! | [`recording`] | recorded bytes through the same objects | none |
-//! | [`sim`] | simulated devices that speak bytes, for anyone's tests | one a device, if it runs by itself |
+//! | [`calibration`], [`filter`] | settings for a tablet; jitter of tracked hands | none |
+//! | [`queue`] | the channel to the consumer: bounded, lock-free, no transition lost | none |
+//! | [`recording`] | recorded bytes, played through the same decoders | none |
+//! | [`sim`] | simulated devices that send bytes, for tests and demos | one a device that plays |
 //!
-//! Absences: no mesh, no config file, no global state; no reader waits for the consumer except with
-//! its own list of kept samples full of transitions; no port or service is opened that was not
-//! named or allowed.
+//! What the crate does not do: it knows no mesh and no window, reads no configuration file and has
+//! no global state. No reader waits for the consumer, except when its own list of kept samples is
+//! full of transitions. No port and no service is opened that was not named or allowed.
 //!
-//! Pens over HID: [`catalogue`] says which model a device is, [`hid`] reads its reports,
-//! [`pen_state`] judges them; [`recording::Player`] plays recorded bytes through the same objects:
+//! [`recording::Player`] plays a recording through the decoders that read live devices:
 //!
-//! ```no_run
-//! # use sculptd_devices::{catalogue::Catalogue, recording::Player, DeviceId};
+//! ```
+//! use sculptd_devices::catalogue::Catalogue;
+//! use sculptd_devices::recording::{Player, hid_recorder};
+//! use sculptd_devices::{Body, DeviceId};
+//!
+//! // A pen over a tablet with this report descriptor, as `hid-recorder` writes it.
+//! let text = "\
+//! N: Acme Slate
+//! I: 3 1209 0001
+//! R: 52 05 0d 09 02 a1 01 85 01 09 20 a1 00 09 42 09 32 15 00 25 01 75 01 95 02 81 02 95 06 \
+//!     81 03 05 01 26 10 27 75 10 95 01 09 30 81 02 26 88 13 09 31 81 02 c0 c0
+//! E: 0.000 6 01 02 88 13 c4 09
+//! E: 0.004 6 01 03 88 13 c4 09
+//! E: 0.008 6 01 00 00 00 00 00
+//! ";
+//! let recording = hid_recorder::parse(text).map_err(|bad| bad.what)?;
 //! let catalogue = Catalogue::builtin()?;
-//! let mut player = Player::open("pen.hid".as_ref(), DeviceId(1), &catalogue)?;
-//! player.start_at(5_000_000); // the first report falls at 5 s
-//! while let Some(due) = player.next_due_us() {
-//!     player.advance(due, &mut |sample| println!("{sample:?}"));
-//! }
+//! let mut player = Player::of("slate".as_ref(), recording, DeviceId(1), &catalogue)?;
+//! let mut contacts = Vec::new();
+//! player.advance(1_000_000, &mut |sample| {
+//!     if let Body::Pen(pen) = sample.body {
+//!         contacts.push((pen.in_range, pen.tip));
+//!     }
+//! });
+//! assert_eq!(contacts, [(true, false), (true, true), (false, false)]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! [`hid::start`] watches the machine's own tablets and reads each on a thread of its own;
 //! [`hid::HidHandle::status`] lists what is read and what is not, with the reason. A new model is a
-//! file in `tablets/`, or in a folder given to [`catalogue::Catalogue::with_dir`]: [`tablet`] says
-//! what stands in it.
+//! file in `tablets/`, or in a folder that is given to [`catalogue::Catalogue::with_dir`];
+//! [`tablet`] documents its fields.
+//!
+//! The crate was run on Linux only. The code for Windows and macOS is built from the same sources.
 
-#![warn(missing_docs)]
+#![deny(missing_docs)]
 
 mod builtin;
 pub mod calibration;

@@ -1,8 +1,8 @@
-//! What a pen means, the same for every family: proximity, contact, tool, buttons.
+//! The state of a pen, the same for every family: proximity, contact, tool, buttons.
 //!
-//! Laws:
-//! * Every visit ends: by the device's word, by silence (where the family never says it), by
-//!   unplug.
+//! Rules:
+//! * Every visit ends: by a report, by silence (in families that send no such report), or by
+//!   unplugging.
 //! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen
 //!   leaves.
 //! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins
@@ -29,16 +29,16 @@ const PROOF: u32 = 3;
 /// Counts above this are noise and no pressure: no pen has more than 16 bits.
 const MOST_PRESSURE: u32 = 0xffff;
 
-/// What the model's description says of its pen.
+/// What is known of the model's pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenConfig {
     /// Number of the device that the samples go out under.
     pub device: DeviceId,
     /// What its counts mean.
     pub scale: PenScale,
-    /// Microseconds of silence that mean "gone"; `None` where the family always says it.
+    /// Microseconds of silence after which the pen has left; `None` where a report always says it.
     pub silence_us: Option<u64>,
-    /// Tilt is always told: upright until it is.
+    /// The family always reports tilt: it is 0 until the first report.
     pub tilts: bool,
 }
 
@@ -107,7 +107,7 @@ impl PenState {
         self.outside
     }
 
-    /// A firmware shows only as it speaks whether it says when the pen leaves.
+    /// Only a firmware's reports show whether it says when the pen leaves.
     pub fn set_silence(&mut self, silence_us: Option<u64>) {
         self.cfg.silence_us = silence_us;
     }
@@ -140,7 +140,7 @@ impl PenState {
         }
     }
 
-    /// The pen left, or its device did.
+    /// The pen left, or its device was unplugged.
     pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.switch = None;
         self.fresh = true;
@@ -171,7 +171,7 @@ impl PenState {
         }
         let entering = !self.pen.in_range;
         if entering && r.pos.is_none() {
-            return; // Nothing says where it is.
+            return; // Its position is not known.
         }
         self.pen.in_range = true;
         self.last_us = t_us;
@@ -249,8 +249,8 @@ impl PenState {
             } else if share < self.offset {
                 self.offset = share;
             }
-            // Pressure is told as it is sensed, also in the air: whether it counts is `tip`'s to
-            // say.
+            // Pressure is passed on as it is measured, also in the air: `tip` says whether the pen
+            // touches.
             self.pen.pressure = Some(if self.pen.tool == Tool::Mouse { 0.0 } else { share });
         }
         let felt = self.pen.pressure.map(|p| ((p - self.offset) / (1.0 - self.offset)).max(0.0));
@@ -267,8 +267,8 @@ impl PenState {
         };
     }
 
-    /// A worn pen presses while it hovers. Believed only high over the surface, or with an open tip
-    /// switch.
+    /// A worn pen reports pressure while it hovers. The offset is learned only high over the
+    /// surface and without a tip switch.
     fn learn_offset(&mut self, r: &PenReport, share: f32) {
         let high = match (r.distance, self.cfg.scale.max_distance) {
             (Some(d), max) if max > 0 => d * 2 >= max,

@@ -1,6 +1,7 @@
-//! The one door out of this crate: a bounded lock-free channel that never loses a transition.
+//! The channel between the readers and their consumer: bounded, lock-free, and it never loses a
+//! transition.
 //!
-//! Laws kept here:
+//! Rules:
 //! * The consumer (the tick thread) never waits: [`Receiver::drain`] takes what is there.
 //! * A sample that differs from its device's last one in nothing but motion may be replaced by a
 //!   newer one while the channel is full. A **transition** (contact, proximity, buttons, the set of
@@ -34,7 +35,7 @@ const MAX_PENDING: usize = 512;
 /// How long one blocked attempt lasts before the stop flag is looked at again.
 const WAIT_SLICE: Duration = Duration::from_millis(5);
 
-/// How long a dropped sender goes on trying to hand over what it kept back.
+/// How long a dropped sender goes on trying to send the samples that it kept.
 const DROP_PATIENCE: Duration = Duration::from_millis(500);
 
 /// A channel that holds at most `capacity` samples (at least 1). The factory makes one [`Sender`]
@@ -192,7 +193,7 @@ struct Kept {
 }
 
 impl Sender {
-    /// Once the flag is up, no call waits any more. An adaptor gives its own stop flag here.
+    /// Once the flag is set, no call waits any more. An adaptor passes its own stop flag.
     pub fn stop_when(&mut self, flag: Arc<AtomicBool>) {
         self.stop = Some(flag);
     }
@@ -210,7 +211,7 @@ impl Sender {
         self.stats.clone()
     }
 
-    /// Samples kept back for want of room.
+    /// Samples that are kept because the channel is full.
     pub fn pending(&self) -> usize {
         self.pending.len()
     }
@@ -236,7 +237,7 @@ impl Sender {
         self.keep(Kept { sample, motion });
     }
 
-    /// Hands over what was kept back, as far as there is room. True when nothing is left. An
+    /// Sends the kept samples, as far as there is room. True when nothing is left. An
     /// adaptor calls it whenever its device is silent.
     pub fn flush(&mut self) -> bool {
         while let Some(kept) = self.pending.front() {
@@ -284,7 +285,7 @@ impl Sender {
             counters.lost_motion.fetch_add(1, Relaxed);
             return;
         }
-        // A transition and no room: first motion goes, then the reader waits.
+        // A transition and no room: motion is dropped first, then the reader waits.
         if let Some(at) = self.pending.iter().position(|k| k.motion) {
             if let Some(gone) = self.pending.remove(at) {
                 self.stats.device(gone.sample.device).lost_motion.fetch_add(1, Relaxed);
@@ -304,7 +305,7 @@ impl Sender {
         self.pending.push_back(new);
     }
 
-    /// Waits one slice for room for the oldest kept sample; true when it left the list.
+    /// Waits one slice for room for the oldest kept sample. Returns true when it was sent.
     fn hand_over_one(&mut self) -> bool {
         let Some(kept) = self.pending.front() else { return true };
         match self.tx.send_timeout(kept.sample, WAIT_SLICE) {
@@ -322,7 +323,7 @@ impl Sender {
 }
 
 impl Drop for Sender {
-    /// A device's last words (tip up, out of range) are what is most likely still kept back: they
+    /// The last samples of a device (tip up, out of range) are the likeliest to be still kept: they
     /// get some time.
     fn drop(&mut self) {
         let mut slices = DROP_PATIENCE.as_millis() / WAIT_SLICE.as_millis();

@@ -1,6 +1,5 @@
-//! What a family's parser makes of one report: facts in device counts, before any judgement.
-//! Judgement (contact, proximity, stuck buttons, spikes) belongs to [`crate::pen_state`], so that
-//! every family is judged alike.
+//! What a family's parser reads in one report: facts in device counts. Contact, proximity, stuck
+//! buttons and spikes are decided by [`crate::pen_state`], in the same way for every family.
 
 use crate::sample::Tool;
 
@@ -10,7 +9,7 @@ pub enum Parsed {
     /// Not about a pen or a pad: touch, mouse, battery, another report id.
     #[default]
     Nothing,
-    /// Too short for its family or cut; counted, never guessed at.
+    /// Too short for its family. It is counted and nothing is read from it.
     Broken,
     /// A pen in range.
     Pen(PenReport),
@@ -45,7 +44,7 @@ impl Batch {
     }
 }
 
-/// A pen in range. `None` means "this report does not say": the last word stands.
+/// A pen in range. `None`: this report does not say, and the last value stays.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PenReport {
     /// Which end of the pen, or which tool.

@@ -1,6 +1,6 @@
-//! The one type that leaves this crate: what a device said at one instant.
+//! The type that this crate produces: the state of a device at one instant.
 //!
-//! Laws kept here:
+//! Rules:
 //! * A `Sample` is **complete state**, never a delta: losing one loses resolution, not meaning.
 //! * A field the device does not have is `None`; a field it has is always within its stated range.
 //! * Plain data: `Copy`, no pointers, serialises. Moving one through the channel allocates nothing.
@@ -19,10 +19,10 @@ pub const MAX_HANDS: usize = 4;
 )]
 pub struct DeviceId(pub u16);
 
-/// What a device said at one instant.
+/// The state of a device at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// Which device said it.
+    /// The device.
     pub device: DeviceId,
     /// Microseconds on the daemon's monotonic clock, stamped when the bytes were read. For a
     /// tracker that stamps its frames: when the frame was taken, brought onto our clock
@@ -30,13 +30,14 @@ pub struct Sample {
     pub t_us: u64,
     /// Microseconds on the device's own clock, where it has one (its origin is unknown).
     pub device_t_us: Option<u64>,
-    /// What it said.
+    /// The state.
     pub body: Body,
 }
 
-/// What a device said.
+/// The state of a device, by its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[allow(clippy::large_enum_variant)] // Copied inline on purpose: a box would be freed on the tick thread.
+// Copied inline on purpose: a box would be freed on the consumer's thread.
+#[allow(clippy::large_enum_variant)]
 pub enum Body {
     /// A pen over or on its surface.
     Pen(Pen),
@@ -65,7 +66,7 @@ pub enum Tool {
 pub struct Pen {
     /// Which tool it is. It does not change within a visit.
     pub tool: Tool,
-    /// The pen is in proximity: position is meaningful. `false` is the last word of a visit.
+    /// The pen is in proximity: position is meaningful. `false` in the last sample of a visit.
     pub in_range: bool,
     /// The tip touches. Implies `in_range`. Decided by [`crate::pen_state`], hover never presses.
     pub tip: bool,
@@ -75,7 +76,7 @@ pub struct Pen {
     pub area_mm: Vec2,
     /// Position in device counts, before any calibration.
     pub raw: [i32; 2],
-    /// 0 to 1. `None`: the device has no pressure (its tip is then the only word on contact).
+    /// 0 to 1. `None`: the device has no pressure, and `tip` alone says whether it touches.
     pub pressure: Option<f32>,
     /// Radians from the vertical, +x leaning right, +y leaning toward the user; each within ±π/2.
     pub tilt: Option<Vec2>,
@@ -87,15 +88,23 @@ pub struct Pen {
     pub buttons: u32,
 }
 
-/// Keys, wheels and strips of a tablet's own pad.
+/// Keys, wheels, rings and strips of a tablet's own pad, as complete state.
+///
+/// The pen's barrel buttons and its eraser are in [`Pen::buttons`] and [`Pen::tool`].
+/// [`crate::pad_actions`] turns consecutive states into presses, releases and steps. A mode of the
+/// pad, with its LED, is no state of the device: it is the consumer's, see
+/// [`crate::pad_actions::ActionState`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Pad {
-    /// Pressed keys, bit 0 the first.
+    /// Pressed keys, bit 0 the first. The order is that of the device's reports; keys in the middle
+    /// of a ring or dial come after those of the frame.
     pub keys: u32,
     /// Steps turned since the device appeared, clockwise positive, one counter a wheel. A counter
     /// and not a step, so that a coalesced sample loses nothing.
     pub wheels: [i32; 2],
-    /// Position along each touch strip or ring, 0 to 1; `None` while not touched.
+    /// Position of the finger along each touch strip or ring, 0 to 1; `None` while not touched. A
+    /// ring counts clockwise, and 0 and 1 are the same place. A strip counts from its far end, or
+    /// from its left one, as the device does.
     pub strips: [Option<f32>; 2],
 }
 

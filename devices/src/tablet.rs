@@ -1,7 +1,7 @@
-//! A tablet is data: one TOML file a model, in `devices/tablets/` or in a folder of the user's.
+//! The facts of one tablet, from a TOML file in `tablets/` or in a folder of the user's.
 //!
-//! Strict: an unknown key is an error that names it. Every number is a fact with a source; what a
-//! driver must *do* is in the parser that `parser` names.
+//! An unknown key is an error that names it. Every number is a fact with a source. How reports are
+//! read is the business of the parser that `parser` names.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::pad_actions::ActionTable;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tablet {
-    /// Maker and model as printed on it.
+    /// Brand and model as printed on it.
     pub name: String,
     /// Where the facts come from.
     pub source: String,
@@ -25,7 +25,7 @@ pub struct Tablet {
     /// What its keys, wheels and pen buttons do by default; see [`crate::pad_actions`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub actions: Option<ActionTable>,
-    /// How it shows itself; a model may have several firmwares.
+    /// How the model appears on the bus. A model may have several firmwares.
     pub id: Vec<Id>,
 }
 
@@ -61,7 +61,7 @@ pub struct PenFacts {
     pub max_pressure: u32,
     /// Buttons on the barrel.
     pub buttons: u8,
-    /// Counts at the greatest height; 0 where height is not told.
+    /// Counts at the greatest height; 0 where the pen does not report it.
     #[serde(default, skip_serializing_if = "is_zero_u32")]
     pub max_distance: u32,
 }
@@ -81,7 +81,7 @@ pub struct PadFacts {
     pub layout: Option<PadLayout>,
 }
 
-/// One way in which a model shows itself on the bus.
+/// One way in which a model appears on the bus.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Id {
@@ -97,14 +97,14 @@ pub struct Id {
     /// USB interface number of the pen; absent where any may be it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<u8>,
-    /// Bytes put before each report by the maker's Windows driver.
+    /// Bytes that the vendor's Windows driver puts before each report.
     #[serde(default, skip_serializing_if = "is_zero_u8")]
     pub skip: u8,
     /// USB strings that tell models of one id apart, `INDEX=PATTERN`; one of them must match. See
     /// [`StringIs`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub strings: Vec<String>,
-    /// Bytes to send before the pen speaks its own protocol, hexadecimal.
+    /// Feature reports to send before the pen uses its own protocol, in hexadecimal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_feature: Vec<String>,
     /// Output reports to send, as `init_feature`.
@@ -234,7 +234,7 @@ impl Family {
     }
 }
 
-/// What one model does differently from its family.
+/// How one model differs from its family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quirk {
@@ -397,8 +397,10 @@ mod tests {
 
     #[test]
     fn unknown_keys_and_absurd_numbers_are_named() {
-        let good = "name = \"A\"\nsource = \"B\"\n[area]\nwidth_mm = 100.0\nheight_mm = 60.0\nmax_x = 10\nmax_y = 6\n\
-                    [pen]\nmax_pressure = 1023\nbuttons = 2\n[[id]]\nvid = 1\npid = 2\nlength = 8\nparser = \"uc-logic\"\n";
+        let good = "name = \"A\"\nsource = \"B\"\n[area]\nwidth_mm = 100.0\nheight_mm = 60.0\n\
+                   max_x = 10\nmax_y = 6\n\
+                    [pen]\nmax_pressure = 1023\nbuttons = 2\n[[id]]\nvid = 1\npid = 2\nlength = 8\n\
+                    parser = \"uc-logic\"\n";
         assert!(Tablet::parse("t", good).is_ok());
         for (from, to, expect) in [
             ("buttons = 2", "buttons = 2\ncolour = 3", "colour"),

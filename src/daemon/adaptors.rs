@@ -19,8 +19,8 @@ pub const POINTER_ID: DeviceId = DeviceId(400);
 #[derive(Debug, Default)]
 pub struct Adaptors {
     hid: Option<HidHandle>,
-    serial: Vec<(String, serial::Handle)>,
-    leap: Option<leap::Handle>,
+    serial: Vec<(String, serial::SerialHandle)>,
+    leap: Option<leap::LeapHandle>,
     failed: Vec<String>,
 }
 
@@ -47,7 +47,7 @@ pub fn start(
     }
     for (i, port) in config.serial.iter().enumerate() {
         let port = port.display().to_string();
-        let settings = serial::Config {
+        let settings = serial::SerialConfig {
             port: Some(port.clone()),
             calibration: config.calibration.get(&port).copied().unwrap_or_default(),
             device: DeviceId(SERIAL_IDS + i as u16),
@@ -60,7 +60,7 @@ pub fn start(
     }
     if !config.leap.is_empty() {
         let settings =
-            leap::Config { url: config.leap.clone(), device: TRACKER_ID, ..Default::default() };
+            leap::LeapConfig { url: config.leap.clone(), device: TRACKER_ID, ..Default::default() };
         match leap::start(settings, clock.clone(), factory.sender()) {
             Ok(handle) => all.leap = Some(handle),
             Err(e) => all.failed.push(format!("hand tracking at {}: {e}", config.leap)),

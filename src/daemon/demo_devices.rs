@@ -35,7 +35,7 @@ pub enum DemoError {
 /// The ghosts and the adaptors that read them, connected.
 #[derive(Debug)]
 struct DemoDevices {
-    tablet: sim::Tablet,
+    tablet: sim::SimTablet,
     serial: sim::SerialPen,
     tracker: sim::Tracker,
     adaptors: Adaptors,
@@ -45,9 +45,9 @@ struct DemoDevices {
 /// The adaptors that read the ghosts; they stop when this is dropped.
 #[derive(Debug)]
 pub struct Adaptors {
-    _tablet: hid::reader::Handle,
-    _serial: serial::Handle,
-    _leap: leap::Handle,
+    _tablet: hid::reader::ReaderHandle,
+    _serial: serial::SerialHandle,
+    _leap: leap::LeapHandle,
 }
 
 fn model(catalogue: &Catalogue) -> Option<Found> {
@@ -64,7 +64,7 @@ fn summon(clock: &Clock, factory: &SenderFactory) -> Result<DemoDevices, DemoErr
     let catalogue = Catalogue::builtin().map_err(|_| DemoError::NoTablet)?;
     let found = model(&catalogue).ok_or(DemoError::NoTablet)?;
 
-    let (tablet, end) = sim::Tablet::new(&found, journal.pen, sim::TabletConfig::default());
+    let (tablet, end) = sim::SimTablet::new(&found, journal.pen, sim::TabletConfig::default());
     let descriptor = sim::tablet::descriptor(&found);
     let _tablet = hid::reader::start(
         Box::new(end),
@@ -78,7 +78,7 @@ fn summon(clock: &Clock, factory: &SenderFactory) -> Result<DemoDevices, DemoErr
 
     let config = sim::SerialPenConfig::new(serial::Protocol::Isdv4, journal.area_mm);
     let pen = sim::SerialPen::new(journal.serial_pen, config).map_err(start("serial pen"))?;
-    let config = serial::Config {
+    let config = serial::SerialConfig {
         port: Some(pen.port().into()),
         protocol: Some(serial::Protocol::Isdv4),
         device: SERIAL,
@@ -89,7 +89,7 @@ fn summon(clock: &Clock, factory: &SenderFactory) -> Result<DemoDevices, DemoErr
 
     let tracker = sim::Tracker::new(journal.hands, sim::TrackerConfig::default())
         .map_err(start("tracker"))?;
-    let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
+    let config = leap::LeapConfig { url: tracker.url(), device: HANDS, ..Default::default() };
     let _leap = leap::start(config, clock.clone(), factory.sender()).map_err(start("tracker"))?;
 
     if !pen.wait_for_reader(PATIENCE) {
@@ -142,7 +142,7 @@ pub fn stepped(
 ) -> Result<(Vec<Box<dyn Feed>>, Adaptors), DemoError> {
     let g = summon(clock, factory)?;
     let feeds: Vec<Box<dyn Feed>> = vec![
-        Box::new(SimFeed::new(g.tablet, sim::Tablet::advance, g.end_us)),
+        Box::new(SimFeed::new(g.tablet, sim::SimTablet::advance, g.end_us)),
         Box::new(SimFeed::new(g.serial, sim::SerialPen::advance, g.end_us)),
         Box::new(SimFeed::new(g.tracker, sim::Tracker::advance, g.end_us)),
     ];
@@ -156,11 +156,11 @@ pub fn tracker(
     config: sim::TrackerConfig,
     clock: &Clock,
     factory: &SenderFactory,
-) -> Result<(Box<dyn Feed>, leap::Handle), DemoError> {
+) -> Result<(Box<dyn Feed>, leap::LeapHandle), DemoError> {
     let start = |source| DemoError::Start { device: "tracker", source };
     let end_us = script.end_us() + AFTER_US;
     let tracker = sim::Tracker::new(script, config).map_err(start)?;
-    let config = leap::Config { url: tracker.url(), device: HANDS, ..Default::default() };
+    let config = leap::LeapConfig { url: tracker.url(), device: HANDS, ..Default::default() };
     let handle = leap::start(config, clock.clone(), factory.sender()).map_err(start)?;
     if !tracker.wait_for_client(PATIENCE) {
         return Err(DemoError::NotFound("tracker"));

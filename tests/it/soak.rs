@@ -12,7 +12,7 @@ use sculptd_daemon::live::Journal;
 use sculptd_daemon::published::{Published, PublishedFigures, Publisher};
 use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::{session, startup};
-use sculptd_devices::serial::{Decoder, Protocol};
+use sculptd_devices::serial::{SerialDecoder, Protocol};
 use sculptd_devices::sim::faults::Rng;
 use sculptd_devices::{DeviceId, queue, sim};
 use sculptd_engine::command::Command;
@@ -24,8 +24,8 @@ use crate::allocations::{live_bytes, passed_alone};
 /// A pen on a wire that is not a good one.
 struct Wire {
     packets: Vec<Vec<u8>>,
-    facts: sculptd_devices::serial::Facts,
-    decoder: Option<Decoder>,
+    facts: sculptd_devices::serial::SerialFacts,
+    decoder: Option<SerialDecoder>,
     next: usize,
     skew_us: u64,
 }
@@ -36,7 +36,7 @@ impl Wire {
         let span = 0..journal.pen.end_us();
         let (facts, packets) = sim::serial::stream(Protocol::Isdv4, &journal.pen, span);
         Wire {
-            decoder: Some(Decoder::new(&facts, DeviceId(100))),
+            decoder: Some(SerialDecoder::new(&facts, DeviceId(100))),
             packets,
             facts,
             next: 0,
@@ -61,7 +61,7 @@ impl Wire {
         let Some(decoder) = &mut self.decoder else {
             // It is found again sooner or later.
             if rng.below(400) == 0 {
-                self.decoder = Some(Decoder::new(&self.facts, DeviceId(100)));
+                self.decoder = Some(SerialDecoder::new(&self.facts, DeviceId(100)));
                 return Some("replug");
             }
             return None;

@@ -6,7 +6,7 @@ use glam::{Vec3, vec3};
 use sculptd_devices::leap::parse_frame;
 use sculptd_devices::sim::hand::skeleton;
 use sculptd_devices::sim::tracker::frame_json;
-use sculptd_devices::sim::{HandKey, HandScript, Performer, Tremble, Trembling};
+use sculptd_devices::sim::{HandKey, HandScript, Performer, Jitter, JitterState};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose};
 
@@ -14,8 +14,8 @@ const RATES: [f32; 4] = [30.0, 60.0, 90.0, 120.0];
 
 /// The tracker of the measurements: 0.2 mm at rest, 1.2 mm moving, and everything that goes wrong
 /// besides.
-fn tracker(seed: u64) -> Tremble {
-    Tremble {
+fn tracker(seed: u64) -> Jitter {
+    Jitter {
         seed,
         rest_mm: 0.2,
         moving_mm: 1.2,
@@ -27,8 +27,8 @@ fn tracker(seed: u64) -> Tremble {
 }
 
 /// Each frame as it comes out of the parser: time in us on the tracker's clock, hands.
-fn frames(script: &HandScript, rate: f32, tremble: Tremble) -> Vec<(u64, Hands)> {
-    let mut trembling = Trembling::new(tremble);
+fn frames(script: &HandScript, rate: f32, jitter: Jitter) -> Vec<(u64, Hands)> {
+    let mut trembling = JitterState::new(jitter);
     let step = f64::from(1e6 / rate);
     (0..)
         .map(|i| (i, (f64::from(i) * step) as u64))
@@ -162,7 +162,7 @@ fn a_resting_fingertip_trembles_less_than_a_tenth_of_a_millimetre() {
     };
     for rate in [60.0, 90.0, 120.0] {
         let mut tools = HandTools::new(HandSettings::default());
-        let noise = Tremble { seed: 5, rest_mm: 0.2, moving_mm: 1.2, ..Tremble::default() };
+        let noise = Jitter { seed: 5, rest_mm: 0.2, moving_mm: 1.2, ..Jitter::default() };
         let mut tips = Vec::new();
         for (t, hands) in frames(&script, rate, noise) {
             tools.take(DeviceId(0), t, &hands);
@@ -187,7 +187,7 @@ fn a_moving_fingertip_lags_less_than_thirty_milliseconds() {
         (0..10).map(|i| key(i as f32 * 1.2, if i % 2 == 0 { -100.0 } else { 100.0 })).collect();
     let script = HandScript { performers: vec![Performer { left: false, keys }] };
     let mut tools = HandTools::new(HandSettings::default());
-    let noise = Tremble { seed: 8, rest_mm: 0.2, moving_mm: 1.2, ..Tremble::default() };
+    let noise = Jitter { seed: 8, rest_mm: 0.2, moving_mm: 1.2, ..Jitter::default() };
     let mut seen = Vec::new();
     for (t, hands) in frames(&script, 90.0, noise) {
         tools.take(DeviceId(0), t, &hands);
@@ -239,7 +239,7 @@ fn a_fingertip_at_three_metres_a_second_does_not_tunnel_through_a_thin_wall() {
     let keys = vec![key(0.0, from), key(2.0, from), key(2.0 + cross, to), key(3.0, to)];
     let script = HandScript { performers: vec![Performer { left: false, keys }] };
     let mut touched = 0;
-    for (i, (t_us, hands)) in frames(&script, 90.0, Tremble::default()).into_iter().enumerate() {
+    for (i, (t_us, hands)) in frames(&script, 90.0, Jitter::default()).into_iter().enumerate() {
         let sample =
             Sample { device: DeviceId(1), t_us, device_t_us: None, body: Body::Hands(hands) };
         touched += world.step(i as u64 + 1, &[sample], &[]).vertices_moved;

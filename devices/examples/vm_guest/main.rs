@@ -4,7 +4,8 @@
 //! back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing
 //! shown.
 #![cfg(target_os = "linux")]
-#![allow(clippy::print_stdout, clippy::disallowed_methods)] // A test program: it prints its findings and waits for a kernel.
+// A test program: it prints its findings and waits for a kernel.
+#![allow(clippy::print_stdout, clippy::disallowed_methods)]
 
 mod serial;
 
@@ -227,7 +228,8 @@ fn run() -> io::Result<bool> {
     let mut good = tell(!nodes("/dev", "hidraw").is_empty(), "a uhid tablet has a hidraw node");
     let (placed, differ, worst) = feed(&mut uhid, &found, &sent)?;
     let what = format!(
-        "wacom.ko agrees on {placed} placed reports of {}: {differ} differ, x and y within {worst} counts",
+        "wacom.ko agrees on {placed} placed reports of {}: {differ} differ, x and y within \
+         {worst} counts",
         sent.len()
     );
     good &= tell(placed > 500 && differ == 0 && worst <= 4, &what);

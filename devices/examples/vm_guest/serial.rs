@@ -107,7 +107,8 @@ fn follow(
             .max(i64::from(kernel.x - p.raw[0]).abs().max(i64::from(kernel.y - p.raw[1]).abs()));
     }
     let what = format!(
-        "{flag}: the kernel's driver agrees on {placed} placed packets ({touched} pressed): {differ} differ, x and y within {worst} counts"
+        "{flag}: the kernel's driver agrees on {placed} placed packets ({touched} pressed): \
+         {differ} differ, x and y within {worst} counts"
     );
     Ok(tell(placed > 200 && touched > 50 && differ == 0 && worst <= 4, &what))
 }

@@ -1,6 +1,6 @@
 //! Report descriptors: what an interface is for, and where the fields of a pen or a pad lie.
 //!
-//! The `hidreport` library reads the items, after [`repair`] made the descriptor readable. Bits are
+//! The `hidreport` library reads the items, after `repair` made the descriptor readable. Bits are
 //! extracted here, so that a report that is shorter than its descriptor says is survived. Usages:
 //! HID Usage Tables 1.4, page 0x0D. Wacom's own page 0xFF0D mirrors it (Linux `wacom_wac.h`).
 
@@ -79,9 +79,20 @@ impl Descriptor {
         for report in parsed.input_reports() {
             out.add_report(report);
         }
+        out.drop_dummy_keys();
         out.kinds.sort_unstable();
         out.kinds.dedup();
         Ok(out)
+    }
+
+    /// A ring or dial of `hid-uclogic` has a report of its own with one key that is never pressed,
+    /// so that libinput takes the device for a pad. It says nothing about the real keys.
+    fn drop_dummy_keys(&mut self) {
+        if self.pads.iter().any(|p| p.keys.len() > 1) {
+            for pad in self.pads.iter_mut().filter(|p| p.keys.len() == 1) {
+                pad.keys.clear();
+            }
+        }
     }
 
     fn add_report(&mut self, report: &impl hidreport::Report) {

@@ -42,20 +42,20 @@ impl PadFields {
         }
         match page_id(u32::from(&f.usage)) {
             (0x09, button @ 1..=MAX_KEYS) if f.bits.len() == 1 => {
-                self.keys.push((button - 1, Bits::of(f)));
+                self.add_key(button - 1, f);
             }
             (0x0d | 0xff0d, 0x33) | (0xff0d, 0x139) if self.touched.is_none() => {
                 self.touched = Some(Bits::of(f));
             }
             // Wacom's own page: express keys, then what lies behind the keys of the frame.
             (0xff0d, key @ 0x910..=0x91f) if f.bits.len() == 1 => {
-                self.keys.push((key - 0x910, Bits::of(f)));
+                self.add_key(key - 0x910, f);
             }
             (0xff0d, key @ 0x980..=0x983) if f.bits.len() == 1 => {
-                self.keys.push((16 + key - 0x980, Bits::of(f)));
+                self.add_key(16 + key - 0x980, f);
             }
             (0xff0d, key @ 0x990..=0x995) if f.bits.len() == 1 => {
-                self.keys.push((20 + key - 0x990, Bits::of(f)));
+                self.add_key(20 + key - 0x990, f);
             }
             // Wacom's own page: strips, rings, finger wheels.
             (0xff0d, 0x136..=0x138 | 0xd03) => {
@@ -66,6 +66,20 @@ impl PadFields {
                 self.turns.push(Turn { bits: Bits::of(f), relative: f.is_relative() });
             }
             _ => {}
+        }
+    }
+
+    /// Adds a key under its number, or under the next free one: some descriptors name two ranges of
+    /// buttons alike, or one usage for several keys.
+    fn add_key(&mut self, number: u32, f: &VariableField) {
+        let taken = |n: u32| self.keys.iter().any(|(k, _)| *k == n);
+        let free = if taken(number) {
+            self.keys.iter().map(|(k, _)| k + 1).max().unwrap_or(0)
+        } else {
+            number
+        };
+        if free < MAX_KEYS {
+            self.keys.push((free, Bits::of(f)));
         }
     }
 

@@ -1,4 +1,5 @@
-//! What is plugged in, and how to open it: hidapi on a real machine, anything in a test.
+//! The interfaces that are plugged in, and how they are opened: by hidapi on a real machine, by a
+//! simulation in tests.
 
 use std::collections::BTreeMap;
 use std::ffi::CString;
@@ -9,7 +10,7 @@ use hidapi::{HidApi, HidDevice, HidError};
 use super::transport::Transport;
 use crate::catalogue::Identity;
 
-/// Indexed USB strings that any model is told apart by; asked where the platform can.
+/// Indexed USB strings that distinguish models. Read where the platform can read them.
 const TELLING_STRINGS: [u8; 7] = [2, 4, 5, 6, 100, 121, 201];
 
 /// One interface of one device.
@@ -21,8 +22,8 @@ pub struct Node {
     pub serial: String,
     /// What can be read of the interface without opening it.
     pub who: Identity,
-    /// It may hold a pen: a digitiser, a maker's own usage, or an absolute pointer. The others are
-    /// not even opened.
+    /// The interface may hold a pen: a digitiser, a vendor's usage, or a pointer. The others are
+    /// not opened.
     pub may_be_pen: bool,
 }
 
@@ -35,7 +36,8 @@ pub trait Bus: Send {
     /// # Errors
     /// The interface is gone, or the user may not open it ([`io::ErrorKind::PermissionDenied`]).
     fn open(&mut self, node: &Node) -> io::Result<Box<dyn Transport>>;
-    /// A cheap number that changes when something was plugged in or out; `None`: not known, look.
+    /// A number that is cheap to read and changes when a device is plugged in or out; `None` where
+    /// there is none.
     fn stamp(&self) -> Option<u64> {
         None
     }
@@ -99,7 +101,7 @@ impl Bus for HidApiBus {
     }
 
     fn stamp(&self) -> Option<u64> {
-        // A node that comes or goes touches the folder it is in.
+        // A node that appears or disappears changes the time of its folder.
         let changed = std::fs::metadata("/dev").ok()?.modified().ok()?;
         let since = changed.duration_since(std::time::UNIX_EPOCH).ok()?;
         cfg!(target_os = "linux").then_some(since.as_nanos() as u64)
@@ -131,7 +133,8 @@ fn value_of(uevent: &str, key: &str) -> String {
     pairs.filter(|(k, _)| *k == key).map(|(_, v)| v.to_owned()).next().unwrap_or_default()
 }
 
-/// What only an open device tells: the descriptor where it is not known yet, and indexed strings.
+/// Reads what only an open device gives: the descriptor, where it is not known yet, and indexed
+/// strings.
 pub(super) fn read_more(who: &mut Identity, device: &mut dyn Transport) {
     if who.descriptor.is_empty()
         && let Some(bytes) = device.descriptor()

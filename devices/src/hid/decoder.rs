@@ -1,5 +1,5 @@
-//! One interface of one device: parser, its memory, the pen's and the pad's state. The same object
-//! reads live, recorded and simulated bytes.
+//! Decodes the reports of one interface: a parser with its memory, the state of the pen and of the
+//! pad. The same type decodes live, recorded and simulated bytes.
 
 use glam::Vec2;
 
@@ -186,7 +186,7 @@ impl Decoder {
         }
     }
 
-    /// The device went: whatever was in range leaves, whatever was held is let go.
+    /// The device was unplugged: its pen leaves, and its keys and buttons are released.
     pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.pen.leave(t_us, emit);
         self.pad.leave(t_us, emit);

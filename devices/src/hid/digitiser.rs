@@ -9,6 +9,9 @@ const TIP: u32 = 0x000d_0042;
 const BARREL: u32 = 0x000d_0044;
 const SECOND_BARREL: [u32; 2] = [0x000d_005a, 0x000d_0046];
 
+/// A ring or strip with fewer places than this has no place 0.
+const FEW_PLACES: i32 = 16;
+
 /// Reads one report, its id first where it has one, by the descriptor.
 pub fn parse(b: &[u8], descriptor: &Descriptor, out: &mut Batch) {
     let own = |id: Option<u8>| id.is_none_or(|id| b.first() == Some(&id));
@@ -94,7 +97,9 @@ pub(super) fn pad(b: &[u8], fields: &PadFields, out: &mut Batch) {
             let place = ((f64::from(v) - f64::from(turn.bits.min)) / span) as f32;
             let touched = match &fields.touched {
                 Some(bits) => bits.set(b).unwrap_or(false),
-                // Outside its range the control says that it is not touched.
+                // Outside its range the control says that it is not touched. The rings of
+                // `hid-uclogic` have a few places and say it with 0.
+                None if turn.bits.min == 0 && turn.bits.max < FEW_PLACES => v > 0,
                 None => (turn.bits.min..=turn.bits.max).contains(&v),
             };
             let strip = Some((strips, touched.then_some(place)));
@@ -153,6 +158,37 @@ mod tests {
         // Cut after the axes: what is there is read.
         let Parsed::Pen(p) = read(&[7, 0x11, 1, 0, 2, 0]) else { panic!() };
         assert_eq!((p.pos, p.pressure, p.tilt), (Some([1, 2]), None, None));
+    }
+
+    /// Keys 1 to 3, then two buttons that are named alike, and a ring in a report of its own.
+    const PAD: &[u8] = &[
+        0x05, 0x01, 0x09, 0x07, 0xa1, 0x01, 0x85, 0xf7, 0x05, 0x0d, 0x09, 0x39, 0xa1, 0x00, 0x05,
+        0x09, 0x19, 0x01, 0x29, 0x03, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x03, 0x81, 0x02,
+        0x19, 0x01, 0x29, 0x02, 0x95, 0x02, 0x81, 0x02, 0x95, 0x03, 0x81, 0x03, 0xc0, 0xc0, 0x05,
+        0x01, 0x09, 0x07, 0xa1, 0x01, 0x85, 0xf8, 0x05, 0x0d, 0x09, 0x39, 0xa1, 0x00, 0x05, 0x09,
+        0x09, 0x01, 0x75, 0x01, 0x95, 0x01, 0x81, 0x02, 0x95, 0x07, 0x81, 0x03, 0x05, 0x01, 0x09,
+        0x38, 0x25, 0x0b, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02, 0x09, 0x38, 0x15, 0xff, 0x25, 0x01,
+        0x81, 0x06, 0xc0, 0xc0,
+    ];
+
+    #[test]
+    fn keys_rings_and_wheels_are_found_where_they_are_described() {
+        let d = Descriptor::parse(PAD).unwrap();
+        let pads = |report: &[u8]| {
+            let mut out = Batch::default();
+            parse(report, &d, &mut out);
+            let pad = |p: &Parsed| if let Parsed::Pad(p) = p { Some(*p) } else { None };
+            out.as_slice().iter().filter_map(pad).collect::<Vec<_>>()
+        };
+        let keys = |b: u8| pads(&[0xf7, b])[0].keys;
+        assert_eq!((keys(0b101), keys(0b1_1000)), (Some(0b101), Some(0b1_1000)), "five keys");
+        let ring = pads(&[0xf8, 1, 11, 0xff]);
+        assert_eq!(ring.iter().find_map(|p| p.keys), None, "its one key is no key");
+        assert_eq!(ring.iter().find_map(|p| p.strip), Some((0, Some(1.0))));
+        assert_eq!(ring.iter().find_map(|p| p.turned), Some((0, -1)));
+        let away = pads(&[0xf8, 0, 0, 0]);
+        assert_eq!(away.iter().find_map(|p| p.strip), Some((0, None)), "let go");
+        assert_eq!(away.iter().find_map(|p| p.turned), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Which parser reads a report: the closed set of families, each with what it must remember.
+//! The parsers, one for each family, with what each remembers between reports.
 
 use super::uclogic::Packing;
 use super::{
@@ -9,7 +9,8 @@ use crate::descriptor::Descriptor;
 use crate::report::{Batch, Parsed};
 use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 
-/// libinput's time of silence after which a pen that never says so has left.
+/// Microseconds of silence after which a pen has left that sends no report of it; the figure is
+/// libinput's.
 const SILENCE_US: u64 = 50_000;
 
 /// A family bound to one model.
@@ -41,7 +42,7 @@ pub enum Engine {
     Bluetooth(wacom_bluetooth::BluetoothKind, wacom_bluetooth::BluetoothMemory),
     /// UC-Logic, Huion, XP-Pen and their many brands.
     UcLogic(uclogic::UcLogicTraits, uclogic::UcLogicMemory),
-    /// Families without memory; `leaves`: they say when the pen goes.
+    /// Families that remember nothing.
     Vendor {
         /// Reads one report.
         parse: fn(&[u8]) -> Parsed,
@@ -177,18 +178,19 @@ impl Engine {
         }
     }
 
-    /// Before it is switched to its maker's protocol such a tablet counts as its descriptor says,
-    /// in the same layout.
+    /// Before it is switched to its vendor's protocol such a tablet has the ranges of its
+    /// descriptor, in the same layout.
     pub fn follows_descriptor(&self) -> bool {
         matches!(self, Engine::UcLogic(..))
     }
 
-    /// The family always tells tilt, if not in every report.
+    /// The family always reports tilt, if not in every report.
     pub fn has_tilt(&self) -> bool {
         matches!(self, Engine::Intuos(traits, ..) if !traits.height_inverted)
     }
 
-    /// Silence that means "gone", for families and firmwares that never say it.
+    /// Microseconds of silence after which the pen has left, for families and firmwares that send
+    /// no report of it.
     pub fn silence_us(&self) -> Option<u64> {
         let mute = match self {
             Engine::Intuos(..) | Engine::Simple { .. } | Engine::Graphire(_) => false,

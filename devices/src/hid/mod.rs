@@ -1,12 +1,13 @@
-//! HID pens: from report bytes to samples.
+//! Pens over HID: from report bytes to samples.
 //!
 //! ```text
-//! transport (hidapi, a recording, a simulator) -> bytes -> parser (pure, one file a family) -> Parsed -> PenState -> Sample
+//! transport -> bytes -> parser -> Parsed -> PenState, PadState -> Sample
 //! ```
 //!
-//! A parser sees one report and a few bytes of memory; it never indexes by a declared size. A
-//! [`decoder::Decoder`] binds a parser to a model's facts and to a [`crate::pen_state::PenState`];
-//! live reading, recordings and tests all use it.
+//! A transport is hidapi or a simulation; recordings feed their bytes to the decoder. There is one
+//! parser for each family of tablets: it sees one report and a few bytes of memory, and it never
+//! indexes by a size that a descriptor declares. A [`decoder::Decoder`] joins a parser, the facts
+//! of a model and a [`crate::pen_state::PenState`]; live devices, recordings and tests all use it.
 
 pub mod bus;
 pub mod decoder;

@@ -1,9 +1,9 @@
-//! The pad's complete state, from reports that say a part of it.
+//! The complete state of a pad, from reports that each hold a part of it.
 
 use crate::report::PadReport;
 use crate::sample::{Body, DeviceId, Pad, Sample};
 
-/// One pad on one device. A sample is made only when something changed: most reports repeat the
+/// The pad of one device. A sample is made only when something changed: most reports repeat the
 /// last.
 #[derive(Debug, Clone)]
 pub struct PadState {
@@ -36,7 +36,7 @@ impl PadState {
         self.set(next, t_us, emit);
     }
 
-    /// The device went: every key is let go.
+    /// The device was unplugged: every key is released.
     pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.set(Pad { wheels: self.pad.wheels, ..Pad::default() }, t_us, emit);
     }

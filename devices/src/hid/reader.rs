@@ -1,5 +1,5 @@
-//! A dedicated thread that reads one interface. The kernel keeps the oldest 63 reports of a stalled
-//! reader and drops the newest, a pen-up among them: so nothing else is done here, ever.
+//! A dedicated thread that reads one interface and does nothing else: Linux keeps the oldest 63
+//! reports of a stalled reader and drops the newest, which may hold the end of a stroke.
 
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,13 +15,13 @@ use crate::latency::{Latency, Quantiles};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// How long one read waits: so often is silence looked at, and what the channel did not take
-/// offered again.
+/// How long one read waits, in ms. After each wait silence is checked and kept samples are sent
+/// again.
 const READ_MS: i32 = 10;
 /// Longest report; hidraw's own limit is 4096.
 const MAX_REPORT: usize = 4096;
 
-/// How a reader stands.
+/// The state of a reader.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ReaderStatus {
     /// The device is there and its thread reads it.
@@ -117,7 +117,8 @@ impl HidReader {
         shared.status.last_error = error;
     }
 
-    /// A pen that is near when its tablet is opened was named before anyone listened.
+    /// The tool of a pen that is in range when its tablet is opened was reported before the reader
+    /// started.
     fn ask_tool(&mut self, buffer: &mut [u8], out: &mut Vec<Sample>) {
         if let Some(id) = self.decoder.names_tool() {
             buffer[0] = id;

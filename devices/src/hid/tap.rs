@@ -1,5 +1,4 @@
-//! Copies what is read from a bus, byte for byte, without standing in its way: how recordings are
-//! made of the live path.
+//! Copies every report that is read from a bus, without delaying it: how live devices are recorded.
 
 use std::io;
 
@@ -10,7 +9,7 @@ use super::transport::Transport;
 use crate::catalogue::Identity;
 use crate::clock::Clock;
 
-/// Something that was read.
+/// One event of a recorded bus.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tapped {
     /// An interface was opened; later reports carry its number.
@@ -33,8 +32,8 @@ pub enum Tapped {
     },
 }
 
-/// A bus whose every report is also sent to `out`. When nobody takes them they are dropped: reading
-/// comes first.
+/// A bus whose reports are also sent to `out`. They are dropped when `out` is full: reading comes
+/// first.
 #[derive(Debug)]
 pub struct TapBus<B> {
     /// The bus that is read.

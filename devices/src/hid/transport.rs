@@ -1,4 +1,4 @@
-//! How report bytes come and go: a hidraw node, a recording, a simulator.
+//! Where reports are read from and written to: a hidraw node or a simulation.
 
 use std::io;
 

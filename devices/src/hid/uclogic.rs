@@ -41,13 +41,13 @@ pub struct UcLogicTraits {
     pub packing: Packing,
     /// The descriptor's own in-range bit of byte 1, where it has one: 5, 6 or 7.
     pub range_bit: Option<u8>,
-    /// Tilt is not sent, and the bytes are something else's.
+    /// The tablet sends no tilt: the bytes mean something else.
     pub no_tilt: bool,
     /// Report ids, one a bit, that the descriptor describes without tilt.
     pub untilted: u32,
 }
 
-/// What reports so far have proved.
+/// What the reports so far have shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct UcLogicMemory {
     /// `A0` was seen: `C0` means out.
@@ -129,7 +129,7 @@ fn in_range(
 }
 
 impl UcLogicMemory {
-    /// No report has yet said, or could say, that the pen leaves: silence must.
+    /// No report so far could say that the pen leaves, so silence decides.
     pub fn is_mute(&self) -> bool {
         !self.ranged
     }
@@ -137,7 +137,8 @@ impl UcLogicMemory {
 
 fn pen(b: &[u8], traits: &UcLogicTraits) -> PenReport {
     let flags = b[1];
-    // Report 08 is Huion's in every tablet that sends it; its shorter kin are packed as everyone's.
+    // Report 08 has Huion's layout in every tablet that sends it; shorter reports have the common
+    // one.
     let packing = match (b[0], traits.packing) {
         (0x08, _) => Packing::Huion,
         (_, Packing::Huion) if b.len() < 12 => Packing::XpPen,
@@ -151,7 +152,7 @@ fn pen(b: &[u8], traits: &UcLogicTraits) -> PenReport {
             x |= u32::from(byte(b, 8) & 1) << 16;
             y |= u32::from(byte(b, 9) & 1) << 16;
             if b.len() >= 12 {
-                // The kernel's driver turns this form's y tilt round.
+                // Linux negates the y tilt of this layout, too.
                 tilt = Some([s8_at(b, 10), -s8_at(b, 11)]);
             }
         }
@@ -187,7 +188,7 @@ fn pen(b: &[u8], traits: &UcLogicTraits) -> PenReport {
     }
 }
 
-/// Keys, dials and rings ride on the pen's reports.
+/// Keys, dials and rings come in reports of the pen's id.
 fn pad(b: &[u8], memory: &mut UcLogicMemory) -> Parsed {
     let none = PadReport::default();
     match (b[0], b[1]) {

@@ -104,7 +104,8 @@ pub fn ten_moons(b: &[u8]) -> Parsed {
     })
 }
 
-/// The plain layout: flags at 1, axes at 2 and 4, pressure at 6; nothing says that the pen leaves.
+/// The plain layout: flags at 1, axes at 2 and 4, pressure at 6. No report says that the pen
+/// leaves.
 pub fn plain(b: &[u8]) -> Parsed {
     if b.len() < 8 {
         return Parsed::Broken;

@@ -19,7 +19,7 @@ pub fn parse(b: &[u8], max_distance: u32, memory: &mut BambooMemory) -> Parsed {
     if b.len() < 9 {
         return Parsed::Broken;
     }
-    // Longer reports are the touch side's.
+    // Longer reports are for touch.
     if b.len() > 10 {
         return Parsed::Nothing;
     }

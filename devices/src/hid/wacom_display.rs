@@ -52,7 +52,7 @@ fn pl(b: &[u8], max_pressure: u32, memory: &mut DisplayMemory) -> Parsed {
     }
     let both = b[4] & 0x20 != 0;
     let tool = *memory.tool.get_or_insert(if both { Tool::Eraser } else { Tool::Pen });
-    // An eraser always shows the second button: without it, it never was one.
+    // An eraser always sets the second button's bit: without it the tool is a pen.
     let tool = if tool == Tool::Eraser && !both { Tool::Pen } else { tool };
     memory.tool = Some(tool);
     let mut p = i32::from((b[7] << 1 | (b[4] >> 2 & 1)) as i8);

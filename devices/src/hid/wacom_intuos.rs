@@ -41,7 +41,7 @@ pub fn parse(b: &[u8], traits: &IntuosTraits, memory: &mut IntuosMemory) -> Pars
             Parsed::Nothing
         };
     }
-    // 05, 06 and 08 answer the question which tool is near.
+    // Feature reports 05, 06 and 08 name the tool that is near.
     if !matches!(b[0], 0x02 | 0x10 | 0x05 | 0x06 | 0x08) {
         return Parsed::Nothing;
     }
@@ -69,8 +69,8 @@ pub fn parse(b: &[u8], traits: &IntuosTraits, memory: &mut IntuosMemory) -> Pars
         memory.reporting = false;
         return if known.is_some() { Parsed::Away } else { Parsed::Nothing };
     }
-    // A puck's packets are its own. A pen's are an eraser's too: without its name an eraser would
-    // draw, so the name is waited for; it comes with the next entry, or answers the reader's query.
+    // A puck has packets of its own. A pen and an eraser share theirs, so the tool's number is
+    // awaited: it comes as the pen enters, or as the answer to the reader's query.
     let puck = matches!(flags >> 1 & 0x0f, 4 | 6 | 8).then_some(Tool::Mouse);
     let Some(tool) = memory.tool.or(puck) else { return Parsed::Nothing };
     memory.tool = Some(tool);

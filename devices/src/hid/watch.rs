@@ -6,9 +6,9 @@
 //! never run on Windows or macOS. There the system may hold the pen's interface, so that it cannot
 //! be opened; the status then says so.
 //!
-//! There is no hot-plug call in hidapi: what is plugged in is looked at again when the device
-//! folder changed or a reader ended, every 200 ms at first and less often while nothing happens,
-//! two seconds at most.
+//! hidapi has no hot-plug call. The devices are listed again when the device folder changed or a
+//! reader ended: every 200 ms at first, and less often while nothing changes, at least every two
+//! seconds.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -27,18 +27,18 @@ use crate::queue::SenderFactory;
 use crate::sample::DeviceId;
 use crate::tablet::hex_bytes;
 
-/// First and longest wait between two looks. A replug is seen well within two seconds.
+/// First and longest wait between two listings.
 const LOOK: (Duration, Duration) = (Duration::from_millis(200), Duration::from_millis(1600));
 /// A tablet that was only just plugged in may refuse its first messages.
 const TRIES: u32 = 20;
 
-/// What the user says of tablets.
+/// What the user configured for tablets.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HidConfig {
     /// The answer to "which model is this?", by `vid:pid` or `vid:pid:serial` (hexadecimal ids).
     pub models: BTreeMap<String, String>,
-    /// Devices left alone, by `vid:pid` or `vid:pid:serial`.
+    /// Devices that are not opened, by `vid:pid` or `vid:pid:serial`.
     pub ignore: Vec<String>,
     /// What the user set, by `vid:pid:serial`, `vid:pid` or the model's name.
     pub calibration: Calibrations,
@@ -47,7 +47,7 @@ pub struct HidConfig {
     pub first_device: DeviceId,
 }
 
-/// One interface, as it stands.
+/// The state of one interface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NodeStatus {
     /// Where the interface is opened, such as `/dev/hidraw0`.
@@ -74,7 +74,7 @@ pub struct NodeStatus {
     pub area_mm: Option<[f32; 2]>,
     /// Why it is not read, or what is uncertain about it.
     pub reason: Option<String>,
-    /// More than one model answers to this: the question for the user.
+    /// Names of the models that match equally well: the user is asked to choose.
     pub candidates: Vec<String>,
     /// Reports that were read.
     pub reports: u64,
@@ -171,10 +171,10 @@ pub fn start_on(
     Ok(HidHandle { shared, _thread: thread })
 }
 
-/// What is plugged in, and what would be read: nothing is set up and no thread started.
+/// Lists what is plugged in and what would be read. Nothing is set up and no thread is started.
 ///
 /// # Errors
-/// The bus cannot be looked at.
+/// The bus cannot be listed.
 pub fn list(
     bus: &mut dyn Bus,
     config: &HidConfig,
@@ -233,7 +233,7 @@ impl Watcher {
                 let news = self.look();
                 wait = if news || ended { LOOK.0 } else { (wait * 2).min(LOOK.1) };
             }
-            // Looking at the stamp costs microseconds; looking at the bus does not.
+            // Reading the stamp takes microseconds; listing the bus takes milliseconds.
             let pause = if stamp.is_some() { LOOK.0 } else { wait };
             if stop.wait(pause) {
                 break;
@@ -241,7 +241,7 @@ impl Watcher {
         }
     }
 
-    /// Lets go of readers whose device went.
+    /// Drops readers whose device was unplugged.
     fn collect_ended(&mut self) -> bool {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         let before = shared.open.len();
@@ -265,7 +265,7 @@ impl Watcher {
         for node in nodes.iter().filter(|n| !open.contains(&n.path)) {
             let tried = self.failures.get(&node.path).copied().unwrap_or(0);
             if tried >= TRIES {
-                // Given up on until it is plugged in again; what was wrong stays on show.
+                // Not tried again until it is plugged in again; the reason stays in the status.
                 let old = self.with(|s| s.closed.iter().find(|c| c.path == node.path).cloned());
                 closed.extend(old);
                 continue;
@@ -302,8 +302,8 @@ impl Watcher {
 
     /// Identifies, opens, sets up and reads one interface.
     fn take_up(&mut self, node: &Node) -> Result<OpenInterface, Refusal> {
-        // Where the system does not show the descriptor of a closed interface, it is opened before it
-        // is judged: a tablet is known by its descriptor as often as by its ids.
+        // Where the system does not show the descriptor of a closed interface, it is opened before
+        // it is judged: a tablet is known by its descriptor as often as by its ids.
         if node.who.descriptor.is_empty() {
             refusal(node, &self.config).map_err(Refusal::Final)?;
         } else {
@@ -363,9 +363,9 @@ impl Watcher {
 }
 
 enum Refusal {
-    /// Nothing that time could mend.
+    /// It will not change.
     Final(String),
-    /// Tried again at the next look.
+    /// It is tried again at the next listing.
     Later(String),
 }
 
@@ -425,14 +425,15 @@ fn key(node: &Node, serial: bool) -> String {
 fn in_words(e: &io::Error) -> String {
     match e.kind() {
         io::ErrorKind::PermissionDenied => {
-            "permission denied: install the udev rule (config/70-sculptd.rules) and plug it in again"
+            "permission denied: install the udev rule (config/70-sculptd.rules) and plug it in \
+             again"
                 .to_owned()
         }
         _ => e.to_string(),
     }
 }
 
-/// A tablet that refuses its init report may still speak.
+/// A tablet that refuses its init report may still send reports.
 fn note_failure(node: &Node, sent: io::Result<()>) {
     if let Err(e) = sent {
         tracing::warn!("{}: an init report was refused: {e}", node.path);

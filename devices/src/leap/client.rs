@@ -21,7 +21,7 @@ use crate::sample::{Body, DeviceId, Hands, Sample};
 const READ_SLICE: Duration = Duration::from_millis(10);
 /// For the connection, and for each read of the handshake.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Silence, on our clock, after which hands that were there are held to be gone. A tracker that
+/// Silence, on our clock, after which the hands are taken to have left. A tracker that
 /// works sends a frame at least each 52 ms (the longest gap in real recordings).
 const SILENCE_US: u64 = 300_000;
 /// Silence after which the server is asked whether it lives; after twice as much it is given up.
@@ -71,9 +71,9 @@ pub struct LeapStatus {
     pub connected: bool,
     /// The protocol's version as the server stated it.
     pub version: Option<i64>,
-    /// What the tracker's service last said of the tracker itself.
+    /// Whether a tracker is attached, as the service last reported it.
     pub attached: Option<bool>,
-    /// The tracker streams, as far as the server said.
+    /// Whether the tracker streams, as the service last reported it.
     pub streaming: Option<bool>,
     /// Frames decoded and sent on.
     pub frames: u64,
@@ -188,7 +188,7 @@ impl Client {
                 s.rate = 0.0;
                 s.last_error = Some(why);
             });
-            // What is kept back goes out while there is nothing to read.
+            // Kept samples are sent while there is nothing to read.
             let slices = (wait.as_millis() / READ_SLICE.as_millis()) as u32;
             for _ in 0..slices {
                 self.sender.flush();
@@ -239,7 +239,7 @@ impl Client {
             }
             if !greeted && (self.last.is_some() || self.version().is_some()) {
                 greeted = true;
-                // A server that does not listen may yet have something to say.
+                // A server that refuses the settings may still send frames.
                 if let Err(why) = self.greet(&mut socket) {
                     tracing::debug!(%why, "greeting not taken");
                 }
@@ -253,8 +253,8 @@ impl Client {
         self.status.lock().unwrap_or_else(PoisonError::into_inner).version
     }
 
-    /// One wish a message, each under 32 bytes: one known server copies them into a buffer of that
-    /// size.
+    /// One setting a message, each under 32 bytes: one known server copies them into a buffer of
+    /// that size.
     fn greet(&self, socket: &mut WebSocket<TcpStream>) -> Result<(), WsError> {
         let (background, hmd) = (self.config.background, self.config.optimize_hmd);
         for wish in [
@@ -351,7 +351,7 @@ impl Client {
         within
     }
 
-    /// Says that no hand is there, if the last word was that one is.
+    /// Sends a sample without hands if the last one had any.
     fn hands_gone(&mut self) {
         let Some(Sample { body: Body::Hands(last), .. }) = self.last else { return };
         self.last = None;

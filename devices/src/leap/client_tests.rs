@@ -153,7 +153,8 @@ fn hostile(answers: Vec<Vec<u8>>) -> (String, std::thread::JoinHandle<()>) {
             let answer = match answer.strip_prefix(b"WS") {
                 Some(frames) => {
                     let head = format!(
-                        "HTTP/1.1 101 Switching Protocols\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
+                        "HTTP/1.1 101 Switching Protocols\r\nConnection: Upgrade\r\n\
+                         Upgrade: websocket\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
                     );
                     [head.as_bytes(), frames].concat()
                 }
@@ -192,7 +193,9 @@ fn a_server_that_breaks_every_rule_is_survived() {
     let answers = vec![
         b"SSH-2.0-OpenSSH_9\r\n".to_vec(),
         b"HTTP/1.1 404 Not Found\r\n\r\n".to_vec(),
-        b"HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: no\r\n\r\n".to_vec(),
+        b"HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
+          Sec-WebSocket-Accept: no\r\n\r\n"
+            .to_vec(),
         b"HTTP/1.1 101 Sw".to_vec(),
         ws(&[text(br#"{"version":5}"#)]),
         ws(&[vec![0x81, 127, 0x7f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff]]),

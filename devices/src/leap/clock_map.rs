@@ -1,7 +1,7 @@
-//! From the tracker's clock to ours.
+//! Converts times of the tracker's clock to times of ours.
 //!
-//! A frame is read some time after it was taken: the least delay ever seen is the best word on how
-//! the two clocks stand to each other. Frames that came late in a burst get the instants at which
+//! A frame is read some time after it was taken. The least delay seen so far is the best estimate
+//! of the offset between the two clocks. Frames that came late in a burst get the instants at which
 //! they were taken, so that a speed computed from them is the hand's and not the network's.
 
 /// Beyond this the clocks are held to have jumped, and the map starts afresh.

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::frame::MAX_MESSAGE;
 
-/// What a frame is given when its recording says nothing usable about time: 100 frames a second.
+/// The step between frames of a recording without usable times: 100 frames a second.
 const USUAL_STEP_US: u64 = 10_000;
 
 /// A longer gap than this between two frames is a cut in the recording, not time that passed.

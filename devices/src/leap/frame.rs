@@ -36,13 +36,14 @@ pub enum FrameError {
     NotAFrame,
 }
 
-/// What a server says.
+/// A message of the server.
 #[derive(Debug, Clone, PartialEq)]
-#[allow(clippy::large_enum_variant)] // Nearly every message is a frame; a box would cost each of them an allocation.
+// Nearly every message is a frame; a box would cost each of them an allocation.
+#[allow(clippy::large_enum_variant)]
 pub enum Message {
     /// The first message of a connection: the protocol's version, where it is stated.
     Version(Option<i64>),
-    /// A tracker was plugged in or out, or began or ceased to stream.
+    /// A tracker was attached or detached, or it started or stopped streaming.
     Device {
         /// A tracker is plugged in; `None` where the message does not say.
         attached: Option<bool>,

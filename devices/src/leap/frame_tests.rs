@@ -7,13 +7,16 @@ use super::*;
 use crate::leap::FrameFile;
 
 const FRAME: &str = r#"{"id":7,"timestamp":1234567,"currentFrameRate":110.5,"hands":[
- {"id":9,"type":"left","palmPosition":[1,2,3],"palmNormal":[0,-2,0],"direction":[0,0,-1],"grabStrength":1.5,
-  "pinchStrength":null,"confidence":"high","timeVisible":-4,"palmWidth":85,"wrist":[0,0,60],"elbow":[1,2]},
+ {"id":9,"type":"left","palmPosition":[1,2,3],"palmNormal":[0,-2,0],"direction":[0,0,-1],
+   "grabStrength":1.5,
+  "pinchStrength":null,"confidence":"high","timeVisible":-4,"palmWidth":85,
+   "wrist":[0,0,60],"elbow":[1,2]},
  {"id":4,"type":"right","palmPosition":[9,9,9]}, {"id":4,"palmPosition":[0,0,0]}, {"id":5}],
  "pointables":[
  {"id":91,"handId":9,"tipPosition":[5,6,7],"dipPosition":[5,6,8],"extended":true,"width":16},
  {"id":90,"handId":9,"type":0,"btipPosition":[1,1,1]},
- {"id":99,"handId":9,"tipPosition":[0,0,0]}, {"id":1,"handId":9,"type":3,"tool":true,"tipPosition":[0,0,0]}]}"#;
+ {"id":99,"handId":9,"tipPosition":[0,0,0]}, 
+   {"id":1,"handId":9,"type":3,"tool":true,"tipPosition":[0,0,0]}]}"#;
 
 #[test]
 fn a_frame_reads_and_what_is_wrong_in_it_is_absent() {
@@ -54,7 +57,8 @@ fn the_other_messages() {
         parse_message(r#"{"serviceVersion":"2.3","version":6}"#),
         Ok(Message::Version(Some(6)))
     );
-    let event = r#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"x","streaming":false,"type":"p"}}}"#;
+    let event = r#"{"event":{"type":"deviceEvent","state":
+        {"attached":true,"id":"x","streaming":false,"type":"p"}}}"#;
     assert_eq!(
         parse_message(event),
         Ok(Message::Device { attached: Some(true), streaming: Some(false) })
@@ -67,7 +71,8 @@ fn the_other_messages() {
 fn words_that_are_not_json_are_read_as_absent_numbers() {
     for word in ["nan", "-nan", "NaN", "-nan(ind)", "inf", "-Infinity"] {
         let text = format!(
-            r#"{{"hands":[{{"id":1,"palmPosition":[1,2,3],"wrist":[{word},0,0],"type":"in\"f nan"}}],"timestamp":5}}"#
+            r#"{{"hands":[{{"id":1,"palmPosition":[1,2,3],"wrist":[{word},0,0],
+                "type":"in\"f nan"}}],"timestamp":5}}"#
         );
         let f = parse_frame(&text).unwrap_or_else(|e| panic!("{word}: {e}"));
         assert!(f.mended && f.hands.hands[0].wrist.is_none() && f.hands.count == 1, "{word}");
@@ -121,7 +126,9 @@ fn all_finite(f: &Frame) -> bool {
 
 proptest! {
     #[test]
-    fn a_frame_with_bytes_changed_never_panics(at in prop::collection::vec((0..FRAME.len(), 32u8..127), 1..8)) {
+    fn a_frame_with_bytes_changed_never_panics(
+        at in prop::collection::vec((0..FRAME.len(), 32u8..127), 1..8)
+    ) {
         let mut text = FRAME.as_bytes().to_vec();
         for (i, b) in at { text[i] = b; }
         if let Ok(f) = parse_frame(&String::from_utf8(text).unwrap()) {
@@ -132,8 +139,10 @@ proptest! {
 
 #[test]
 fn a_frame_file_tells_time_by_the_stamps() {
-    let text = "{\"version\":6}\n{\"timestamp\":100,\"hands\":[]}\n\n{\"timestamp\":9100,\"hands\":[]}\n\
-                {\"timestamp\":50,\"hands\":[]}\n{\"hands\":[]}\n{\"timestamp\":99000000,\"hands\":[]}";
+    let text = "{\"version\":6}\n{\"timestamp\":100,\"hands\":[]}\n\n\
+               {\"timestamp\":9100,\"hands\":[]}\n\
+                {\"timestamp\":50,\"hands\":[]}\n{\"hands\":[]}\n\
+                {\"timestamp\":99000000,\"hands\":[]}";
     let times: Vec<u64> =
         FrameFile::from_reader(text.as_bytes()).unwrap().map(|l| l.unwrap().0).collect();
     assert_eq!(times, [0, 0, 9000, 19_000, 29_000, 39_000]);

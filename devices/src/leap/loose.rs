@@ -9,7 +9,7 @@ use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, SeqAccess, Vis
 /// Beyond ten metres nothing over a tracker can be; such a number is a fault and reads as absent.
 const MAX_MM: f32 = 10_000.0;
 
-/// Any scalar, told apart only as far as hands need it.
+/// Any scalar, distinguished only as far as hands need it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) enum Scalar {
     #[default]

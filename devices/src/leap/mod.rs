@@ -1,6 +1,6 @@
 //! Tracked hands over the Leap WebSocket protocol, versions 6 and 7.
 //!
-//! Laws kept here:
+//! Rules:
 //! * Nothing that a server can send panics, allocates without bound, or yields a number that is not
 //!   finite.
 //! * A field that is missing, null, of the wrong shape or out of reason is an absence, not an

@@ -151,7 +151,9 @@ fn op() -> impl Strategy<Value = Op> {
 
 proptest! {
     #[test]
-    fn no_order_of_events_breaks_the_laws(ops in prop::collection::vec(op(), 1..400), capacity in 1..8usize) {
+    fn no_order_of_events_breaks_the_laws(
+        ops in prop::collection::vec(op(), 1..400), capacity in 1..8usize
+    ) {
         let (factory, mut rx) = channel(capacity);
         let mut tx = factory.sender();
         let mut down = [false; 3];
@@ -173,7 +175,9 @@ proptest! {
             if rx.drain(usize::MAX, &mut got) == 0 && done { break }
         }
         for d in 0..3 {
-            let of = |v: &[Sample]| v.iter().filter(|s| s.device.0 == d).copied().collect::<Vec<_>>();
+            let of = |v: &[Sample]| {
+                v.iter().filter(|s| s.device.0 == d).copied().collect::<Vec<_>>()
+            };
             let (sent, got) = (of(&sent), of(&got));
             prop_assert!(got.windows(2).all(|w| w[0].t_us < w[1].t_us), "order and no doubles");
             let edges = |v: &[Sample]| {
@@ -182,7 +186,8 @@ proptest! {
                 e
             };
             prop_assert_eq!(edges(&sent), edges(&got), "each edge at its own instant");
-            prop_assert_eq!(sent.last().map(|s| s.t_us), got.last().map(|s| s.t_us), "the newest word arrives");
+            let newest = |v: &[Sample]| v.last().map(|s| s.t_us);
+            prop_assert_eq!(newest(&sent), newest(&got), "the newest sample arrives");
             let c = rx.stats().of(DeviceId(d));
             prop_assert_eq!(c.sent, sent.len() as u64);
             prop_assert_eq!((c.received, c.lost_motion + c.lost_transition), (got.len() as u64, 0));

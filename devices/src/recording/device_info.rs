@@ -11,7 +11,7 @@ pub enum DeviceKind {
     Hand,
 }
 
-/// What plays.
+/// The device of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeviceInfo {
     /// Name of the model, or of the device where the model is not known.

@@ -65,7 +65,7 @@ impl HandRecording {
         }
     }
 
-    /// The last word: every hand has gone.
+    /// The last sample: every hand has left.
     pub(super) fn farewell(&self, device: DeviceId, offset_us: u64) -> Option<Sample> {
         let (t_us, device_t_us, last) = self.frames.last()?;
         let gone = Hands { frame: last.frame.saturating_add(1), ..Hands::default() };

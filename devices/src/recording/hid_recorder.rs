@@ -206,7 +206,8 @@ mod tests {
 
     #[test]
     fn two_devices_and_their_reports() {
-        let text = "# note\nD:1\nR: 2 05 0d\nN: One\nP: usb-1/input1\nI: 3 056a 005E\nD: 0\nR: 1 00\nI: 3 056A 005b\n\
+        let text = "# note\nD:1\nR: 2 05 0d\nN: One\nP: usb-1/input1\nI: 3 056a 005E\nD: 0\nR: 1 \
+                   00\nI: 3 056A 005b\n\
                     E: 1.000000 2 02 80\nD:1\nE: 1.010500 1 ff\nE: 0.5 0\n";
         let got = parse(text).unwrap();
         assert_eq!((got.interfaces[0].pid, got.interfaces[1].pid), (0x5e, 0x5b));

@@ -1,4 +1,5 @@
-//! Recordings: raw stamped bytes of real devices, and how they are fed again through the live path.
+//! Recordings: the raw bytes of real devices with their times, and how they are played through the
+//! live decoders.
 
 mod device_info;
 mod hands;

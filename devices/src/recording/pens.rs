@@ -15,7 +15,7 @@ const MOST_OUTSIDE: u64 = 50;
 #[derive(Debug)]
 pub(super) struct PenPlayer {
     pub recording: HidRecording,
-    /// One for each interface that is read; the others are left alone.
+    /// One for each interface that is read, `None` for the others.
     decoders: Vec<Option<Decoder>>,
 }
 
@@ -152,8 +152,8 @@ fn same_device(known: &Found, who: &Identity) -> bool {
     known.id().vid == who.vid && known.id().pid == who.pid
 }
 
-/// Of namesakes, the smallest whose active area holds everything that was sent. Said in the note:
-/// it is a choice, not knowledge.
+/// Of models that match equally well, the smallest whose area holds every position of the
+/// recording. The note says that it is a choice.
 fn choose<'a>(
     mut many: Vec<Found>,
     reports: impl Iterator<Item = &'a [u8]>,

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! sculptd-recording 1
-//! {"interface":0,"vid":1386,"pid":184,"number":0,"name":"...","serial":"...","descriptor":"0501...","strings":{"201":"2003..."}}
+//! {"interface":0,"vid":1386,"pid":184,"number":0,"name":"...","serial":"...","descriptor":"05..."}
 //! 0 0 02c28042480de2110000
 //! 0 3932 02e01e050bcf00217fc2
 //! ```

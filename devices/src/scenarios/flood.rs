@@ -98,7 +98,8 @@ fn nothing_but_motion_is_ever_lost() {
     }
     let total = stats.total();
     println!(
-        "{seconds} s, {stalls} stalls of 300 ms: {total:?}; from read to channel {p99:?} us in the slowest of 8"
+        "{seconds} s, {stalls} stalls of 300 ms: {total:?}; from read to channel {p99:?} us in \
+         the slowest of 8"
     );
     assert_eq!(total.sent, total.received + total.coalesced + total.lost_motion);
     assert_eq!((total.lost_transition, total.closed), (0, 0));

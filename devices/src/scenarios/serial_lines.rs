@@ -231,7 +231,9 @@ mod any_bytes {
 
     proptest! {
         #[test]
-        fn never_panic_and_never_leave_the_tablet(bytes in prop::collection::vec(any::<u8>(), 0..600), which in 0..4usize) {
+        fn never_panic_and_never_leave_the_tablet(
+            bytes in prop::collection::vec(any::<u8>(), 0..600), which in 0..4usize
+        ) {
             let (facts, _) = crate::sim::serial::stream(ALL[which], &journal().pen, 0..1);
             let mut d = crate::serial::SerialDecoder::new(&facts, DeviceId(0));
             let mut got = Vec::new();
@@ -240,8 +242,10 @@ mod any_bytes {
             }
             d.leave(1 << 20, &mut |s| got.push(pen(&s)));
             for p in &got {
-                prop_assert!(p.pos_mm.cmpge(glam::Vec2::ZERO).all() && p.pos_mm.cmple(p.area_mm).all());
-                prop_assert!(p.pressure.is_none_or(|v| (0.0..=1.0).contains(&v)) && (p.in_range || !p.tip));
+                let (low, high) = (glam::Vec2::ZERO, p.area_mm);
+                prop_assert!(p.pos_mm.cmpge(low).all() && p.pos_mm.cmple(high).all());
+                prop_assert!(p.pressure.is_none_or(|v| (0.0..=1.0).contains(&v)));
+                prop_assert!(p.in_range || !p.tip);
             }
             prop_assert!(got.last().is_none_or(|p| !p.in_range), "every visit ends");
         }

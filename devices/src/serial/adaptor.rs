@@ -1,4 +1,4 @@
-//! The live port: finds the tablet, reads it, and looks for it again when it goes.
+//! The live port: finds the tablet, reads it, and looks for it again after it was unplugged.
 
 use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,8 +14,8 @@ use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// A line that is silent for so long has ended its packet: four bytes at 19200, three at 9600 take
-/// less or about it.
+/// A line that is silent for this long has ended its packet: about the time of four bytes at 19200
+/// baud or three at 9600.
 const QUIET: Duration = Duration::from_millis(2);
 /// How long a read waits while nothing is held back.
 const READ_SLICE: Duration = Duration::from_millis(20);
@@ -29,27 +29,27 @@ pub struct SerialConfig {
     /// The port that a tablet is on, such as `/dev/ttyS0` or `COM3`.
     pub port: Option<String>,
     /// Ports that may be asked when none is named; a name may end in `*`. Empty: none. Asking
-    /// writes to the port, and what is there may not like it.
+    /// writes to the port, which may disturb another device there.
     pub probe: Vec<String>,
-    /// What it speaks; `None`: found by asking, which takes up to five seconds a port.
+    /// The protocol. `None`: the tablet is asked, which takes up to five seconds a port.
     pub protocol: Option<Protocol>,
     /// Fingers on an ISDV4 screen become samples too.
     pub touch: bool,
     /// What the person set for the tablet there.
     pub calibration: Calibration,
-    /// Under which id its samples go out.
+    /// The device number of its samples.
     #[serde(skip)]
     pub device: DeviceId,
 }
 
-/// How the line stands.
+/// The state of the reader.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct SerialStatus {
     /// A tablet was found and is read.
     pub connected: bool,
     /// The port that it is on.
     pub port: Option<String>,
-    /// What it speaks.
+    /// The protocol.
     pub protocol: Option<Protocol>,
     /// What it calls itself.
     pub model: Option<String>,
@@ -243,7 +243,7 @@ impl SerialReader {
             (self.clock.now_us(), self.second, decoder.counts.packets);
         let rate = (now >= from + 1_000_000).then(|| {
             self.second = (now, packets);
-            // A new line counts from nought again.
+            // A new connection counts from 0 again.
             packets.saturating_sub(before) as f32 * 1e6 / (now - from) as f32
         });
         self.note(|s| {

@@ -26,7 +26,7 @@ pub struct SerialCounts {
     pub suspect: u64,
     /// Bytes outside any packet.
     pub stray: u64,
-    /// Whole, and yet not to be believed: off the tablet.
+    /// Complete packets with a position outside the tablet.
     pub broken: u64,
 }
 
@@ -44,7 +44,7 @@ pub struct SerialDecoder {
 }
 
 impl SerialDecoder {
-    /// A decoder for a tablet that said these facts of itself.
+    /// A decoder for a tablet with these facts.
     pub fn new(facts: &SerialFacts, device: DeviceId) -> Self {
         let pen = PenState::new(PenConfig {
             device,

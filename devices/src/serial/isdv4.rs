@@ -9,7 +9,7 @@ use crate::sample::Tool;
 pub const PEN_LENGTH: usize = 9;
 /// Bytes of an answer.
 pub const CONTROL_LENGTH: usize = 11;
-/// SerialCounts a mm: the protocol's own, not the device's word.
+/// Counts a mm. The protocol fixes it; the device does not state it.
 pub const PER_MM: f32 = 100.0;
 
 /// The reply to `*`.
@@ -144,7 +144,8 @@ impl Isdv4Layout {
         }
         let f2 = b0 & 4 != 0;
         // One bit means two things: set as the pen enters it is the eraser, set later the second
-        // button. An eraser whose bit goes was a pen all along.
+        // button. If the eraser's bit disappears during the visit, the tool was a pen from the
+        // start.
         self.visit = match self.visit {
             FingerVisit::Nothing | FingerVisit::Finger if f2 => FingerVisit::Eraser,
             FingerVisit::Eraser if f2 => FingerVisit::Eraser,
@@ -177,7 +178,7 @@ impl Isdv4Layout {
         Some([one(7, x), one(8, y)])
     }
 
-    /// The first finger, on the pen's scale. A pen that is there has the word.
+    /// The first finger, on the pen's scale. A pen in range takes precedence.
     fn finger(&mut self, b: &[u8]) -> Parsed {
         let Some(touch) = self.touch.filter(|_| self.fingers) else { return Parsed::Nothing };
         if matches!(self.visit, FingerVisit::Pen | FingerVisit::Eraser) {

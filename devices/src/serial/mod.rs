@@ -1,10 +1,10 @@
 //! Serial pens: Wacom ISDV4 (W8001), Wacom IV and V, SummaSketch MM.
 //!
 //! ```text
-//! port -> bytes -> framer (whole packets only) -> layout (one file a protocol) -> PenState -> Sample
+//! port -> bytes -> framer (complete packets) -> layout of the protocol -> PenState -> Sample
 //! ```
 //!
-//! Laws kept here:
+//! Rules:
 //! * None of these protocols has a checksum; all set bit 7 of a packet's first byte and of no
 //!   other. A packet becomes a point only if it has its full length **and** the next byte begins
 //!   another, or the line falls silent. So a packet with a byte cut, lost or doubled never becomes
@@ -30,7 +30,7 @@ pub use decoder::{SerialCounts, SerialDecoder};
 
 use crate::report::Parsed;
 
-/// What a serial tablet speaks.
+/// The protocol of a serial tablet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
@@ -44,7 +44,7 @@ pub enum Protocol {
     SummaMm,
 }
 
-/// What a tablet said of itself when it was asked.
+/// The facts that a tablet states when it is asked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SerialFacts {
     /// Name for people.

@@ -1,4 +1,4 @@
-//! Asking a serial line what is at its other end, and making it speak.
+//! Asks what is at the other end of a serial line, and starts its stream of packets.
 
 use std::io::{self, Read, Write};
 use std::time::Duration;
@@ -40,7 +40,7 @@ impl Wire for Box<dyn serialport::SerialPort> {
     }
 }
 
-/// What ends an answer.
+/// How the end of an answer is found.
 #[derive(Debug, Clone, Copy)]
 enum End {
     /// So many bytes from the first with bit 7 set.
@@ -54,7 +54,8 @@ enum End {
 pub(crate) const PROBE_ORDER: [Protocol; 4] =
     [Protocol::Isdv4, Protocol::WacomV, Protocol::WacomIv, Protocol::SummaMm];
 
-/// Greets the tablet and starts its stream. `Ok(None)`: nothing that speaks this answered.
+/// Asks for the tablet's facts and starts its stream. `Ok(None)`: nothing answered in this
+/// protocol.
 pub(crate) fn open(
     wire: &mut dyn Wire,
     protocol: Protocol,

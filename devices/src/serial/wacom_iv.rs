@@ -25,7 +25,7 @@ impl WacomIvLayout {
         let graphire = model.starts_with("ET");
         let plain = model.starts_with("UD") && version.0 == 1 && version.1 <= 2;
         let fine = graphire || ["PL-710", "PL-550", "PL-800"].iter().any(|m| model.starts_with(m));
-        // From ROM 1.4 on a UD tells tilt.
+        // From ROM 1.4 on a UD tablet reports tilt.
         let tilt = model.starts_with("UD") && version >= (1, 4);
         WacomIvLayout {
             max,

@@ -1,30 +1,30 @@
-//! What goes wrong on a wire, as ratios and a seed.
+//! Faults of a connection, as ratios and a seed.
 
 use serde::{Deserialize, Serialize};
 
-/// The share of packets that each fault befalls, 0 to 1. All zero by default: a good line.
+/// The share of packets that each fault applies to, 0 to 1. All are 0 by default: no faults.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Faults {
     /// The same seed gives the same faults.
     pub seed: u64,
-    /// Never arrives.
+    /// The packet does not arrive.
     pub drop: f32,
-    /// Arrives twice.
+    /// The packet arrives twice.
     pub duplicate: f32,
-    /// Arrives after its successor.
+    /// The packet arrives after the next one.
     pub reorder: f32,
-    /// Only a beginning arrives.
+    /// Only the beginning of the packet arrives.
     pub tear: f32,
-    /// The line stands still, and then gives what gathered in the meantime at once.
+    /// The connection stalls, and then delivers everything that was sent in the meantime at once.
     pub stall: f32,
     /// The device's own clock jumps.
     pub clock_jump: f32,
-    /// The device goes away, and may be found again.
+    /// The device is unplugged; its owner may plug it in again.
     pub unplug: f32,
 }
 
-/// What happens next on the line.
+/// One event of the connection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event<T> {
     /// The packet arrives as it was sent.
@@ -75,7 +75,7 @@ impl Rng {
 pub struct Line<T> {
     faults: Faults,
     rng: Rng,
-    /// A packet that its successor overtakes.
+    /// A packet that the next one overtakes.
     held: Option<T>,
 }
 
@@ -88,8 +88,8 @@ impl<T: Clone> Line<T> {
     /// Puts a packet on the line.
     pub fn pass(&mut self, packet: T, mut out: impl FnMut(Event<T>)) {
         let f = self.faults;
-        // Each fault draws whether or not an earlier one struck, so that one ratio does not shift
-        // another's fate.
+        // Each fault draws a random number whether or not an earlier fault happened, so that one
+        // ratio does not change the outcome of another.
         let [drop, duplicate, reorder, tear, stall, jump, unplug] =
             [f.drop, f.duplicate, f.reorder, f.tear, f.stall, f.clock_jump, f.unplug]
                 .map(|r| self.rng.unit() < r);

@@ -86,8 +86,8 @@ impl JitterState {
 
     fn one(&mut self, slot: usize, hand: &Hand) -> Option<Hand> {
         let f = self.figures;
-        // Every draw is made whether or not it is needed, so that one ratio does not shift
-        // another's fate.
+        // Every random number is drawn whether or not it is needed, so that one ratio does not
+        // change the outcome of another.
         let [drop, renamed, occluded] =
             [f.dropout, f.new_id, f.occlude].map(|r| self.rng.unit() < r);
         let (span, which) = (1 + self.rng.below(7) as u32, 2 + self.rng.below(3) as usize);

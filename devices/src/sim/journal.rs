@@ -1,5 +1,5 @@
-//! The performance of the demo and of the ghosts: a pen that shapes a form, a hand that dips in, a
-//! serial pen that adds the finish.
+//! What the simulated devices of the demo do: a pen shapes a form, a hand follows, and a serial pen
+//! finishes.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,10 +1,9 @@
-//! Simulated devices that speak bytes: what they say goes through the same parsers and reader
-//! threads as a real device's.
+//! Simulated devices that send bytes through the same parsers and reader threads as real devices.
 //!
-//! A **script** ([`PenScript`], [`HandScript`]) says where a pen or a hand is at any instant; a
-//! **device** ([`Tracker`] and its fellows) turns that into wire bytes; [`Faults`] spoil them, the
-//! same way for the same seed. A device can be stepped (`advance(until)`), so that with a manual
-//! [`crate::Clock`] two runs give the same bits.
+//! A **script** ([`PenScript`], [`HandScript`]) gives the position of a pen or a hand at any
+//! instant. A **device** ([`SimTablet`], [`SerialPen`], [`Tracker`]) turns it into bytes.
+//! [`Faults`] damage the bytes, in the same way for the same seed. The owner advances a device
+//! (`advance(until)`), so that with a manual [`crate::Clock`] two runs give the same bits.
 //!
 //! A hand tracker, its client, and every frame of a performance, with no hardware and no waiting
 //! for the clock:

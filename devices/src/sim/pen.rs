@@ -9,7 +9,7 @@ const HOVER: f32 = 0.5;
 const REST_US: u64 = 1_200_000;
 /// A pen comes into range this long before a stroke, and stays this long after it.
 const HOVER_US: u64 = 150_000;
-/// A tip presses and lets go over this time.
+/// Pressure rises and falls over this time.
 const PRESS_US: u64 = 90_000;
 
 /// A curve on the tablet, in mm from its top left.

@@ -15,7 +15,8 @@ fn folder() -> PathBuf {
 /// The text of `src/builtin.rs` for these files.
 fn list_of(files: &[PathBuf]) -> String {
     let mut out = String::from(
-        "//! The tablet files that are built in, one line each. A test holds this list to the folder, and\n\
+        "//! The tablet files that are built in, one line each. A test holds this list to the \
+         folder, and\n\
          //! writes it anew when `SCULPTD_BLESS` is set.\n\n\
          /// Name and text of each file of `tablets/`, in alphabetical order.\n\
          #[rustfmt::skip]\n\

@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
-use crossbeam_channel as cc;
 use egui_winit::accesskit_winit::WindowEvent as Heard;
 use glam::{DVec3, Vec2};
 use winit::application::ApplicationHandler;

@@ -7,7 +7,7 @@ use crate::sim::pen::PenPose;
 
 const TILT_LIMIT: f32 = 60.0;
 
-/// A tablet of one protocol: what it says of itself, and how it writes a pose.
+/// A tablet of one protocol: its answers to the host and the packets for a pose.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
     pub(super) facts: SerialFacts,
@@ -48,7 +48,8 @@ impl Model {
         Model { facts, protocol, eraser_in: None }
     }
 
-    /// The packets for one instant; none while the pen is away and that has been said.
+    /// The packets for one instant. Empty while the pen is out of range, after the packet that says
+    /// so.
     pub(super) fn packets(&mut self, pose: &PenPose) -> Vec<Vec<u8>> {
         let mut out = Vec::new();
         if self.eraser_in.is_some_and(|e| !pose.in_range || e != pose.eraser) {

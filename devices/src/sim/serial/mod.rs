@@ -18,8 +18,8 @@ use crate::device_thread::{self, DeviceThread};
 use crate::sample::DeviceId;
 use crate::serial::{Protocol, SerialDecoder, SerialFacts};
 
-/// The packets that a pen on this script gives over a span of time, and what its tablet says of
-/// itself: for tests that need bytes and no port.
+/// The packets that a pen on this script sends over a span of time, and the facts of its tablet.
+/// For tests that need bytes and no port.
 pub fn stream(
     protocol: Protocol,
     script: &PenScript,
@@ -30,7 +30,7 @@ pub fn stream(
     (model.facts, packets)
 }
 
-/// How often the line is looked at for questions.
+/// How often the line is read for questions of the host.
 const LISTEN: Duration = Duration::from_millis(3);
 /// Attempts of 100 ms each before a reader that does not read is given up.
 const WRITE_ATTEMPTS: usize = 20;
@@ -38,7 +38,7 @@ const WRITE_ATTEMPTS: usize = 20;
 /// What a simulated serial pen is and how well its line works.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SerialPenConfig {
-    /// What it speaks.
+    /// The protocol.
     pub protocol: Protocol,
     /// Width and height of its active area in mm.
     pub area_mm: Vec2,
@@ -46,7 +46,7 @@ pub struct SerialPenConfig {
     pub rate: f32,
     /// The script begins again after so long.
     pub repeat_us: Option<u64>,
-    /// `drop` and `duplicate` befall one byte of a packet here, `tear` cuts its end off.
+    /// Here `drop` and `duplicate` apply to one byte of a packet, and `tear` cuts the end off.
     pub faults: Faults,
 }
 
@@ -63,7 +63,7 @@ impl SerialPenConfig {
     }
 }
 
-/// The device, stepped by its owner.
+/// The simulated device. Its owner advances it.
 #[derive(Debug)]
 pub struct SerialPen {
     config: SerialPenConfig,
@@ -75,12 +75,12 @@ pub struct SerialPen {
     name: String,
     streaming: Arc<AtomicBool>,
     rng: Rng,
-    /// The last packet was not whole.
+    /// The last packet was damaged.
     spoilt: bool,
     next_us: u64,
     stalled_until_us: u64,
     backlog: Vec<u8>,
-    /// What a reader makes of the same bytes: by it the expected samples are counted.
+    /// Decodes the same bytes, to count the samples that a reader is expected to make.
     reader: SerialDecoder,
     listener: Option<DeviceThread>,
 }

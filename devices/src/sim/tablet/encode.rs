@@ -20,7 +20,7 @@ pub(super) struct Encoder {
     quirks: Vec<Quirk>,
     /// Longest report as the model's file has it.
     length: usize,
-    /// Bytes before each report, as the maker's Windows driver puts them.
+    /// Bytes that the vendor's Windows driver puts before each report.
     skip: usize,
     /// `Some(eraser)` while the pen is in range.
     inside: Option<bool>,
@@ -46,7 +46,8 @@ impl Encoder {
         reports::away(self.family).is_some()
     }
 
-    /// The reports for one instant; none while the pen is away and that has been said.
+    /// The reports for one instant. Empty while the pen is out of range, after the report that says
+    /// so.
     pub(super) fn reports(&mut self, pose: &PenPose) -> Vec<Vec<u8>> {
         let mut out = Vec::new();
         if self.inside.is_some_and(|e| !pose.in_range || e != pose.eraser) {
@@ -68,7 +69,7 @@ impl Encoder {
         out
     }
 
-    /// What a family says as a pen enters, before its first place.
+    /// The report that a family sends as a pen enters, before the first position.
     fn enter(&self, eraser: bool) -> Option<Vec<u8>> {
         (self.family == Family::WacomIntuosV1).then(|| {
             // Numbers of an Intuos 4 pen and of its other end.

@@ -21,7 +21,8 @@ use crate::hid::transport::Transport;
 use crate::sample::DeviceId;
 use crate::tablet::Family;
 
-/// Reports that wait for a reader: what the kernel's hidraw keeps. The newest is dropped, as there.
+/// Reports that wait for a reader: as many as Linux hidraw keeps. As there, the newest one is
+/// dropped.
 const KERNEL_KEEPS: usize = 63;
 
 /// How a simulated tablet behaves.
@@ -48,8 +49,8 @@ impl Default for TabletConfig {
     }
 }
 
-/// How a model shows itself on the bus, as its file says: what a catalogue is asked with. `None`:
-/// no model of this name.
+/// The identity that a model has on the bus by its file, for [`Catalogue::identify`]. `None` where
+/// no model has this name.
 pub fn identity(catalogue: &Catalogue, name: &str) -> Option<Identity> {
     let tablet = catalogue.tablets().iter().find(|t| t.name == name)?;
     let id = tablet.id.first()?;
@@ -76,7 +77,7 @@ pub fn generic_identity() -> Identity {
     }
 }
 
-/// The device, stepped by its owner.
+/// The simulated device. Its owner advances it.
 #[derive(Debug)]
 pub struct SimTablet {
     config: TabletConfig,
@@ -87,9 +88,9 @@ pub struct SimTablet {
     next_us: u64,
     stalled_until_us: u64,
     backlog: Vec<Vec<u8>>,
-    /// What a reader makes of the same bytes: by it the expected samples are counted.
+    /// Decodes the same bytes, to count the samples that a reader is expected to make.
     reader: Decoder,
-    /// Reports dropped because nobody read.
+    /// Reports that were dropped because no reader took them.
     pub dropped: u64,
     asked: Arc<Mutex<Vec<Vec<u8>>>>,
 }

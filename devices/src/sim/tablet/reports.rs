@@ -16,7 +16,7 @@ pub(super) struct PoseCounts {
     pub(super) buttons: u32,
 }
 
-/// A plain pen as its descriptor below says: what the generic parser reads.
+/// The report descriptor of a plain pen, for the parser that reads by descriptor.
 pub(super) const GENERIC_DESCRIPTOR: &[u8] = &[
     0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x20, 0xa1,
     0x00, // Pen, report 1, stylus
@@ -67,7 +67,7 @@ impl PoseCounts {
     }
 }
 
-/// What a family says as the pen leaves; `None`: nothing.
+/// The report that a family sends as the pen leaves; `None` where it sends none.
 pub(super) fn away(family: Family) -> Option<Vec<u8>> {
     let of = |length: usize, start: &[u8]| {
         let mut b = start.to_vec();

@@ -13,8 +13,15 @@ pub fn frame_json(hands: &Hands, stamp: u64, rate: f32) -> String {
     let mut out = String::with_capacity(1024 + 8192 * hands.count as usize);
     let _ = write!(
         out,
-        r#"{{"currentFrameRate":{rate},"id":{},"timestamp":{stamp},"r":[[1,0,0],[0,1,0],[0,0,1]],"s":1,"t":[0,0,0],"gestures":[],"interactionBox":{{"center":[0,200,0],"size":[235.247,235.247,147.751]}},"hands":["#,
-        hands.frame
+        concat!(
+            r#"{{"currentFrameRate":{rate},"id":{},"timestamp":{stamp},"#,
+            r#""r":[[1,0,0],[0,1,0],[0,0,1]],"s":1,"t":[0,0,0],"gestures":[],"#,
+            r#""interactionBox":{{"center":[0,200,0],"size":[235.247,235.247,147.751]}},"#,
+            r#""hands":["#
+        ),
+        hands.frame,
+        rate = rate,
+        stamp = stamp
     );
     for (i, hand) in hands.as_slice().iter().enumerate() {
         out.push_str(if i > 0 { "," } else { "" });
@@ -39,7 +46,11 @@ fn write_hand(out: &mut String, h: &Hand) {
     let velocity = h.palm_velocity.unwrap_or_default();
     let _ = write!(
         out,
-        r#"{{"id":{},"type":"{}","confidence":{},"grabStrength":{},"pinchStrength":{},"timeVisible":{},"palmWidth":{},"armWidth":60,"sphereRadius":{},"r":[[1,0,0],[0,1,0],[0,0,1]],"s":1,"t":[0,0,0]"#,
+        concat!(
+            r#"{{"id":{},"type":"{}","confidence":{},"grabStrength":{},"pinchStrength":{},"#,
+            r#""timeVisible":{},"palmWidth":{},"armWidth":60,"sphereRadius":{},"#,
+            r#""r":[[1,0,0],[0,1,0],[0,0,1]],"s":1,"t":[0,0,0]"#
+        ),
         h.id,
         if h.left == Some(true) { "left" } else { "right" },
         h.confidence.unwrap_or(1.0),
@@ -68,9 +79,14 @@ fn write_finger(out: &mut String, h: &Hand, kind: usize, f: &Finger) {
     let length: f32 = joints[1..].windows(2).map(|w| w[0].distance(w[1])).sum();
     let _ = write!(
         out,
-        r#"{{"id":{},"handId":{},"type":{kind},"tool":false,"length":{length},"width":{},"extended":{},"touchZone":"none","touchDistance":1,"timeVisible":{}"#,
+        concat!(
+            r#"{{"id":{},"handId":{},"type":{},"tool":false,"length":{},"width":{},"#,
+            r#""extended":{},"touchZone":"none","touchDistance":1,"timeVisible":{}"#
+        ),
         10 * h.id + kind as i32,
         h.id,
+        kind,
+        length,
         f.width.unwrap_or(18.0),
         f.extended.unwrap_or(true),
         h.time_visible.unwrap_or(0.0),

@@ -21,7 +21,7 @@ use crate::sample::Hands;
 
 pub use self::encode::frame_json;
 
-/// What the tracker's own clock says when the simulation begins: no real one begins at nought.
+/// The tracker's own clock at the start of the simulation. Real trackers do not start at 0.
 const CLOCK_ORIGIN_US: u64 = 3_600_000_000;
 
 /// How a simulated tracker behaves.
@@ -39,7 +39,7 @@ pub struct TrackerConfig {
     pub repeat_us: Option<u64>,
     /// How well its line works.
     pub faults: Faults,
-    /// How well it sees.
+    /// Noise and lost hands.
     pub jitter: Jitter,
 }
 
@@ -56,7 +56,7 @@ impl Default for TrackerConfig {
     }
 }
 
-/// The device, stepped by its owner.
+/// The simulated device. Its owner advances it.
 #[derive(Debug)]
 pub struct Tracker {
     config: TrackerConfig,
@@ -81,8 +81,7 @@ struct Packet {
     hands: u8,
 }
 
-/// What a client that keeps to the rules has taken in so far; by it the expected samples are
-/// counted.
+/// What a correct client has received so far, to count the samples that are expected of it.
 #[derive(Debug, Default)]
 struct ClientSeen {
     last: Option<(i64, u64, u8)>,
@@ -100,7 +99,7 @@ impl ClientSeen {
         1
     }
 
-    /// The connection broke: hands that were there are said to be gone.
+    /// The connection broke: a client reports that the hands have left.
     fn broken(&mut self) -> u32 {
         u32::from(self.last.take().is_some_and(|(_, _, hands)| hands > 0))
     }
@@ -150,7 +149,7 @@ impl Tracker {
         self.server.clients()
     }
 
-    /// Everything that clients have asked for, in order.
+    /// Every request that clients have sent, in order.
     pub fn wishes(&self) -> Vec<String> {
         self.server.wishes()
     }

@@ -75,14 +75,15 @@ impl Server {
         waited.unwrap_or_else(PoisonError::into_inner).0.open.len() >= n
     }
 
-    /// Writes to every client; how many took it. One that does not is let go.
+    /// Writes to every client and returns how many took it. A client that does not take it is
+    /// disconnected.
     pub(super) fn send(&self, text: &str) -> usize {
         let mut clients = self.lock();
         clients.open.retain_mut(|c| c.send(Message::text(text)).is_ok());
         clients.open.len()
     }
 
-    /// Reads what clients have said meanwhile.
+    /// Reads the messages that clients have sent since the last call.
     pub(super) fn listen(&self) {
         let mut clients = self.lock();
         let Clients { open, wishes } = &mut *clients;
@@ -131,7 +132,7 @@ fn accept(listener: &TcpListener, origins: &[String], shared: &ServerShared, sto
     }
 }
 
-/// Shakes hands, then says the version and that a tracker is there.
+/// Does the WebSocket handshake, then sends the version and the event of an attached tracker.
 fn welcome(stream: TcpStream, origins: &[String]) -> Result<WebSocket<TcpStream>, String> {
     let prepared = stream
         .set_nonblocking(false)
@@ -159,8 +160,11 @@ fn welcome(stream: TcpStream, origins: &[String]) -> Result<WebSocket<TcpStream>
         .map_err(|e| e.to_string())?;
     for hello in [
         format!(r#"{{"serviceVersion":"sculptd","version":{version}}}"#),
-        r#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"SIM","streaming":true,"type":"peripheral"}}}"#
-            .to_owned(),
+        concat!(
+            r#"{"event":{"type":"deviceEvent","state":{"attached":true,"id":"SIM","#,
+            r#""streaming":true,"type":"peripheral"}}}"#
+        )
+        .to_owned(),
     ] {
         client.send(Message::text(hello)).map_err(|e| e.to_string())?;
     }
