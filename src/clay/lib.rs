@@ -1,11 +1,11 @@
 //! A mesh for sculpting in real time: pages, brushes, dynamic topology, undo, snapshots.
 //!
-//! Read first: [`page`] (how a mesh is kept), then [`Clay::dab`] (how it is changed), then [`brush`]
-//! (what changes it). `examples/dab_on_a_mesh.rs` does the whole in forty lines.
+//! Read first: [`page`] (how a mesh is kept), then [`Clay::dab`] (how it is changed), then
+//! [`brush`] (what changes it). `examples/dab_on_a_mesh.rs` does the whole in forty lines.
 //!
 //! Laws kept here:
-//! * The cost of a change follows the pages that it reaches, never the mesh: [`Clay::dab`], normals,
-//!   trees, undo and [`Snapshot`] alike.
+//! * The cost of a change follows the pages that it reaches, never the mesh: [`Clay::dab`],
+//!   normals, trees, undo and [`Snapshot`] alike.
 //! * Whoever holds a page may read it for ever: a page is written anew, never changed.
 //! * Same input, same bits, with any number of [`Workers`].
 //! * No clock, no IO, no randomness, no threads but those of [`Workers`]. Memory that is no longer
