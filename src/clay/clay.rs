@@ -32,7 +32,7 @@ pub struct Clay {
     pub(super) stale: Stale,
     spines: SpinePool,
     pub(super) revision: u64,
-    /// Which work this is, where several took each other's place.
+    /// Which object this is, where several took each other's place.
     pub(super) object_id: u32,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
@@ -113,7 +113,7 @@ impl Clay {
         }
     }
 
-    /// The coarser and finer levels that were made of this work, or of what it was cut from.
+    /// The coarser and finer levels that were made of this clay, or of what it was cut from.
     pub fn levels(&self) -> Option<&Arc<Levels>> {
         self.levels.as_ref()
     }
@@ -150,8 +150,8 @@ impl Clay {
         self.revision
     }
 
-    /// Which work this is, where several took each other's place: a page's number and revision name
-    /// it within one of them.
+    /// Which object this is, where several took each other's place: a page's number and revision
+    /// name it within one of them.
     pub fn object_id(&self) -> u32 {
         self.object_id
     }

@@ -4,7 +4,7 @@
 //! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
 //! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same
 //!   samples and commands, same bits, with any number of workers.
-//! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
+//! * One step is bounded: dabs stop at the budget and go on in the next step.
 
 mod saved;
 mod state;
@@ -50,7 +50,7 @@ pub struct StepReport {
     pub resting: bool,
     /// Samples of devices beyond [`MAX_PENS`].
     pub ignored: u64,
-    /// A hand asked for the thing that it holds to be joined with the work: for a worker, see
+    /// A hand asked for the object that it holds to be joined with the clay: for a worker, see
     /// [`World::thing`].
     pub join: Option<MenuItem>,
     /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the
@@ -88,7 +88,7 @@ pub struct World {
     options: WorldOptions,
     brush: BrushSettings,
     camera: Camera,
-    /// Middle and bounding radius of the work when it was put in place: the measure of brushes,
+    /// Centre and bounding radius of the object when it was put in place: the measure of brushes,
     /// mirrors and hands.
     middle: Vec3,
     extent: f32,
@@ -101,16 +101,16 @@ pub struct World {
     /// What the hands hold.
     thing: Option<HeldObject>,
     report: StepReport,
-    /// Works before and after this one, for undo.
+    /// Clay before and after this one, for undo.
     works: ReplacedClay,
     /// Takes what is no longer needed: clay that was replaced, payloads that no command took.
     garbage: GarbageSink,
     payloads: PayloadStore,
     /// What came of the cuts of this tick, in the order of their commands.
     cuts: Vec<Option<Grafted>>,
-    /// Works put in place so far.
+    /// Objects put in place so far.
     lineages: u32,
-    /// What was done in this tick, for whoever keeps the history; `None`: nobody does.
+    /// What was done in this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
 }
 
@@ -168,7 +168,7 @@ impl World {
     }
 
     /// One tick: commands first, in order, then samples in order of time (ties by device), then
-    /// what waited from before.
+    /// the path points that the budget of the tick before left over.
     pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
@@ -204,7 +204,7 @@ impl World {
                     self.put_away();
                 }
             }
-            // What was laid last goes first.
+            // A curve that a pen has laid is newer than the last step.
             Command::Undo if self.put_away() => {}
             Command::CurveStroke(act) => match act {
                 CurveAction::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
@@ -289,7 +289,7 @@ impl World {
         }
     }
 
-    /// Curves that pens have laid are put away. False: there were none.
+    /// Discards the curves that pens have laid. False: there were none.
     fn put_away(&mut self) -> bool {
         self.pens.iter_mut().fold(false, |any, s| s.track.cancel() | any)
     }
@@ -356,7 +356,7 @@ impl World {
         }
     }
 
-    /// A thing appears beside the work, a third as large as it, for the hands to carry.
+    /// An object appears beside the clay, a third as large as it, for the hands to carry.
     fn take_up(&mut self, plain: Arc<TriMesh>) {
         let (lo, hi) = plain.bounds();
         let size = (hi - lo).length() * 0.5;
@@ -445,7 +445,8 @@ impl World {
         }
     }
 
-    /// Walks what waits on every pen in turn, then the hands, until `budget` vertices were visited.
+    /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
+    /// visited.
     fn advance_strokes(&mut self, budget: u64) {
         let goes_on = self.goes_on_by_time();
         let every = self.brush.path.every_ticks as u32;

@@ -33,7 +33,7 @@ impl World {
         &self.mesh
     }
 
-    /// Steps that undo can take back, replaced works included.
+    /// Steps that undo can take back, replaced clay included.
     pub fn undo_steps(&self) -> usize {
         self.mesh.undo_steps() + self.works.past()
     }
@@ -63,7 +63,7 @@ impl World {
         self.brush.radius * self.extent
     }
 
-    /// Bounding radius of the work when it was put in place.
+    /// Bounding radius of the object when it was put in place.
     pub fn extent(&self) -> f32 {
         self.extent
     }
@@ -73,7 +73,7 @@ impl World {
         self.middle
     }
 
-    /// The tracked volume of hands over the work.
+    /// The tracked volume of hands over the object.
     pub fn volume(&self) -> &Volume {
         self.hands.volume()
     }
