@@ -5,12 +5,12 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::boxtree::BoxTree;
-use super::dab::{Bench, PhaseTimes};
+use super::dab_buffers::{DabBuffers, PhaseTimes};
 use super::garbage::GarbageSink;
 use super::page::Page;
 use super::pick;
 use super::pool::Pool;
-use super::publish::{Shelf, Stale};
+use super::publish::{SpinePool, Stale};
 use super::ray::{Hit, Ray};
 use super::reach::Reach;
 use super::snapshot::{Snapshot, Totals, hash, to_tri};
@@ -27,12 +27,12 @@ pub struct Clay {
     pub(super) top: BoxTree,
     pub(super) history: History,
     pub(super) pool: Pool,
-    pub(super) bench: Bench,
+    pub(super) buffers: DabBuffers,
     pub(super) order: Vec<u32>,
     pub(super) stale: Stale,
-    shelf: Shelf,
+    spines: SpinePool,
     pub(super) revision: u64,
-    /// Which work this is, where several took each other's place.
+    /// Which object this is, where several took each other's place.
     pub(super) object_id: u32,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
@@ -95,10 +95,10 @@ impl Clay {
             history: History::new(count),
             // A page of a strange mesh may be huge: then pooled pages grow on use instead.
             pool: Pool::new(rows.min(2048), leaves.min(512), (count / 16).clamp(8, 512)),
-            bench: Bench::new(count, rows.min(2048)),
+            buffers: DabBuffers::new(count, rows.min(2048)),
             order: Vec::with_capacity(256),
             stale: Stale::new(count),
-            shelf: Shelf::new(&pages),
+            spines: SpinePool::new(&pages),
             pages,
             revision,
             object_id: 0,
@@ -113,17 +113,18 @@ impl Clay {
         }
     }
 
-    /// The coarser and finer levels that were made of this work, or of what it was cut from.
+    /// The coarser and finer levels that were made of this clay, or of what it was cut from.
     pub fn levels(&self) -> Option<&Arc<Levels>> {
         self.levels.as_ref()
     }
 
+    /// Replaces the levels that travel with the clay.
     pub fn set_levels(&mut self, levels: Option<Arc<Levels>>) {
         self.levels = levels;
     }
 
-    /// From now on, pages and undo steps that are no longer needed go to this sink. A new clay frees
-    /// them in place.
+    /// From now on, pages and undo steps that are no longer needed go to this sink. A new clay
+    /// frees them in place.
     pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
         self.history.sink = sink.clone();
         self.pool.sink = sink;
@@ -134,10 +135,12 @@ impl Clay {
         &self.warnings
     }
 
+    /// How many vertices the clay has.
     pub fn vertex_count(&self) -> usize {
         self.vertices
     }
 
+    /// How many triangles the clay has.
     pub fn triangle_count(&self) -> usize {
         self.triangles
     }
@@ -147,13 +150,14 @@ impl Clay {
         self.revision
     }
 
-    /// Which work this is, where several took each other's place: a page's number and revision name
-    /// it within one of them.
+    /// Which object this is, where several took each other's place: a page's number and revision
+    /// name it within one of them.
     pub fn object_id(&self) -> u32 {
         self.object_id
     }
 
-    pub fn set_lineage(&mut self, object_id: u32) {
+    /// Says which object the clay is, see [`Clay::object_id`].
+    pub fn set_object_id(&mut self, object_id: u32) {
         self.object_id = object_id;
     }
 
@@ -162,6 +166,7 @@ impl Clay {
         self.top.bounds()
     }
 
+    /// How many pages there are, pages without vertices included.
     pub fn page_count(&self) -> usize {
         self.pages.len()
     }
@@ -214,7 +219,7 @@ impl Clay {
     pub fn snapshot(&mut self) -> Snapshot {
         let now = self.clock.unwrap_or(|| 0);
         let t0 = now();
-        let spine = self.shelf.publish(&self.pages, &mut self.stale);
+        let spine = self.spines.publish(&self.pages, &mut self.stale);
         self.phases.publish += now() - t0;
         Snapshot { spine, totals: self.totals(), levels: self.levels.clone() }
     }
@@ -313,7 +318,7 @@ impl Clay {
     /// Everything that has an entry a page gets one for each page that was added at the end.
     pub(super) fn grow(&mut self) {
         let count = self.pages.len();
-        self.bench.grow(count);
+        self.buffers.grow(count);
         self.history.grow(count);
         self.stale.grow(count);
         if count > self.top.leaves() {
@@ -326,10 +331,12 @@ impl Clay {
         }
     }
 
+    /// Steps that can be taken back.
     pub fn undo_steps(&self) -> usize {
         self.history.undo_steps()
     }
 
+    /// Steps that can be done again.
     pub fn redo_steps(&self) -> usize {
         self.history.redo_steps()
     }
@@ -372,6 +379,7 @@ impl Clay {
         self.pages.iter().map(|p| p.weight() + p.topology.bytes()).sum()
     }
 
+    /// What the clay takes now, bytes by part. Costs a little for each page.
     pub fn memory(&self) -> Memory {
         Memory {
             pages: self.pages.iter().map(|p| p.bytes()).sum(),

@@ -13,9 +13,8 @@
 
 use std::sync::Arc;
 
-use glam::Vec4;
-
 use super::clay::Clay;
+use super::dab_buffers::{DabBuffers, HaloPart, PageOutput, PageTask};
 use super::kernel::{Kernel, PageIn, PageOut};
 use super::normals::{MOVED, PAINTED, TURNED, around_moved};
 use super::page::{BLOCK, Page, block_of};
@@ -37,159 +36,28 @@ pub struct DabReport {
     pub pages: usize,
 }
 
-/// Nanoseconds spent since the clock was set, by phase.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct PhaseTimes {
-    pub pick: u64,
-    pub query: u64,
-    pub displace: u64,
-    pub normals: u64,
-    pub bvh: u64,
-    pub publish: u64,
-    pub undo: u64,
-}
-
-/// A page at work: what other pages' tasks may read.
-#[derive(Debug)]
-struct Slot {
-    index: u32,
-    page: Arc<Page>,
-    /// One an own vertex: [`MOVED`] and so on.
-    marks: Vec<u8>,
-    /// All marks, joined, those of the halo's homes too.
-    any: u8,
-    /// The blocks in which something moved.
-    touched: u32,
-    moved: usize,
-    affected: usize,
-    /// The page holds the old page's normals and tree already.
-    complete: bool,
-    normals_ns: u64,
-    bvh_ns: u64,
-}
-
-/// A page at work: what only its own task touches.
-#[derive(Debug)]
-struct Side {
-    /// Parts of the halo to take over.
-    incoming: Vec<Part>,
-    /// Their rows, one part after the other.
-    rows: Vec<Vec4>,
-    colours: Vec<(u16, [u8; 4])>,
-}
-
-/// Halo rows in a row that one home gives.
-#[derive(Debug, Clone, Copy)]
-struct Part {
-    first: u16,
-    count: u16,
-    /// The marks they come with, joined.
-    marks: u8,
-}
-
-impl Side {
-    /// Each part with its rows.
-    #[inline(always)]
-    fn parts(&self) -> impl Iterator<Item = (Part, &[Vec4])> {
-        let mut rows = self.rows.as_slice();
-        self.incoming.iter().map(move |&part| {
-            let (one, rest) = rows.split_at(part.count as usize);
-            rows = rest;
-            (part, one)
-        })
-    }
-}
-
-/// The memory of dabs.
-#[derive(Debug, Default)]
-pub(super) struct Bench {
-    slots: Vec<Slot>,
-    sides: Vec<Side>,
-    spare: Vec<(Slot, Side)>,
-    /// For each page its slot in this dab plus one, or 0.
-    slot_of: Vec<u32>,
-    /// What a spare slot holds: making an empty page would allocate.
-    blank: Arc<Page>,
-    /// Rows that a new slot gets room for.
-    rows: usize,
-}
-
-impl Bench {
-    /// `rows`: of the largest page.
-    pub(super) fn new(pages: usize, rows: usize) -> Self {
-        Bench { slot_of: vec![0; pages], rows, ..Bench::default() }
-    }
-
-    /// Room for any page at once, or slots would grow one by one, long into a stroke.
-    fn fresh(&self) -> (Slot, Side) {
-        let slot = Slot {
-            index: 0,
-            page: self.blank.clone(),
-            marks: Vec::with_capacity(self.rows),
-            any: 0,
-            touched: 0,
-            moved: 0,
-            affected: 0,
-            complete: false,
-            normals_ns: 0,
-            bvh_ns: 0,
-        };
-        let side = Side {
-            incoming: Vec::with_capacity(16),
-            rows: Vec::with_capacity(self.rows),
-            colours: Vec::new(),
-        };
-        (slot, side)
-    }
-
-    pub(super) fn grow(&mut self, pages: usize) {
-        self.slot_of.resize(pages, 0);
-    }
-
-    fn add(&mut self, index: u32, page: Arc<Page>) {
-        let (mut slot, mut side) = self.spare.pop().unwrap_or_else(|| self.fresh());
-        slot.index = index;
-        slot.page = page;
-        slot.marks.clear();
-        (slot.any, slot.touched, slot.moved, slot.affected, slot.complete) = (0, 0, 0, 0, false);
-        (slot.normals_ns, slot.bvh_ns) = (0, 0);
-        side.incoming.clear();
-        side.rows.clear();
-        side.colours.clear();
-        self.slots.push(slot);
-        self.sides.push(side);
-        self.slot_of[index as usize] = self.slots.len() as u32;
-    }
-
-    /// The slot of a page, if it changed in a way of `kinds`.
-    fn changed(slots: &[Slot], slot_of: &[u32], page: u32, kinds: u8) -> Option<usize> {
-        let s = (slot_of[page as usize] as usize).checked_sub(1)?;
-        (slots[s].any & kinds != 0).then_some(s)
-    }
-}
-
 /// Adds the pages whose halo holds a vertex that changed in a way of `kinds` and that have no slot
 /// yet.
 fn add_neighbours(mesh: &mut Clay, from: usize, kinds: u8) {
     for s in 0..from {
-        if mesh.bench.slots[s].any & kinds == 0 {
+        if mesh.buffers.slots[s].any & kinds == 0 {
             continue;
         }
-        let home = mesh.bench.slots[s].index;
+        let home = mesh.buffers.slots[s].index;
         let topology = mesh.pages[home as usize].topology.clone();
         for n in &topology.neighbours {
-            if mesh.bench.slot_of[n.page as usize] != 0 {
+            if mesh.buffers.slot_of[n.page as usize] != 0 {
                 continue;
             }
             let other = &mesh.pages[n.page as usize].topology;
-            let marks = &mesh.bench.slots[s].marks;
+            let marks = &mesh.buffers.slots[s].marks;
             let touched =
                 other.halo_parts().find(|(page, _)| *page == home).is_some_and(|(_, part)| {
                     other.halo_sources[part].iter().any(|&l| marks[l as usize] & kinds != 0)
                 });
             if touched {
                 let page = mesh.pool.take();
-                mesh.bench.add(n.page, page);
+                mesh.buffers.add(n.page, page);
             }
         }
     }
@@ -202,21 +70,21 @@ impl Clay {
         let t0 = now();
         let mut rows = 0;
         {
-            let Clay { top, bench, pool, pages, .. } = self;
+            let Clay { top, buffers, pool, pages, .. } = self;
             top.walk_boxes(
                 |lo, hi| reach.touches(lo, hi),
                 |p| {
                     rows += pages[p].points.len();
-                    bench.add(p as u32, pool.take());
+                    buffers.add(p as u32, pool.take());
                 },
             );
         }
         let t1 = now();
         let parallel = rows > PARALLEL;
-        let selected = self.bench.slots.len();
+        let selected = self.buffers.slots.len();
         {
-            let Clay { bench, pages, history, .. } = self;
-            workers.each(parallel, &mut bench.slots, &mut bench.sides, |slot, side| {
+            let Clay { buffers, pages, history, .. } = self;
+            workers.each(parallel, &mut buffers.slots, &mut buffers.sides, |slot, side| {
                 let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
                 dispatch(false, Displace { slot, side, old, before, kernel });
             });
@@ -224,8 +92,8 @@ impl Clay {
         add_neighbours(self, selected, MOVED | PAINTED);
         let t2 = now();
         {
-            let Clay { bench, pages, .. } = self;
-            let Bench { slots, sides, slot_of, .. } = bench;
+            let Clay { buffers, pages, .. } = self;
+            let DabBuffers { slots, sides, slot_of, .. } = buffers;
             let mut indices = std::mem::take(&mut self.order);
             indices.clear();
             indices.extend(0..slots.len() as u32);
@@ -246,11 +114,11 @@ impl Clay {
                 dispatch(false, Turn { slot, side, old, now: clock });
             });
         }
-        let turned = self.bench.slots.len();
+        let turned = self.buffers.slots.len();
         add_neighbours(self, turned, TURNED | PAINTED);
         {
-            let Clay { bench, pages, .. } = self;
-            let Bench { slots, sides, slot_of, .. } = bench;
+            let Clay { buffers, pages, .. } = self;
+            let DabBuffers { slots, sides, slot_of, .. } = buffers;
             let mut indices = std::mem::take(&mut self.order);
             indices.clear();
             indices.extend(0..slots.len() as u32);
@@ -290,17 +158,17 @@ impl Clay {
     fn commit(&mut self) -> (DabReport, u64, u64) {
         let mut report = DabReport::default();
         let (mut normals_ns, mut bvh_ns) = (0, 0);
-        let Clay { bench, pages, pool, history, top, stale, revision, .. } = self;
-        let changes = bench.slots.iter().any(|s| s.any != 0);
+        let Clay { buffers, pages, pool, history, top, stale, revision, .. } = self;
+        let changes = buffers.slots.iter().any(|s| s.any != 0);
         *revision += u64::from(changes);
-        let retired = bench.slots.len();
-        for (mut slot, side) in bench.slots.drain(..).zip(bench.sides.drain(..)) {
-            bench.slot_of[slot.index as usize] = 0;
+        let retired = buffers.slots.len();
+        for (mut slot, side) in buffers.slots.drain(..).zip(buffers.sides.drain(..)) {
+            buffers.slot_of[slot.index as usize] = 0;
             report.affected += slot.affected;
             report.moved += slot.moved;
             normals_ns += slot.normals_ns;
             bvh_ns += slot.bvh_ns;
-            let mut page = std::mem::replace(&mut slot.page, bench.blank.clone());
+            let mut page = std::mem::replace(&mut slot.page, buffers.blank.clone());
             if slot.any == 0 {
                 pool.give_back(page);
             } else {
@@ -315,7 +183,7 @@ impl Clay {
                     pool.retire(old);
                 }
             }
-            bench.spare.push((slot, side));
+            buffers.spare.push((slot, side));
         }
         for &chunk in stale.paths() {
             top.refit_path(chunk as usize);
@@ -329,8 +197,8 @@ impl Clay {
 
 /// [`displace`], compiled for this processor.
 struct Displace<'a, K> {
-    slot: &'a mut Slot,
-    side: &'a mut Side,
+    slot: &'a mut PageOutput,
+    side: &'a mut PageTask,
     old: &'a Page,
     before: Option<&'a Arc<Page>>,
     kernel: &'a K,
@@ -346,8 +214,8 @@ impl<K: Kernel> WideWork for Displace<'_, K> {
 
 /// [`turn`], compiled for this processor.
 struct Turn<'a> {
-    slot: &'a mut Slot,
-    side: &'a mut Side,
+    slot: &'a mut PageOutput,
+    side: &'a mut PageTask,
     old: &'a Page,
     now: fn() -> u64,
 }
@@ -363,8 +231,8 @@ impl WideWork for Turn<'_> {
 /// Copies the points and lets the kernel write.
 #[inline(always)]
 fn displace<K: Kernel>(
-    slot: &mut Slot,
-    side: &mut Side,
+    slot: &mut PageOutput,
+    side: &mut PageTask,
     old: &Page,
     before: Option<&Arc<Page>>,
     kernel: &K,
@@ -388,7 +256,7 @@ fn displace<K: Kernel>(
 
 /// Joins all marks, counts them, and finds the blocks in which something moved.
 #[inline(always)]
-fn tally(slot: &mut Slot) {
+fn tally(slot: &mut PageOutput) {
     for (b, chunk) in slot.marks.chunks(BLOCK).enumerate() {
         let (mut any, mut few) = (0, 0u8);
         for &m in chunk {
@@ -402,12 +270,19 @@ fn tally(slot: &mut Slot) {
 }
 
 /// Collects what changed at the homes of slot `s`'s halo.
-fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, kinds: u8) {
+fn gather(
+    slots: &[PageOutput],
+    slot_of: &[u32],
+    s: u32,
+    old: &Page,
+    side: &mut PageTask,
+    kinds: u8,
+) {
     side.incoming.clear();
     side.rows.clear();
     let t = &old.topology;
     for (home, part) in t.halo_parts() {
-        let Some(from) = Bench::changed(slots, slot_of, home, kinds) else { continue };
+        let Some(from) = DabBuffers::changed(slots, slot_of, home, kinds) else { continue };
         if from == s as usize {
             continue;
         }
@@ -419,14 +294,14 @@ fn gather(slots: &[Slot], slot_of: &[u32], s: u32, old: &Page, side: &mut Side, 
             let rows = if kinds & MOVED != 0 { &from.page.points } else { &from.page.normals };
             side.rows.extend(t.halo_sources[part.clone()].iter().map(|&l| rows[l as usize]));
             let first = (t.own + part.start) as u16;
-            side.incoming.push(Part { first, count: part.len() as u16, marks });
+            side.incoming.push(HaloPart { first, count: part.len() as u16, marks });
         }
     }
 }
 
 /// Takes over the halo's new places, and computes the normals and the tree.
 #[inline(always)]
-fn turn<W: Wide>(w: W, slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -> u64) {
+fn turn<W: Wide>(w: W, slot: &mut PageOutput, side: &mut PageTask, old: &Page, now: fn() -> u64) {
     if slot.any == 0 && side.incoming.is_empty() {
         return;
     }
@@ -474,7 +349,7 @@ fn turn<W: Wide>(w: W, slot: &mut Slot, side: &mut Side, old: &Page, now: fn() -
 }
 
 /// Takes over the halo's new normals and colours.
-fn settle(slot: &mut Slot, side: &mut Side, old: &Page) {
+fn settle(slot: &mut PageOutput, side: &mut PageTask, old: &Page) {
     if side.incoming.is_empty() {
         return;
     }

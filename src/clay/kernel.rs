@@ -10,6 +10,7 @@ use sculptd_geometry::simd::cotangents;
 /// in any order; it sees the state before the dab everywhere, also of neighbours in other pages, so
 /// that the order cannot show.
 pub trait Kernel: Sync {
+    /// Changes the own vertices of one page through `out`.
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);
 }
 
@@ -38,6 +39,7 @@ impl<'a> PageIn<'a> {
         }
     }
 
+    /// How many own vertices the page has; higher local indices are halo.
     pub fn own(&self) -> usize {
         self.page.topology.own
     }
@@ -82,16 +84,19 @@ impl<'a> PageIn<'a> {
         self.before.point(local)
     }
 
+    /// The unit normal when the open undo step began; own or halo.
     #[inline(always)]
     pub fn normal_before(&self, local: usize) -> Vec3 {
         self.before.normal(local)
     }
 
+    /// The mask, 0 free to 1 protected, when the open undo step began; own or halo.
     #[inline(always)]
     pub fn mask_before(&self, local: usize) -> f32 {
         self.before.mask(local)
     }
 
+    /// The colour (RGBA, sRGB) when the open undo step began; own or halo.
     #[inline(always)]
     pub fn colour_before(&self, local: usize) -> [u8; 4] {
         self.before.colour(local)

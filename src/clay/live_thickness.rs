@@ -166,7 +166,9 @@ impl LiveMap {
             .into_par_iter()
             .filter(|&v| {
                 let own = reach[v as usize];
-                !is_stale[v as usize] && meet(own, all) && boxes.iter().any(|&b| meet(own, b))
+                !is_stale[v as usize]
+                    && boxes_intersect(own, all)
+                    && boxes.iter().any(|&b| boxes_intersect(own, b))
             })
             .collect();
         // A vertex beside a changed triangle has a new normal; its box holds it, so it is among
@@ -239,6 +241,7 @@ impl LiveMap {
         self.snapshot.revision()
     }
 
+    /// Rays that are cast for each vertex.
     pub fn rays(&self) -> usize {
         self.cone.dirs.len()
     }
@@ -293,7 +296,7 @@ fn bounds(mesh: &TriMesh, t: u32) -> (Vec3, Vec3) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-fn meet(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
+fn boxes_intersect(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
     a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
 }
 

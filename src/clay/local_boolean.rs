@@ -37,7 +37,7 @@ pub fn local(
     let floor = reach * 2f64.powi(-49);
     let wanted =
         options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
-    let patch = Patch::of(clay, tool, 4.0 * wanted);
+    let patch = ToolSurroundings::of(clay, tool, 4.0 * wanted);
     let around = |p: DVec3| winding(clay, p);
     for factor in [1.0, 0.125, 1.0 / 64.0] {
         let eps = (wanted * factor).max(floor);
@@ -59,7 +59,7 @@ pub fn local(
 }
 
 /// The clay's triangles near the tool.
-struct Patch {
+struct ToolSurroundings {
     /// The tool's box, rounded outwards.
     bounds: (Vec3, Vec3),
     mesh: PolyMesh,
@@ -75,8 +75,8 @@ struct Change {
     new: Vec<NewVertex>,
 }
 
-impl Patch {
-    fn of(clay: &Snapshot, tool: &PolyMesh, slack: f64) -> Patch {
+impl ToolSurroundings {
+    fn of(clay: &Snapshot, tool: &PolyMesh, slack: f64) -> ToolSurroundings {
         let (lo, hi) = tool
             .positions
             .iter()
@@ -84,7 +84,7 @@ impl Patch {
         let (lo, hi) = (lo - slack, hi + slack);
         let meets = |l: Vec3, h: Vec3| l.as_dvec3().cmple(hi).all() && lo.cmple(h.as_dvec3()).all();
         let outwards = (lo.as_vec3().map(f32::next_down), hi.as_vec3().map(f32::next_up));
-        let mut out = Patch {
+        let mut out = ToolSurroundings {
             bounds: outwards,
             mesh: PolyMesh::new(),
             homes: Vec::new(),

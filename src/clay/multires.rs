@@ -32,14 +32,19 @@ pub const MAX_TRIANGLES: u64 = 1 << 26;
 /// to a hundredth.
 const ROUNDS: usize = 24;
 
+/// Why another level cannot be shown.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum LevelError {
+    /// There is no coarser level.
     #[error("this is the lowest level")]
     Lowest,
+    /// Triangles were cut since the level was made, so that the levels no longer fit.
     #[error("triangles were cut since the level was made: the levels no longer fit")]
     Cut,
+    /// The finer level would have this many triangles, more than [`MAX_TRIANGLES`].
     #[error("{0} triangles; at most {MAX_TRIANGLES} are made")]
     TooMany(u64),
+    /// The job was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -47,6 +52,7 @@ pub enum LevelError {
 /// A work on one level.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Level {
+    /// Its vertices and triangles.
     pub mesh: TriMesh,
     /// 0 to 1 for each vertex; none: nothing is masked.
     pub masks: Option<Vec<f32>>,

@@ -30,7 +30,7 @@ fn area_sum(t: &PageTopology, points: &[Vec4], v: usize) -> Vec4 {
     let first = points[*first as usize] - p;
     let first_turned = first.yzxw();
     let (mut last, mut last_turned) = (first, first_turned);
-    if t.kinds[v] == Ring::Interleaved {
+    if t.kinds[v] == Ring::ManyFans {
         for &k in rest {
             let d = points[(k & !BREAK) as usize] - p;
             let turned = d.yzxw();

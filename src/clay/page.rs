@@ -39,12 +39,13 @@ pub enum Ring {
     /// One open fan: the vertex lies on the border of the surface. Also a vertex without triangles.
     Open,
     /// Several fans, parted by [`BREAK`]; a closed one among them repeats its first neighbour.
-    Interleaved,
+    ManyFans,
 }
 
 /// A page from which others are seen: its number, and where its part of the halo begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Neighbour {
+    /// The number of that page.
     pub page: u32,
     /// Index into [`PageTopology::halo_sources`]; the part ends where the next neighbour's begins.
     pub first: u32,
@@ -53,6 +54,7 @@ pub struct Neighbour {
 /// What stands still while a mesh is only displaced.
 #[derive(Debug, Default, Clone, Serialize, Deserialize)]
 pub struct PageTopology {
+    /// How many vertices are the page's own.
     pub own: usize,
     /// The own vertices' numbers in the mesh that was loaded.
     pub ids: Box<[u32]>,
@@ -67,7 +69,9 @@ pub struct PageTopology {
     /// The rings of the others: vertex `hexes.len() + i` has `rings[ring_starts[i]..ring_starts[i +
     /// 1]]`.
     pub ring_starts: Box<[u16]>,
+    /// The rings' local indices, with [`BREAK`] bits.
     pub rings: Box<[u16]>,
+    /// How the triangles lie about each own vertex.
     pub kinds: Box<[Ring]>,
     /// The vertices of each leaf of the page's tree. This and what comes after follows from the
     /// rest: [`PageTopology::index`].
@@ -179,15 +183,18 @@ impl PageTopology {
 pub struct Points<'a>(pub &'a [Vec4]);
 
 impl Points<'_> {
+    /// The position in row `i`.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Vec3 {
         self.0[i].truncate()
     }
 
+    /// How many rows there are.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -225,6 +232,7 @@ impl Page {
         }
     }
 
+    /// What stands still while the page is only displaced.
     pub fn topology(&self) -> &Arc<PageTopology> {
         &self.topology
     }
@@ -245,10 +253,12 @@ impl Page {
         &self.normals
     }
 
+    /// Own and halo positions.
     pub fn positions(&self) -> Points<'_> {
         Points(&self.points)
     }
 
+    /// Own and halo unit normals; zero where all triangles are degenerate.
     pub fn normals(&self) -> Points<'_> {
         Points(&self.normals)
     }
@@ -259,6 +269,7 @@ impl Page {
         self.points[local].truncate()
     }
 
+    /// The unit normal of an own or a halo vertex.
     #[inline]
     pub fn normal(&self, local: usize) -> Vec3 {
         self.normals[local].truncate()
@@ -281,6 +292,7 @@ impl Page {
         &self.topology.triangles
     }
 
+    /// The positions of a triangle's corners.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.topology.triangles[triangle].map(|v| self.point(v as usize))
     }

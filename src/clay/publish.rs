@@ -56,7 +56,7 @@ impl Stale {
 }
 
 #[derive(Debug)]
-pub(super) struct Shelf {
+pub(super) struct SpinePool {
     shown: Arc<Vec<Arc<Chunk>>>,
     old_spines: VecDeque<Arc<Vec<Arc<Chunk>>>>,
     old_chunks: VecDeque<Arc<Chunk>>,
@@ -68,7 +68,7 @@ const KEPT: usize = 4096;
 /// Old spines looked after, at most.
 const SPINES: usize = 8;
 
-impl Shelf {
+impl SpinePool {
     pub(super) fn new(pages: &[Arc<Page>]) -> Self {
         let spine = pages
             .chunks(CHUNK)
@@ -78,7 +78,7 @@ impl Shelf {
                 Arc::new(chunk)
             })
             .collect();
-        Shelf {
+        SpinePool {
             shown: Arc::new(spine),
             old_spines: VecDeque::with_capacity(SPINES + 1),
             old_chunks: VecDeque::with_capacity(KEPT + 1),
@@ -130,7 +130,7 @@ impl Shelf {
             let Some(mut old) = self.old_spines.pop_front() else { break };
             match Arc::get_mut(&mut old) {
                 Some(free) => {
-                    // Its chunks live on: the shelf holds each old one.
+                    // Its chunks live on: the pool holds each old one.
                     free.clear();
                     return old;
                 }

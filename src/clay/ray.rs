@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 /// A half-line. `t` counts in lengths of `dir`: with unit length it is a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
+    /// Where the ray begins.
     pub origin: Vec3,
+    /// Where it goes; not zero.
     pub dir: Vec3,
 }
 
@@ -15,9 +17,11 @@ pub struct Ray {
 pub struct Hit {
     /// Distance along the ray.
     pub t: f32,
+    /// The point that was hit.
     pub position: Vec3,
     /// Interpolated vertex normal, unit length.
     pub normal: Vec3,
+    /// The page whose triangle was hit.
     pub page: u32,
     /// Within the page.
     pub triangle: u32,

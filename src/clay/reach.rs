@@ -2,10 +2,25 @@
 
 use glam::Vec3;
 
+/// A closed part of space, mesh units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    Sphere { centre: Vec3, radius: f32 },
-    Capsule { from: Vec3, to: Vec3, radius: f32 },
+    /// All points within `radius` of `centre`.
+    Sphere {
+        /// The centre.
+        centre: Vec3,
+        /// The radius, > 0.
+        radius: f32,
+    },
+    /// All points within `radius` of the segment between `from` and `to`.
+    Capsule {
+        /// Where the axis begins.
+        from: Vec3,
+        /// Where the axis ends.
+        to: Vec3,
+        /// The distance to the axis, > 0.
+        radius: f32,
+    },
 }
 
 impl Reach {
@@ -47,12 +62,14 @@ impl Reach {
         }
     }
 
+    /// The radius of the sphere or of the capsule.
     pub fn radius(&self) -> f32 {
         match *self {
             Reach::Sphere { radius, .. } | Reach::Capsule { radius, .. } => radius,
         }
     }
 
+    /// Whether the point lies within the reach, its border included.
     #[inline]
     pub fn contains(&self, p: Vec3) -> bool {
         self.distance_squared(p) <= self.radius() * self.radius()

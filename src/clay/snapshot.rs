@@ -45,6 +45,7 @@ pub(super) struct Totals {
     pub(super) next: [u32; 2],
 }
 
+/// The clay at one moment. Cloning it costs two reference counts.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
     pub(super) spine: Arc<Vec<Arc<Chunk>>>,
@@ -64,6 +65,7 @@ impl Snapshot {
         (0..self.totals.pages).map(|i| self.page(i as u32))
     }
 
+    /// How many pages there are, pages without vertices included.
     pub fn page_count(&self) -> usize {
         self.totals.pages
     }
@@ -105,6 +107,7 @@ impl Snapshot {
         }
     }
 
+    /// As [`super::Clay::revision`].
     pub fn revision(&self) -> u64 {
         self.totals.revision
     }
@@ -119,10 +122,12 @@ impl Snapshot {
         self.totals.next
     }
 
+    /// How many vertices the clay had.
     pub fn vertex_count(&self) -> usize {
         self.totals.vertices
     }
 
+    /// How many triangles the clay had.
     pub fn triangle_count(&self) -> usize {
         self.totals.triangles
     }
@@ -157,6 +162,8 @@ impl Snapshot {
         ranks(&|i| self.page(i), self.totals)
     }
 
+    /// The clay as one mesh, in the order of the mesh that was loaded. Costs as much as the clay is
+    /// large.
     pub fn to_tri(&self) -> TriMesh {
         to_tri(&|i| self.page(i), self.totals)
     }

@@ -1,8 +1,8 @@
 //! Pages as bytes, and clay put together from pages that were stored: what a session file keeps of
-//! a work's history.
+//! an object's history.
 //!
-//! A page is named by its number and the revision that wrote it: within one lineage two pages of
-//! one name are the same, to the bit. Trees are not stored, they follow from the points.
+//! A page is named by its number and the revision that wrote it: within one object two pages of one
+//! name are the same, to the bit. Trees are not stored, they follow from the points.
 
 use std::sync::Arc;
 
@@ -22,8 +22,11 @@ pub struct BadPage;
 /// What clay is besides its pages.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ObjectState {
+    /// How many pages there are.
     pub pages: u32,
+    /// As [`Clay::revision`].
     pub revision: u64,
+    /// As [`Clay::object_id`].
     pub object_id: u32,
     /// The numbers that the next new vertex and triangle get.
     pub next: [u32; 2],
@@ -32,6 +35,7 @@ pub struct ObjectState {
 }
 
 impl PageTopology {
+    /// The topology as bytes (postcard).
     pub fn to_bytes(&self) -> Vec<u8> {
         // Plain data always serialises.
         postcard::to_stdvec(self).unwrap_or_default()
@@ -172,9 +176,9 @@ impl Clay {
         self.empty.retain(|i| *i < count);
     }
 
-    /// Stored pages take the place of those that are here: a jump within the history of this work.
-    /// Nothing can be taken back or done again after it. False, and nothing done, where the pages
-    /// are not of this work.
+    /// Stored pages take the place of those that are here: a jump within the history of this
+    /// object. Nothing can be taken back or done again after it. False, and nothing done, where the
+    /// pages are not of this object.
     pub fn jump(&mut self, pages: &[(u32, Arc<Page>)]) -> bool {
         let count = pages.iter().map(|(i, _)| *i as usize + 1).max().unwrap_or(0);
         if count > self.pages.len() + pages.len() {

@@ -15,10 +15,12 @@ pub struct Workers {
 }
 
 impl Workers {
+    /// `count` threads, the caller's among them; 0 counts as 1. No thread is started yet.
     pub fn new(count: usize) -> Self {
         Workers { count: count.max(1), pool: Arc::default() }
     }
 
+    /// How many threads work on a dab.
     pub fn count(&self) -> usize {
         self.count
     }

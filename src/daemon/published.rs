@@ -101,7 +101,7 @@ impl Published {
             middle: world.middle(),
             volume: *world.volume(),
             pens,
-            draft: world.draft().cloned().unwrap_or_default(),
+            draft: world.curve_stroke().cloned().unwrap_or_default(),
             hands: world.hands().copied(),
             poses,
             hand_devices,

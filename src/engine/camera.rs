@@ -26,6 +26,7 @@ pub struct Camera {
     pub fov_y: f32,
     /// Width over height of the view.
     pub aspect: f32,
+    /// Parallel rays: everything keeps its size however far away it is.
     pub orthographic: bool,
 }
 
@@ -55,6 +56,7 @@ impl Camera {
         Vec3::new(sy * cp, sp, cy * cp)
     }
 
+    /// Where the eye is, world units.
     pub fn eye(&self) -> Vec3 {
         self.target + self.backward() * self.distance
     }

@@ -55,10 +55,12 @@ impl ReplacedClay {
         self.forget_future(garbage);
     }
 
+    /// How many can be brought back by undo.
     pub fn past(&self) -> usize {
         self.past.len()
     }
 
+    /// How many can be brought back by redo.
     pub fn future(&self) -> usize {
         self.future.len()
     }

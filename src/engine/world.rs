@@ -4,9 +4,10 @@
 //! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
 //! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same
 //!   samples and commands, same bits, with any number of workers.
-//! * The work of one step is bounded: dabs stop at the budget and go on in the next step.
+//! * One step is bounded: dabs stop at the budget and go on in the next step.
 
 mod saved;
+mod state;
 mod stroke_context;
 
 use std::sync::Arc;
@@ -14,16 +15,16 @@ use std::sync::Arc;
 use glam::{DVec3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, Side};
+pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SideData};
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
-use crate::command::{Carving, Command, Jump, NewClay};
+use crate::command::{Carving, Command, NewClay};
 use crate::hand::{
-    Act, HandSettings, HandTools, HeldObject, MenuItem, Pose, ReachBox, Similarity, Volume,
+    Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity,
 };
-use crate::payload::{Payload, PayloadId, PayloadStore};
+use crate::payload::{Payload, PayloadStore};
 use crate::replaced::ReplacedClay;
-use crate::stroke::{CurveAction, CurveStroke, PenPoint, PenTrack};
+use crate::stroke::{CurveAction, PenTrack};
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, Reach, Workers};
@@ -37,7 +38,9 @@ pub const MAX_PENS: usize = 16;
 /// What one step did. Reused from step to step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StepReport {
+    /// Samples that the step was given.
     pub samples: u64,
+    /// Dabs that moved a vertex.
     pub dabs: u64,
     /// Summed over dabs: a vertex moved by two dabs counts twice.
     pub vertices_moved: u64,
@@ -47,7 +50,7 @@ pub struct StepReport {
     pub resting: bool,
     /// Samples of devices beyond [`MAX_PENS`].
     pub ignored: u64,
-    /// A hand asked for the thing that it holds to be joined with the work: for a worker, see
+    /// A hand asked for the object that it holds to be joined with the clay: for a worker, see
     /// [`World::thing`].
     pub join: Option<MenuItem>,
     /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the
@@ -62,7 +65,9 @@ pub struct StepReport {
 pub struct WorldOptions {
     /// Vertices that the dabs of one step may visit.
     pub dab_budget: u64,
+    /// Bytes that undo may hold; the oldest steps go first.
     pub undo_bytes: u64,
+    /// How hands are read.
     pub hands: HandSettings,
 }
 
@@ -74,6 +79,7 @@ struct PenSlot {
     stroke: Stroke,
 }
 
+/// The whole state. [`World::step`] is the only writer.
 #[derive(Debug)]
 pub struct World {
     tick: u64,
@@ -82,7 +88,7 @@ pub struct World {
     options: WorldOptions,
     brush: BrushSettings,
     camera: Camera,
-    /// Middle and bounding radius of the work when it was put in place: the measure of brushes,
+    /// Centre and bounding radius of the object when it was put in place: the measure of brushes,
     /// mirrors and hands.
     middle: Vec3,
     extent: f32,
@@ -95,20 +101,21 @@ pub struct World {
     /// What the hands hold.
     thing: Option<HeldObject>,
     report: StepReport,
-    /// Works before and after this one, for undo.
+    /// Clay before and after this one, for undo.
     works: ReplacedClay,
     /// Takes what is no longer needed: clay that was replaced, payloads that no command took.
     garbage: GarbageSink,
     payloads: PayloadStore,
     /// What came of the cuts of this tick, in the order of their commands.
     cuts: Vec<Option<Grafted>>,
-    /// Works put in place so far.
+    /// Objects put in place so far.
     lineages: u32,
-    /// What was done in this tick, for whoever keeps the history; `None`: nobody does.
+    /// What was done in this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
 }
 
 impl World {
+    /// A world at tick 0 around this clay; the camera frames it.
     pub fn new(
         mut mesh: Clay,
         camera: Camera,
@@ -161,7 +168,7 @@ impl World {
     }
 
     /// One tick: commands first, in order, then samples in order of time (ties by device), then
-    /// what waited from before.
+    /// the path points that the budget of the tick before left over.
     pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
@@ -197,7 +204,7 @@ impl World {
                     self.put_away();
                 }
             }
-            // What was laid last goes first.
+            // A curve that a pen has laid is newer than the last step.
             Command::Undo if self.put_away() => {}
             Command::CurveStroke(act) => match act {
                 CurveAction::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
@@ -248,7 +255,7 @@ impl World {
                     let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
                     let mut old = std::mem::replace(self, fresh);
                     self.lineages = old.lineages + 1;
-                    self.mesh.set_lineage(self.lineages);
+                    self.mesh.set_object_id(self.lineages);
                     self.moments = old.moments.take();
                     self.tick = old.tick;
                     self.report = old.report;
@@ -282,7 +289,7 @@ impl World {
         }
     }
 
-    /// Curves that pens have laid are put away. False: there were none.
+    /// Discards the curves that pens have laid. False: there were none.
     fn put_away(&mut self) -> bool {
         self.pens.iter_mut().fold(false, |any, s| s.track.cancel() | any)
     }
@@ -294,7 +301,7 @@ impl World {
         mesh.set_undo_bytes(self.options.undo_bytes);
         mesh.set_levels(new.levels.clone());
         self.lineages += 1;
-        mesh.set_lineage(self.lineages);
+        mesh.set_object_id(self.lineages);
         let World { works, garbage, mesh: now, options, .. } = self;
         if new.keep_camera {
             works.replace(now, mesh, options.undo_bytes, garbage);
@@ -349,7 +356,7 @@ impl World {
         }
     }
 
-    /// A thing appears beside the work, a third as large as it, for the hands to carry.
+    /// An object appears beside the clay, a third as large as it, for the hands to carry.
     fn take_up(&mut self, plain: Arc<TriMesh>) {
         let (lo, hi) = plain.bounds();
         let size = (hi - lo).length() * 0.5;
@@ -438,7 +445,8 @@ impl World {
         }
     }
 
-    /// Walks what waits on every pen in turn, then the hands, until `budget` vertices were visited.
+    /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
+    /// visited.
     fn advance_strokes(&mut self, budget: u64) {
         let goes_on = self.goes_on_by_time();
         let every = self.brush.path.every_ticks as u32;
@@ -530,138 +538,6 @@ impl World {
         }
         self.report.vertices_moved += report.moved as u64;
         left.saturating_sub(report.affected as u64 + 1)
-    }
-
-    /// The pose of every hand that is followed.
-    pub fn poses(&self) -> impl Iterator<Item = (DeviceId, i32, Pose)> + '_ {
-        self.hands.tracks().map(|t| (t.device, t.id, t.pose))
-    }
-
-    /// What the last step did.
-    pub fn report(&self) -> &StepReport {
-        &self.report
-    }
-
-    pub fn tick(&self) -> u64 {
-        self.tick
-    }
-
-    pub fn mesh(&self) -> &Clay {
-        &self.mesh
-    }
-
-    /// Steps that undo can take back, replaced works included.
-    pub fn undo_steps(&self) -> usize {
-        self.mesh.undo_steps() + self.works.past()
-    }
-
-    pub fn redo_steps(&self) -> usize {
-        self.mesh.redo_steps() + self.works.future()
-    }
-
-    /// For publishing only: nothing of the clay changes.
-    pub fn snapshot(&mut self) -> sculptd_clay::Snapshot {
-        self.mesh.snapshot()
-    }
-
-    pub fn camera(&self) -> &Camera {
-        &self.camera
-    }
-
-    pub fn brush(&self) -> &BrushSettings {
-        &self.brush
-    }
-
-    /// The brush's radius in mesh units at full pressure.
-    pub fn brush_radius(&self) -> f32 {
-        self.brush.radius * self.extent
-    }
-
-    /// Bounding radius of the work when it was put in place.
-    pub fn extent(&self) -> f32 {
-        self.extent
-    }
-
-    pub fn middle(&self) -> Vec3 {
-        self.middle
-    }
-
-    /// The tracked volume of hands over the work.
-    pub fn volume(&self) -> &Volume {
-        self.hands.volume()
-    }
-
-    /// Where each pen is, over the view, while in range.
-    pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
-        self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
-    }
-
-    /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
-    pub fn draft(&self) -> Option<&CurveStroke> {
-        self.pens.iter().map(|s| s.track.draft()).find(|d| !d.is_empty())
-    }
-
-    /// What the hands hold, and where.
-    pub fn thing(&self) -> Option<&HeldObject> {
-        self.thing.as_ref()
-    }
-
-    pub fn hand_tools(&self) -> &HandTools {
-        &self.hands
-    }
-
-    pub fn hands(&self) -> Option<&Hands> {
-        self.last_hands.as_ref()
-    }
-
-    /// From now on, what is no longer needed goes to this sink. A new world frees it in place.
-    pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
-        self.mesh.set_garbage_sink(sink.clone());
-        self.garbage = sink;
-    }
-
-    /// Keeps the payload that goes with a command of the next step, and writes its name into the
-    /// command. A payload that the command cannot use, or for which there is no room, goes to the
-    /// garbage sink; the world then builds what the command needs, or ignores a jump.
-    pub fn deliver(&mut self, command: &mut Command, payload: Payload) {
-        if let Command::Jump(jump) = command {
-            self.deliver_for_jump(jump, payload);
-        } else if let Some(new) = command.new_clay_mut() {
-            let id = *new.built.insert(self.payloads.number());
-            self.keep_payload(id, payload);
-        } else {
-            self.garbage.discard_owned(payload);
-        }
-    }
-
-    /// The same for a jump, which names its payload itself: one that was read from a file works
-    /// like one that was sent.
-    pub fn deliver_for_jump(&mut self, jump: &Jump, payload: Payload) {
-        self.keep_payload(jump.payload_id(), payload);
-    }
-
-    fn keep_payload(&mut self, id: PayloadId, payload: Payload) {
-        if let Err(left) = self.payloads.insert(id, payload) {
-            self.garbage.discard_owned(left);
-        }
-    }
-
-    /// What came of each [`Command::Cut`] of the last step, in the order of the commands; `None`:
-    /// not made, because the clay had changed there.
-    pub fn cut_results(&self) -> &[Option<Grafted>] {
-        &self.cuts
-    }
-
-    /// One number for the whole state of the clay; costs as much as the clay is large.
-    pub fn hash(&self) -> u64 {
-        self.mesh.hash()
-    }
-
-    pub fn verify_invariants(&self) -> Result<(), String> {
-        if !self.camera.is_sane() {
-            return Err(format!("the camera is not sane: {:?}", self.camera));
-        }
-        self.mesh.verify_invariants()
     }
 }
 

@@ -109,7 +109,7 @@ impl Studio {
             }
             dabs += self.rest(1);
         }
-        if self.world.draft().is_some() {
+        if self.world.curve_stroke().is_some() {
             // A curve that was laid is drawn at once.
             dabs += self.step(&[], &[Command::CurveStroke(CurveAction::Apply)]);
             while self.paused {

@@ -197,7 +197,7 @@ fn fans(edges: &mut [[u16; 2]], rings: &mut Vec<u16>) -> Ring {
             rings.push(left[used - 1][1]);
         }
         kind = if !all {
-            Ring::Interleaved
+            Ring::ManyFans
         } else if closed {
             Ring::Closed
         } else {
@@ -207,7 +207,7 @@ fn fans(edges: &mut [[u16; 2]], rings: &mut Vec<u16>) -> Ring {
         left = &mut left[used..];
     }
     if fans > 1 {
-        kind = Ring::Interleaved;
+        kind = Ring::ManyFans;
     }
     kind
 }

@@ -14,6 +14,7 @@ pub type Home = (u32, u16);
 /// A corner of a triangle that is put in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Corner {
+    /// A vertex that is in the clay already.
     Old(Home),
     /// Index into the new vertices.
     New(u32),
@@ -22,7 +23,9 @@ pub enum Corner {
 /// A vertex that comes with the new triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NewVertex {
+    /// Where it is; finite.
     pub place: Vec3,
+    /// RGBA, sRGB.
     pub colour: [u8; 4],
     /// 0 free to 1 protected.
     pub mask: f32,
@@ -33,6 +36,7 @@ pub struct NewVertex {
 pub struct Cut {
     /// The box that was looked at: the pages that meet it are among `seen`.
     pub lo: Vec3,
+    /// The upper corner of that box.
     pub hi: Vec3,
     /// Page and stamp of each page that was looked at or will be written or is beside one,
     /// ascending.
@@ -48,6 +52,7 @@ pub struct Cut {
 pub struct Grafted {
     /// Pages written anew or added, and pages that are as they were.
     pub written: usize,
+    /// Pages that are as they were.
     pub shared: usize,
 }
 
@@ -95,12 +100,6 @@ impl Cut {
     /// The vertices that come with them.
     pub fn new_vertices(&self) -> &[NewVertex] {
         &self.new
-    }
-
-    /// Whether it can be made in this clay: it fits, and the pages around can hold the result.
-    /// Costs about as much as making it.
-    pub fn can_be_made(&self, clay: &Snapshot) -> bool {
-        self.fits(clay) && super::splice::remake(clay, self).is_some()
     }
 
     /// Whether the clay is, around the cut, as it was when it was computed. False for any cut that

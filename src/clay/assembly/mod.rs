@@ -27,20 +27,49 @@ use sculptd_geometry::job::Job;
 /// dab copies little, large enough that its border is not most of it.
 pub const PAGE_VERTICES: usize = 512;
 
+/// Why no clay can be built of a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
+    /// The mesh has no triangles.
     #[error("there are no triangles")]
     Empty,
+    /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex}, but there are {count}")]
-    Index { triangle: usize, vertex: u32, count: usize },
+    Index {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex that it names.
+        vertex: u32,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// A vertex has a coordinate that is infinite or not a number.
     #[error("vertex {vertex} is not a finite point")]
-    NotFinite { vertex: usize },
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// There are more vertices than `u32` can number.
     #[error("{vertices} vertices are more than 4,294,967,295 numbers can tell apart")]
-    TooMany { vertices: usize },
+    TooMany {
+        /// How many vertices there are.
+        vertices: usize,
+    },
     #[error(
-        "the neighbourhood of vertex {vertex} is too tangled: {reason} around {PAGE_VERTICES} neighbouring vertices, {limit} can be"
+        "the neighbourhood of vertex {vertex} is too tangled: {reason} around {PAGE_VERTICES} \
+         neighbouring vertices, {limit} can be"
     )]
-    Tangled { vertex: u32, reason: &'static str, limit: usize },
+    /// A page cannot hold the triangles and neighbours around its vertices: its local indices
+    /// have 15 bits.
+    Tangled {
+        /// A vertex of the page.
+        vertex: u32,
+        /// What there is too much of.
+        reason: &'static str,
+        /// How many there can be.
+        limit: usize,
+    },
+    /// The job was cancelled.
     #[error("cancelled")]
     Cancelled,
 }
@@ -254,7 +283,7 @@ fn warnings(tri: &TriMesh, pages: &[Arc<Page>], triangles: usize) -> Vec<String>
     for page in pages {
         let t = &page.topology;
         for v in 0..t.own {
-            several += usize::from(t.kinds[v] == Ring::Interleaved);
+            several += usize::from(t.kinds[v] == Ring::ManyFans);
             let lonely = t.ring(v).is_empty();
             stray += usize::from(lonely);
             open += usize::from(t.kinds[v] == Ring::Open && !lonely);
@@ -262,7 +291,8 @@ fn warnings(tri: &TriMesh, pages: &[Arc<Page>], triangles: usize) -> Vec<String>
     }
     if several > 0 {
         out.push(format!(
-            "{several} vertices are non-manifold: their triangles form several fans, or are turned against each other"
+            "{several} vertices are non-manifold: their triangles form several fans, or are turned \
+             against each other"
         ));
     }
     if open > 0 {

@@ -23,7 +23,7 @@ pub(crate) struct Remade {
     pub(crate) next: [u32; 2],
 }
 
-struct Region {
+struct SplicedRegion {
     tri: TriMesh,
     masks: Vec<f32>,
     /// In the new pages.
@@ -33,7 +33,7 @@ struct Region {
     outer: BTreeMap<Home, u32>,
 }
 
-impl Region {
+impl SplicedRegion {
     fn push(&mut self, place: Vec3, mask: f32, colour: [u8; 4], home: Home, id: u32) -> u32 {
         self.tri.positions.push(place);
         self.tri.colours.get_or_insert_default().push(colour);
@@ -42,6 +42,14 @@ impl Region {
         self.homes.local.push(home.1);
         self.ids.push(id);
         self.masks.len() as u32 - 1
+    }
+}
+
+impl Cut {
+    /// Whether it can be made in this clay: it fits, and the pages around can hold the result.
+    /// Costs about as much as making it.
+    pub fn can_be_made(&self, clay: &Snapshot) -> bool {
+        self.fits(clay) && remake(clay, self).is_some()
     }
 }
 
@@ -105,7 +113,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
         }
     }
 
-    let mut region = Region {
+    let mut region = SplicedRegion {
         tri: TriMesh::default(),
         masks: Vec::new(),
         homes: Homes { page: Vec::new(), local: Vec::new() },
@@ -189,7 +197,7 @@ fn lay_out(
     inner: &[u32],
     place: &[Vec<u32>],
     fixed: &[Vec<bool>],
-    region: &mut Region,
+    region: &mut SplicedRegion,
     first_new: u32,
     new: &[NewVertex],
 ) -> Option<Vec<(u32, Vec<u32>)>> {
@@ -263,7 +271,7 @@ fn lay_out(
 }
 
 fn write(
-    region: &Region,
+    region: &SplicedRegion,
     layout: &[(u32, Vec<u32>)],
     numbers: &[u32],
 ) -> Option<Vec<(u32, Arc<Page>)>> {

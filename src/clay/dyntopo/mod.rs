@@ -34,7 +34,7 @@ const LAST_NUMBER: u32 = u32::MAX - (1 << 24);
 
 /// A part of the clay with its vertices in one row.
 #[derive(Debug, Default)]
-struct Region {
+struct TopologyRegion {
     /// Where each page's vertices begin in the row.
     first: BTreeMap<u32, u32>,
     /// For each vertex its number in the clay, and its page; `u32::MAX` for a new one.
@@ -43,7 +43,7 @@ struct Region {
     patch: Patch,
 }
 
-impl Region {
+impl TopologyRegion {
     /// Takes in a page's vertices; `whole`: all about them will be here too.
     fn vertices(&mut self, number: u32, page: &Page, whole: bool) {
         let first = self.ids.len() as u32;
@@ -87,7 +87,7 @@ impl Region {
 impl Clay {
     /// Cuts the triangles within the ball to the wanted size. Part of the open undo step, if there
     /// is one.
-    pub fn remodel(&mut self, detail: &Detail) -> Cuts {
+    pub fn adapt_topology(&mut self, detail: &Detail) -> Cuts {
         if self.next_vertex >= LAST_NUMBER
             || self.next_triangle >= LAST_NUMBER
             || !(detail.edge > 0.0)
@@ -97,7 +97,7 @@ impl Clay {
         let mut inner = Vec::new();
         let reach = Reach::Sphere { centre: detail.centre, radius: detail.radius };
         self.each_page(&reach, |i, _| inner.push(i));
-        let mut region = Region::default();
+        let mut region = TopologyRegion::default();
         let mut near = self.with_neighbours(&inner);
         for &i in &near {
             region.vertices(i, &self.pages[i as usize], inner.binary_search(&i).is_ok());
@@ -139,7 +139,7 @@ impl Clay {
         all
     }
 
-    fn rebuild(&mut self, mut region: Region) {
+    fn rebuild(&mut self, mut region: TopologyRegion) {
         let old_count = region.ids.len();
         // New vertices live where the ones live that they were made beside.
         for v in old_count..region.patch.points.len() {
@@ -187,7 +187,7 @@ impl Clay {
 
     /// Who owns what from now on: each page to be built, with its vertices. Pages that grew too
     /// large are parted.
-    fn share_out(&mut self, region: &mut Region, anew: &[u32]) -> Vec<(u32, Vec<u32>)> {
+    fn share_out(&mut self, region: &mut TopologyRegion, anew: &[u32]) -> Vec<(u32, Vec<u32>)> {
         let mut own: BTreeMap<u32, Vec<u32>> = anew.iter().map(|&i| (i, Vec::new())).collect();
         for v in 0..region.ids.len() {
             if region.patch.alive[v]
@@ -263,7 +263,7 @@ impl Clay {
         i
     }
 
-    fn homes(&self, region: &Region, owners: &[(u32, Vec<u32>)]) -> Homes {
+    fn homes(&self, region: &TopologyRegion, owners: &[(u32, Vec<u32>)]) -> Homes {
         let n = region.ids.len();
         let mut homes = Homes { page: region.page.clone(), local: vec![0; n] };
         // Those that are not built anew are where they were.
@@ -282,7 +282,7 @@ impl Clay {
 
     fn assemble_all(
         &mut self,
-        region: &Region,
+        region: &TopologyRegion,
         homes: &Homes,
         triangles: &[([u32; 3], u32)],
         owners: &[(u32, Vec<u32>)],

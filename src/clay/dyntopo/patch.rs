@@ -42,12 +42,16 @@ pub(super) struct Patch {
 /// What is wanted of the triangles within a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detail {
+    /// The centre of the ball, mesh units.
     pub centre: Vec3,
+    /// The radius of the ball, mesh units, > 0.
     pub radius: f32,
     /// The wanted length of edges, mesh units, > 0. Longer than 4/3 of it they are split, shorter
     /// than 1/2 collapsed.
     pub edge: f32,
+    /// Edges that are too long are split.
     pub split: bool,
+    /// Edges that are too short are collapsed.
     pub collapse: bool,
     /// Cuts at most: the work of one dab is bounded.
     pub most: usize,
@@ -56,8 +60,11 @@ pub struct Detail {
 /// What was done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cuts {
+    /// Edges that were split.
     pub splits: usize,
+    /// Edges that were collapsed.
     pub collapses: usize,
+    /// Edges that were flipped.
     pub flips: usize,
 }
 

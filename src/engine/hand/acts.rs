@@ -7,10 +7,14 @@ use super::{Similarity, Volume};
 use sculptd_clay::Reach;
 use sculptd_clay::brush;
 
+/// Something that a hand does to the clay, the view or what it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Act {
+    /// A fingertip or a fist pushes clay away.
     Push(Push),
+    /// A pinch carries clay along.
     Drag(Drag),
+    /// A flat hand presses and smooths.
     Palm(PalmPress),
     /// View fractions, as [`crate::camera::Camera::orbit`] takes them.
     Orbit(Vec2),
@@ -20,7 +24,9 @@ pub enum Act {
     Zoom(f32),
     /// The tracked volume was moved, turned and scaled under two pinches; the camera goes with it.
     Hold {
+        /// The volume one frame ago.
         before: Volume,
+        /// The volume now.
         after: Volume,
     },
     /// The thing in the hands goes along.
@@ -48,18 +54,23 @@ impl Act {
 /// A ball swept from one place to another, world units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Push {
+    /// Where the centre of the ball begins.
     pub from: Vec3,
+    /// Where it ends.
     pub to: Vec3,
+    /// The radius of the ball, > 0.
     pub radius: f32,
     /// Share of the full displacement, 0 to 1.
     pub strength: f32,
 }
 
 impl Push {
+    /// The part of space that the sweep touches.
     pub fn reach(&self) -> Reach {
         Reach::Capsule { from: self.from, to: self.to, radius: self.radius }
     }
 
+    /// The brush that makes the sweep.
     pub fn kernel(&self) -> brush::Push {
         brush::Push::new(self.from, self.to, self.radius, self.strength)
     }
@@ -68,17 +79,23 @@ impl Push {
 /// Two fingertips that hold clay and carry it along.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Drag {
+    /// Between the fingertips one frame ago, world units.
     pub from: Vec3,
+    /// Between the fingertips now.
     pub to: Vec3,
+    /// How far clay goes along, world units, > 0.
     pub radius: f32,
+    /// Share of the way that clay goes along, 0 to 1.
     pub strength: f32,
 }
 
 impl Drag {
+    /// The part of space that goes along.
     pub fn reach(&self) -> Reach {
         Reach::Sphere { centre: self.from, radius: self.radius }
     }
 
+    /// The brush that carries the clay.
     pub fn kernel(&self) -> brush::Drag {
         brush::Drag::new(self.from, (self.to - self.from) * self.strength, self.radius)
     }
@@ -87,19 +104,25 @@ impl Drag {
 /// A palm pressed on the clay: a disc, facing along `normal`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PalmPress {
+    /// The middle of the palm one frame ago, world units.
     pub from: Vec3,
+    /// The middle of the palm now.
     pub to: Vec3,
     /// Out of the palm, unit length.
     pub normal: Vec3,
+    /// The radius of the disc, world units, > 0.
     pub radius: f32,
+    /// Share of the full pressure, 0 to 1.
     pub strength: f32,
 }
 
 impl PalmPress {
+    /// The part of space that the disc touches.
     pub fn reach(&self) -> Reach {
         Reach::Capsule { from: self.from, to: self.to, radius: self.radius }
     }
 
+    /// The brush that presses.
     pub fn kernel(&self) -> brush::Palm {
         brush::Palm::new(self.from, self.to, self.normal, self.radius, self.strength)
     }

@@ -1,8 +1,8 @@
-//! Arms get tired: a person's own reach is laid over the work, and how far the arms are spent is
-//! followed.
+//! Arms get tired: a person's own reach is mapped to the space around the object, and how far the
+//! arms are spent is followed.
 //!
-//! * [`Reach`]: five seconds of moving the hands about, standing or seated, say where a person can
-//!   work without stretching.
+//! * [`ReachCalibration`]: five seconds of moving the hands about, standing or seated, say where a
+//!   person can work without stretching.
 //! * [`Fatigue`]: consumed endurance (Hincapié-Ramos, Guo, Moghadasian and Irani, CHI 2014): the
 //!   torque at the shoulder as a share of the strongest, and how long it can be held (Rohmert
 //!   1960). A hand with its elbow resting costs nothing.
@@ -10,41 +10,8 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::volume::{BOX_HALF_MM, BOX_MIDDLE_MM};
+use super::reach_box::ReachBox;
 use sculptd_devices::Hand;
-
-/// The part of the tracked space that a person uses, mm.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ReachBox {
-    pub middle_mm: Vec3,
-    /// Half the side of the cube that is mapped.
-    pub half_mm: f32,
-}
-
-impl Default for ReachBox {
-    /// A Leap's interaction box.
-    fn default() -> Self {
-        ReachBox { middle_mm: BOX_MIDDLE_MM, half_mm: BOX_HALF_MM }
-    }
-}
-
-impl ReachBox {
-    pub fn is_sane(&self) -> bool {
-        self.middle_mm.is_finite()
-            && self.middle_mm.abs().max_element() < 2000.0
-            && (30.0..=1000.0).contains(&self.half_mm)
-    }
-
-    /// The same reach lower down, where elbows rest: the plane of work a hand's breadth over the
-    /// table.
-    pub fn lowered(self) -> Self {
-        ReachBox {
-            middle_mm: Vec3::new(self.middle_mm.x, self.half_mm.max(120.0), self.middle_mm.z),
-            ..self
-        }
-    }
-}
 
 /// How long a calibration listens.
 pub const CALIBRATION_US: u64 = 5_000_000;
@@ -55,7 +22,7 @@ const MAX_PALMS: usize = 1200;
 
 /// A calibration under way.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Reach {
+pub struct ReachCalibration {
     since_us: Option<u64>,
     palms: Vec<Vec3>,
 }
@@ -65,12 +32,13 @@ pub struct Reach {
 pub enum Calibrated {
     /// 0 to 1.
     Listening(f32),
+    /// What the person can reach.
     Done(ReachBox),
     /// Hardly a hand was seen.
     TooLittle,
 }
 
-impl Reach {
+impl ReachCalibration {
     /// Takes one frame's palms; time begins with the first one.
     pub fn take(&mut self, t_us: u64, hands: &[Hand]) -> Calibrated {
         let since = *self.since_us.get_or_insert(t_us);
@@ -176,7 +144,7 @@ mod tests {
 
     #[test]
     fn a_reach_is_what_the_hands_went_through_and_outliers_do_not_count() {
-        let mut reach = Reach::default();
+        let mut reach = ReachCalibration::default();
         let mut last = Calibrated::TooLittle;
         for i in 0..=500u64 {
             let a = i as f32 * 0.05;
@@ -192,7 +160,7 @@ mod tests {
         assert!(reach.middle_mm.distance(Vec3::new(20.0, 180.0, -30.0)) < 12.0, "{reach:?}");
         assert!((65.0..85.0).contains(&reach.half_mm), "{reach:?}");
         assert!(reach.is_sane() && reach.lowered().middle_mm.y < reach.middle_mm.y);
-        let mut nobody = Reach::default();
+        let mut nobody = ReachCalibration::default();
         nobody.take(0, &[]);
         assert_eq!(nobody.take(CALIBRATION_US, &[]), Calibrated::TooLittle);
     }

@@ -14,7 +14,9 @@ use sculptd_geometry::TriMesh;
 /// `world = shift + turn * (own * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Similarity {
+    /// Where the origin of the object goes, world units.
     pub shift: Vec3,
+    /// How the object is turned; unit length.
     pub turn: Quat,
     /// > 0.
     pub scale: f32,
@@ -24,8 +26,10 @@ pub struct Similarity {
 const SCALES: [f32; 2] = [1e-3, 1e3];
 
 impl Similarity {
+    /// Leaves everything where it is.
     pub const NONE: Similarity = Similarity { shift: Vec3::ZERO, turn: Quat::IDENTITY, scale: 1.0 };
 
+    /// Where a point of the object is in the world.
     pub fn apply(&self, p: Vec3) -> Vec3 {
         self.shift + self.turn * (p * self.scale)
     }
@@ -57,6 +61,7 @@ impl Similarity {
         (shift.is_finite() && turn.is_finite()).then_some(Similarity { shift, turn, scale })
     }
 
+    /// Whether all values are finite, the rotation is one, and the scale is 0.001 to 1000.
     pub fn is_sane(&self) -> bool {
         self.shift.is_finite()
             && self.turn.is_finite()
@@ -68,7 +73,9 @@ impl Similarity {
 /// What is held, and where.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct HeldObject {
+    /// The triangles, in the coordinates of the object.
     pub plain: Arc<TriMesh>,
+    /// From the coordinates of the object to the world.
     pub place: Similarity,
 }
 

@@ -10,26 +10,36 @@ use sculptd_devices::{DeviceId, Hand};
 /// One hand as it is followed from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Track {
+    /// The tracker.
     pub device: DeviceId,
     /// The tracker's id of the moment.
     pub id: i32,
+    /// A left hand; `None`: the tracker does not say.
     pub left: Option<bool>,
+    /// The pose in force.
     pub pose: Pose,
     /// The pose that is about to be, and since when.
     candidate: Pose,
     candidate_us: u64,
     /// Since when the pose in force is in force.
     pub pose_us: u64,
+    /// When the hand came into view, microseconds.
     pub appeared_us: u64,
+    /// When the hand was seen last, microseconds.
     pub seen_us: u64,
+    /// The middle of the palm, mm over the tracker.
     pub palm: Vec3,
+    /// Out of the palm, unit length.
     pub palm_normal: Option<Vec3>,
+    /// How the hand is turned.
     pub orientation: Option<Quat>,
+    /// The tip of the index finger, mm.
     pub index_tip: Option<Vec3>,
     /// Midway between thumb and index tips.
     pub pinch_point: Option<Vec3>,
     /// Thumb tip to index tip, mm.
     pub pinch_mm: Option<f32>,
+    /// How well the hand is seen, 0 to 1.
     pub confidence: f32,
 }
 
@@ -38,6 +48,7 @@ fn ms(from_us: u64, to_us: u64) -> f32 {
 }
 
 impl Track {
+    /// A hand that appears now, in the neutral pose.
     pub fn new(device: DeviceId, t_us: u64, hand: &Hand) -> Self {
         let mut track = Track {
             device,

@@ -21,9 +21,13 @@ pub enum MenuItem {
     PutAway,
     /// Take up a ball, a box, a cylinder.
     Ball,
+    /// Takes up a cuboid.
     Box,
+    /// Takes up a cylinder.
     Cylinder,
+    /// Takes back the last step.
     Undo,
+    /// Does the step again that was taken back last.
     Redo,
 }
 
@@ -55,6 +59,7 @@ impl MenuItem {
 const FIRST_MM: Vec3 = Vec3::new(-165.0, 110.0, 0.0);
 /// From ball to ball, and a ball's radius, mm: a fingertip drifts by up to 15 mm while it dwells.
 const STEP_MM: f32 = 48.0;
+/// The radius of a ball, mm.
 pub const RADIUS_MM: f32 = 20.0;
 
 /// Where the ball of the `i`th choice is, in the tracker's mm.
@@ -72,6 +77,7 @@ pub struct Menu {
 }
 
 impl Menu {
+    /// What can be chosen: by a hand that holds an object, or by an empty one.
     pub fn choices(holding: bool) -> &'static [MenuItem] {
         if holding { &MenuItem::HOLDING } else { &MenuItem::EMPTY }
     }

@@ -17,15 +17,17 @@ pub mod held_object;
 pub mod machine;
 pub mod menu;
 pub mod pose;
+mod reach_box;
 pub mod settings;
 mod volume;
 
 pub use acts::{Act, Drag, PalmPress, Push};
-pub use comfort::{Calibrated, Fatigue, Reach, ReachBox};
+pub use comfort::{Calibrated, Fatigue, ReachCalibration};
 pub use held_object::{HeldObject, Similarity};
 pub use machine::Track;
 pub use menu::{Menu, MenuItem};
 pub use pose::Pose;
+pub use reach_box::ReachBox;
 pub use settings::HandSettings;
 pub use volume::Volume;
 
@@ -44,7 +46,7 @@ const MAX_TRACKS: usize = 16;
 
 /// A hand as it was one frame ago, in the world.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Held {
+struct TrackedHand {
     track: Track,
     /// Where the tool was; `None` just after the pose began.
     tool: Option<Vec3>,
@@ -61,8 +63,9 @@ struct Held {
 /// The state of all hands between samples.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct HandTools {
+    /// How hands are read.
     pub settings: HandSettings,
-    held: Vec<Held>,
+    held: Vec<TrackedHand>,
     waiting: VecDeque<Act>,
     volume: Volume,
     /// The camera's yaw that the volume was laid for.
@@ -76,7 +79,7 @@ pub struct HandTools {
     menu: Menu,
     chosen: Option<MenuItem>,
     fatigue: Fatigue,
-    reach: Option<Reach>,
+    reach: Option<ReachCalibration>,
     sculpted_us: Option<u64>,
     now_us: u64,
     /// One for each tracker.
@@ -84,6 +87,7 @@ pub struct HandTools {
 }
 
 impl HandTools {
+    /// No hands yet.
     pub fn new(settings: HandSettings) -> Self {
         HandTools {
             settings,
@@ -110,6 +114,7 @@ impl HandTools {
         self.yaw = yaw;
     }
 
+    /// The tracked volume over the object.
     pub fn volume(&self) -> &Volume {
         &self.volume
     }
@@ -164,7 +169,7 @@ impl HandTools {
                 .position(|h| h.track.device == device && h.track.id == hand.id)
                 .or_else(|| {
                     // The tracker gave the same hand a new number.
-                    let lost = |h: &Held| {
+                    let lost = |h: &TrackedHand| {
                         h.track.device == device
                             && !hands.as_slice().iter().any(|o| o.id == h.track.id)
                             && h.track.may_continue(t_us, hand, &s)
@@ -180,7 +185,7 @@ impl HandTools {
                         (held.free, held.anchor_mm) = (false, hand.palm);
                     }
                 }
-                None if self.held.len() < MAX_TRACKS => self.held.push(Held {
+                None if self.held.len() < MAX_TRACKS => self.held.push(TrackedHand {
                     track: Track::new(device, t_us, hand),
                     tool: None,
                     turn: None,
@@ -205,10 +210,12 @@ impl HandTools {
         self.chosen.take()
     }
 
+    /// The menu beside the object.
     pub fn menu(&self) -> &Menu {
         &self.menu
     }
 
+    /// How far the arms are spent.
     pub fn fatigue(&self) -> &Fatigue {
         &self.fatigue
     }
@@ -217,9 +224,10 @@ impl HandTools {
     /// nothing else meanwhile.
     pub fn calibrate(&mut self) {
         self.lift();
-        self.reach = Some(Reach::default());
+        self.reach = Some(ReachCalibration::default());
     }
 
+    /// Whether the hands' movement is being measured for their reach.
     pub fn is_calibrating(&self) -> bool {
         self.reach.is_some()
     }
@@ -318,7 +326,7 @@ impl HandTools {
 
     fn one_hand(&mut self, i: usize, t_us: u64) {
         let s = self.settings;
-        let Held { track, tool, turn, .. } = self.held[i];
+        let TrackedHand { track, tool, turn, .. } = self.held[i];
         let v = self.volume;
         if self.carrying && track.pose == Pose::Pinch {
             let now = track.orientation.map(|q| (v.turn * q).normalize());
@@ -419,10 +427,12 @@ impl HandTools {
         self.waiting.push_back(act);
     }
 
+    /// Whether an act waits for the budget of a tick.
     pub fn has_waiting(&self) -> bool {
         !self.waiting.is_empty()
     }
 
+    /// The oldest act that waits, which then waits no more.
     pub fn next_act(&mut self) -> Option<Act> {
         self.waiting.pop_front()
     }

@@ -28,6 +28,7 @@ pub enum Pose {
 }
 
 impl Pose {
+    /// All poses.
     pub const ALL: [Pose; 6] =
         [Pose::Neutral, Pose::Point, Pose::Pinch, Pose::Grab, Pose::Flat, Pose::Open];
 }
@@ -51,6 +52,7 @@ pub struct Features {
 const PALM_WIDTH_MM: f32 = 85.0;
 
 impl Features {
+    /// Measures one frame.
     pub fn of(hand: &Hand) -> Self {
         let tip = |i: usize| hand.fingers[i].map(|f| f.tip);
         let between = |a: Option<Vec3>, b: Option<Vec3>| a.zip(b).map(|(a, b)| (a - b).length());

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::comfort::ReachBox;
+use super::reach_box::ReachBox;
 use sculptd_devices::filter::OneEuro;
 
+/// How hands are read and how strongly they act.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HandSettings {
@@ -15,6 +16,7 @@ pub struct HandSettings {
     pub pinch_off_mm: f32,
     /// The tracker's grab strength, 0 to 1.
     pub grab_on: f32,
+    /// Below this grab strength a fist lets go, 0 to 1.
     pub grab_off: f32,
     /// A closing fist brings thumb and index together: above this grab strength no pinch begins.
     pub pinch_max_grab: f32,
@@ -40,6 +42,7 @@ pub struct HandSettings {
     /// Motion smaller than this does not turn or move the view, mm; grows by `dwell_zone_mm` while
     /// the hand rests.
     pub dead_zone_mm: f32,
+    /// How far the palm may drift and still rest, mm.
     pub dwell_zone_mm: f32,
     /// After sculpting the view stays still this long, ms, whatever the hand does.
     pub view_rest_ms: f32,

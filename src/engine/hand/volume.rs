@@ -3,13 +3,8 @@
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::comfort::ReachBox;
+use super::reach_box::{BOX_MIDDLE_MM, ReachBox};
 
-/// The middle of a Leap's interaction box, mm over the device (protocol v6
-/// `interactionBox.center`).
-pub const BOX_MIDDLE_MM: Vec3 = Vec3::new(0.0, 200.0, 0.0);
-/// Half the side of the tracked cube that is mapped, mm: the box is 235 x 235 x 148 mm.
-pub const BOX_HALF_MM: f32 = 117.6;
 /// The work's bounding sphere takes this share of the cube, so that a hand can come from outside.
 const WORK_SHARE: f32 = 0.6;
 /// The tool fades out over the last 30 mm before the edge of what a Leap tracks well (about 250 mm
@@ -19,7 +14,9 @@ const EDGE_MM: [f32; 2] = [220.0, 250.0];
 /// `world = origin + turn * (mm * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Volume {
+    /// Where the tracker's origin is in the world.
     pub origin: Vec3,
+    /// From the tracker's axes to the world's; unit length.
     pub turn: Quat,
     /// World units a millimetre, > 0.
     pub scale: f32,
@@ -34,6 +31,7 @@ impl Volume {
         Volume { origin: middle - turn * (reach.middle_mm * scale), turn, scale }
     }
 
+    /// Where a point of the tracker (mm) is in the world.
     pub fn to_world(&self, mm: Vec3) -> Vec3 {
         self.origin + self.turn * (mm * self.scale)
     }

@@ -1,10 +1,10 @@
-//! What the world remembers of itself for others: the deeds of a tick, and its whole state while it
-//! is at rest.
+//! What the world keeps for others: the history entries of a tick, and its whole state while it is
+//! at rest.
 //!
 //! Laws kept here:
-//! * A world made of a saved state goes on, to the bit, as the one that was saved: everything is in
-//!   it but undo, which a session file keeps.
-//! * A moment costs what its step changed: it holds a snapshot, not a copy.
+//! * A world made of a saved state goes on, to the bit, as the one that was saved: it holds all but
+//!   undo, which a session file keeps.
+//! * A history entry costs what its step changed: it holds a snapshot, not a copy.
 
 use std::sync::Arc;
 
@@ -20,49 +20,62 @@ use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
 use sculptd_devices::Hands;
 use sculptd_geometry::TriMesh;
 
-/// What was done to the work as a whole.
+/// What was done to the object as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum HistoryEvent {
     /// A stroke, a mask, a cut: one step of undo.
     Step,
+    /// A step was taken back.
     Undo,
+    /// A step was done again.
     Redo,
-    /// Another work took its place.
+    /// Another object took its place.
     Replace,
-    /// Another person's work began: nothing before it is of any concern.
+    /// Another person began: nothing before it can be taken back.
     Begin,
-    /// To this place of the history.
+    /// To this node of the history.
     Jump(u64),
 }
 
-/// A deed, and the work right after it.
+/// What was done, and the clay right after it.
 #[derive(Debug, Clone)]
 pub struct HistoryEntry {
+    /// What was done.
     pub deed: HistoryEvent,
+    /// The clay right after it.
     pub work: Snapshot,
-    /// Middle and bounding radius of the work when it was put in place.
+    /// The centre of the object's bounding box when it was put in place.
     pub middle: glam::Vec3,
+    /// The bounding radius of the object then.
     pub extent: f32,
 }
 
 /// Large things that seldom change, kept beside the state and named by it.
 #[derive(Debug, Clone)]
-pub enum Side {
+pub enum SideData {
+    /// What the hands hold.
     HeldObject(Arc<TriMesh>),
+    /// The picture of heights of the alpha `picture`.
     Picture(Arc<Picture>),
+    /// The multiresolution levels that are not shown.
     Levels(Arc<Levels>),
 }
 
 /// A world at rest.
 #[derive(Debug, Clone)]
 pub struct Saved {
+    /// The tick after which it was saved.
     pub tick: u64,
+    /// What the clay is besides its pages.
     pub rest: ObjectState,
     /// Everything small, as bytes.
     pub core: Vec<u8>,
+    /// What the hands hold; its place is in `core`.
     pub thing: Option<Arc<TriMesh>>,
+    /// The picture of heights of the alpha `picture`.
     pub picture: Option<Arc<Picture>>,
+    /// The multiresolution levels that are not shown.
     pub levels: Option<Arc<Levels>>,
     /// Steps that could be taken back and done again then; a world made of this has none.
     pub steps: (u32, u32),
@@ -102,17 +115,17 @@ struct Core {
 }
 
 impl World {
-    /// From now on every tick's deeds are kept until the next one.
+    /// From now on the history entries of every tick are kept until the next one.
     pub fn keep_moments(&mut self) {
         self.moments.get_or_insert_with(|| Vec::with_capacity(16));
     }
 
-    /// The deeds of the last tick, in order.
+    /// The history entries of the last tick, in order.
     pub fn moments(&self) -> &[HistoryEntry] {
         self.moments.as_deref().unwrap_or_default()
     }
 
-    /// The work as it is, as a moment: what a history begins with.
+    /// The clay as it is, as a history entry: what a history begins with.
     pub fn moment(&mut self, deed: HistoryEvent) -> HistoryEntry {
         HistoryEntry { deed, work: self.mesh.snapshot(), middle: self.middle, extent: self.extent }
     }
@@ -197,10 +210,10 @@ impl World {
         })
     }
 
-    /// The world that was saved, around its work.
+    /// The world that was saved, around its clay.
     ///
     /// # Errors
-    /// [`BadState`]
+    /// [`BadState`] where the bytes are not those of a state.
     pub fn restore(
         mut mesh: Clay,
         saved: Saved,

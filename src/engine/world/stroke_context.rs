@@ -25,14 +25,14 @@ pub(super) struct Stroke {
     last: Option<Vec3>,
     travelled: f32,
     /// What a held brush holds.
-    held: Option<Held>,
+    held: Option<HeldStroke>,
     /// Ticks that the pen has rested.
     pub(super) rested: u32,
 }
 
 /// Where a held brush took hold, and how far it was drawn.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Held {
+struct HeldStroke {
     from: PenPoint,
     hit: Hit,
     drag: Vec3,
@@ -288,7 +288,7 @@ impl StrokeContext<'_> {
                 collapse: t.collapse,
                 most: MOST_CUTS,
             };
-            let cuts = self.mesh.remodel(&detail);
+            let cuts = self.mesh.adapt_topology(&detail);
             self.left =
                 self.left.saturating_sub(8 * (cuts.splits + cuts.collapses + cuts.flips) as u64);
         }
@@ -311,7 +311,7 @@ impl StrokeContext<'_> {
     }
 
     /// Takes back the dab that is not final, and all its images.
-    fn take_back(&mut self, held: &mut Held) {
+    fn take_back(&mut self, held: &mut HeldStroke) {
         let Some((centre, radius)) = held.shown.take() else { return };
         for image in Images::of(self.brush, self.middle, self.extent).each() {
             let centre = image.at(centre);
@@ -323,14 +323,14 @@ impl StrokeContext<'_> {
     }
 
     /// How far a pen at `at` was drawn, parallel to the view at the depth where it took hold.
-    fn drawn(&self, held: &Held, at: &PenPoint) -> Vec3 {
+    fn drawn(&self, held: &HeldStroke, at: &PenPoint) -> Vec3 {
         let (right, up) = self.camera.axes();
         let scale = self.world_per_view(&held.hit);
         let d = at.view - held.from.view;
         right * (d.x * self.camera.aspect * scale) - up * (d.y * scale)
     }
 
-    fn move_held(&mut self, mut held: Held, at: &PenPoint) -> Held {
+    fn move_held(&mut self, mut held: HeldStroke, at: &PenPoint) -> HeldStroke {
         let drag = self.drawn(&held, at);
         match (self.brush.path.method, self.brush.kind.grip()) {
             (Method::Anchored, Grip::Surface) => {
@@ -403,7 +403,7 @@ impl Surface for StrokeContext<'_> {
         if began {
             self.stroke.held = self.pick(at.view).map(|hit| {
                 self.mesh.begin_step();
-                Held { from: *at, hit, drag: Vec3::ZERO, shown: None }
+                HeldStroke { from: *at, hit, drag: Vec3::ZERO, shown: None }
             });
             if self.brush.path.method != Method::DragDot {
                 return Flow::Go;

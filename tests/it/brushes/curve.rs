@@ -24,7 +24,7 @@ fn pen(s: &mut Studio, points: &[(f32, f32)]) {
 }
 
 fn views(s: &Studio) -> Vec<Vec2> {
-    s.world.draft().map(|d| d.points().iter().map(|p| p.view).collect()).unwrap_or_default()
+    s.world.curve_stroke().map(|d| d.points().iter().map(|p| p.view).collect()).unwrap_or_default()
 }
 
 fn act(s: &mut Studio, act: CurveAction) {
@@ -42,7 +42,7 @@ fn edited(s: &mut Studio) {
     pen(s, &[(0.502, 0.452), (0.48, 0.47), (0.46, 0.5)]);
     assert!((views(s)[1] - Vec2::new(0.46, 0.5)).length() < 1e-6);
     let aspect = s.world.camera().aspect;
-    let between = s.world.draft().expect("laid").at(24, aspect).view;
+    let between = s.world.curve_stroke().expect("laid").at(24, aspect).view;
     pen(s, &[(between.x, between.y), (between.x + 0.02, between.y)]);
     assert_eq!(views(s).len(), 5);
     assert!((views(s)[2] - between - Vec2::new(0.02, 0.0)).length() < 1e-6);

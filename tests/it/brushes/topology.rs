@@ -80,7 +80,7 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
                     collapse: true,
                     most: 500,
                 };
-                let cuts = mesh.remodel(&detail);
+                let cuts = mesh.adapt_topology(&detail);
                 splits += cuts.splits;
                 collapses += cuts.collapses;
                 flips += cuts.flips;
@@ -165,7 +165,7 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
         most: 100_000,
     };
     for _ in 0..3 {
-        mesh.remodel(&detail);
+        mesh.adapt_topology(&detail);
     }
     mesh.verify_invariants().expect("in order");
     let end = mesh.to_tri();
@@ -191,7 +191,7 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     // The other way: all of it drawn together.
     let coarse = Detail { edge: 0.2, split: false, ..detail };
     for _ in 0..6 {
-        mesh.remodel(&coarse);
+        mesh.adapt_topology(&coarse);
     }
     mesh.verify_invariants().expect("in order");
     let within =

@@ -138,7 +138,7 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     for (i, act) in asked.into_iter().enumerate() {
         world.step(30 + i as u64, &[], &[Command::CurveStroke(act)]);
     }
-    assert!(world.draft().is_none() && world.undo_steps() == 1);
+    assert!(world.curve_stroke().is_none() && world.undo_steps() == 1);
     h.state_mut().published = super::published(&mut world);
     h.run_steps(2);
     assert!(h.query_by_label("Draw the curve").is_none());

@@ -8,7 +8,7 @@ use super::tree::{Change, NOTHING, Node, Tree};
 use crate::session::history::retention::{Freed, High, Pin, bound};
 use crate::session::history::thumbnail;
 use sculptd_clay::{Page, Snapshot};
-use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, Side};
+use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, SideData};
 
 /// Bytes of one transaction: the journal's own rows wait for no longer than that takes.
 const CHUNK: usize = 4 << 20;
@@ -24,7 +24,7 @@ pub struct HistoryWriter {
     pub topology: BTreeMap<u32, u64>,
     names: BTreeMap<Name, u64>,
     topologies: BTreeSet<Name>,
-    sides: Vec<(Side, u64)>,
+    sides: Vec<(SideData, u64)>,
     next_side: u64,
     /// Bytes in the open transaction.
     open: usize,
@@ -40,11 +40,11 @@ fn version(page: &Page) -> u64 {
     if page.own() == 0 && page.revision() == 0 { NOTHING } else { page.revision() }
 }
 
-fn same(a: &Side, b: &Side) -> bool {
+fn same(a: &SideData, b: &SideData) -> bool {
     match (a, b) {
-        (Side::HeldObject(a), Side::HeldObject(b)) => Arc::ptr_eq(a, b),
-        (Side::Picture(a), Side::Picture(b)) => Arc::ptr_eq(a, b),
-        (Side::Levels(a), Side::Levels(b)) => Arc::ptr_eq(a, b),
+        (SideData::HeldObject(a), SideData::HeldObject(b)) => Arc::ptr_eq(a, b),
+        (SideData::Picture(a), SideData::Picture(b)) => Arc::ptr_eq(a, b),
+        (SideData::Levels(a), SideData::Levels(b)) => Arc::ptr_eq(a, b),
         _ => false,
     }
 }
@@ -191,7 +191,7 @@ impl HistoryWriter {
         parent: Option<u64>,
         deed: HistoryEvent,
     ) -> Node {
-        let levels = moment.work.levels().map(|l| Side::Levels(l.clone()));
+        let levels = moment.work.levels().map(|l| SideData::Levels(l.clone()));
         Node {
             id: self.tree.next_id(),
             parent,
@@ -208,7 +208,7 @@ impl HistoryWriter {
     }
 
     /// Where a side is kept; written when it is first met.
-    fn side(&mut self, side: Side) -> Result<u64, StoreError> {
+    fn side(&mut self, side: SideData) -> Result<u64, StoreError> {
         if let Some((_, id)) = self.sides.iter().find(|(known, _)| same(known, &side)) {
             return Ok(*id);
         }
@@ -417,9 +417,9 @@ impl HistoryWriter {
         }
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         let sides = [
-            saved.thing.clone().map(Side::HeldObject),
-            saved.picture.clone().map(Side::Picture),
-            saved.levels.clone().map(Side::Levels),
+            saved.thing.clone().map(SideData::HeldObject),
+            saved.picture.clone().map(SideData::Picture),
+            saved.levels.clone().map(SideData::Levels),
         ];
         let mut ids = [None; 3];
         for (id, side) in ids.iter_mut().zip(sides) {

@@ -13,7 +13,7 @@ use super::tree::{NOTHING, Node, Tree};
 use sculptd_clay::brush::Picture;
 use sculptd_clay::page::PageTopology;
 use sculptd_clay::{Levels, ObjectState, Page};
-use sculptd_engine::world::{Saved, Side};
+use sculptd_engine::world::{Saved, SideData};
 use sculptd_geometry::TriMesh;
 
 /// Added to a session's tables; a session from before them has none and is replayed.
@@ -193,11 +193,11 @@ impl Store {
         self.checked("a thing beside the work", row)
     }
 
-    pub fn put_side(&self, id: u64, side: &Side) -> Result<usize, StoreError> {
+    pub fn put_side(&self, id: u64, side: &SideData) -> Result<usize, StoreError> {
         let data = plain(match side {
-            Side::HeldObject(t) => postcard::to_stdvec(t.as_ref()),
-            Side::Picture(p) => postcard::to_stdvec(p.as_ref()),
-            Side::Levels(l) => postcard::to_stdvec(l.as_ref()),
+            SideData::HeldObject(t) => postcard::to_stdvec(t.as_ref()),
+            SideData::Picture(p) => postcard::to_stdvec(p.as_ref()),
+            SideData::Levels(l) => postcard::to_stdvec(l.as_ref()),
         })?;
         let row = (id as i64, crc32fast::hash(&data), &data);
         self.db.execute("INSERT OR REPLACE INTO side (id, crc, data) VALUES (?1, ?2, ?3)", row)?;

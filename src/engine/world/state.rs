@@ -1,0 +1,159 @@
+//! What others may see of the world, and what goes into it besides samples and commands.
+
+use glam::Vec3;
+
+use super::{StepReport, World};
+use crate::camera::Camera;
+use crate::command::{Command, Jump};
+use crate::hand::{HandTools, HeldObject, Pose, Volume};
+use crate::payload::{Payload, PayloadId};
+use crate::stroke::{CurveStroke, PenPoint};
+use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{Clay, GarbageSink, Grafted};
+use sculptd_devices::{DeviceId, Hands};
+
+impl World {
+    /// The pose of every hand that is followed.
+    pub fn poses(&self) -> impl Iterator<Item = (DeviceId, i32, Pose)> + '_ {
+        self.hands.tracks().map(|t| (t.device, t.id, t.pose))
+    }
+
+    /// What the last step did.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// The tick of the last step.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// The clay.
+    pub fn mesh(&self) -> &Clay {
+        &self.mesh
+    }
+
+    /// Steps that undo can take back, replaced clay included.
+    pub fn undo_steps(&self) -> usize {
+        self.mesh.undo_steps() + self.works.past()
+    }
+
+    /// Steps that redo can do again, replaced clay included.
+    pub fn redo_steps(&self) -> usize {
+        self.mesh.redo_steps() + self.works.future()
+    }
+
+    /// For publishing only: nothing of the clay changes.
+    pub fn snapshot(&mut self) -> sculptd_clay::Snapshot {
+        self.mesh.snapshot()
+    }
+
+    /// The view that pens draw in.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The brush and its settings.
+    pub fn brush(&self) -> &BrushSettings {
+        &self.brush
+    }
+
+    /// The brush's radius in mesh units at full pressure.
+    pub fn brush_radius(&self) -> f32 {
+        self.brush.radius * self.extent
+    }
+
+    /// Bounding radius of the object when it was put in place.
+    pub fn extent(&self) -> f32 {
+        self.extent
+    }
+
+    /// The centre of the object's bounding box when it was put in place: where mirrors stand.
+    pub fn middle(&self) -> Vec3 {
+        self.middle
+    }
+
+    /// The tracked volume of hands over the object.
+    pub fn volume(&self) -> &Volume {
+        self.hands.volume()
+    }
+
+    /// Where each pen is, over the view, while in range.
+    pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
+        self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
+    }
+
+    /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
+    pub fn curve_stroke(&self) -> Option<&CurveStroke> {
+        self.pens.iter().map(|s| s.track.draft()).find(|d| !d.is_empty())
+    }
+
+    /// What the hands hold, and where.
+    pub fn thing(&self) -> Option<&HeldObject> {
+        self.thing.as_ref()
+    }
+
+    /// How the hands are followed.
+    pub fn hand_tools(&self) -> &HandTools {
+        &self.hands
+    }
+
+    /// The newest frame of hands.
+    pub fn hands(&self) -> Option<&Hands> {
+        self.last_hands.as_ref()
+    }
+
+    /// From now on, what is no longer needed goes to this sink. A new world frees it in place.
+    pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
+        self.mesh.set_garbage_sink(sink.clone());
+        self.garbage = sink;
+    }
+
+    /// Keeps the payload that goes with a command of the next step, and writes its name into the
+    /// command. A payload that the command cannot use, or for which there is no room, goes to the
+    /// garbage sink; the world then builds what the command needs, or ignores a jump.
+    pub fn deliver(&mut self, command: &mut Command, payload: Payload) {
+        if let Command::Jump(jump) = command {
+            self.deliver_for_jump(jump, payload);
+        } else if let Some(new) = command.new_clay_mut() {
+            let id = *new.built.insert(self.payloads.number());
+            self.keep_payload(id, payload);
+        } else {
+            self.garbage.discard_owned(payload);
+        }
+    }
+
+    /// The same for a jump, which names its payload itself: one that was read from a file works
+    /// like one that was sent.
+    pub fn deliver_for_jump(&mut self, jump: &Jump, payload: Payload) {
+        self.keep_payload(jump.payload_id(), payload);
+    }
+
+    fn keep_payload(&mut self, id: PayloadId, payload: Payload) {
+        if let Err(left) = self.payloads.insert(id, payload) {
+            self.garbage.discard_owned(left);
+        }
+    }
+
+    /// What came of each [`Command::Cut`] of the last step, in the order of the commands; `None`:
+    /// not made, because the clay had changed there.
+    pub fn cut_results(&self) -> &[Option<Grafted>] {
+        &self.cuts
+    }
+
+    /// One number for the whole state of the clay; costs as much as the clay is large.
+    pub fn hash(&self) -> u64 {
+        self.mesh.hash()
+    }
+
+    /// Checks everything that must hold of the world. Costs as much as the clay is large.
+    ///
+    /// # Errors
+    /// Says what does not hold.
+    pub fn verify_invariants(&self) -> Result<(), String> {
+        if !self.camera.is_sane() {
+            return Err(format!("the camera is not sane: {:?}", self.camera));
+        }
+        self.mesh.verify_invariants()
+    }
+}
