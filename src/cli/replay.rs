@@ -140,6 +140,13 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
     });
     let (replayed, frames, checkpoint) = match near.flatten() {
         Some(r) => (r.replayed, 0, Some(r.checkpoint)),
+        None if opened.replay_from.is_some() => {
+            let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
+            return Err(Fail::Input(format!(
+                "{}: it cannot be replayed from its start: {why}; --from-checkpoint begins later",
+                args.session.display()
+            )));
+        }
         None => {
             let (replayed, frames) = replay(args, &opened, workers)?;
             (replayed, frames, None)

@@ -11,6 +11,7 @@
 pub mod camera;
 pub mod command;
 pub mod hand;
+pub mod old_layout;
 mod replaced;
 pub mod stroke;
 pub mod world;

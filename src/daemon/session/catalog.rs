@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::acknowledgement::{self, Acknowledged};
 use super::history::{Store, StoreError, listing};
 use super::reader::open;
+use super::shared_memory_log::{self, FileIdentity, LogName};
 use crate::session::history::retention::{Freed, bound};
 
 /// The ending of a session file's name.
@@ -132,7 +134,7 @@ pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     // Held until all is done: no daemon opens it meanwhile.
     let lock = std::fs::File::open(path).map_err(damaged)?;
     if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock))
-        || !Store::read(path)?.has_tables()
+        || !Store::read(path)?.has_tables()?
     {
         return Ok(None);
     }
@@ -153,11 +155,21 @@ pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     Ok(Some(freed))
 }
 
+/// What this very file's processes left in shared memory.
+pub fn logs_of(path: &Path) -> Vec<LogName> {
+    match acknowledgement::read(path) {
+        Ok(Acknowledged::Known(a)) => FileIdentity::of(path, a.identity)
+            .map(|f| shared_memory_log::logs_of(&f))
+            .unwrap_or_default(),
+        _ => Vec::new(),
+    }
+}
+
 /// Removes a session with what belongs to it.
 pub fn remove(path: &Path) -> std::io::Result<()> {
-    let tail = crate::session::shared_memory_log::of(path);
+    let logs = logs_of(path);
     std::fs::remove_file(path)?;
-    tail.into_iter().for_each(crate::session::shared_memory_log::remove);
+    logs.iter().for_each(shared_memory_log::remove);
     for ending in ["-wal", "-shm"] {
         let mut name = path.as_os_str().to_owned();
         name.push(ending);

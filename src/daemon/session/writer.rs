@@ -14,17 +14,22 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 use rusqlite::{Connection, OptionalExtension};
 
+use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
+use super::create::{SessionDraft, acknowledge_first, is_half_made};
 use super::format::{
-    META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TABLES, TickInput, append,
+    InputRow, META_IDENTITY, META_REPLAY_FROM, META_SETTINGS, META_START, META_SUMS, ReplayFrom,
+    Settings, TABLES, append, chain_start, v3,
 };
 use super::history::{Handle, keeper::Keeper};
+use super::shared_memory_log::{FileIdentity, LogName};
 use super::syncer::Syncer;
-use super::{APPLICATION_ID, GROUP_MS, VERSION};
+use super::{GROUP_MS, VERSION};
 use crate::live::{Journal, raise_priority_below};
 use crate::session::shared_memory_log;
 use crate::session::shared_memory_log::SharedMemoryLog;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
+use sculptd_engine::old_layout::from_bytes;
 use sculptd_engine::world::World;
 use sculptd_geometry::TriMesh;
 
@@ -39,6 +44,8 @@ const KEPT_BYTES: usize = 64 << 20;
 const IDLE: Duration = Duration::from_millis(1000);
 /// How often a disk that was full is tried again.
 const RETRY: Duration = Duration::from_millis(1000);
+/// Ticks in one row of a session that came from an older layout.
+const UPGRADED_GROUP: usize = 64;
 
 #[derive(Debug, thiserror::Error)]
 pub enum CreateError {
@@ -125,63 +132,56 @@ enum Message {
     Ticks(u64, u64, Vec<u8>),
 }
 
-/// Makes a new session file. The mesh is written before this returns.
+/// Makes a new session file. It is on the disk, whole, before this returns; a file of that name
+/// which is empty or half-made is taken over.
+///
+/// # Errors
+/// [`CreateError`]
 pub fn create(
     path: &Path,
     start: &TriMesh,
     settings: &Settings,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
-    let name = || path.display().to_string();
-    let store = |source| CreateError::Store { path: name(), source };
-    // Exclusive: a second daemon on the same name must not come second in a race.
-    std::fs::OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| {
-        match source.kind() {
-            std::io::ErrorKind::AlreadyExists => CreateError::Exists { path: name() },
-            _ => CreateError::Io { path: name(), source },
-        }
-    })?;
-    let lock = lock(path)?;
-    let db = Connection::open(path).map_err(store)?;
-    tune(&db).map_err(store)?;
-    db.pragma_update(None, "application_id", APPLICATION_ID).map_err(store)?;
-    db.pragma_update(None, "user_version", VERSION).map_err(store)?;
-    let blob = |value: Result<Vec<u8>, postcard::Error>| {
-        value.map_err(|e| store(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
-    };
-    let mesh = blob(postcard::to_stdvec(start))?;
-    let settings = blob(postcard::to_stdvec(settings))?;
-    let sums = blob(postcard::to_stdvec(&(crc32fast::hash(&mesh), crc32fast::hash(&settings))))?;
-    let all = || -> rusqlite::Result<()> {
-        db.execute_batch("BEGIN")?;
-        db.execute_batch(TABLES)?;
-        let mut put = db.prepare("INSERT INTO meta (key, value) VALUES (?1, ?2)")?;
-        put.execute((META_START, &mesh))?;
-        put.execute((META_SETTINGS, &settings))?;
-        put.execute((META_SUMS, &sums))?;
-        db.execute_batch("COMMIT")
-    };
-    all().map_err(store)?;
-    start_thread(db, lock, path)
+    let over = path.exists();
+    if over && !is_half_made(path) {
+        return Err(CreateError::Exists { path: path.display().to_string() });
+    }
+    SessionDraft::begin(path, start, settings)?.publish(path, over)?;
+    resume(path)
 }
 
 /// Keeps a second daemon from writing the same session. Given back when the file is closed, also by
 /// a kill.
-fn lock(path: &Path) -> Result<File, CreateError> {
+fn lock(path: &Path) -> Result<Arc<File>, CreateError> {
     let name = || path.display().to_string();
-    let file = File::open(path).map_err(|source| CreateError::Io { path: name(), source })?;
+    let file = File::options()
+        .read(true)
+        .write(true)
+        .open(path)
+        .map_err(|source| CreateError::Io { path: name(), source })?;
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(CreateError::Busy { path: name() }),
         // A file system without locks: as before there were any.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Arc::new(file)),
     }
 }
 
-/// Goes on writing a session that was opened.
+/// Goes on writing a session that was opened. One of an older layout is brought to this one.
+///
+/// # Errors
+/// [`CreateError`]
 pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError> {
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
+    let io = |source| CreateError::Io { path: path.display().to_string(), source };
     let lock = lock(path)?;
-    let db = Connection::open(path).map_err(store)?;
+    // Before SQLite begins a log: the salts of that one are not known yet.
+    if let Some((mut page, known)) = AcknowledgementPage::find(lock.clone()).map_err(io)? {
+        page.write(&Acknowledgement { salts: [0, 0], ..known }).map_err(io)?;
+        page.sync().map_err(io)?;
+    }
+    let mut db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
+    upgrade(&mut db).map_err(store)?;
     start_thread(db, lock, path)
 }
 
@@ -197,7 +197,7 @@ fn tune(db: &Connection) -> rusqlite::Result<()> {
 
 fn start_thread(
     db: Connection,
-    lock: File,
+    lock: Arc<File>,
     path: &Path,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
     let (full, inbox) = cc::bounded(BUFFERS);
@@ -207,12 +207,25 @@ fn start_thread(
     }
     let health = Health::default();
     let sql = |source| CreateError::Store { path: path.display().to_string(), source };
-    let (log_end, tail) = begin_tail(&db).map_err(sql)?;
-    let committed = tail.as_ref().map(|t| t.committed.clone()).unwrap_or_default();
-    committed.store(log_end, Relaxed);
-    let tail_name = tail.as_ref().map(SharedMemoryLog::name);
-    let syncer = Syncer::start(path, health.written.clone())
-        .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
+    let io = |source| CreateError::Io { path: path.display().to_string(), source };
+    let (end, tail) = begin_log(&db, path).map_err(sql)?;
+    let (committed, taken_over) =
+        tail.as_ref().map(|t| (t.committed.clone(), t.taken_over.clone())).unwrap_or_default();
+    committed.store(end.tick, Relaxed);
+    let tail_name = tail.as_ref().map(|t| t.name().clone());
+    let found = AcknowledgementPage::find(lock.clone()).map_err(io)?;
+    let Some((mut page, _)) = found else {
+        return Err(io(std::io::Error::other("the acknowledgement cannot be read")));
+    };
+    let first = Acknowledgement {
+        identity: end.identity,
+        tick: end.tick,
+        chain: end.chain,
+        salts: [0, 0],
+    };
+    page.write(&first).map_err(io)?;
+    let syncer =
+        Syncer::start(path, health.written.clone(), taken_over, page, first).map_err(io)?;
     // From here on the syncer does it, and no commit waits for a disk.
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     db.pragma_update(None, "synchronous", "off").map_err(store)?;
@@ -226,6 +239,7 @@ fn start_thread(
         db,
         tail: tail_name,
         committed,
+        end,
         syncer: Some(syncer),
         _lock: lock,
         recycle,
@@ -319,42 +333,130 @@ struct Group {
     data: Vec<u8>,
 }
 
-/// Gives the session a tail of a new name; what the old one still holds is written first. Also the
-/// last tick of the log.
-fn begin_tail(db: &Connection) -> rusqlite::Result<(u64, Option<SharedMemoryLog>)> {
-    let old: Option<Vec<u8>> = db
-        .query_row("SELECT value FROM meta WHERE key = ?1", [META_TAIL], |r| r.get(0))
-        .optional()?;
-    let last: Option<i64> = db.query_row("SELECT max(last_tick) FROM log", [], |r| r.get(0))?;
-    let mut last = last.map_or(0, |l| l as u64);
-    let old = old.and_then(|o| o.try_into().ok()).map(u64::from_le_bytes);
-    if let Some(name) = old {
-        let mut input = vec![TickInput { tick: last, samples: Vec::new(), commands: Vec::new() }];
-        shared_memory_log::lengthen(&mut input, &shared_memory_log::read(name));
+/// Where a session's input ends.
+#[derive(Debug, Clone, Copy)]
+struct InputEnd {
+    identity: u64,
+    number: u64,
+    tick: u64,
+    chain: u32,
+}
+
+impl InputEnd {
+    /// Puts the next row.
+    fn put(&mut self, db: &Connection, first: u64, last: u64, data: &[u8]) -> rusqlite::Result<()> {
+        let before = (self.number, self.chain);
+        let row = InputRow::after(before, self.identity, first..=last, data.to_vec());
+        let mut put = db.prepare_cached(
+            "INSERT INTO input (number, first_tick, last_tick, crc, chain, data)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+        )?;
+        let number = row.number as i64;
+        put.execute((number, first as i64, last as i64, row.crc, row.chain, &row.data))?;
+        *self = InputEnd { number: row.number, tick: last, chain: row.chain, ..*self };
+        Ok(())
+    }
+}
+
+/// Takes over what a dead process left of this very file in shared memory, and begins a log of its
+/// own there.
+fn begin_log(
+    db: &Connection,
+    path: &Path,
+) -> rusqlite::Result<(InputEnd, Option<SharedMemoryLog>)> {
+    let sql = "SELECT value FROM meta WHERE key = ?1";
+    let bytes: Vec<u8> = db.query_row(sql, [META_IDENTITY], |r| r.get(0))?;
+    let identity = bytes.try_into().map(u64::from_le_bytes).unwrap_or_default();
+    let last = "SELECT number, last_tick, chain FROM input ORDER BY number DESC LIMIT 1";
+    let last = db.query_row(last, [], |r| {
+        let (number, tick): (i64, i64) = (r.get(0)?, r.get(1)?);
+        Ok(InputEnd { identity, number: number as u64, tick: tick as u64, chain: r.get(2)? })
+    });
+    let none = InputEnd { identity, number: 0, tick: 0, chain: chain_start(identity) };
+    let mut end = last.optional()?.unwrap_or(none);
+    let Ok(file) = FileIdentity::of(path, identity) else { return Ok((end, None)) };
+    let logs = shared_memory_log::logs_of(&file);
+    let dead: Vec<_> = logs.into_iter().filter(|l| !l.owner_lives() || l.is_own()).collect();
+    for log in &dead {
+        let entries = shared_memory_log::read(log);
+        for entry in shared_memory_log::following((end.tick, end.chain), &entries) {
+            end.put(db, entry.first, entry.last, &entry.data)?;
+        }
+    }
+    // The file has everything now, synced.
+    dead.iter().for_each(shared_memory_log::remove);
+    shared_memory_log::prune();
+    Ok((end, SharedMemoryLog::create(file, path, (end.tick, end.chain))))
+}
+
+/// Brings a file of an older layout to this one, in one transaction: the input after its oldest
+/// checkpoint is written anew, what came before stays for the older program's tables.
+fn upgrade(db: &mut Connection) -> rusqlite::Result<()> {
+    let found: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0))?;
+    if found != v3::LAYOUT {
+        return Ok(());
+    }
+    let oldest: Option<i64> =
+        db.query_row("SELECT min(tick) FROM checkpoint", [], |r| r.get(0))?;
+    let oldest = oldest.unwrap_or_default() as u64;
+    let (mut input, _) = v3::read_log(db);
+    let sql = "SELECT value FROM meta WHERE key = ?1";
+    let old_log: Option<Vec<u8>> =
+        db.query_row(sql, [v3::META_TAIL], |r| r.get(0)).optional()?;
+    let old_log = old_log.and_then(|l| l.try_into().ok()).map(u64::from_le_bytes);
+    if let Some(name) = old_log {
+        v3::lengthen(&mut input, name);
+    }
+    let all = db.transaction()?;
+    all.execute_batch(&TABLES.replace("CREATE TABLE meta (", "CREATE TABLE IF NOT EXISTS meta ("))?;
+    for table in ["node", "side", "checkpoint", "pin"] {
+        let known = "SELECT count(*) FROM sqlite_schema WHERE name = ?1";
+        if all.query_row(known, [table], |r| r.get::<_, i64>(0))? == 0 {
+            continue;
+        }
+        all.execute_batch(&format!(
+            "ALTER TABLE {table} ADD COLUMN layout INTEGER NOT NULL DEFAULT {}",
+            v3::LAYOUT
+        ))?;
+    }
+    let identity = shared_memory_log::new_creation_number();
+    let mut end = InputEnd { identity, number: 0, tick: 0, chain: chain_start(identity) };
+    let after = input.partition_point(|t| t.tick <= oldest);
+    for group in input[after..].chunks(UPGRADED_GROUP) {
         let mut data = Vec::new();
-        for t in &input[1..] {
+        for t in group {
             append(&mut data, t.tick, &t.samples, &t.commands);
         }
-        if let [_, first, ..] = input.as_slice() {
-            let end = input.last().map_or(last, |t| t.tick);
-            let row = (first.tick as i64, end as i64, crc32fast::hash(&data), &data);
-            db.execute(
-                "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
-                row,
-            )?;
-            last = end;
-        }
+        end.put(&all, group[0].tick, group[group.len() - 1].tick, &data)?;
     }
-    let name = shared_memory_log::new_name();
-    let made = SharedMemoryLog::create(name, last);
-    db.execute(
-        "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)",
-        (META_TAIL, name.to_le_bytes().as_slice()),
-    )?;
-    if let Some(old) = old {
-        shared_memory_log::remove(old);
+    // Settings and start are read as this layout has them from now on.
+    for (key, sum) in [(META_SETTINGS, 1), (META_START, 0)] {
+        let bytes: Vec<u8> = all.query_row(sql, [key], |r| r.get(0))?;
+        let plain = |e: postcard::Error| rusqlite::Error::ToSqlConversionFailure(Box::new(e));
+        let bytes = if sum == 1 {
+            let now: Settings = from_bytes(&bytes, v3::FIELD_COUNTS).map_err(plain)?;
+            postcard::to_stdvec(&now).map_err(plain)?
+        } else {
+            let now: TriMesh = from_bytes(&bytes, v3::FIELD_COUNTS).map_err(plain)?;
+            postcard::to_stdvec(&now).map_err(plain)?
+        };
+        all.execute("UPDATE meta SET value = ?2 WHERE key = ?1", (key, &bytes))?;
     }
-    Ok((last, made))
+    all.execute("DELETE FROM meta WHERE key IN (?1, ?2)", (META_SUMS, v3::META_TAIL))?;
+    let why = format!(
+        "it was begun by an older sculptd (layout {found}), in which the same input makes other clay"
+    );
+    let from = postcard::to_stdvec(&ReplayFrom { tick: oldest, why }).unwrap_or_default();
+    let put = "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)";
+    all.execute(put, (META_REPLAY_FROM, &from))?;
+    all.execute(put, (META_IDENTITY, identity.to_le_bytes().as_slice()))?;
+    acknowledge_first(&all, identity, end.tick, end.chain)?;
+    all.pragma_update(None, "user_version", VERSION)?;
+    all.commit()?;
+    // The acknowledgement's page must be in the main file before it is written there directly.
+    db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))?;
+    old_log.into_iter().for_each(v3::remove_shared_memory);
+    Ok(())
 }
 
 /// Copies what comes into the tail and hands it on to whoever writes it.
@@ -377,14 +479,16 @@ fn copy_on(
 
 struct Writing {
     db: Connection,
-    /// The tail's name, to remove it once the file has everything.
-    tail: Option<u64>,
+    /// The shared-memory log's name, to remove it once the file has everything.
+    tail: Option<LogName>,
     /// The last tick in the file: the tail may let go of what came before.
     committed: Arc<AtomicU64>,
+    /// Where the file's input ends.
+    end: InputEnd,
     /// Taken at the end.
     syncer: Option<Syncer>,
     /// After `db`: closing another handle of the file first would give back SQLite's own locks.
-    _lock: File,
+    _lock: Arc<File>,
     recycle: cc::Sender<Vec<u8>>,
     health: Health,
     /// Closed groups that are not on the disk yet, oldest first.
@@ -442,7 +546,10 @@ impl Writing {
         // Closing takes the rest of the log over, and syncs as it should.
         let _ = self.db.pragma_update(None, "synchronous", "full");
         let why = self.syncer.take().and_then(Syncer::finish);
-        if let Some(name) = self.tail.filter(|_| self.groups.is_empty() && !self.closed) {
+        if let Some(name) = &self.tail
+            && self.groups.is_empty()
+            && !self.closed
+        {
             shared_memory_log::remove(name);
         }
         let Some(why) = why else { return };
@@ -460,7 +567,7 @@ impl Writing {
                 if let Some(last) = last {
                     self.committed.fetch_max(last, Relaxed);
                     if let Some(syncer) = &self.syncer {
-                        syncer.committed(last);
+                        syncer.committed(last, self.end.chain);
                     }
                 }
                 let unsynced = self.syncer.as_ref().and_then(Syncer::trouble);
@@ -496,15 +603,12 @@ impl Writing {
 
     fn write(&mut self) -> rusqlite::Result<Option<u64>> {
         let all = self.db.transaction()?;
-        {
-            let mut put = all.prepare_cached(
-                "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
-            )?;
-            for g in &self.groups {
-                put.execute((g.first as i64, g.last as i64, crc32fast::hash(&g.data), &g.data))?;
-            }
+        let mut end = self.end;
+        for g in &self.groups {
+            end.put(&all, g.first, g.last, &g.data)?;
         }
         all.commit()?;
+        self.end = end;
         Ok(self.groups.last().map(|g| g.last))
     }
 }

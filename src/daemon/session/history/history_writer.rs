@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::store::{Checkpoint, Name, Store, StoreError};
 use super::tree::{Change, NOTHING, Node, Tree};
+use crate::session::VERSION;
 use crate::session::history::retention::{Freed, High, Pin, bound};
 use crate::session::history::thumbnail;
 use sculptd_clay::{Page, Snapshot};
@@ -432,6 +433,7 @@ impl HistoryWriter {
             core: saved.core.clone(),
             sides: ids,
             steps: saved.steps,
+            layout: VERSION,
         })?;
         self.store.db.execute_batch("COMMIT")?;
         self.bytes += bytes as u64;

@@ -413,8 +413,8 @@ fn describe(
 /// The work that the session began with.
 fn base(path: &Path) -> Result<Snapshot, StoreError> {
     let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
-    let opened = crate::session::open(path).map_err(|e| damaged(&e))?;
-    let mut mesh = Clay::build(&opened.start, &Job::default()).map_err(|e| damaged(&e))?;
+    let start = crate::session::reader::read_start(path)?;
+    let mut mesh = Clay::build(&start, &Job::default()).map_err(|e| damaged(&e))?;
     Ok(mesh.snapshot())
 }
 

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::store::{Name, Store, StoreError};
 use super::tree::{NOTHING, Node, Tree};
+use crate::session::VERSION;
 
 /// Newest checkpoints that always stay.
 const KEPT: usize = 2;
@@ -343,7 +344,7 @@ impl Store {
     /// A jump is sent that names these.
     pub fn put_pin(&self, pin: &Pin) -> Result<usize, StoreError> {
         let data = super::store::plain(postcard::to_stdvec(pin))?;
-        self.db.execute("INSERT INTO pin (tick, data) VALUES (?1, ?2)", (UNDER_WAY, &data))?;
+        self.db.execute("INSERT INTO pin (tick, data, layout) VALUES (?1, ?2, ?3)", (UNDER_WAY, &data, VERSION))?;
         Ok(data.len())
     }
 
