@@ -18,6 +18,7 @@ mod create;
 pub mod film;
 pub mod format;
 pub mod history;
+mod input_end;
 pub mod reader;
 pub mod replay;
 pub mod salvage;
