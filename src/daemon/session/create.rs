@@ -52,6 +52,26 @@ fn remove_leftovers(path: &Path) {
     }
 }
 
+/// The fallback folder in the temporary directory may have been made by another user, to read what
+/// is put there: it is refused then.
+fn refuse_others_folder(path: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let fallback = std::env::temp_dir().join("sculptd");
+        let own = rustix::process::getuid().as_raw();
+        if path.parent() == Some(&fallback)
+            && std::fs::symlink_metadata(&fallback).is_ok_and(|m| m.uid() != own || !m.is_dir())
+        {
+            return Err(std::io::Error::new(
+                ErrorKind::PermissionDenied,
+                "the folder belongs to another user; name a session in a folder of your own",
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// An SQLite file's companion.
 pub(super) fn companion(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
@@ -70,7 +90,11 @@ pub fn is_half_made(path: &Path) -> bool {
         return true;
     }
     // Something else's file is nobody's to take.
-    let begins = std::fs::read(path).is_ok_and(|b| b.is_empty() || b.starts_with(b"SQLite format"));
+    let Ok(bytes) = std::fs::read(path) else { return false };
+    let ours = bytes.get(68..72) == Some(&APPLICATION_ID.to_be_bytes()[..]);
+    // The mark may still have been on its way; a file with any table at all is another program's.
+    let no_tables = bytes.len() <= 4096 && bytes.get(103..105) == Some(&[0, 0][..]);
+    let begins = bytes.is_empty() || bytes.starts_with(b"SQLite format") && (ours || no_tables);
     begins && super::carve::is_without_content(path) && !super::catalog::in_use(path)
 }
 
@@ -87,6 +111,8 @@ impl SessionDraft {
         static SERIAL: AtomicU32 = AtomicU32::new(0);
         let name = || path.display().to_string();
         let store = |source| CreateError::Store { path: name(), source };
+        refuse_others_folder(path)
+            .map_err(|source| CreateError::Io { path: name(), source })?;
         remove_leftovers(path);
         let (pid, serial) = (std::process::id(), SERIAL.fetch_add(1, Relaxed));
         let temporary = beside(path, &format!("{pid}-{serial}"));

@@ -139,6 +139,12 @@ pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
     let db = draft.db().ok_or_else(|| SalvageError::NoName { path: path.display().to_string() })?;
     copy_history(&mut image, db).map_err(create)?;
     let kept = choose(&draft, db, &readable).map_err(create)?;
+    let Some(kept) = kept else {
+        let path = path.display().to_string();
+        let old = readable.replay_from.map(|r| r.why);
+        let why = old.unwrap_or_else(|| "it was begun by an older sculptd".into());
+        return Err(OpenError::NoCheckpoint { path, why }.into());
+    };
     let new = publish_beside(path, draft)?;
     let gap = match kept.after_gap {
         true => format!("{why}; ticks before a checkpoint are missing, the sculpture is whole"),
@@ -383,11 +389,12 @@ struct Kept {
 }
 
 /// Takes what reaches furthest: the input from the start, or a checkpoint with what follows it.
+/// `None`: there is neither.
 fn choose(
     draft: &SessionDraft,
     db: &Connection,
     readable: &Readable,
-) -> rusqlite::Result<Kept> {
+) -> rusqlite::Result<Option<Kept>> {
     let prefix = readable.runs.first();
     let refused = readable.replay_from.is_some() || readable.layout == v3::LAYOUT;
     let from_start = prefix.filter(|p| p.from_start && !refused).map_or(0, |p| p.last);
@@ -412,7 +419,8 @@ fn choose(
     let identity = draft.identity;
     let (kept, run, from) = match best {
         Some((reach, tick, run)) => (reach, run, Some(tick)),
-        None => (from_start, prefix.filter(|_| !refused), None),
+        None if refused => return Ok(None),
+        None => (from_start, prefix, None),
     };
     db.execute_batch("BEGIN")?;
     let mut end = (0, chain_start(identity));
@@ -441,7 +449,7 @@ fn choose(
     let last = run.filter(|r| !r.groups.is_empty()).map_or(0, |r| r.last);
     acknowledge_first(db, identity, last, end.1)?;
     db.execute_batch("COMMIT")?;
-    Ok(Kept { tick: kept, after_gap: from.is_some() && !refused })
+    Ok(Some(Kept { tick: kept, after_gap: from.is_some() && !refused }))
 }
 
 /// Whether a checkpoint's sculpture can be put together.
