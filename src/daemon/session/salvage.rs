@@ -382,7 +382,7 @@ fn put_row(db: &Connection, row: &CarvedRow) -> rusqlite::Result<bool> {
 }
 
 /// What was taken.
-struct Kept {
+struct Salvaged {
     tick: u64,
     /// Input before a checkpoint is missing.
     after_gap: bool,
@@ -394,7 +394,7 @@ fn choose(
     draft: &SessionDraft,
     db: &Connection,
     readable: &Readable,
-) -> rusqlite::Result<Option<Kept>> {
+) -> rusqlite::Result<Option<Salvaged>> {
     let prefix = readable.runs.first();
     let refused = readable.replay_from.is_some() || readable.layout == v3::LAYOUT;
     let from_start = prefix.filter(|p| p.from_start && !refused).map_or(0, |p| p.last);
@@ -449,7 +449,7 @@ fn choose(
     let last = run.filter(|r| !r.groups.is_empty()).map_or(0, |r| r.last);
     acknowledge_first(db, identity, last, end.1)?;
     db.execute_batch("COMMIT")?;
-    Ok(Some(Kept { tick: kept, after_gap: from.is_some() && !refused }))
+    Ok(Some(Salvaged { tick: kept, after_gap: from.is_some() && !refused }))
 }
 
 /// Whether a checkpoint's sculpture can be put together.

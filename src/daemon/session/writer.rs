@@ -60,7 +60,7 @@ pub type Fault = Arc<Mutex<Option<String>>>;
 /// The tick thread's end.
 #[derive(Debug)]
 pub struct SessionWriter {
-    full: cc::Sender<Message>,
+    full: cc::Sender<InputMessage>,
     empty: cc::Receiver<Vec<u8>>,
     /// Ticks whose input will never be in the file. After the first of them nothing more is handed
     /// over: a log with a hole cannot be replayed beyond it.
@@ -123,7 +123,7 @@ impl Health {
 }
 
 /// Encoded input of the ticks from the first number to the second.
-enum Message {
+enum InputMessage {
     Ticks(u64, u64, Vec<u8>),
 }
 
@@ -230,7 +230,7 @@ fn start_thread(
         .name("sculptd-tail".into())
         .spawn(move || copy_on(tail, &inbox, &onward))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
-    let mut writing = Writing {
+    let mut writing = JournalThread {
         db,
         tail: tail_name,
         committed,
@@ -293,7 +293,7 @@ impl SessionWriter {
                 append(&mut buffer, tick, samples, commands);
             }
             // As many buffers as places: one in hand is a place free.
-            let _ = self.full.try_send(Message::Ticks(first, tick, buffer));
+            let _ = self.full.try_send(InputMessage::Ticks(first, tick, buffer));
             return;
         }
         if samples.is_empty() && commands.is_empty() {
@@ -317,12 +317,12 @@ impl Drop for SessionWriter {
     fn drop(&mut self) {
         if !self.carry.is_empty() {
             let carry = std::mem::take(&mut self.carry);
-            let _ = self.full.send(Message::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
+            let _ = self.full.send(InputMessage::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
         }
     }
 }
 
-struct Group {
+struct InputGroup {
     first: u64,
     last: u64,
     data: Vec<u8>,
@@ -331,12 +331,12 @@ struct Group {
 /// Copies what comes into the tail and hands it on to whoever writes it.
 fn copy_on(
     mut tail: Option<SharedMemoryLog>,
-    inbox: &cc::Receiver<Message>,
-    onward: &cc::Sender<Message>,
+    inbox: &cc::Receiver<InputMessage>,
+    onward: &cc::Sender<InputMessage>,
 ) {
     raise_priority_below();
     for message in inbox {
-        let Message::Ticks(first, last, data) = &message;
+        let InputMessage::Ticks(first, last, data) = &message;
         if let Some(tail) = &mut tail {
             tail.put(*first, *last, data);
         }
@@ -346,7 +346,7 @@ fn copy_on(
     }
 }
 
-struct Writing {
+struct JournalThread {
     db: Connection,
     /// The shared-memory log's name, to remove it once the file has everything.
     tail: Option<LogName>,
@@ -361,16 +361,16 @@ struct Writing {
     recycle: cc::Sender<Vec<u8>>,
     health: Health,
     /// Closed groups that are not on the disk yet, oldest first.
-    groups: Vec<Group>,
+    groups: Vec<InputGroup>,
     /// Input was given up: what comes after it would make a log with a hole.
     closed: bool,
     clock: Clock,
 }
 
-impl Writing {
-    fn run(&mut self, inbox: &cc::Receiver<Message>) {
+impl JournalThread {
+    fn run(&mut self, inbox: &cc::Receiver<InputMessage>) {
         raise_priority_below();
-        let mut open: Option<Group> = None;
+        let mut open: Option<InputGroup> = None;
         let mut due_us = u64::MAX;
         loop {
             let now = self.clock.now_us();
@@ -384,13 +384,13 @@ impl Writing {
             let message = inbox.recv_timeout(patience);
             self.health.turns.fetch_add(1, Relaxed);
             let ended = matches!(message, Err(cc::RecvTimeoutError::Disconnected));
-            if let Ok(Message::Ticks(first, last, bytes)) = message {
+            if let Ok(InputMessage::Ticks(first, last, bytes)) = message {
                 if self.closed {
                     self.health.lost.fetch_add(1 + last - first, Relaxed);
                 } else {
                     let group = open.get_or_insert_with(|| {
                         due_us = self.clock.now_us() + GROUP_MS * 1000;
-                        Group { first, last, data: Vec::new() }
+                        InputGroup { first, last, data: Vec::new() }
                     });
                     group.data.extend_from_slice(&bytes);
                     group.last = last;

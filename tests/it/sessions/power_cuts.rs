@@ -61,10 +61,6 @@ fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
             }
         }
     }
-    // The acknowledgement is written into the main file without a sync: either may be there.
-    if !restarted && rng.below(2) == 0 {
-        out.db = a.db.clone();
-    }
     // A database that was being brought up to date, with the log that it is brought up to date from
     // still there.
     if !restarted && changed(&a.db, &b.db) > 1 && rng.below(2) == 0 {
