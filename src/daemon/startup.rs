@@ -111,7 +111,8 @@ pub fn begin(
     config: &Config,
     job: &Job,
 ) -> Result<Begun, BeginError> {
-    if let Some(path) = session.filter(|p| p.exists()) {
+    let half_made = session.is_some_and(|p| p.exists() && session::is_half_made(p));
+    if let Some(path) = session.filter(|p| p.exists() && !half_made) {
         let workers = Workers::new(config.r#loop.worker_count());
         let mut warnings = Vec::new();
         let mut path = path.to_path_buf();
@@ -119,7 +120,11 @@ pub fn begin(
         if !matches!(
             &opened,
             Ok(Opened { loss: None, .. })
-                | Err(OpenError::OtherLayout { .. } | OpenError::Io { .. })
+                | Err(
+                    OpenError::OtherLayout { .. }
+                        | OpenError::Io { .. }
+                        | OpenError::ReadOnlyFolder { .. }
+                )
         ) {
             // A damaged file is kept as it is; the work goes on in another, beside it.
             match session::salvage(&path) {
@@ -138,6 +143,11 @@ pub fn begin(
         let (mut replayed, purge, node) =
             match session::history::reopen(&path, &opened, None, count, job) {
                 Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
+                None if opened.replay_from.is_some() => {
+                    let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
+                    let path = path.display().to_string();
+                    return Err(OpenError::NoCheckpoint { path, why }.into());
+                }
                 None => {
                     let replayed =
                         session::replay::replay(&opened, None, workers, job).map_err(|source| {
@@ -166,6 +176,12 @@ pub fn begin(
     }
     let loaded = load(mesh, job)?;
     let mut warnings = loaded.warnings;
+    if half_made && let Some(path) = session {
+        warnings.push(format!(
+            "{}: it was empty, or left by a start that was interrupted; it is begun anew",
+            path.display()
+        ));
+    }
     let mut world = world(loaded.mesh, config);
     let journal = match session {
         None => None,
