@@ -1,0 +1,44 @@
+//! What joins the window to the daemon.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+
+use arc_swap::ArcSwap;
+use crossbeam_channel as cc;
+use sculptd_daemon::Published;
+use sculptd_devices::queue::Sender;
+use sculptd_devices::{Clock, DeviceId};
+use sculptd_engine::command::Command;
+
+/// Everything that joins the window to the daemon.
+pub struct Wiring {
+    pub commands: cc::Sender<Command>,
+    pub published: Arc<ArcSwap<Published>>,
+    /// The pointer's own way into the channel.
+    pub pointer: Sender,
+    pub pointer_id: DeviceId,
+    pub clock: Clock,
+    /// Raised from outside, or by closing the window.
+    pub stop: Arc<AtomicBool>,
+    /// One line a device; asked for once a second.
+    pub devices: Box<dyn Fn() -> Vec<String>>,
+    pub session: Option<String>,
+    /// The session's history, and the ticks a second that its versions are counted in.
+    pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,
+    /// Sessions to offer at the start, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// Takes the session that a person chooses to open next; the window then ends.
+    pub open_next: Arc<Mutex<Option<PathBuf>>>,
+    /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
+    pub demo_until_us: u64,
+    pub full_screen: bool,
+    /// The screen of an installation, in the place of the panels.
+    pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
+}
+
+impl std::fmt::Debug for Wiring {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Wiring").finish_non_exhaustive()
+    }
+}
