@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3};
 use sculptd_clay::Clay;
 use sculptd_clay::local_boolean::local;
 use sculptd_devices::Clock;
-use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::boolean::{Operation, BooleanOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, shapes};
 
@@ -48,7 +48,7 @@ fn main() {
             for n in 0..hold.unwrap_or(21) {
                 let tool = placed(&tool, n, radius);
                 let start = clock.now_us();
-                let cut = local(&work, &tool, operation, &Options::default(), &job);
+                let cut = local(&work, &tool, operation, &BooleanOptions::default(), &job);
                 let computed = clock.now_us();
                 clay.begin_step();
                 let done = cut.ok().flatten().and_then(|c| clay.graft(&c));

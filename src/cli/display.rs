@@ -46,6 +46,9 @@ pub struct Wired<'a> {
     pub session: Option<String>,
     /// The session's history, and the ticks a second.
     pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,
+    /// Sessions to offer, the newest first, and the one that a person chose to open next.
+    pub recent: Vec<std::path::PathBuf>,
+    pub open_next: super::library::OpenNext,
     /// On the clock; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
@@ -68,9 +71,11 @@ pub fn show(wired: &Wired<'_>) -> Result<(), String> {
         devices: Box::new(move || adaptors.describe()),
         session: wired.session.clone(),
         history: wired.history.clone(),
-        ghosts_until_us: wired.ghosts_until_us,
+        recent: wired.recent.clone(),
+        open_next: wired.open_next.clone(),
+        demo_until_us: wired.ghosts_until_us,
         full_screen: wired.full_screen,
-        presets: super::thickness::presets::all().map_err(|e| e.to_string())?,
+        thickness_presets: super::thickness::presets::all().map_err(|e| e.to_string())?,
         kiosk: wired.kiosk.clone(),
     };
     sculptd_window::viewer::run(wiring).map_err(|e| e.to_string())

@@ -38,6 +38,10 @@ pub struct LiveRun {
     pub limit_s: Option<f64>,
     pub export: Option<PathBuf>,
     pub session: Option<PathBuf>,
+    /// Sessions that the window offers to open, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// The session that a person chose to open next.
+    pub open_next: super::library::OpenNext,
     /// The file of `--config`, for reading it again.
     pub settings: Option<PathBuf>,
     /// Where the figures are served, if anywhere.
@@ -117,6 +121,8 @@ pub fn run(
             adaptors: adaptors.clone(),
             session: run.session.as_ref().map(|p| p.display().to_string()),
             history: history.map(|h| (h, config.r#loop.rate_hz)),
+            recent: run.recent.clone(),
+            open_next: run.open_next.clone(),
             ghosts_until_us: ghosts.as_ref().map_or(0, |g| g.ends_us),
             full_screen: run.full_screen,
             kiosk: keeper,

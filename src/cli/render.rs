@@ -9,7 +9,7 @@ use sculptd_daemon::config::CameraConfig;
 use sculptd_daemon::startup;
 use sculptd_engine::camera::Camera;
 use sculptd_geometry::job::Job;
-use sculptd_window::viewer::look::{Look, MATERIALS};
+use sculptd_window::look::{Look, MATERIALS};
 use sculptd_window::viewer::picture::{Painter, write_png};
 use sculptd_window::viewer::renderer::Scene;
 

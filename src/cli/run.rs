@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::library;
 use super::live::{self, LiveRun, close_journal};
 use super::{Fail, Outcome, answer, display};
 use sculptd_clay::brush::BrushKind;
@@ -112,7 +113,13 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(kiosk) = &kiosk {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
-    let begun = begin(args.mesh.as_deref(), args.session.as_deref(), &config)?;
+    let window = display::wanted(args.headless);
+    // In a window a session is always on.
+    let own = (window && args.session.is_none() && kiosk.is_none() && players.is_empty())
+        .then(|| library::begin(args.mesh.as_deref()))
+        .flatten();
+    let session = args.session.as_ref().or(own.as_ref());
+    let begun = begin(args.mesh.as_deref(), session.map(PathBuf::as_path), &config)?;
     if let Some(kiosk) =
         kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
     {
@@ -123,7 +130,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             words.too_large
         )));
     }
-    let window = display::wanted(args.headless);
+    let open_next = library::OpenNext::default();
     let summary = if window || players.is_empty() || kiosk.is_some() {
         let run = LiveRun {
             window,
@@ -134,7 +141,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             players,
             limit_s: args.limit_s,
             export: args.export.clone(),
-            session: args.session.clone(),
+            session: session.cloned(),
+            recent: library::recent(session.map(PathBuf::as_path)),
+            open_next: open_next.clone(),
             settings: args.config.clone(),
             #[cfg(unix)]
             metrics: args.metrics,
@@ -143,6 +152,12 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     } else {
         run_stepped(args, &config, begun, players)?
     };
+    if let Some(path) = &own {
+        library::remove_untouched(path);
+    }
+    if let Some(next) = open_next.lock().ok().and_then(|n| n.clone()) {
+        return library::open(&next, args.config.as_deref());
+    }
     report(&summary, args.stats.as_deref(), json)
 }
 

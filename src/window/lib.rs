@@ -6,5 +6,6 @@
 //! Read first: [`viewer`], then [`panels`].
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
+pub mod look;
 pub mod panels;
 pub mod viewer;

@@ -6,10 +6,8 @@ mod kiosk;
 mod layout;
 mod panels;
 mod pictures;
-mod places;
 mod stall;
-#[cfg(unix)]
-mod window;
+mod versions;
 
 use sculptd_clay::brush::BrushSettings;
 use sculptd_clay::{Clay, Workers};

@@ -1,64 +1,17 @@
 //! Wall thickness: the live map's figures, limits of processes, the worst spots.
 
-use glam::Vec3;
+use super::state::{Action, ThicknessSummary, UiRequest, UiState, View};
+use super::theme;
+use crate::look::Map;
 
-use super::action::Action;
-use super::{UiRequest, UiState, View, theme};
-use crate::viewer::look::Map;
-use sculptd_geometry::thickness::preset::Preset;
-
-/// A place where the wall is thin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spot {
-    pub place: Vec3,
-    pub thickness: f32,
-}
-
-/// What the map says of the whole work; lengths in the mesh's unit.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Thickness {
-    pub min: f32,
-    pub max: f32,
-    pub median: f32,
-    /// The 98th percentile: where the scale and the histogram end.
-    pub high: f32,
-    pub measured: usize,
-    pub vertices: usize,
-    /// Share of the measured vertices below the limit, 0 to 1.
-    pub below: f32,
-    /// From `min` to `high`.
-    pub histogram: Vec<u32>,
-    pub spots: Vec<Spot>,
-}
-
-impl Thickness {
-    pub const CLASSES: usize = 48;
-}
-
-#[derive(Debug)]
-pub struct Walls {
-    pub found: Option<Box<Thickness>>,
-    /// The limits by process that the window was started with.
-    pub presets: Vec<Preset>,
-    /// Index into `presets`; `None`: the person's own limit.
-    pub preset: Option<usize>,
-    pub limit: f32,
-}
-
-impl Default for Walls {
-    fn default() -> Self {
-        Walls { found: None, presets: Vec::new(), preset: None, limit: 1.0 }
-    }
-}
-
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Wall thickness");
-    let mut on = desk.look.map == Map::Thickness;
+    let mut on = ui_state.look.map == Map::Thickness;
     if ui.checkbox(&mut on, "Live map").on_hover_text(Action::Thickness.tip()).changed() {
-        super::act(Action::Thickness, &ui.ctx().clone(), view, desk, out);
+        super::act::act(Action::Thickness, &ui.ctx().clone(), view, ui_state, out);
     }
-    let walls = &mut desk.walls;
+    let walls = &mut ui_state.walls;
     let title =
         walls.preset.and_then(|i| walls.presets.get(i)).map_or("own limit", |p| p.name.as_str());
     let mut chosen = walls.preset;
@@ -114,7 +67,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
     }
 }
 
-fn histogram(ui: &mut egui::Ui, found: &Thickness, limit: f32) {
+fn histogram(ui: &mut egui::Ui, found: &ThicknessSummary, limit: f32) {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(196.0, 64.0), egui::Sense::hover());
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Thickness histogram"));

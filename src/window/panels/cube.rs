@@ -1,4 +1,4 @@
-//! The view cube's six sides as balls on their axes: how the work lies, and a click to look along
+//! The view cube's six sides as balls on their axes: how the object lies, and a click to look along
 //! an axis.
 
 use std::f32::consts::PI;
@@ -6,8 +6,7 @@ use std::f32::consts::PI;
 use egui::{Color32, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use super::action::Action;
-use super::{UiRequest, View};
+use super::state::{Action, UiRequest, View};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::camera::MAX_PITCH;
 

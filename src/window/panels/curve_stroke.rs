@@ -5,7 +5,8 @@
 use egui::{Color32, Key, Pos2, Rect, Stroke};
 use glam::Vec2;
 
-use super::{UiRequest, UiState, View, theme};
+use super::state::{UiRequest, UiState, View};
+use super::theme;
 use sculptd_clay::brush::{Grip, Method};
 use sculptd_engine::command::Command;
 use sculptd_engine::stroke::CurveAction;
@@ -13,62 +14,61 @@ use sculptd_engine::stroke::CurveAction;
 /// Radius of a handle, points.
 const HANDLE: f32 = 5.0;
 
-/// A place of the view on the screen; the view is the whole window.
-pub fn place(screen: Rect, view: Vec2) -> Pos2 {
-    screen.min + screen.size() * egui::vec2(view.x, view.y)
+/// The place on the screen of a point of the view, which fills the free part of the window.
+pub fn place(free: Rect, view: Vec2) -> Pos2 {
+    free.min + free.size() * egui::vec2(view.x, view.y)
 }
 
 /// The curve, its keys and its buttons.
 pub fn ui(
     ctx: &egui::Context,
     view: &View<'_>,
-    desk: &mut UiState,
+    ui_state: &mut UiState,
     free: Rect,
     out: &mut Vec<UiRequest>,
 ) {
     let (draft, brush) = (&view.state.draft, &view.state.brush);
     let lays = brush.kind.grip() == Grip::Surface && brush.path.method == Method::Curve;
     if draft.is_empty() {
-        desk.handle = None;
+        ui_state.handle = None;
         if lays {
             bar(ctx, free, |ui| {
                 ui.colored_label(
                     theme::quiet(ui),
-                    "Draw, or set points: they stay to be changed before the brush follows.",
+                    "Draw, or set points: they can be changed before the brush follows.",
                 );
             });
         }
         return;
     }
-    desk.handle = draft.held().or(desk.handle).filter(|i| *i < draft.points().len());
-    let screen = ctx.content_rect();
+    ui_state.handle = draft.held().or(ui_state.handle).filter(|i| *i < draft.points().len());
     let aspect = view.camera.aspect;
     let layer = egui::LayerId::new(egui::Order::Background, egui::Id::unique("draft"));
     let painter = ctx.layer_painter(layer).with_clip_rect(free);
     let line: Vec<Pos2> =
-        (0..=draft.pieces()).map(|k| place(screen, draft.at(k, aspect).view)).collect();
+        (0..=draft.pieces()).map(|k| place(free, draft.at(k, aspect).view)).collect();
     painter.add(egui::Shape::line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(110))));
     painter.add(egui::Shape::line(line, Stroke::new(1.8, Color32::from_rgb(255, 214, 120))));
     for (i, point) in draft.points().iter().enumerate() {
-        let fill = match desk.handle {
+        let fill = match ui_state.handle {
             Some(h) if h == i => Color32::from_rgb(255, 150, 80),
             _ => Color32::from_rgb(255, 236, 190),
         };
         painter.circle(
-            place(screen, point.view),
+            place(free, point.view),
             HANDLE,
             fill,
             Stroke::new(1.5, Color32::from_black_alpha(200)),
         );
     }
     let mut act = None;
-    if !ctx.text_edit_focused() && desk.search.is_none() && desk.modal.is_none() {
+    if !ctx.text_edit_focused() && ui_state.search.is_none() && ui_state.modal.is_none() {
         ctx.input(|i| {
             act = match () {
                 () if i.key_pressed(Key::Enter) => Some(CurveAction::Apply),
                 () if i.key_pressed(Key::Escape) => Some(CurveAction::Cancel),
                 () if i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace) => {
-                    desk.handle.map(CurveAction::Delete)
+                    ui_state.handle.map(CurveAction::Delete)
                 }
                 () => None,
             }
@@ -86,17 +86,17 @@ pub fn ui(
         {
             act = Some(CurveAction::Apply);
         }
-        let gone = ui.add_enabled(desk.handle.is_some(), egui::Button::new("Remove the point"));
+        let gone = ui.add_enabled(ui_state.handle.is_some(), egui::Button::new("Remove the point"));
         if gone.on_hover_text("Delete, or the right button upon it").clicked() {
-            act = desk.handle.map(CurveAction::Delete);
+            act = ui_state.handle.map(CurveAction::Delete);
         }
-        if ui.button("Put it away").on_hover_text("Nothing is drawn (Esc)").clicked() {
+        if ui.button("Discard").on_hover_text("Nothing is drawn (Esc)").clicked() {
             act = Some(CurveAction::Cancel);
         }
     });
     if let Some(act) = act {
         if matches!(act, CurveAction::Delete(_)) {
-            desk.handle = None;
+            ui_state.handle = None;
         }
         out.push(UiRequest::World(Command::CurveStroke(act)));
     }

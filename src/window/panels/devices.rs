@@ -1,36 +1,10 @@
 //! What is connected and what it says now.
 
-use std::collections::VecDeque;
-
-use super::{View, theme};
+use super::state::{PenTrace, View};
+use super::theme;
 use sculptd_daemon::adaptors::POINTER_ID;
 
-/// Pressures felt lately, newest first.
-#[derive(Debug, Default)]
-pub struct Trace {
-    felt: VecDeque<f32>,
-}
-
-impl Trace {
-    pub const KEPT: usize = 40;
-
-    /// Remembers the pressure of the pen that presses hardest.
-    pub fn feel(&mut self, view: &View<'_>) {
-        let pens = view.state.pens.iter().flatten();
-        let now = pens.map(|(_, p)| p.pressure).filter(|p| *p > 0.0).reduce(f32::max);
-        match now {
-            Some(p) => self.felt.push_front(p),
-            None => drop(self.felt.pop_back()),
-        }
-        self.felt.truncate(Trace::KEPT);
-    }
-
-    pub fn recent(&self) -> impl Iterator<Item = f32> + '_ {
-        self.felt.iter().copied()
-    }
-}
-
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &PenTrace) {
     let quiet = theme::quiet(ui);
     ui.strong("Devices");
     if view.devices.is_empty() {
@@ -50,7 +24,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace) {
             i @ 0..100 => format!("tablet {i}"),
             i @ 100..200 => format!("serial pen {}", i - 100),
             i @ 300..400 => format!("recording {}", i - 300),
-            i if i >= 500 => format!("ghost pen {}", i - 500),
+            i if i >= 500 => format!("demo pen {}", i - 500),
             i => format!("pen {i}"),
         };
         ui.label(format!("{name}{}", if pen.inverted { ", eraser" } else { "" }));

@@ -2,45 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::action::Action;
-use super::{UiRequest, UiState, View, theme};
+use super::state::{Action, UNITS, UiRequest, UiState, View};
+use super::{start, theme};
 
-/// What a number in a file stands for: the work itself is in millimetres.
-pub const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("cm", 0.1), ("m", 0.001), ("inch", 1.0 / 25.4)];
-
-#[derive(Debug)]
-pub struct Files {
-    pub open: String,
-    pub export: String,
-    /// Sizes are multiplied by this before the unit.
-    pub scale: f64,
-    /// Index into [`UNITS`].
-    pub unit: usize,
-    /// Frames of a turntable.
-    pub frames: u32,
-}
-
-impl Default for Files {
-    fn default() -> Self {
-        Files {
-            open: String::new(),
-            export: "sculpture.stl".into(),
-            scale: 1.0,
-            unit: 0,
-            frames: 36,
-        }
-    }
-}
-
-impl Files {
-    /// What coordinates are multiplied by, and the unit's name.
-    pub fn factor(&self) -> (f64, &'static str) {
-        let (name, factor) = UNITS[self.unit.min(UNITS.len() - 1)];
-        (self.scale * factor, name)
-    }
-}
-
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     let field = |ui: &mut egui::Ui, text: &mut String, name: &str| {
         let label = ui.label(name);
@@ -48,24 +13,35 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
     };
     ui.strong("Open");
     ui.colored_label(quiet, "Drop a mesh on the window, or:");
-    let typed = field(ui, &mut desk.files.open, "File to open");
+    let typed = field(ui, &mut ui_state.files.open, "File to open");
     let enter = typed.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     ui.horizontal(|ui| {
-        let named = !desk.files.open.trim().is_empty();
+        let named = !ui_state.files.open.trim().is_empty();
         if ui.add_enabled(named, egui::Button::new("Open")).clicked() || (enter && named) {
-            out.push(UiRequest::WindowState(PathBuf::from(desk.files.open.trim())));
+            out.push(UiRequest::OpenMesh(PathBuf::from(ui_state.files.open.trim())));
         }
-        if ui.button("Browse...").on_hover_text(Action::WindowState.tip()).clicked() {
-            out.push(UiRequest::Do(Action::WindowState));
+        if ui.button("Browse...").on_hover_text(Action::OpenMesh.tip()).clicked() {
+            out.push(UiRequest::Do(Action::OpenMesh));
         }
     });
-    if !desk.prefs.recent.is_empty() {
+    if !ui_state.prefs.recent.is_empty() {
         ui.menu_button("Recent", |ui| {
-            for path in &desk.prefs.recent {
+            for path in &ui_state.prefs.recent {
                 let name =
                     path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
                 if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                    out.push(UiRequest::WindowState(path.clone()));
+                    out.push(UiRequest::OpenMesh(path.clone()));
+                    ui.close();
+                }
+            }
+        });
+    }
+    if !view.recent.is_empty() {
+        ui.menu_button("Earlier sculptures", |ui| {
+            for path in view.recent {
+                let button = ui.button(start::title(path));
+                if button.on_hover_text(path.display().to_string()).clicked() {
+                    out.push(UiRequest::OpenSession(path.clone()));
                     ui.close();
                 }
             }
@@ -73,7 +49,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
     }
     ui.add_space(8.0);
     ui.strong("Export");
-    let files = &mut desk.files;
+    let files = &mut ui_state.files;
     field(ui, &mut files.export, "File to write");
     ui.horizontal(|ui| {
         let label = ui.label("Scale");
@@ -95,7 +71,12 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
     ui.horizontal(|ui| {
         let named = !files.export.trim().is_empty();
         if ui.add_enabled(named, egui::Button::new("Export")).clicked() {
-            out.push(UiRequest::Export(PathBuf::from(files.export.trim())));
+            let path = in_documents(PathBuf::from(files.export.trim()));
+            if path.exists() {
+                files.replace = Some(path);
+            } else {
+                out.push(UiRequest::Export(path));
+            }
         }
         if ui.button("Save as...").on_hover_text(Action::Export.tip()).clicked() {
             out.push(UiRequest::Do(Action::Export));
@@ -112,6 +93,43 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
             out.push(UiRequest::Do(Action::Turntable));
         }
         let label = ui.label("frames");
-        ui.add(egui::DragValue::new(&mut desk.files.frames).range(4..=360)).labelled_by(label.id);
+        ui.add(egui::DragValue::new(&mut ui_state.files.frames).range(4..=360))
+            .labelled_by(label.id);
+    });
+}
+
+/// A name alone is one in the person's folder of documents.
+fn in_documents(path: PathBuf) -> PathBuf {
+    let dirs = directories::UserDirs::new();
+    let folder = dirs.map(|d| d.document_dir().unwrap_or(d.home_dir()).to_owned());
+    folder.filter(|f| f.is_dir()).map_or(path.clone(), |f| f.join(path))
+}
+
+/// Asks whether an export may replace a file.
+pub fn replace(
+    ctx: &egui::Context,
+    ui_state: &mut UiState,
+    free: egui::Rect,
+    out: &mut Vec<UiRequest>,
+) {
+    let Some(path) = ui_state.files.replace.clone() else { return };
+    let area = egui::Area::new(egui::Id::unique("replace"))
+        .fixed_pos(free.center())
+        .pivot(egui::Align2::CENTER_CENTER)
+        .order(egui::Order::Foreground);
+    area.show(ctx, |ui| {
+        egui::Frame::window(ui.style()).show(ui, |ui| {
+            ui.set_max_width((free.width() - 40.0).clamp(120.0, 420.0));
+            ui.label(format!("{} exists. Replace it?", path.display()));
+            ui.horizontal(|ui| {
+                if ui.button("Replace").clicked() {
+                    out.push(UiRequest::Export(path.clone()));
+                    ui_state.files.replace = None;
+                }
+                if ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+                    ui_state.files.replace = None;
+                }
+            });
+        });
     });
 }

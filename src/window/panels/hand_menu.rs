@@ -1,17 +1,17 @@
-//! The words of the hands' menu, at its balls, and the ring that closes while a fingertip dwells in
-//! one. The balls themselves stand in the world.
+//! The labels of the hands' menu, and the ring that closes while a fingertip stays in an item. The
+//! items themselves are balls in the world.
 
 use egui::{Color32, FontId, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use super::View;
+use super::state::View;
 use sculptd_daemon::Published;
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::hand::menu::{Menu, RADIUS_MM, ball_mm};
 
-/// A ball of the menu as it stands now.
+/// An item of the menu as it is now: a ball in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball {
+pub struct MenuBall {
     pub choice: MenuItem,
     /// In the world.
     pub place: Vec3,
@@ -20,12 +20,12 @@ pub struct Ball {
     pub ring: Option<f32>,
 }
 
-/// The menu's balls, while there are hands to choose with.
-pub fn balls(state: &Published) -> Vec<Ball> {
+/// The menu's items, while there are hands to choose with.
+pub fn menu_balls(state: &Published) -> Vec<MenuBall> {
     if state.hands.is_none() {
         return Vec::new();
     }
-    let one = |(i, choice): (usize, &MenuItem)| Ball {
+    let one = |(i, choice): (usize, &MenuItem)| MenuBall {
         choice: *choice,
         place: state.volume.to_world(ball_mm(i)),
         radius: RADIUS_MM * state.volume.scale,
@@ -35,10 +35,9 @@ pub fn balls(state: &Published) -> Vec<Ball> {
 }
 
 pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
-    let screen = ctx.content_rect();
-    let seen = |p: Vec3| view.camera.project(p).map(|v| screen.lerp_inside(vec2(v.x, v.y)));
+    let seen = |p: Vec3| view.camera.project(p).map(|v| free.lerp_inside(vec2(v.x, v.y)));
     let (right, up) = view.camera.axes();
-    for ball in balls(view.state) {
+    for ball in menu_balls(view.state) {
         let (Some(at), Some(side), Some(above)) = (
             seen(ball.place),
             seen(ball.place + right * ball.radius),
@@ -47,7 +46,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             continue;
         };
         let reach = (side - at).length().max((above - at).length());
-        // A ball beside the view has its word at the side where it is.
+        // The label of an item beside the view stands at the side where the item is.
         if !free.y_range().contains(at.y) {
             continue;
         }
@@ -64,7 +63,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             let font = FontId::proportional(13.0);
             let size =
                 painter.layout_no_wrap(ball.choice.label().to_owned(), font.clone(), text).size();
-            // Wholly in view where the ball is at the side.
+            // Wholly in view where the item is at the side.
             let room = free.shrink2(size * 0.5 + vec2(8.0, 4.0));
             if !room.is_positive() {
                 return;

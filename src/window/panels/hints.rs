@@ -1,29 +1,11 @@
-//! Three hints for the first minute, each gone for good once it was followed.
+//! Three hints for the first minute; each disappears once it was followed.
 
-/// What the person has done so far.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(default)]
-pub struct Done {
-    pub touched: bool,
-    pub turned: bool,
-    pub undone: bool,
-}
-
-impl Done {
-    /// The hint for now, if one is left.
-    pub fn hint(&self) -> Option<&'static str> {
-        match (self.touched, self.turned, self.undone) {
-            (false, ..) => Some("Touch the clay: press and drag on the form"),
-            (_, false, _) => Some("Drag beside the form to turn it, scroll to come nearer"),
-            (_, _, false) => Some("Ctrl+Z takes a stroke back, Shift smooths, Ctrl carves"),
-            _ => None,
-        }
-    }
-}
+use super::state::HintsFollowed;
 
 /// Shows the hint low in the middle of the view.
-pub fn ui(ctx: &egui::Context, done: &Done, ghosts: bool, free: egui::Rect) {
-    let hint = (ghosts && !done.touched).then_some("Ghosts are sculpting. Touch the clay any time");
+pub fn ui(ctx: &egui::Context, done: &HintsFollowed, demo_runs: bool, free: egui::Rect) {
+    let hint =
+        (demo_runs && !done.touched).then_some("The demo is running. Touch the clay at any time");
     let Some(text) = hint.or(done.hint()) else { return };
     let place = egui::Area::new(egui::Id::unique("hint"))
         .fixed_pos(free.center_bottom() - egui::vec2(0.0, 18.0))

@@ -1,38 +1,20 @@
-//! What was done: one step back, one forward, scrubbing through all of it, or a click on the
-//! picture of a step.
+//! The history: undo, redo, a slider through the steps, a click on the picture of a step.
 
 use egui::{Sense, Stroke, vec2};
 
-use super::action::Action;
-use super::{UiRequest, UiState, View, theme};
+use super::state::{Action, StepPicture, UiRequest, UiState, View};
+use super::theme;
 use crate::panels::history_tree;
 use sculptd_engine::command::Command;
 
 /// Steps sent at once: the loop's inbox holds a thousand commands.
 const AT_ONCE: usize = 200;
-/// Pictures kept.
-pub const KEPT: usize = 24;
-/// Of these, so many are shown, those nearest to where the work is.
+/// Pictures shown: those nearest to the present step.
 const SHOWN: usize = 9;
 
-/// The work after a step.
-#[derive(Clone)]
-pub struct Thumb {
-    pub step: usize,
-    /// Tells this state from another that came after as many steps.
-    pub mark: u64,
-    pub texture: egui::TextureHandle,
-}
-
-impl std::fmt::Debug for Thumb {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Thumb").field("step", &self.step).finish_non_exhaustive()
-    }
-}
-
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
-    // Beyond what memory holds, a session's file does.
-    let (first, last) = desk.places.ends();
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    // A session's file holds steps that memory no longer holds.
+    let (first, last) = ui_state.versions.ends();
     let (back, ahead) = (view.state.undo_steps, view.state.redo_steps);
     ui.strong("History");
     ui.horizontal(|ui| {
@@ -48,15 +30,15 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
         if redo.clicked() {
             out.push(UiRequest::World(Command::Redo));
         }
-        let text = match desk.places.rows.len() {
+        let text = match ui_state.versions.rows.len() {
             0 => format!("{back} of {}", back + ahead),
-            1 => "1 place".to_owned(),
-            n => format!("{n} places"),
+            1 => "1 version".to_owned(),
+            n => format!("{n} versions"),
         };
         ui.colored_label(theme::quiet(ui), text);
     });
-    if !desk.places.rows.is_empty() {
-        history_tree::ui(ui, &mut desk.places, out);
+    if !ui_state.versions.rows.is_empty() {
+        history_tree::ui(ui, &mut ui_state.versions, out);
         return;
     }
     if back + ahead == 0 {
@@ -65,7 +47,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
     let mut at = back;
     let slider = egui::Slider::new(&mut at, 0..=back + ahead).show_value(false).text("Step");
     ui.add(slider).on_hover_text("Drag to go through the steps");
-    if let Some(step) = pictures(ui, desk, back, back + ahead) {
+    if let Some(step) = pictures(ui, ui_state, back, back + ahead) {
         at = step;
     }
     let (times, command) =
@@ -74,8 +56,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
 }
 
 /// The pictures around the present step; the step of the one that was clicked.
-fn pictures(ui: &mut egui::Ui, desk: &UiState, back: usize, all: usize) -> Option<usize> {
-    let mut near: Vec<&Thumb> = desk.history.iter().filter(|t| t.step <= all).collect();
+fn pictures(ui: &mut egui::Ui, ui_state: &UiState, back: usize, all: usize) -> Option<usize> {
+    let mut near: Vec<&StepPicture> = ui_state.history.iter().filter(|t| t.step <= all).collect();
     near.sort_by_key(|t| t.step.abs_diff(back));
     near.truncate(SHOWN);
     near.sort_by_key(|t| t.step);

@@ -5,7 +5,8 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use egui::{Align2, Area, Button, Id, RichText, vec2};
 
-use super::{UiRequest, UiState, View, theme};
+use super::state::{KioskPad, UiRequest, UiState, View};
+use super::theme;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::Screen;
 use sculptd_daemon::kiosk::{Language, Stage};
@@ -17,33 +18,23 @@ pub const TARGET: f32 = 64.0;
 /// Digits that are taken at most.
 const DIGITS: usize = 12;
 
-/// What the person at the screen has chosen; forgotten with each visit.
-#[derive(Debug, Default)]
-pub struct Pad {
-    /// Index into the screen's languages.
-    pub language: usize,
-    /// What staff has typed so far, while the keypad is open.
-    pub typed: Option<String>,
-    visits: u64,
-}
-
 /// Everything over the clay of an installation. Call once a frame.
 pub fn ui(
     ui: &mut egui::Ui,
     view: &View<'_>,
     screen: &Screen,
-    desk: &mut UiState,
+    ui_state: &mut UiState,
     out: &mut Vec<UiRequest>,
 ) {
     let ctx = ui.ctx().clone();
-    if desk.applied.is_none() {
-        theme::apply(&ctx, desk.prefs.light);
-        desk.applied = Some((desk.prefs.light, 100));
+    if ui_state.applied.is_none() {
+        theme::apply(&ctx, ui_state.prefs.light);
+        ui_state.applied = Some((ui_state.prefs.light, 100));
     }
     let Some(now) = screen.desk.view.lock().ok().and_then(|v| *v) else { return };
-    let pad = &mut desk.pad;
+    let pad = &mut ui_state.pad;
     if pad.visits != now.visits {
-        *pad = Pad { visits: now.visits, ..Pad::default() };
+        *pad = KioskPad { visits: now.visits, ..KioskPad::default() };
     }
     let Some(words) = screen.words.get(pad.language).or(screen.words.first()) else { return };
     let free = ctx.content_rect();
@@ -95,7 +86,7 @@ fn said(ctx: &egui::Context, free: egui::Rect, text: &str, size: f32) {
     });
 }
 
-/// The last visitor's work: where it is, and the code that takes it home.
+/// The last visitor's sculpture: where it is, and the code that leads to it.
 #[cfg(unix)]
 fn kept(
     ctx: &egui::Context,
@@ -130,7 +121,7 @@ fn kept(
 }
 
 /// The languages, each by its own name.
-fn languages(ctx: &egui::Context, free: egui::Rect, screen: &Screen, pad: &mut Pad) {
+fn languages(ctx: &egui::Context, free: egui::Rect, screen: &Screen, pad: &mut KioskPad) {
     if screen.words.len() < 2 {
         return;
     }
@@ -206,7 +197,7 @@ fn door(
     words: &Language,
     locked: bool,
     screen: &Screen,
-    pad: &mut Pad,
+    pad: &mut KioskPad,
 ) {
     place(ctx, "door", free, Align2::RIGHT_TOP, |ui| {
         let Some(typed) = &mut pad.typed else {

@@ -2,17 +2,23 @@
 
 use egui::{Rect, pos2, vec2};
 
-use super::{UiState, measure};
-use crate::viewer::look::Map;
+use super::measure;
+use super::state::UiState;
+use crate::look::Map;
 
-pub fn ui(ctx: &egui::Context, desk: &UiState, free: Rect) {
-    let map = desk.look.map;
+pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
+    let map = ui_state.look.map;
     if map == Map::None || free.width() < 120.0 {
         return;
     }
+    let known = match map {
+        Map::Thickness => ui_state.walls.found.is_some(),
+        Map::Distance => ui_state.sizes.distances.is_some(),
+        Map::None | Map::Mask => true,
+    };
     let ((low, high), unit) = match map {
         Map::Mask => ((0.0, 1.0), ""),
-        _ => (desk.look.scale, " mm"),
+        _ => (ui_state.look.scale, " mm"),
     };
     let area = egui::Area::new(egui::Id::unique("legend"))
         .fixed_pos(free.left_top() + vec2(12.0, 12.0))
@@ -25,6 +31,11 @@ pub fn ui(ctx: &egui::Context, desk: &UiState, free: Rect) {
             measure::bar(ui.painter(), bar, |x| map.colour(x, 0.0, 1.0));
             let font = egui::FontId::proportional(12.0);
             let colour = ui.visuals().text_color();
+            if !known {
+                let at = pos2(bar.right() + 6.0, bar.center().y);
+                ui.painter().text(at, egui::Align2::LEFT_CENTER, "measuring", font, colour);
+                return;
+            }
             for i in 0..=2 {
                 let x = i as f32 / 2.0;
                 let value = low + (high - low) * x;

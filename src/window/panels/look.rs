@@ -1,11 +1,10 @@
 //! How the clay is shown.
 
-use super::action::Action;
-use super::{UiRequest, UiState, View};
-use crate::viewer::look::{MATERIALS, Map};
+use super::state::{Action, UiRequest, UiState, View};
+use crate::look::{MATERIALS, Map};
 
-pub fn ui(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>, view: &View<'_>) {
-    let look = &mut desk.look;
+pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, view: &View<'_>) {
+    let look = &mut ui_state.look;
     ui.strong("Material");
     ui.horizontal_wrapped(|ui| {
         for (i, m) in MATERIALS.iter().enumerate() {
@@ -40,11 +39,11 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>, view:
     ui.checkbox(&mut look.flat, "Facets").on_hover_text(Action::Facets.tip());
     ui.add(egui::Slider::new(&mut look.cavity, 0.0..=2.0).text("Cavity"))
         .on_hover_text("Hollows darker, ridges lighter");
-    ui.add(egui::Slider::new(&mut look.shade, 0.0..=2.0).text("Shade"))
-        .on_hover_text(Action::Ssao.tip() + ": forms darken their own hollows and each other");
+    ui.add(egui::Slider::new(&mut look.shade, 0.0..=2.0).text("Occlusion"))
+        .on_hover_text(Action::Ssao.tip() + ": ambient occlusion in screen space");
     ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(Action::Wireframe.tip());
     ui.checkbox(&mut look.grid, "Grid").on_hover_text(Action::Grid.tip());
-    ui.checkbox(&mut desk.prefs.smooth_edges, "Smooth edges")
+    ui.checkbox(&mut ui_state.prefs.smooth_edges, "Smooth edges")
         .on_hover_text("Four samples a pixel; costs time where no graphics card draws");
     ui.add_space(8.0);
     ui.strong("Map");
@@ -55,7 +54,7 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>, view:
             (Map::Thickness, "Thickness", Action::Thickness.tip()),
             (Map::Distance, "Distance", Action::Distance.tip()),
         ] {
-            ui.selectable_value(&mut desk.look.map, map, name).on_hover_text(tip);
+            ui.selectable_value(&mut ui_state.look.map, map, name).on_hover_text(tip);
         }
     });
     ui.add_space(8.0);
@@ -71,8 +70,8 @@ pub fn ui(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>, view:
     if (degrees - camera.fov_y.to_degrees()).abs() > 0.01 {
         camera.fov_y = degrees.to_radians();
     }
-    if ui.button("Frame the work").on_hover_text(Action::Frame.tip()).clicked() {
-        super::act(Action::Frame, &ui.ctx().clone(), view, desk, out);
+    if ui.button("Frame the sculpture").on_hover_text(Action::Frame.tip()).clicked() {
+        super::act::act(Action::Frame, &ui.ctx().clone(), view, ui_state, out);
     }
     if camera != view.camera {
         out.push(UiRequest::Camera(camera));

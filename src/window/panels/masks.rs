@@ -1,7 +1,7 @@
-//! The mask of the whole work.
+//! The mask of the whole object.
 
-use super::action::Action;
-use super::{UiRequest, theme};
+use super::state::{Action, UiRequest};
+use super::theme;
 use sculptd_clay::brush::MaskAction;
 use sculptd_engine::command::Command;
 

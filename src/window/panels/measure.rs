@@ -1,87 +1,29 @@
-//! Sizes of the work: measures, the shadow along a direction, the distance to another form.
+//! Sizes of the object: measures, the shadow along a direction, the distance to another form.
 
 use egui::{Color32, Mesh, Stroke, pos2, vec2};
 use glam::{DVec2, DVec3};
 
-use super::action::Action;
-use super::{UiRequest, UiState, View, theme};
-use crate::viewer::look::Map;
+use super::state::{Action, DistanceTarget, Measured, SizesPage, UiRequest, UiState, View};
+use super::theme;
+use crate::look::Map;
 use sculptd_geometry::projection::PlaneRegion;
-
-/// What was measured of one state of the work; lengths in the mesh's unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    pub revision: u64,
-    pub volume: f64,
-    pub area: f64,
-    pub dimensions: [f64; 3],
-    /// Areas of the shadows along x, y and z.
-    pub projected: [f64; 3],
-    /// What was looked along, and the shadow that way.
-    pub direction: DVec3,
-    pub shadow: f64,
-    pub outline: Vec<PlaneRegion>,
-}
-
-/// What distances are to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Against {
-    /// The work as it was opened, or as it was when the person said so.
-    #[default]
-    Before,
-    /// The thing in the hands, where it is.
-    HeldObject,
-}
-
-/// What the distance map says.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Distances {
-    pub min: f32,
-    pub max: f32,
-    /// Mean of the squares' root.
-    pub rms: f32,
-    /// Vertices known, of all.
-    pub known: (usize, usize),
-}
-
-#[derive(Debug)]
-pub struct Sizes {
-    pub found: Option<Box<Measured>>,
-    pub direction: DVec3,
-    pub against: Against,
-    pub distances: Option<Distances>,
-    /// The drawing's file.
-    pub file: String,
-}
-
-impl Default for Sizes {
-    fn default() -> Self {
-        Sizes {
-            found: None,
-            direction: DVec3::NEG_Z,
-            against: Against::default(),
-            distances: None,
-            file: "outline.svg".into(),
-        }
-    }
-}
 
 /// Corners of the drawn outline at most: it is a picture as large as a thumb.
 const CORNERS: usize = 1500;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
-    measures(ui, view, &desk.sizes);
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    measures(ui, view, &ui_state.sizes);
     ui.add_space(8.0);
-    shadow(ui, view, &mut desk.sizes, out);
+    shadow(ui, view, &mut ui_state.sizes, out);
     ui.add_space(8.0);
-    distance(ui, view, desk, out);
+    distance(ui, view, ui_state, out);
 }
 
-fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &Sizes) {
+fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &SizesPage) {
     let quiet = theme::quiet(ui);
     ui.strong("Measures");
     let Some(m) = &sizes.found else {
-        ui.colored_label(quiet, "Measured when the work rests.");
+        ui.colored_label(quiet, "Measured when nothing changes.");
         return;
     };
     let row = |ui: &mut egui::Ui, name: &str, value: String| {
@@ -100,7 +42,7 @@ fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &Sizes) {
         }
     });
     if m.revision != view.state.mesh.revision() {
-        ui.colored_label(quiet, "Of the work as it was; measured again when it rests.");
+        ui.colored_label(quiet, "Of an earlier state; measured again when nothing changes.");
     }
 }
 
@@ -110,7 +52,7 @@ fn short(x: f64) -> String {
     format!("{x:.*}", 5usize.saturating_sub(whole).min(4))
 }
 
-fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut Sizes, out: &mut Vec<UiRequest>) {
+fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut SizesPage, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Shadow");
     ui.horizontal(|ui| {
@@ -185,28 +127,28 @@ fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
     (lo, hi)
 }
 
-fn distance(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
+fn distance(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Distance");
-    let mut on = desk.look.map == Map::Distance;
+    let mut on = ui_state.look.map == Map::Distance;
     if ui.checkbox(&mut on, "Live distance map").on_hover_text(Action::Distance.tip()).changed() {
-        super::act(Action::Distance, &ui.ctx().clone(), view, desk, out);
+        super::act::act(Action::Distance, &ui.ctx().clone(), view, ui_state, out);
     }
-    let sizes = &mut desk.sizes;
+    let sizes = &mut ui_state.sizes;
     let held = view.state.thing.is_some();
     ui.horizontal(|ui| {
-        ui.radio_value(&mut sizes.against, Against::Before, "to before")
-            .on_hover_text("To the work as it was opened");
+        ui.radio_value(&mut sizes.against, DistanceTarget::Before, "to before")
+            .on_hover_text("To the object as it was opened");
         ui.add_enabled_ui(held, |ui| {
-            ui.radio_value(&mut sizes.against, Against::HeldObject, "to the thing")
+            ui.radio_value(&mut sizes.against, DistanceTarget::HeldObject, "to the held object")
         });
     });
-    if !held && sizes.against == Against::HeldObject {
-        sizes.against = Against::Before;
+    if !held && sizes.against == DistanceTarget::HeldObject {
+        sizes.against = DistanceTarget::Before;
     }
     if ui
         .button("Compare with now")
-        .on_hover_text("Distances are to the work as it is now")
+        .on_hover_text("Distances are measured to the object as it is now")
         .clicked()
     {
         out.push(UiRequest::Reference);

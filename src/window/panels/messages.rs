@@ -1,37 +1,22 @@
-//! What slow work said: the last line for a while over the clay, all of them in a list.
+//! The messages of background tasks: the last one for some seconds over the clay, all of them in a
+//! list.
+
+use std::time::Duration;
 
 use egui::vec2;
 
-use super::{UiState, theme};
+use super::state::UiState;
+use super::theme;
 
-#[derive(Debug, Clone)]
-pub struct Message {
-    pub text: String,
-    pub wrong: bool,
-    /// Seconds on egui's clock when it was first shown; set by the panel.
-    pub since: Option<f64>,
-}
-
-/// Kept at most.
-const MOST: usize = 50;
-/// A line stays over the clay so long, seconds; bad news longer.
+/// Seconds that a message stays over the clay; a failure stays longer.
 const STAYS: [f64; 2] = [5.0, 12.0];
 
-impl UiState {
-    pub fn say(&mut self, text: impl Into<String>, wrong: bool) {
-        self.messages.push(Message { text: text.into(), wrong, since: None });
-        if self.messages.len() > MOST {
-            self.messages.remove(0);
-        }
-    }
-}
-
-pub fn ui(ui: &mut egui::Ui, desk: &UiState) {
+pub fn ui(ui: &mut egui::Ui, ui_state: &UiState) {
     ui.strong("Messages");
-    if desk.messages.is_empty() {
+    if ui_state.messages.is_empty() {
         ui.colored_label(theme::quiet(ui), "none");
     }
-    for m in desk.messages.iter().rev().take(12) {
+    for m in ui_state.messages.iter().rev().take(12) {
         if m.wrong {
             ui.colored_label(theme::alarm(ui), &m.text);
         } else {
@@ -40,13 +25,16 @@ pub fn ui(ui: &mut egui::Ui, desk: &UiState) {
     }
 }
 
-pub fn toast(ctx: &egui::Context, desk: &mut UiState, free: egui::Rect) {
+pub fn toast(ctx: &egui::Context, ui_state: &mut UiState, free: egui::Rect) {
     let now = ctx.input(|i| i.time);
-    let Some(last) = desk.messages.last_mut() else { return };
+    let Some(last) = ui_state.messages.last_mut() else { return };
     let since = *last.since.get_or_insert(now);
-    if now - since > STAYS[usize::from(last.wrong)] {
+    let left = STAYS[usize::from(last.wrong)] - (now - since);
+    if left < 0.0 {
         return;
     }
+    // The frame that takes it away.
+    ctx.request_repaint_after(Duration::from_secs_f64(left + 0.05));
     let place = egui::Area::new(egui::Id::unique("toast"))
         .fixed_pos(free.center_top() + vec2(0.0, 14.0))
         .pivot(egui::Align2::CENTER_TOP)

@@ -1,37 +1,22 @@
 //! Dragging the radius or the strength with the pointer alone: F, move, click. Escape or the other
 //! button: as it was.
 
-use egui::{Key, PointerButton, Pos2};
+use egui::{Key, PointerButton};
 
-use super::{UiRequest, UiState, View};
-use sculptd_clay::brush::BrushSettings;
+use super::state::{Modal, ModalSetting, UiRequest, UiState, View};
 use sculptd_engine::command::Command;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum What {
-    Radius,
-    Strength,
-}
-
-#[derive(Debug, Clone, Copy)]
-pub struct Modal {
-    pub what: What,
-    /// Where the pointer was; the ring stays there. Points.
-    pub from: Pos2,
-    pub before: BrushSettings,
-}
 
 /// The pointer's way, points, that doubles the radius or moves the strength from 0 to 1.
 const WAY: [f32; 2] = [120.0, 300.0];
 
-pub fn begin(ctx: &egui::Context, view: &View<'_>, desk: &mut UiState, what: What) {
+pub fn begin(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, what: ModalSetting) {
     let middle = ctx.content_rect().center();
     let from = ctx.input(|i| i.pointer.latest_pos()).unwrap_or(middle);
-    desk.modal = Some(Modal { what, from, before: view.state.brush });
+    ui_state.modal = Some(Modal { what, from, before: view.state.brush });
 }
 
-pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
-    let Some(modal) = desk.modal else { return };
+pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let Some(modal) = ui_state.modal else { return };
     let (to, done, cancelled) = ctx.input(|i| {
         let click = |b| i.pointer.button_pressed(b);
         (
@@ -43,22 +28,22 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, desk: &mut UiState, out: &mut Ve
     let way = to.x - modal.from.x;
     let mut brush = view.state.brush;
     match modal.what {
-        What::Radius => brush.radius = modal.before.radius * 2f32.powf(way / WAY[0]),
-        What::Strength => brush.strength = modal.before.strength + way / WAY[1],
+        ModalSetting::Radius => brush.radius = modal.before.radius * 2f32.powf(way / WAY[0]),
+        ModalSetting::Strength => brush.strength = modal.before.strength + way / WAY[1],
     }
     brush = brush.clamped();
     if cancelled {
         brush = modal.before;
     }
     if done || cancelled {
-        desk.modal = None;
+        ui_state.modal = None;
     }
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush)));
     }
     let text = match modal.what {
-        What::Radius => format!("Radius {:.3}", brush.radius),
-        What::Strength => format!("Strength {:.2}", brush.strength),
+        ModalSetting::Radius => format!("Radius {:.3}", brush.radius),
+        ModalSetting::Strength => format!("Strength {:.2}", brush.strength),
     };
     let area = egui::Area::new(egui::Id::unique("modal"))
         .fixed_pos(modal.from + egui::vec2(0.0, 46.0))

@@ -3,11 +3,11 @@
 
 use egui::{Pos2, Rect, Sense, Stroke, pos2, vec2};
 
-use super::devices::Trace;
-use super::{UiRequest, View, theme};
+use super::state::{PenTrace, UiRequest, View};
+use super::theme;
 use sculptd_engine::command::Command;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<UiRequest>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &PenTrace, out: &mut Vec<UiRequest>) {
     let mut brush = view.state.brush;
     egui::CollapsingHeader::new("Pressure").default_open(false).show(ui, |ui| {
         let curve = &mut brush.pressure_strength;
@@ -19,7 +19,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &Trace, out: &mut Vec<UiReq
         let at = |p: f32, f: f32| place(rect, p, f);
         // Pressures felt lately, fading with age.
         for (age, p) in trace.recent().enumerate() {
-            let fade = 1.0 - age as f32 / Trace::KEPT as f32;
+            let fade = 1.0 - age as f32 / PenTrace::KEPT as f32;
             let colour = theme::accent(ui).gamma_multiply(fade * 0.6);
             painter.circle_filled(at(p, curve.factor(p)), 2.0 + 2.0 * fade, colour);
         }

@@ -2,8 +2,7 @@
 
 use egui::{Align2, FontId, Key, Pos2, Stroke, vec2};
 
-use super::UiState;
-use super::action::Action;
+use super::state::{Action, UiState};
 
 /// Clockwise from the top.
 const RING: [(Action, &str); 8] = [
@@ -30,18 +29,18 @@ fn over(centre: Pos2, at: Pos2) -> Option<usize> {
 }
 
 /// Shows the ring while space is held; what it was let go over.
-pub fn ui(ctx: &egui::Context, desk: &mut UiState) -> Option<Action> {
+pub fn ui(ctx: &egui::Context, ui_state: &mut UiState) -> Option<Action> {
     let held = ctx.input(|i| i.key_down(Key::Space) && i.modifiers.is_none());
     let at = ctx.input(|i| i.pointer.latest_pos()).unwrap_or(ctx.content_rect().center());
-    if held && desk.radial.is_none() && !ctx.egui_wants_keyboard_input() {
+    if held && ui_state.radial.is_none() && !ctx.egui_wants_keyboard_input() {
         // Wholly on the screen.
         let room = ctx.content_rect().shrink(OUTER + 36.0);
-        desk.radial = Some(if room.is_positive() { room.clamp(at) } else { at });
+        ui_state.radial = Some(if room.is_positive() { room.clamp(at) } else { at });
     }
-    let centre = desk.radial?;
+    let centre = ui_state.radial?;
     let chosen = over(centre, at);
     if !held {
-        desk.radial = None;
+        ui_state.radial = None;
         return chosen.map(|i| RING[i].0);
     }
     let size = vec2(OUTER + 40.0, OUTER + 40.0);

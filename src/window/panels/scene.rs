@@ -1,17 +1,18 @@
-//! The work, a second thing beside it, and joining the two.
+//! The object, a second one that is held beside it, and Booleans of the two.
 
 use std::sync::Arc;
 
 use glam::{DVec3, EulerRot, Quat};
 
-use super::{UiRequest, UiState, View, theme};
+use super::state::{TrialStatus, UiRequest, UiState, View};
+use super::theme;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_geometry::{PolyMesh, shapes};
 
 type Solid = (&'static str, fn() -> PolyMesh);
 
-/// What can be taken up without a file.
+/// Shapes that can be taken up without a file.
 const SOLIDS: [Solid; 3] = [
     ("Ball", || shapes::uv_sphere(1.0, 24, 48)),
     ("Box", || shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE)),
@@ -19,51 +20,27 @@ const SOLIDS: [Solid; 3] = [
 ];
 
 const JOINS: [(MenuItem, &str, &str); 3] = [
-    (MenuItem::Add, "Add", "Work and thing become one"),
-    (MenuItem::Carve, "Cut", "The thing is taken out of the work"),
+    (MenuItem::Add, "Add", "The two become one"),
+    (MenuItem::Carve, "Cut", "What is held is cut out of the object"),
     (MenuItem::Keep, "Keep", "Only what lies in both stays"),
 ];
 
-/// What a join would make, shown while the thing is carried.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Trial {
-    pub choice: Option<MenuItem>,
-    pub said: Said,
-}
-
-impl Trial {
-    /// Tries this, or no more.
-    pub fn turn(&mut self, choice: MenuItem) {
-        self.choice = (self.choice != Some(choice)).then_some(choice);
-    }
-}
-
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Said {
-    #[default]
-    Nothing,
-    UnderWay,
-    /// Triangles that the thing has made.
-    Shown(usize),
-    Wrong(String),
-}
-
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<UiRequest>) {
-    let busy = desk.joining;
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let busy = ui_state.joining;
     let quiet = theme::quiet(ui);
     let s = view.state;
-    ui.strong("Work");
+    ui.strong("Object");
     let (lo, hi) = s.mesh.bounds();
     let size = (hi - lo).max(glam::Vec3::ZERO);
     ui.colored_label(quiet, format!("{} triangles", s.mesh.triangle_count()));
     ui.colored_label(quiet, format!("{:.2} x {:.2} x {:.2} mm", size.x, size.y, size.z));
     ui.add_space(8.0);
-    ui.strong("Thing");
+    ui.strong("Held object");
     ui.horizontal(|ui| {
         for (name, make) in SOLIDS {
             if ui
                 .button(name)
-                .on_hover_text("Appears beside the work, to be carried into it")
+                .on_hover_text("Appears beside the object, to be moved into it")
                 .clicked()
             {
                 out.push(UiRequest::World(Command::TakeUp(Arc::new(make().triangulate().0))));
@@ -71,7 +48,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
         }
     });
     let Some(thing) = &s.thing else {
-        ui.colored_label(quiet, "Take something up, put it in its place, then add, cut or keep.");
+        ui.colored_label(quiet, "Take up a shape, move it into place, then add, cut or keep.");
         return;
     };
     let mut place = thing.place;
@@ -98,7 +75,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
         out.push(UiRequest::World(Command::Place(place)));
     }
     ui.add_space(4.0);
-    preview(ui, desk, out);
+    preview(ui, ui_state, out);
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         for (choice, name, tip) in JOINS {
@@ -111,13 +88,13 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, desk: &mut UiState, out: &mut Vec<
         }
     });
     if busy {
-        ui.colored_label(quiet, "joining in the background: go on sculpting");
+        ui.colored_label(quiet, "computing in the background: go on sculpting");
     }
 }
 
-fn preview(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>) {
-    let busy = desk.joining;
-    let trial = &mut desk.trial;
+fn preview(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let busy = ui_state.joining;
+    let trial = &mut ui_state.trial;
     let title = trial.choice.map_or("off", |c| JOINS.iter().find(|j| j.0 == c).map_or("", |j| j.1));
     egui::ComboBox::from_label("Preview").selected_text(title).width(110.0).show_ui(ui, |ui| {
         ui.selectable_value(&mut trial.choice, None, "off");
@@ -127,18 +104,26 @@ fn preview(ui: &mut egui::Ui, desk: &mut UiState, out: &mut Vec<UiRequest>) {
     });
     let Some(choice) = trial.choice else { return };
     let (text, wrong) = match &trial.said {
-        Said::Nothing | Said::UnderWay => ("computing ...".to_owned(), false),
-        Said::Shown(n) => (format!("{n} triangles of the thing"), false),
-        Said::Wrong(why) => (why.clone(), true),
+        TrialStatus::Nothing | TrialStatus::UnderWay => ("computing ...".to_owned(), false),
+        TrialStatus::Shown(n) => (format!("{n} triangles of the held object"), false),
+        TrialStatus::Wrong(why) => (why.clone(), true),
     };
     let colour = if wrong { theme::alarm(ui) } else { theme::quiet(ui) };
     ui.colored_label(colour, text);
     ui.horizontal(|ui| {
-        if ui.add_enabled(!busy, egui::Button::new("Apply")).on_hover_text("Make it so").clicked() {
+        if ui
+            .add_enabled(!busy, egui::Button::new("Apply"))
+            .on_hover_text("Do what is shown")
+            .clicked()
+        {
             out.push(UiRequest::Join(choice));
             trial.choice = None;
         }
-        if ui.button("Dismiss").on_hover_text("The work as it is; the thing stays").clicked() {
+        if ui
+            .button("Dismiss")
+            .on_hover_text("The object stays as it is; the held one too")
+            .clicked()
+        {
             trial.choice = None;
         }
     });

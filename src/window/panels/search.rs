@@ -2,21 +2,15 @@
 
 use egui::Key;
 
-use super::action::{self, Action};
-use super::{UiState, theme};
-
-#[derive(Debug, Default)]
-pub struct Search {
-    pub text: String,
-    at: usize,
-    begun: bool,
-}
+use super::state::action;
+use super::state::{Action, UiState};
+use super::theme;
 
 /// Shown at a time.
 const MOST: usize = 9;
 
-pub fn ui(ctx: &egui::Context, desk: &mut UiState) -> Option<Action> {
-    let search = desk.search.as_mut()?;
+pub fn ui(ctx: &egui::Context, ui_state: &mut UiState) -> Option<Action> {
+    let search = ui_state.search.as_mut()?;
     let (up, down, enter, escape) = ctx.input(|i| {
         let p = |k| i.key_pressed(k);
         (p(Key::ArrowUp), p(Key::ArrowDown), p(Key::Enter), p(Key::Escape))
@@ -64,7 +58,7 @@ pub fn ui(ctx: &egui::Context, desk: &mut UiState) -> Option<Action> {
         });
     });
     if escape || chosen.is_some() {
-        desk.search = None;
+        ui_state.search = None;
     }
     chosen
 }

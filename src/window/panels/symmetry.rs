@@ -1,7 +1,6 @@
 //! Mirrors.
 
-use super::action::Action;
-use super::{UiRequest, View};
+use super::state::{Action, UiRequest, View};
 use sculptd_engine::command::Command;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {

@@ -1,24 +1,7 @@
-//! The loop's live figures, the work, and what this window costs.
+//! Timing of the tick loop and of this window, and the size of the object.
 
-use super::{View, theme};
-
-/// What the window measured of itself.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct FrameFigures {
-    /// Of the last frames, our own work on the processor, ms: without waiting for the card.
-    pub cpu_ms: f64,
-    pub worst_cpu_ms: f64,
-    /// From a pointer's sample to the state that holds it, ms.
-    pub input_to_snapshot_ms: f64,
-    /// From a pointer's sample to the frame that shows it being handed to the card, ms.
-    pub input_to_submit_ms: f64,
-    /// Pages in view, of all.
-    pub drawn: (usize, usize),
-    /// Samples of this window's pointer sent.
-    pub sent: u64,
-    /// Time of the newest sample that a frame has shown, on the clock.
-    pub newest_us: u64,
-}
+use super::state::View;
+use super::theme;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     let s = view.state;
@@ -46,6 +29,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     ui.strong("This window");
     let w = &view.frame;
     grid("frame").show(ui, |ui| {
+        row(ui, "frames/s", format!("{}", w.frames_a_second));
         row(ui, "frame", format!("{:.2} ms", w.cpu_ms));
         row(ui, "worst", format!("{:.2} ms", w.worst_cpu_ms));
         row(ui, "to clay", format!("{:.1} ms", w.input_to_snapshot_ms));
@@ -55,13 +39,13 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     });
     ui.colored_label(quiet, "to clay, to screen: from the pointer's last sample");
     ui.add_space(8.0);
-    ui.strong("Work");
-    grid("work").show(ui, |ui| {
+    ui.strong("Object");
+    grid("object").show(ui, |ui| {
         row(ui, "vertices", format!("{}", s.mesh.vertex_count()));
         row(ui, "triangles", format!("{}", s.mesh.triangle_count()));
     });
     if let Some(session) = view.session {
-        ui.colored_label(quiet, format!("saved as you go: {session}"));
+        ui.colored_label(quiet, format!("saved as you work: {session}"));
     }
     ui.add_space(8.0);
     ui.colored_label(quiet, view.adapter);

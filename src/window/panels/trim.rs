@@ -3,79 +3,69 @@
 
 use egui::{Color32, Key, Pos2, Rect, Sense, Stroke, vec2};
 
-use super::{UiRequest, UiState, View, theme};
+use super::state::{Trim, TrimShape, UiRequest, UiState, View};
+use super::theme;
 use sculptd_daemon::trim::Part;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
-    Box,
-    Line,
-}
-
-/// A trim that is being drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trim {
-    pub shape: Shape,
-    /// Where the pointer went down, points.
-    pub from: Option<Pos2>,
-}
 
 /// Points below which a drag was a slip of the hand.
 const SLIP: f32 = 4.0;
 
 /// The buttons.
-pub fn buttons(ui: &mut egui::Ui, desk: &mut UiState) {
+pub fn buttons(ui: &mut egui::Ui, ui_state: &mut UiState) {
     ui.strong("Trim");
     ui.horizontal(|ui| {
         for (shape, name, tip) in [
             (
-                Shape::Box,
+                TrimShape::Box,
                 "Box",
-                "Drag a box over the work: what is seen in it is cut off, all the way through",
+                "Drag a box over the view: what lies in it is cut off, all the way through",
             ),
-            (Shape::Line, "Line", "Drag a line over the work: what is to its left is cut off"),
+            (
+                TrimShape::Line,
+                "Line",
+                "Drag a line over the view: what lies to its left is cut off",
+            ),
         ] {
-            let on = desk.trim.is_some_and(|t| t.shape == shape);
+            let on = ui_state.trim.is_some_and(|t| t.shape == shape);
             if ui
-                .add_enabled(!desk.joining, egui::Button::selectable(on, name))
+                .add_enabled(!ui_state.joining, egui::Button::selectable(on, name))
                 .on_hover_text(tip)
                 .clicked()
             {
-                desk.trim = (!on).then_some(Trim { shape, from: None });
+                ui_state.trim = (!on).then_some(Trim { shape, from: None });
             }
         }
     });
-    if desk.trim.is_some() {
-        ui.colored_label(theme::quiet(ui), "Drag over the work; Esc leaves it.");
+    if ui_state.trim.is_some() {
+        ui.colored_label(theme::quiet(ui), "Drag over the view; Esc cancels.");
     }
 }
 
-/// The part of the view that a drag means; the view is the whole window.
-pub fn part(shape: Shape, screen: Rect, from: Pos2, to: Pos2) -> Option<Part> {
+/// The part of the view that a drag means; the view fills the free part of the window.
+pub fn part(shape: TrimShape, free: Rect, from: Pos2, to: Pos2) -> Option<Part> {
     let share = |p: Pos2| {
-        let d = (p - screen.min) / screen.size();
+        let d = (p - free.min) / free.size();
         [d.x.clamp(0.0, 1.0), d.y.clamp(0.0, 1.0)]
     };
     let way = to - from;
     let enough = match shape {
-        Shape::Box => way.x.abs().min(way.y.abs()) > SLIP,
-        Shape::Line => way.length() > SLIP,
+        TrimShape::Box => way.x.abs().min(way.y.abs()) > SLIP,
+        TrimShape::Line => way.length() > SLIP,
     };
     let ([x0, y0], [x1, y1]) = (share(from), share(to));
     enough.then_some(match shape {
-        Shape::Box => Part::Box([x0, y0, x1, y1]),
-        Shape::Line => Part::Line([x0, y0, x1, y1]),
+        TrimShape::Box => Part::Box([x0, y0, x1, y1]),
+        TrimShape::Line => Part::Line([x0, y0, x1, y1]),
     })
 }
 
 /// The drag itself: the clay does not feel it.
-pub fn ui(ctx: &egui::Context, desk: &mut UiState, free: Rect, out: &mut Vec<UiRequest>) {
-    let Some(mut trim) = desk.trim else { return };
+pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec<UiRequest>) {
+    let Some(mut trim) = ui_state.trim else { return };
     if ctx.input(|i| i.key_pressed(Key::Escape)) {
-        desk.trim = None;
+        ui_state.trim = None;
         return;
     }
-    let screen = ctx.content_rect();
     let area =
         egui::Area::new(egui::Id::unique("trim")).fixed_pos(free.min).order(egui::Order::Middle);
     area.show(ctx, |ui| {
@@ -90,11 +80,11 @@ pub fn ui(ctx: &egui::Context, desk: &mut UiState, free: Rect, out: &mut Vec<UiR
         let cut = Color32::from_rgba_unmultiplied(255, 110, 80, 40);
         if let (Some(from), Some(to)) = (trim.from, at) {
             match trim.shape {
-                Shape::Box => {
+                TrimShape::Box => {
                     let rect = Rect::from_two_pos(from, to);
                     painter.rect(rect, 0.0, cut, stroke, egui::StrokeKind::Middle);
                 }
-                Shape::Line => {
+                TrimShape::Line => {
                     let along = (to - from).normalized();
                     // y runs down: to the left as one goes.
                     let left = vec2(along.y, -along.x) * 60.0;
@@ -105,33 +95,35 @@ pub fn ui(ctx: &egui::Context, desk: &mut UiState, free: Rect, out: &mut Vec<UiR
                 }
             }
             if response.drag_stopped() {
-                match part(trim.shape, screen, from, to) {
+                match part(trim.shape, free, from, to) {
                     Some(part) => {
                         out.push(UiRequest::Trim(part));
-                        desk.trim = None;
+                        ui_state.trim = None;
                         return;
                     }
                     None => trim.from = None,
                 }
             }
         }
-        desk.trim = Some(trim);
+        ui_state.trim = Some(trim);
     });
 }
 
-/// The levels of the work: coarser to shape, finer for detail.
-pub fn levels(ui: &mut egui::Ui, view: &View<'_>, desk: &UiState, out: &mut Vec<UiRequest>) {
+/// The levels of detail: coarser to shape, finer for detail.
+pub fn levels(ui: &mut egui::Ui, view: &View<'_>, ui_state: &UiState, out: &mut Vec<UiRequest>) {
     ui.strong("Levels");
     let (at, of) = view.state.mesh.levels().map_or((0, 1), |l| l.at());
     let n = view.state.mesh.triangle_count();
     ui.colored_label(theme::quiet(ui), format!("level {} of {of}, {n} triangles", at + 1));
     ui.horizontal(|ui| {
-        let coarser = ui.add_enabled(at > 0 && !desk.joining, egui::Button::new("Coarser"));
-        if coarser.on_hover_text("Shape the whole; the detail of finer levels goes along").clicked()
+        let coarser = ui.add_enabled(at > 0 && !ui_state.joining, egui::Button::new("Coarser"));
+        if coarser
+            .on_hover_text("TrimShape the whole; the detail of finer levels goes along")
+            .clicked()
         {
             out.push(UiRequest::Level(false));
         }
-        let finer = ui.add_enabled(!desk.joining, egui::Button::new("Finer"));
+        let finer = ui.add_enabled(!ui_state.joining, egui::Button::new("Finer"));
         let tip = if at + 1 < of { "Back to the finer level" } else { "Four triangles for each" };
         if finer.on_hover_text(tip).clicked() {
             out.push(UiRequest::Level(true));

@@ -5,7 +5,7 @@ use glam::Vec3;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::camera::MAX_PITCH;
 
-/// Microseconds of a flight.
+/// Microseconds of a camera_animation.
 const TAKES_US: u64 = 450_000;
 
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,7 @@ pub struct CameraAnimation {
 }
 
 impl CameraAnimation {
-    /// To look at `place` from outside the work, whose middle and bounding radius are given.
+    /// To look at `place` from outside the object, whose middle and bounding radius are given.
     pub fn to_place(
         from: Camera,
         place: Vec3,
@@ -63,13 +63,13 @@ mod tests {
     fn a_flight_ends_looking_at_the_place_from_outside() {
         let from = Camera { yaw: 6.0, ..Camera::default() };
         let place = Vec3::new(0.9, 0.1, 0.3);
-        let flight = CameraAnimation::to_place(from, place, Vec3::ZERO, 1.0, 5);
-        let (camera, arrived) = flight.at(5 + TAKES_US);
+        let camera_animation = CameraAnimation::to_place(from, place, Vec3::ZERO, 1.0, 5);
+        let (camera, arrived) = camera_animation.at(5 + TAKES_US);
         assert!(arrived && camera.is_sane());
         assert!((camera.target - place).length() < 1e-6);
         assert!(camera.backward().dot(place.normalize()) > 0.999);
         // Never the long way round.
-        let (half, _) = flight.at(5 + TAKES_US / 2);
+        let (half, _) = camera_animation.at(5 + TAKES_US / 2);
         let turn = std::f32::consts::TAU;
         let step = (half.yaw - from.yaw + 1.5 * turn).rem_euclid(turn) - 0.5 * turn;
         assert!(step.abs() < 1.6, "{step}");

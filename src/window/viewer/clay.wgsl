@@ -1,8 +1,10 @@
-// The clay, lit from the eye's own frame so that form reads from every side, and the lines that lie over it.
+// The clay, lit from the eye's own frame so that form reads from every side, and the lines that lie
+// over it.
 
 struct Frame {
     view_projection: mat4x4<f32>,
-    // Rows of the view's rotation: right, up, backward. The w of the first is 1 where colours come from the vertices.
+    // Rows of the view's rotation: right, up, backward. The w of the first is 1 where colours come
+    // from the vertices.
     right: vec4<f32>,
     up: vec4<f32>,
     back: vec4<f32>,
@@ -12,7 +14,8 @@ struct Frame {
     base: vec4<f32>,
     // Highlight's strength and exponent, light at the rim, strength of cavities.
     finish: vec4<f32>,
-    // A map's lowest value, one over its span, which (0 none, 1 mask, 2 values), and how much nearer lines are.
+    // A map's lowest value, one over its span, which (0 none, 1 mask, 2 values), and how much
+    // nearer lines are.
     map: vec4<f32>,
     scale: array<vec4<f32>, 8>,
     // The ground's lower and upper colour.
@@ -70,7 +73,8 @@ fn lit(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
     let warm = vec3<f32>(1.0, 0.95, 0.88) * key * 0.85;
     let cool = vec3<f32>(0.55, 0.68, 0.95) * fill * 0.28;
     let ambient = mix(vec3<f32>(0.13, 0.11, 0.11), vec3<f32>(0.26, 0.29, 0.34), sky);
-    return base * (warm + cool + ambient) + vec3<f32>(shine) + vec3<f32>(0.35, 0.42, 0.5) * rim * frame.finish.z;
+    let edge = vec3<f32>(0.35, 0.42, 0.5) * rim * frame.finish.z;
+    return base * (warm + cool + ambient) + vec3<f32>(shine) + edge;
 }
 
 @fragment
@@ -113,7 +117,8 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
         if (x < 1.0) {
             colour += vec3<f32>(0.07, 0.085, 0.10) * exp(-x * x * 12.5);
             // Where the bell is at half its height.
-            colour += vec3<f32>(0.10, 0.11, 0.12) * (1.0 - smoothstep(0.0, 1.5 * width, abs(x - 0.2355)));
+            let ring = 1.0 - smoothstep(0.0, 1.5 * width, abs(x - 0.2355));
+            colour += vec3<f32>(0.10, 0.11, 0.12) * ring;
         }
     }
     return vec4<f32>(colour, 1.0);
@@ -121,7 +126,7 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
 
 // What is not of the work: its own colour, and the work through it; denser towards its outline.
 @fragment
-fn ghost_fragment(in: Corner) -> @location(0) vec4<f32> {
+fn overlay_fragment(in: Corner) -> @location(0) vec4<f32> {
     let n = normalize(in.normal);
     let view = vec3<f32>(dot(n, frame.right.xyz), dot(n, frame.up.xyz), dot(n, frame.back.xyz));
     let edge = pow(1.0 - clamp(view.z, 0.0, 1.0), 2.0);

@@ -2,30 +2,27 @@
 
 use glam::{Vec2, Vec3};
 
-use super::look::Map;
 use super::overlay;
 use super::pages::MapValues;
 use super::pointer::Drag;
 use super::renderer::{Beside, LineEnd, Renderer, Scene};
-use super::window::{WindowState, Wiring};
-use super::work::{Done, Purpose};
-use crate::panels::action::Action;
-use crate::panels::{self, UiRequest, View};
-use crate::viewer::camera_animation::CameraAnimation;
+use super::state::WindowState;
+use super::wiring::Wiring;
+use crate::look::Map;
+use crate::panels;
+use crate::panels::state::{UiRequest, UiState, View};
 use sculptd_daemon::Published;
-use sculptd_daemon::session::history::Want;
 use sculptd_engine::camera::Camera;
-use sculptd_engine::command::Command;
 
 impl WindowState {
-    /// The ring under the newest pointer place and under every other pen, their mirror images,
-    /// ghost hands.
+    /// The ring under the pointer and under every other pen, their mirror images, the tracked
+    /// hands.
     fn lines(&self, state: &Published) -> (Vec<LineEnd>, Option<(Vec3, f32)>) {
         let mut lines = Vec::new();
         let mut brush = None;
-        if self.desk.look.grid {
+        if self.ui_state.look.grid {
             let floor = state.mesh.bounds().0.y;
-            overlay::grid(&mut lines, state.middle, floor, state.extent, self.desk.look.pale);
+            overlay::grid(&mut lines, state.middle, floor, state.extent, self.ui_state.look.pale);
         }
         let mut ring_at = |view: Vec2, pressure: f32, tilt: Option<Vec2>, down: bool| {
             let ray = self.camera.ray(view);
@@ -48,10 +45,10 @@ impl WindowState {
         };
         let p = &self.pointer;
         let scale = self.egui.egui_ctx().pixels_per_point();
-        let over_panel = self.egui.egui_ctx().is_pointer_over_egui();
-        if let Some(modal) = &self.desk.modal {
+        let over_panel = self.over_panel(self.pointer.at);
+        if let Some(modal) = &self.ui_state.modal {
             let at = Vec2::new(modal.from.x, modal.from.y) * scale;
-            ring_at(overlay::view_point(at, self.size()), 1.0, None, false);
+            ring_at(self.view_point(at), 1.0, None, false);
         } else if p.inside && (p.drag == Drag::Sculpt || (p.drag == Drag::None && !over_panel)) {
             let felt = state
                 .pens
@@ -60,7 +57,7 @@ impl WindowState {
                 .find(|(id, _)| *id == sculptd_daemon::adaptors::POINTER_ID);
             let down = p.drag == Drag::Sculpt;
             let pressure = if down { felt.map_or(1.0, |f| f.1.pressure) } else { 1.0 };
-            ring_at(overlay::view_point(p.at, self.size()), pressure, None, down);
+            ring_at(self.view_point(p.at), pressure, None, down);
         }
         for (id, pen) in state.pens.iter().flatten() {
             if *id != sculptd_daemon::adaptors::POINTER_ID {
@@ -69,7 +66,7 @@ impl WindowState {
             }
         }
         if let Some(thing) = &state.thing {
-            overlay::thing(&mut lines, thing);
+            overlay::held_object(&mut lines, thing);
         }
         if let Some(hands) = &state.hands {
             overlay::hands(&mut lines, hands, &state.volume);
@@ -83,7 +80,7 @@ impl WindowState {
             | wgpu::CurrentSurfaceTexture::Suboptimal(t) => t,
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
                 self.surface.configure(&self.gpu.device, &self.config);
-                self.window.request_redraw();
+                self.pacing.want();
                 return;
             }
             _ => return,
@@ -91,65 +88,97 @@ impl WindowState {
         let begun_ns = wiring.clock.now_ns();
         let state = wiring.published.load_full();
         let now = wiring.clock.now_us();
-        self.hear(&state, wiring);
-        if let Some(flight) = self.flight {
-            let (camera, arrived) = flight.at(now);
+        self.pacing.begin_frame(now);
+        if let Some(animation) = self.camera_animation {
+            let (camera, arrived) = animation.at(now);
             self.camera = Camera { aspect: self.camera.aspect, ..camera };
             self.send_camera(wiring);
             if arrived {
-                self.flight = None;
+                self.camera_animation = None;
             }
         } else if self.pointer.drag == Drag::None {
-            // Somebody else (a hand, the control socket) may have turned the work.
+            // A hand or the control socket may have turned the camera.
             self.camera = Camera { aspect: self.camera.aspect, ..state.camera };
         }
-        if now.saturating_sub(self.asked_us) > 1_000_000 || self.asked_us == 0 {
-            (self.devices, self.asked_us) = ((wiring.devices)(), now);
-            self.remembered.keep(&self.desk);
-        }
-        if let Some((history, rate_hz)) = wiring.history.as_ref().filter(|_| wiring.kiosk.is_none())
-        {
-            self.places(history, *rate_hz);
-        }
-        let samples = self.gpu.samples(self.desk.prefs.smooth_edges);
+        let samples = self.gpu.samples(self.ui_state.prefs.smooth_edges);
         if samples != self.samples {
             self.renderer = Renderer::new(&self.gpu, self.config.format, samples);
             self.samples = samples;
         }
-        self.wish(&state, wiring);
-        self.ghosts(&state);
+        self.update_overlay_mesh(&state);
         self.shots(&state);
         let (lines, brush) = self.lines(&state);
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let size = (self.config.width, self.config.height);
-        let scene = Scene {
-            mesh: &state.mesh,
-            camera: &self.camera,
-            brush,
-            lines: &lines,
-            look: self.desk.look,
-            values: shown(&self.desk, &self.values, &self.distances),
-            beside: Beside { preview: self.preview.as_ref(), ghosts: Some(&self.ghosts) },
-        };
-        self.renderer.draw(&self.gpu, &mut encoder, &view, size, &scene);
+        self.draw_clay(&state, (&lines, brush), &mut encoder, &texture.texture);
         self.uploaded = self.renderer.uploaded;
-        let asks = self.panels(&state, wiring, &mut encoder, &view);
+        let requests = self.panels(&state, wiring, &mut encoder, &view);
         let own_ms = (wiring.clock.now_ns() - begun_ns) as f64 / 1e6;
         self.gpu.queue.submit([encoder.finish()]);
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
         self.measure(&state, own_ms, wiring);
-        // With a session the history has pictures of its own.
-        if wiring.kiosk.is_none() && wiring.history.is_none() {
-            self.thumb(&state, now);
+        self.drawn = Some(state.clone());
+        for request in requests {
+            self.answer(request, &state, wiring);
         }
-        for ask in asks {
-            self.answer(ask, &state, wiring);
-        }
+        self.fit_camera(wiring);
         if self.renderer.waiting > 0 {
-            self.window.request_redraw();
+            self.pacing.want();
         }
+    }
+
+    /// The clay in the part of the window that the panels leave free: drawn into a picture of that
+    /// size, which is then copied to its place.
+    fn draw_clay(
+        &mut self,
+        state: &Published,
+        (lines, brush): (&[LineEnd], Option<(Vec3, f32)>),
+        encoder: &mut wgpu::CommandEncoder,
+        surface: &wgpu::Texture,
+    ) {
+        let (corner, size) = self.view_rect();
+        let size = (size.x as u32, size.y as u32);
+        let part = self.takes_copies() && self.free.is_some();
+        let target = if part { self.clay_picture(size) } else { surface.clone() };
+        let scene = Scene {
+            mesh: &state.mesh,
+            camera: &self.camera,
+            brush,
+            lines,
+            look: self.ui_state.look,
+            values: shown(&self.ui_state, &self.values, &self.distances)
+                .filter(|v| v.pages.len() == state.mesh.page_count()),
+            beside: Beside { preview: self.preview.as_ref(), overlay: Some(&self.overlay_mesh) },
+        };
+        let view = target.create_view(&Default::default());
+        self.renderer.draw(&self.gpu, encoder, &view, size, &scene);
+        if part {
+            let mut to = surface.as_image_copy();
+            to.origin = wgpu::Origin3d { x: corner.x as u32, y: corner.y as u32, z: 0 };
+            let extent = wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 };
+            encoder.copy_texture_to_texture(target.as_image_copy(), to, extent);
+        }
+    }
+
+    /// The texture that the clay is drawn into, `size` pixels.
+    fn clay_picture(&mut self, size: (u32, u32)) -> wgpu::Texture {
+        let fits = |t: &wgpu::Texture| (t.width(), t.height()) == size;
+        if let Some(texture) = self.clay_picture.as_ref().filter(|t| fits(t)) {
+            return texture.clone();
+        }
+        let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("clay"),
+            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.config.format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        self.clay_picture = Some(texture.clone());
+        texture
     }
 
     fn measure(&mut self, state: &Published, own_ms: f64, wiring: &Wiring) {
@@ -157,129 +186,13 @@ impl WindowState {
         f.cpu_ms += (own_ms - f.cpu_ms) * 0.1;
         f.worst_cpu_ms = f.worst_cpu_ms.max(own_ms);
         f.drawn = self.renderer.drawn;
+        f.frames_a_second = self.pacing.frames_a_second();
         f.input_to_snapshot_ms = state.figures.input_to_snapshot_ms;
         let newest_us = state.figures.newest_us;
         if newest_us != 0 && newest_us != f.newest_us {
             f.newest_us = newest_us;
             f.input_to_submit_ms = wiring.clock.now_us().saturating_sub(newest_us) as f64 / 1e3;
         }
-    }
-
-    /// What slow work has said since the last frame, and what it is asked next.
-    fn hear(&mut self, state: &Published, wiring: &Wiring) {
-        while let Ok(done) = self.work.done.try_recv() {
-            match done {
-                Done::Said(text, wrong) => self.desk.say(text, wrong),
-                Done::Joined => self.desk.joining = false,
-                Done::Used(path) => self.desk.prefs.used(path),
-                Done::Map(values, about) => {
-                    self.values = Some(values);
-                    self.desk.walls.found = Some(about);
-                }
-                Done::Opened => self.opened = Some(wiring.clock.now_us()),
-                Done::Preview(done) => self.previewed(done),
-                Done::Distances(values, about) => {
-                    self.desk.sizes.distances = Some(about);
-                    self.distances = Some(values);
-                }
-                Done::Measured(found) => self.desk.sizes.found = Some(found),
-                Done::Chosen(Purpose::WindowState, path) => {
-                    self.work.load(path, wiring.commands.clone())
-                }
-                Done::Chosen(Purpose::Export, path) => {
-                    self.desk.files.export = path.display().to_string();
-                    self.answer(UiRequest::Export(path), state, wiring);
-                }
-            }
-        }
-        // The loop takes a work that was sent a tick or two later.
-        let now = wiring.clock.now_us();
-        if self.opened.is_some_and(|since| now.saturating_sub(since) > 100_000) {
-            self.opened = None;
-            self.before = Some(state.mesh.clone());
-        }
-        if self.distances.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
-            self.distances = None;
-        }
-        if self.values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
-            self.values = None;
-        }
-        self.desk.look.scale =
-            match (self.desk.look.map, &self.desk.walls.found, self.desk.sizes.distances) {
-                (Map::Thickness, Some(found), _) => (found.min, found.high),
-                // Both ends as far from nothing; a work that did not change is pale all over.
-                (Map::Distance, _, Some(d)) => {
-                    let most = d.max.max(-d.min).max(state.extent * 1e-5);
-                    (-most, most)
-                }
-                _ => (0.0, 1.0),
-            };
-        if self.desk.look.map == Map::Thickness {
-            let wanted = (state.mesh.revision(), self.desk.walls.limit);
-            if self.asked_map != Some(wanted) || self.values.is_none() && self.asked_map.is_none() {
-                self.asked_map = Some(wanted);
-                self.work.thickness(&state.mesh, self.camera.target, wanted.1);
-            }
-        }
-    }
-
-    fn answer(&mut self, ask: UiRequest, state: &Published, wiring: &Wiring) {
-        match ask {
-            UiRequest::World(command) => {
-                self.desk.prefs.done.undone |= matches!(command, Command::Undo);
-                let _ = wiring.commands.try_send(command);
-            }
-            UiRequest::Jump(node) => {
-                self.desk.prefs.done.undone = true;
-                if let Some((history, _)) = &wiring.history {
-                    history.want(Want::Node(node));
-                }
-            }
-            UiRequest::Camera(camera) => {
-                self.flight = None;
-                self.camera = camera;
-                self.send_camera(wiring);
-            }
-            UiRequest::FlyTo(place) => {
-                let now = wiring.clock.now_us();
-                self.flight = Some(CameraAnimation::to_place(
-                    self.camera,
-                    place,
-                    state.middle,
-                    state.extent,
-                    now,
-                ));
-            }
-            UiRequest::WindowState(path) => self.work.load(path, wiring.commands.clone()),
-            UiRequest::Export(path) => {
-                let (factor, unit) = self.desk.files.factor();
-                self.work.export(path, state.mesh.clone(), factor, unit);
-            }
-            UiRequest::Join(choice) => {
-                self.desk.joining = true;
-                self.work.join(choice, wiring.published.clone(), wiring.commands.clone());
-            }
-            UiRequest::Trim(part) => {
-                self.desk.joining = true;
-                self.work.trim(part, wiring.published.clone(), wiring.commands.clone());
-            }
-            UiRequest::Level(finer) => {
-                self.desk.joining = true;
-                self.work.level(finer, wiring.published.clone(), wiring.commands.clone());
-            }
-            UiRequest::Reference => self.before = Some(state.mesh.clone()),
-            UiRequest::Outline(path) => {
-                if let Some(found) = &self.desk.sizes.found {
-                    self.work.outline(path, &found.outline);
-                }
-            }
-            UiRequest::Do(Action::WindowState) => self.work.ask(Purpose::WindowState),
-            UiRequest::Do(Action::Export) => self.work.ask(Purpose::Export),
-            UiRequest::Do(Action::Screenshot) => self.screenshot = true,
-            UiRequest::Do(Action::Turntable) => self.begin_turntable(),
-            UiRequest::Do(_) => {}
-        }
-        self.window.request_redraw();
     }
 
     fn panels(
@@ -289,32 +202,42 @@ impl WindowState {
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
     ) -> Vec<UiRequest> {
-        let mut asks = Vec::new();
+        let mut requests = Vec::new();
         let input = self.egui.take_egui_input(&self.window);
+        // What a click or a key has set is seen in the frame after: the clay of this one is drawn.
+        let moved = |e: &egui::Event| matches!(e, egui::Event::PointerMoved(_));
+        if !input.events.iter().all(moved) {
+            self.pacing.want();
+        }
         let view = View {
             state,
             presets: &wiring.presets,
             camera: self.camera,
             devices: &self.devices,
             session: wiring.session.as_deref(),
+            recent: &wiring.recent,
             uploaded: self.uploaded,
             adapter: &self.adapter,
             frame: self.figures,
-            ghosts: wiring.clock.now_us() < wiring.ghosts_until_us,
+            demo_runs: wiring.clock.now_us() < wiring.demo_until_us,
         };
-        let desk = &mut self.desk;
+        let ui_state = &mut self.ui_state;
         let context = self.egui.egui_ctx().clone();
+        self.drawn_demo = view.demo_runs;
+        let mut free = egui::Rect::NOTHING;
         let out = context.run_ui(input, |ui| match &wiring.kiosk {
             Some(screen) => {
-                panels::kiosk::ui(ui, &view, screen, desk, &mut asks);
-                panels::hand_menu::ui(ui.ctx(), &view, ui.ctx().content_rect());
+                free = ui.ctx().content_rect();
+                panels::kiosk::ui(ui, &view, screen, ui_state, &mut requests);
+                panels::hand_menu::ui(ui.ctx(), &view, free);
             }
-            None => panels::all(ui, &view, desk, &mut asks),
+            None => free = panels::all(ui, &view, ui_state, &mut requests),
         });
-        self.egui.handle_platform_output(&self.window, out.platform_output);
-        if out.viewport_output.values().any(|v| v.repaint_delay.is_zero()) {
-            self.window.request_redraw();
+        if self.free != Some(free) {
+            self.free = Some(free);
+            self.pacing.want();
         }
+        self.egui.handle_platform_output(&self.window, out.platform_output);
         let scale = out.pixels_per_point;
         let jobs = context.tessellate(out.shapes, scale);
         let screen = egui_wgpu::ScreenDescriptor {
@@ -345,15 +268,15 @@ impl WindowState {
         for id in &out.textures_delta.free {
             self.paint.free_texture(id);
         }
-        asks
+        requests
     }
 }
 
 /// The values of the map that is shown.
 pub(super) fn shown<'a>(
-    desk: &panels::UiState,
+    ui_state: &UiState,
     thickness: &'a Option<MapValues>,
     distances: &'a Option<MapValues>,
 ) -> Option<&'a MapValues> {
-    if desk.look.map == Map::Distance { distances.as_ref() } else { thickness.as_ref() }
+    if ui_state.look.map == Map::Distance { distances.as_ref() } else { thickness.as_ref() }
 }

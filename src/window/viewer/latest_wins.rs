@@ -1,5 +1,5 @@
-//! A thread that works on the newest wish: one slot, a newer wish replaces one that still waits,
-//! and the work under way is told to stop.
+//! A latest-wins worker: a thread with one slot. A newer request replaces one that still waits,
+//! and the job under way is cancelled.
 
 use std::sync::Arc;
 
@@ -7,46 +7,67 @@ use crossbeam_channel as cc;
 
 use sculptd_geometry::job::Job;
 
-/// A wish, and how its work is told to stop.
-type Wish<W> = (W, Arc<Job>);
+/// A request, and the job by which it is cancelled.
+pub(super) type Request<W> = (W, Arc<Job>);
 
 #[derive(Debug)]
-pub struct Newest<W> {
-    slot: (cc::Sender<Wish<W>>, cc::Receiver<Wish<W>>),
+pub struct LatestWins<W> {
+    slot: (cc::Sender<Request<W>>, cc::Receiver<Request<W>>),
     under_way: Arc<Job>,
+    /// Whether a new request cancels the one under way.
+    cancels: bool,
 }
 
-impl<W: Send + 'static> Newest<W> {
-    /// `each` is called with one wish after another, and ends when it says `false` or nobody can
-    /// wish any more.
-    pub fn start(name: &str, mut each: impl FnMut(W, &Job) -> bool + Send + 'static) -> Newest<W> {
-        let slot = cc::bounded::<Wish<W>>(1);
+impl<W: Send + 'static> LatestWins<W> {
+    /// Calls `each` with one request after another on a thread of its own. The thread ends when
+    /// `each` returns `false` or when this worker is dropped.
+    pub fn start(
+        name: &str,
+        mut each: impl FnMut(W, &Job) -> bool + Send + 'static,
+    ) -> LatestWins<W> {
+        let slot = cc::bounded::<Request<W>>(1);
         let receiver = slot.1.clone();
         let _ = std::thread::Builder::new().name(name.into()).spawn(move || {
-            while let Ok((wish, job)) = receiver.recv() {
-                if !each(wish, &job) {
+            while let Ok((request, job)) = receiver.recv() {
+                if !each(request, &job) {
                     return;
                 }
             }
         });
-        Newest { slot, under_way: Arc::default() }
+        LatestWins { slot, under_way: Arc::default(), cancels: true }
     }
 
-    /// Asks for this, and for nothing asked before.
-    pub fn wish(&mut self, wish: W) {
-        self.cancel();
-        self.under_way = Arc::default();
-        let _ = self.slot.0.try_send((wish, self.under_way.clone()));
+    /// As [`LatestWins::start`], for a thread that looks for newer requests itself by the receiver:
+    /// `run` is called once, and the job under way goes on.
+    pub fn follow(
+        name: &str,
+        run: impl FnOnce(&cc::Receiver<Request<W>>) + Send + 'static,
+    ) -> LatestWins<W> {
+        let slot = cc::bounded::<Request<W>>(1);
+        let receiver = slot.1.clone();
+        let _ = std::thread::Builder::new().name(name.into()).spawn(move || run(&receiver));
+        LatestWins { slot, under_way: Arc::default(), cancels: false }
     }
 
-    /// Nothing is wanted any more.
+    /// Replaces whatever was requested before.
+    pub fn request(&mut self, request: W) {
+        if self.cancels {
+            self.cancel();
+            self.under_way = Arc::default();
+        } else {
+            let _ = self.slot.1.try_recv();
+        }
+        let _ = self.slot.0.try_send((request, self.under_way.clone()));
+    }
+
+    /// Cancels the job under way and empties the slot.
     pub fn cancel(&self) {
         self.under_way.cancel();
         let _ = self.slot.1.try_recv();
     }
 }
 
-impl<W> Drop for Newest<W> {
+impl<W> Drop for LatestWins<W> {
     fn drop(&mut self) {
         self.under_way.cancel();
     }
@@ -57,21 +78,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_newest_wish_counts_and_what_is_under_way_stops() {
+    fn the_newest_request_counts_and_the_one_under_way_is_cancelled() {
         let (say, said) = cc::unbounded();
         let (begun, begins) = cc::unbounded();
-        let mut newest = Newest::start("test", move |wish: u32, job| {
-            let _ = begun.send(wish);
+        let mut worker = LatestWins::start("test", move |request: u32, job| {
+            let _ = begun.send(request);
             // The first runs until it is told to stop.
-            while wish == 1 && !job.cancelled() {
+            while request == 1 && !job.cancelled() {
                 std::thread::yield_now();
             }
-            say.send((wish, job.cancelled())).is_ok()
+            say.send((request, job.cancelled())).is_ok()
         });
-        newest.wish(1);
+        worker.request(1);
         assert_eq!(begins.recv(), Ok(1));
-        newest.wish(2);
-        newest.wish(3);
+        worker.request(2);
+        worker.request(3);
         assert_eq!(said.recv(), Ok((1, true)));
         let second = said.recv().expect("another");
         // The second may have been taken before the third came, but then it was told to stop.
@@ -79,7 +100,7 @@ mod tests {
             assert_eq!(second.0, 2);
             assert_eq!(said.recv(), Ok((3, false)));
         }
-        drop(newest);
+        drop(worker);
         assert!(said.recv().is_err(), "the thread ends with its owner");
     }
 }

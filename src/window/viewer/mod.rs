@@ -1,28 +1,39 @@
 //! The viewer: draws what was published, sends commands and pointer samples, and owns nothing of
 //! the world. A viewer that stalls or dies costs the sculpture nothing.
+//!
+//! Read first: `app` (events), `poll` (what changed), `frame` (one frame), `input` (the pointer).
 
-mod background;
+mod app;
 mod camera_animation;
-pub mod field;
+pub mod distance_field;
+mod follow;
 mod frame;
 pub mod gpu;
-mod history_tree;
+mod input;
 mod latest_wins;
-pub mod look;
 pub mod overlay;
 pub mod overlay_mesh;
+mod pacing;
 pub mod pages;
 pub mod picture;
 mod pointer;
+mod poll;
+mod preferences_file;
 pub mod preview;
-mod remember;
 pub mod renderer;
+mod requests;
 mod shots;
+mod snapshot_workers;
 mod ssao;
-mod thumbs;
+mod state;
+mod step_picture_jobs;
+mod step_pictures;
+pub mod tasks;
 pub mod timelapse;
-pub mod window;
-pub mod work;
+mod turntable;
+mod version_pictures;
+mod wiring;
 
+pub use app::run;
 pub use gpu::{Gpu, NoViewer};
-pub use window::{Wiring, run};
+pub use wiring::Wiring;

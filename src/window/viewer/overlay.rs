@@ -1,4 +1,4 @@
-//! Lines over the clay: the brush ring and its mirror images, ghost pens, ghost hands.
+//! Lines over the clay: the brush ring and its mirror images, pens, tracked hands.
 
 use glam::{Vec2, Vec3};
 
@@ -11,7 +11,7 @@ use sculptd_engine::hand::{HeldObject, Volume};
 const RING: [u8; 4] = [255, 236, 190, 255];
 const CARVING: [u8; 4] = [150, 190, 255, 255];
 const MIRRORED: [u8; 4] = [150, 205, 255, 190];
-const THING: [u8; 4] = [255, 214, 140, 110];
+const HELD: [u8; 4] = [255, 214, 140, 110];
 const BONE: [u8; 4] = [190, 225, 255, 200];
 /// Corners of a ring: smooth to the eye at any size.
 const CORNERS: usize = 72;
@@ -76,7 +76,7 @@ pub fn barrel(out: &mut Vec<LineEnd>, camera: &Camera, tip: Vec3, tilt: Vec2, ra
     segment(out, tip, tip + along.normalize_or_zero() * radius * 2.0, BONE);
 }
 
-/// The floor: squares of a round number of units, ten times as far as the work is wide at most.
+/// The floor: squares of a round number of units, ten times as far as the object is wide at most.
 pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, floor: f32, extent: f32, pale: bool) {
     const HALF: i32 = 10;
     let step = 10f32.powf((extent * 0.3).max(1e-30).log10().floor());
@@ -138,8 +138,8 @@ pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
     }
 }
 
-/// A thing in the hands as its edges: what it would cut shows through it.
-pub fn thing(out: &mut Vec<LineEnd>, thing: &HeldObject) {
+/// A held object as its edges: what it would cut shows through it.
+pub fn held_object(out: &mut Vec<LineEnd>, thing: &HeldObject) {
     // Of a large one, some: it is its place that counts.
     const MOST: usize = 2600;
     let triangles = &thing.plain.triangles;
@@ -148,7 +148,7 @@ pub fn thing(out: &mut Vec<LineEnd>, thing: &HeldObject) {
         let [a, b, c] = t.map(|v| thing.place.apply(thing.plain.positions[v as usize]));
         for (from, to, lower) in [(a, b, t[0] < t[1]), (b, c, t[1] < t[2]), (c, a, t[2] < t[0])] {
             if lower || step > 1 {
-                segment(out, from, to, THING);
+                segment(out, from, to, HELD);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Triangles beside the clay: what a join would make, a thing in the hands, the balls of the hands'
+//! Triangles beside the clay: what a Boolean would make, a held object, the items of the hands'
 //! menu.
 
 use glam::Vec3;
@@ -19,7 +19,7 @@ pub struct Triangles {
 /// Rings and corners of a ball: round to the eye at the size of a thumb.
 const RINGS: u32 = 12;
 const CORNERS: u32 = 20;
-/// A thing of more triangles is shown by its edges alone: it is sent again whenever it moves.
+/// A held object of more triangles is shown by its edges alone: it is sent again whenever it moves.
 const MOST: usize = 60_000;
 
 impl Triangles {
@@ -46,8 +46,8 @@ impl Triangles {
         }
     }
 
-    /// A thing where it is, if it is not too large to be sent with every move.
-    pub fn thing(&mut self, thing: &HeldObject, colour: [u8; 4]) {
+    /// A held object where it is, if it is not too large to be sent with every move.
+    pub fn held_object(&mut self, thing: &HeldObject, colour: [u8; 4]) {
         if thing.plain.triangles.len() > MOST {
             return;
         }
@@ -96,7 +96,7 @@ impl OverlayMesh {
                 [wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::INDEX];
             let buffers = [0, 1, 2].map(|i| {
                 gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("loose"),
+                    label: Some("overlay"),
                     size: (sizes[i] * 3 / 2).next_multiple_of(4) as u64,
                     usage: usages[i] | wgpu::BufferUsages::COPY_DST,
                     mapped_at_creation: false,

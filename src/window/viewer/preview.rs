@@ -1,5 +1,5 @@
-//! What a join would make of the work, shown while the thing is still being carried: computed off
-//! to the side from a snapshot, nothing of the world knows of it.
+//! What a Boolean would make of the object, shown while the second object is still held: computed
+//! in the background from a snapshot. The world knows nothing of it.
 
 use std::collections::BTreeMap;
 
@@ -16,20 +16,20 @@ use sculptd_geometry::job::Job;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
-pub struct Wanted {
+pub struct PreviewRequest {
     pub mesh: Snapshot,
     pub thing: HeldObject,
     pub choice: MenuItem,
 }
 
-/// The clay's tone where the thing has made a surface: warm against every material.
+/// The clay's tone where the held object has made a surface: warm against every material.
 const TINT: [u8; 4] = [255, 196, 96, 255];
 const PLAIN: [u8; 4] = [255; 4];
 
-/// Triangles that stand in the place of pages of the work.
+/// Triangles that stand in the place of pages of the object.
 #[derive(Debug, Clone)]
 pub struct Preview {
-    /// Of the work that it was computed from.
+    /// Of the object that it was computed from.
     pub revision: u64,
     pub pages: usize,
     pub place: Similarity,
@@ -38,14 +38,14 @@ pub struct Preview {
     pub hidden: Option<Vec<u32>>,
     pub vertices: Vec<Vertex>,
     pub triangles: Vec<[u32; 3]>,
-    /// Of these, how many the thing has made.
+    /// Of these, how many the held object has made.
     pub made: usize,
 }
 
 /// Triangles with a tone each, joined where place and tone are the same, so that a cut has a sharp
 /// edge.
 #[derive(Default)]
-struct Gather {
+struct TriangleGatherer {
     names: BTreeMap<([u32; 3], bool), u32>,
     /// Place, sum of areas, the clay's own normal where it has one.
     places: Vec<(Vec3, Vec3, Option<Vec3>, bool)>,
@@ -53,7 +53,7 @@ struct Gather {
     made: usize,
 }
 
-impl Gather {
+impl TriangleGatherer {
     fn push(&mut self, corners: [(Vec3, Option<Vec3>); 3], made: bool) {
         let [a, b, c] = corners.map(|p| p.0);
         let across = (b - a).cross(c - a);
@@ -70,16 +70,16 @@ impl Gather {
         self.triangles.push(t);
     }
 
-    fn finish(self, wanted: &Wanted, hidden: Option<Vec<u32>>) -> Preview {
+    fn finish(self, request: &PreviewRequest, hidden: Option<Vec<u32>>) -> Preview {
         let vertex = |&(p, across, own, made): &(Vec3, Vec3, Option<Vec3>, bool)| {
             let normal = own.unwrap_or_else(|| across.normalize_or_zero());
             Vertex::new(p, normal, 0.0, if made { TINT } else { PLAIN })
         };
         Preview {
-            revision: wanted.mesh.revision(),
-            pages: wanted.mesh.page_count(),
-            place: wanted.thing.place,
-            choice: wanted.choice,
+            revision: request.mesh.revision(),
+            pages: request.mesh.page_count(),
+            place: request.thing.place,
+            choice: request.choice,
             hidden,
             vertices: self.places.iter().map(vertex).collect(),
             triangles: self.triangles,
@@ -91,28 +91,28 @@ impl Gather {
 /// Computes it; `None` where the choice joins nothing.
 ///
 /// # Errors
-/// As a join: an open thing, or a work that cannot be cut. [`boolean::BooleanError::Cancelled`] when a
-/// newer one is wanted.
-pub fn compute(wanted: &Wanted, job: &Job) -> Result<Option<Preview>, boolean::BooleanError> {
-    let Some(operation) = boolean_jobs::operation(wanted.choice) else { return Ok(None) };
-    let tool = wanted.thing.placed().to_poly();
+/// As a Boolean: an open thing, or an object that cannot be cut. [`boolean::BooleanError::Cancelled`] when a
+/// newer one is request.
+pub fn compute(request: &PreviewRequest, job: &Job) -> Result<Option<Preview>, boolean::BooleanError> {
+    let Some(operation) = boolean_jobs::operation(request.choice) else { return Ok(None) };
+    let tool = request.thing.placed().to_poly();
     let options = BooleanOptions::default();
     if let Some(cut) =
-        sculptd_clay::local_boolean::local(&wanted.mesh, &tool, operation, &options, job)?
+        sculptd_clay::local_boolean::local(&request.mesh, &tool, operation, &options, job)?
     {
-        return Ok(Some(of_cut(wanted, &cut)));
+        return Ok(Some(of_cut(request, &cut)));
     }
-    whole(wanted, &tool, operation, job).map(Some)
+    whole(request, &tool, operation, job).map(Some)
 }
 
 /// The pages that lose a triangle, without it and with what comes.
-fn of_cut(wanted: &Wanted, cut: &Cut) -> Preview {
-    let mesh = &wanted.mesh;
+fn of_cut(request: &PreviewRequest, cut: &Cut) -> Preview {
+    let mesh = &request.mesh;
     let mut gone: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for &(page, t) in cut.removed() {
         gone.entry(page).or_default().push(t);
     }
-    let mut out = Gather::default();
+    let mut out = TriangleGatherer::default();
     for (&p, gone) in &mut gone {
         gone.sort_unstable();
         let page = mesh.page(p);
@@ -134,19 +134,19 @@ fn of_cut(wanted: &Wanted, cut: &Cut) -> Preview {
             made,
         );
     }
-    out.finish(wanted, Some(gone.into_keys().collect()))
+    out.finish(request, Some(gone.into_keys().collect()))
 }
 
 fn whole(
-    wanted: &Wanted,
+    request: &PreviewRequest,
     tool: &PolyMesh,
     operation: Operation,
     job: &Job,
 ) -> Result<Preview, boolean::BooleanError> {
-    let work = wanted.mesh.to_tri().to_poly();
+    let work = request.mesh.to_tri().to_poly();
     let (solids, _) =
         boolean::compute([&work, tool], &[operation], &BooleanOptions::default(), job, || 0.0)?;
-    let mut out = Gather::default();
+    let mut out = TriangleGatherer::default();
     for solid in &solids {
         let (plain, faces) = solid.mesh.triangulate();
         for (i, face) in faces.iter().enumerate() {
@@ -154,5 +154,5 @@ fn whole(
             out.push(plain.corners(i).map(|p| (p, None)), made);
         }
     }
-    Ok(out.finish(wanted, None))
+    Ok(out.finish(request, None))
 }

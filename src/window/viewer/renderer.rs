@@ -6,9 +6,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
 use super::gpu::Gpu;
-use super::look::{Look, Map, SCALE, linear};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
+use crate::look::{Look, Map, SCALE, linear};
 use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
 use crate::viewer::ssao::Ssao;
 use sculptd_clay::{Page, Snapshot};
@@ -24,7 +24,7 @@ pub struct LineEnd {
     pub colour: [u8; 4],
 }
 
-/// Ends of lines a frame at most: a dozen rings, four hands and a thing.
+/// Ends of lines a frame at most: a dozen rings, four hands and a held object.
 const MAX_LINE_ENDS: usize = 16_384;
 
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -63,7 +63,7 @@ pub struct Beside<'a> {
     /// In the place of the pages that it hides.
     pub preview: Option<&'a Arc<Preview>>,
     /// Over the clay, seen through.
-    pub ghosts: Option<&'a Triangles>,
+    pub overlay: Option<&'a Triangles>,
 }
 
 /// Depth, samples where there are several a pixel, pixels.
@@ -77,7 +77,7 @@ pub struct Renderer {
     clay: wgpu::RenderPipeline,
     line: wgpu::RenderPipeline,
     edge: wgpu::RenderPipeline,
-    ghost: wgpu::RenderPipeline,
+    overlay: wgpu::RenderPipeline,
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
     samples: u32,
@@ -88,7 +88,7 @@ pub struct Renderer {
     /// The preview that was sent last.
     previewed: Option<Arc<Preview>>,
     preview: OverlayMesh,
-    ghosts: OverlayMesh,
+    overlay_mesh: OverlayMesh,
     /// Whether the depth can be read here.
     shades: bool,
     /// Made when it is first asked for.
@@ -151,13 +151,13 @@ impl Renderer {
                         buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
                         lines: bool,
                         depth: bool| {
-            let ghost = name == "ghost";
+            let overlay = name == "overlay";
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(name),
                 layout: Some(&pipeline_layout),
                 vertex: wgpu::VertexState {
                     module: &shader,
-                    entry_point: Some(&format!("{}_vertex", if ghost { "clay" } else { name })),
+                    entry_point: Some(&format!("{}_vertex", if overlay { "clay" } else { name })),
                     compilation_options: Default::default(),
                     buffers,
                 },
@@ -168,12 +168,12 @@ impl Renderer {
                         wgpu::PrimitiveTopology::TriangleList
                     },
                     // What is seen through shows its near side alone.
-                    cull_mode: ghost.then_some(wgpu::Face::Back),
+                    cull_mode: overlay.then_some(wgpu::Face::Back),
                     ..Default::default()
                 },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: DEPTH,
-                    depth_write_enabled: Some(depth && !lines && !ghost),
+                    depth_write_enabled: Some(depth && !lines && !overlay),
                     depth_compare: Some(if depth {
                         wgpu::CompareFunction::LessEqual
                     } else {
@@ -189,7 +189,7 @@ impl Renderer {
                     compilation_options: Default::default(),
                     targets: &[Some(wgpu::ColorTargetState {
                         format,
-                        blend: (lines || ghost).then_some(wgpu::BlendState::ALPHA_BLENDING),
+                        blend: (lines || overlay).then_some(wgpu::BlendState::ALPHA_BLENDING),
                         write_mask: wgpu::ColorWrites::ALL,
                     })],
                 }),
@@ -202,7 +202,7 @@ impl Renderer {
             clay: pipeline("clay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             line: pipeline("line", &[Some(line_layout)], true, true),
             edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
-            ghost: pipeline("ghost", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
+            overlay: pipeline("overlay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             frame,
             group,
             line_ends,
@@ -213,7 +213,7 @@ impl Renderer {
             others: None,
             previewed: None,
             preview: OverlayMesh::default(),
-            ghosts: OverlayMesh::default(),
+            overlay_mesh: OverlayMesh::default(),
             // OpenGL draws nothing at all with a depth of several samples that is to be read.
             shades: samples == 1 || gpu.adapter.get_info().backend != wgpu::Backend::Gl,
             shade: None,
@@ -361,17 +361,17 @@ impl Renderer {
         let size_of = (view, depth, size);
         let passes = self.shade.get_or_insert_with(|| Ssao::new(gpu, self.format, self.samples));
         passes.draw(gpu, encoder, size_of, scene.camera, between, (extent, shade));
-        if resolve.is_some() || !lines.is_empty() || scene.beside.ghosts.is_some() {
+        if resolve.is_some() || !lines.is_empty() || scene.beside.overlay.is_some() {
             let mut pass = begin(encoder, view, resolve, depth, (false, false));
             pass.set_bind_group(0, &self.group, &[]);
             self.over(scene, &mut pass, lines.len() as u32);
         }
     }
 
-    /// Sends what is beside the clay and is not there yet; a preview of another work is none.
+    /// Sends what is beside the clay and is not there yet; a preview of another object is none.
     fn beside<'s>(&mut self, gpu: &Gpu, scene: &Scene<'s>) -> Option<&'s Arc<Preview>> {
-        if let Some(ghosts) = scene.beside.ghosts {
-            self.ghosts.keep(gpu, ghosts);
+        if let Some(overlay) = scene.beside.overlay {
+            self.overlay_mesh.keep(gpu, overlay);
         }
         let preview = scene.beside.preview.filter(|p| p.pages == scene.mesh.page_count());
         if let Some(new) = preview
@@ -385,9 +385,9 @@ impl Renderer {
 
     /// What lies over the clay.
     fn over(&self, scene: &Scene<'_>, pass: &mut wgpu::RenderPass<'_>, ends: u32) {
-        if scene.beside.ghosts.is_some() {
-            pass.set_pipeline(&self.ghost);
-            self.ghosts.draw(pass);
+        if scene.beside.overlay.is_some() {
+            pass.set_pipeline(&self.overlay);
+            self.overlay_mesh.draw(pass);
         }
         if ends > 0 {
             pass.set_pipeline(&self.line);

@@ -5,18 +5,11 @@ use std::path::PathBuf;
 
 use super::picture::paint;
 use super::renderer::Scene;
-use super::window::WindowState;
-use super::work::free_name;
+use super::state::WindowState;
+use super::tasks::free_name;
+use super::turntable::Turntable;
 use sculptd_daemon::Published;
 use sculptd_engine::camera::Camera;
-
-#[derive(Debug)]
-pub struct Turntable {
-    folder: PathBuf,
-    frames: u32,
-    next: u32,
-    from: Camera,
-}
 
 /// Where pictures go.
 fn folder() -> PathBuf {
@@ -31,10 +24,10 @@ impl WindowState {
         let folder = free_name(&folder(), "sculptd-turntable", "");
         match std::fs::create_dir_all(&folder) {
             Ok(()) => {
-                let frames = self.desk.files.frames.max(1);
+                let frames = self.ui_state.files.frames.max(1);
                 self.turning = Some(Turntable { folder, frames, next: 0, from: self.camera });
             }
-            Err(e) => self.desk.say(format!("{}: {e}", folder.display()), true),
+            Err(e) => self.ui_state.say(format!("{}: {e}", folder.display()), true),
         }
     }
 
@@ -54,26 +47,27 @@ impl WindowState {
         if t.next == t.frames {
             let said = format!("Saved {} frames to {}", t.frames, t.folder.display());
             self.turning = None;
-            self.desk.say(said, false);
+            self.ui_state.say(said, false);
         }
         self.shot(state, camera, path, true);
-        self.window.request_redraw();
+        self.pacing.want();
     }
 
     fn shot(&mut self, state: &Published, camera: Camera, path: PathBuf, quiet: bool) {
-        let (width, height) = (self.config.width, self.config.height);
+        let (_, size) = self.view_rect();
+        let (width, height) = (size.x as u32, size.y as u32);
         let scene = Scene {
             mesh: &state.mesh,
             camera: &camera,
             brush: None,
             lines: &[],
-            look: self.desk.look,
-            values: super::frame::shown(&self.desk, &self.values, &self.distances),
+            look: self.ui_state.look,
+            values: super::frame::shown(&self.ui_state, &self.values, &self.distances),
             beside: Default::default(),
         };
         match paint(&self.gpu, &mut self.renderer, &scene, width, height) {
-            Ok(picture) => self.work.picture(path, picture, quiet),
-            Err(e) => self.desk.say(e.to_string(), true),
+            Ok(picture) => self.tasks.picture(path, picture, quiet),
+            Err(e) => self.ui_state.say(e.to_string(), true),
         }
     }
 }

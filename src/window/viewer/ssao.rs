@@ -16,7 +16,7 @@ struct Uniform {
 
 const SHADES: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
-/// Share of the work's bounding radius that a form throws its shade.
+/// How far occlusion reaches, as a share of the bounding radius.
 const REACH: f32 = 0.30;
 
 #[derive(Debug)]

@@ -1,6 +1,6 @@
-// How much of the sky every place of the clay sees, from the depth of what is drawn: hollows, folds and the ground between two
-// forms come out darker. After McGuire, Mara and Luebke, "Scalable Ambient Obscurance" (2012), at half the picture's size, then
-// smoothed across the pattern of its turns, then laid over the picture.
+// Screen-space ambient occlusion: how much of the sky each place of the clay sees, from the depth of
+// what is drawn. After McGuire, Mara and Luebke, "Scalable Ambient Obscurance" (2012), at half the
+// picture's size, then smoothed across the pattern of its turns, then laid over the picture.
 //
 // DEPTH stands for the depth's kind, one sample a pixel or several; of several the first is read.
 

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::look::Look;
 use super::picture::{Painter, write_png};
 use super::renderer::Scene;
+use crate::look::Look;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::world::World;
 

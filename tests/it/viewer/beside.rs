@@ -11,15 +11,17 @@ use sculptd_engine::hand::{HeldObject, MenuItem, Similarity};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection::svg;
 use sculptd_geometry::{TriMesh, shapes};
-use sculptd_window::viewer::field;
-use sculptd_window::viewer::field::{Field, Reference, measure};
-use sculptd_window::viewer::look::Look;
+
+use sculptd_window::look::Look;
+use sculptd_window::viewer::distance_field::{
+    DistanceField, DistanceReference, DistanceRequest, measure,
+};
 use sculptd_window::viewer::overlay_mesh::Triangles;
 use sculptd_window::viewer::picture::Painter;
 use sculptd_window::viewer::preview;
-use sculptd_window::viewer::preview::{Preview, Wanted};
+use sculptd_window::viewer::preview::{Preview, PreviewRequest};
 use sculptd_window::viewer::renderer::{Beside, Scene};
-use sculptd_window::viewer::work::Done;
+use sculptd_window::viewer::tasks::TaskReport;
 
 use super::pictures::{dab, framed, painter};
 use crate::clay::sphere;
@@ -78,7 +80,7 @@ fn thing(at: Vec3) -> HeldObject {
 }
 
 fn tried(mesh: &mut Clay, at: Vec3, choice: MenuItem) -> Arc<Preview> {
-    let wanted = Wanted { mesh: mesh.snapshot(), thing: thing(at), choice };
+    let wanted = PreviewRequest { mesh: mesh.snapshot(), thing: thing(at), choice };
     let found = preview::compute(&wanted, &Job::default()).expect("a join");
     Arc::new(found.expect("the choice joins"))
 }
@@ -95,7 +97,7 @@ fn what_a_join_would_make_is_drawn_where_it_is_and_nowhere_else() {
         let preview = tried(&mut mesh, Vec3::Z, choice);
         assert_eq!(preview.hidden.is_some(), local, "{choice:?}");
         assert!(preview.made > 100, "{choice:?}: {} triangles of the thing", preview.made);
-        let beside = Beside { preview: Some(&preview), ghosts: None };
+        let beside = Beside { preview: Some(&preview), overlay: None };
         let shown = drawn(&mut painter, &mesh.snapshot(), &camera, look, beside);
         let (before, now) = (clay.get_pixel(100, 100).0, shown.get_pixel(100, 100).0);
         // Where only what both have stays, the clay's own surface is in front.
@@ -119,7 +121,8 @@ fn a_preview_that_is_no_longer_wanted_ends() {
     let mut mesh = sphere(20_000);
     let job = Job::default();
     job.cancel();
-    let wanted = Wanted { mesh: mesh.snapshot(), thing: thing(Vec3::Z), choice: MenuItem::Keep };
+    let wanted =
+        PreviewRequest { mesh: mesh.snapshot(), thing: thing(Vec3::Z), choice: MenuItem::Keep };
     let ended = preview::compute(&wanted, &job);
     assert!(matches!(ended, Err(sculptd_geometry::boolean::BooleanError::Cancelled(_))), "{ended:?}");
 }
@@ -136,7 +139,7 @@ fn balls_are_seen_through_and_the_one_in_use_stands_out() {
     balls.ball(Vec3::new(0.0, -0.4, 1.2), 0.15, [255, 190, 70, 225]);
     // Behind the work: not seen.
     balls.ball(Vec3::new(0.0, 0.0, -1.2), 0.15, [255, 0, 0, 255]);
-    let beside = Beside { preview: None, ghosts: Some(&balls) };
+    let beside = Beside { preview: None, overlay: Some(&balls) };
     let shown = drawn(&mut painter, &mesh.snapshot(), &camera, look, beside);
     let change = |x, y| (light(&clay, x, y) - light(&shown, x, y)).abs();
     let rows: Vec<u32> = (0..200).filter(|y| change(100, *y) > 8.0).collect();
@@ -167,20 +170,20 @@ fn distances_follow_where_the_clay_changed_and_a_thing_where_it_goes() {
     let mut mesh = sphere(20_000);
     let before = mesh.snapshot();
     let (say, said) = crossbeam_channel::unbounded();
-    let mut field = Field::default();
-    let mut last = |mesh: &Snapshot, to: Reference| {
-        assert!(field.follow(field::Wanted { mesh: mesh.clone(), to }, &Job::default(), &say));
+    let mut field = DistanceField::default();
+    let mut last = |mesh: &Snapshot, to: DistanceReference| {
+        assert!(field.follow(DistanceRequest { mesh: mesh.clone(), to }, &Job::default(), &say));
         match said.try_iter().last() {
-            Some(Done::Distances(values, about)) => (values, about),
+            Some(TaskReport::Distances(values, about)) => (values, about),
             other => panic!("{other:?}"),
         }
     };
-    let (first, about) = last(&before, Reference::Before(before.clone()));
+    let (first, about) = last(&before, DistanceReference::Before(before.clone()));
     assert_eq!(about.known, (before.vertex_count(), before.vertex_count()));
     assert!(about.max.abs() < 1e-6 && about.min.abs() < 1e-6, "{about:?}");
     dab(&mut mesh, 0.3);
     let after = mesh.snapshot();
-    let (second, about) = last(&after, Reference::Before(before.clone()));
+    let (second, about) = last(&after, DistanceReference::Before(before.clone()));
     // The dab raises by a fifth of its radius at most.
     assert!((0.04..0.0601).contains(&about.max), "{about:?}");
     assert!(about.min > -1e-4, "{about:?}");
@@ -192,8 +195,8 @@ fn distances_follow_where_the_clay_changed_and_a_thing_where_it_goes() {
         assert_eq!(same, !changed.contains(&i), "page {i}");
     }
     // A ball of half the size in the middle: as far everywhere, but for what was raised.
-    let (_, about) = last(&after, Reference::HeldObject(thing(Vec3::ZERO)));
+    let (_, about) = last(&after, DistanceReference::HeldObject(thing(Vec3::ZERO)));
     assert!((about.min - 0.5).abs() < 2e-3 && (about.rms - 0.5).abs() < 0.02, "{about:?}");
-    let (_, about) = last(&after, Reference::HeldObject(thing(Vec3::X * 0.5)));
+    let (_, about) = last(&after, DistanceReference::HeldObject(thing(Vec3::X * 0.5)));
     assert!(about.min.abs() < 5e-3 && (about.max - 1.0).abs() < 0.02, "{about:?}");
 }

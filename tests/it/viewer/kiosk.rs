@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use sculptd_daemon::kiosk::keeper::{Desk, Screen};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
-use sculptd_window::panels::timing::FrameFigures;
+use sculptd_window::panels::state::FrameFigures;
 use sculptd_window::panels::{Tab, UiRequest, kiosk};
 
 use super::panels::{State, state};
@@ -21,7 +21,7 @@ fn screen() -> Screen {
 
 fn at(screen: &Screen, stage: Stage, visits: u64) {
     let view = View { stage, seconds_left: 7, visits, locked: false };
-    *screen.desk.view.lock().expect("a desk") = Some(view);
+    *screen.desk.view.lock().expect("a ui_state") = Some(view);
 }
 
 fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
@@ -33,12 +33,13 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             camera: s.published.camera,
             devices: &s.devices,
             session: None,
+            recent: &[],
             uploaded: 0,
             adapter: "an adapter",
             frame: FrameFigures::default(),
-            ghosts: false,
+            demo_runs: false,
         };
-        kiosk::ui(ui, &view, &screen, &mut s.desk, &mut s.asked);
+        kiosk::ui(ui, &view, &screen, &mut s.ui_state, &mut s.asked);
     };
     let mut h = Harness::builder()
         .with_size(size)
@@ -118,7 +119,7 @@ fn staff_types_a_number_that_is_not_shown() {
     h.get_by_label("••••");
     h.get_by_label("OK").click();
     h.run_steps(3);
-    assert_eq!(screen.desk.typed.lock().expect("a desk").as_deref(), Some("4711"));
+    assert_eq!(screen.desk.typed.lock().expect("a ui_state").as_deref(), Some("4711"));
     assert!(h.query_by_label("OK").is_none(), "the keypad is closed");
 }
 
@@ -129,14 +130,14 @@ fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
     let screen = screen();
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");
-    *screen.desk.link.lock().expect("a desk") =
+    *screen.desk.link.lock().expect("a ui_state") =
         Some(Link { url: url.clone(), code, until_us: u64::MAX });
     for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
         at(&screen, Stage::Attract, 0);
         let mut h = harness(&screen, size);
         let inside = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         for (i, language) in screen.words.iter().enumerate() {
-            h.state_mut().desk.pad.language = i;
+            h.state_mut().ui_state.pad.language = i;
             h.run_steps(3);
             for text in [&language.kept, &language.fetch, &url] {
                 let rect = h.get_by_label(text).rect();

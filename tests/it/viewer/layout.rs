@@ -8,10 +8,10 @@ use egui::{Color32, Rect};
 use egui_kittest::Harness;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
+use sculptd_window::look::Map;
 use sculptd_window::panels::Tab;
-use sculptd_window::panels::measure::Distances;
-use sculptd_window::panels::scene::Said;
-use sculptd_window::viewer::look::Map;
+use sculptd_window::panels::state::DistanceSummary;
+use sculptd_window::panels::state::TrialStatus;
 
 use super::panels::{State, show, state};
 
@@ -118,7 +118,7 @@ fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<Str
         let ratio = contrast(t.colour, t.ground);
         // A button that cannot be pressed says so by being faint (WCAG 2 asks nothing of it).
         if !(disabled_ok
-            && ["Undo", "Redo", "Open", "Coarser", "to the thing"].contains(&t.what.as_str()))
+            && ["Undo", "Redo", "Open", "Coarser", "to the held object"].contains(&t.what.as_str()))
         {
             least = least.min(ratio);
             if ratio < 4.5 {
@@ -147,22 +147,22 @@ fn fill(s: &mut State, tab: Tab) {
             let plain = sculptd_geometry::shapes::sphere_of_about(200);
             world.step(1, &[], &[Command::TakeUp(std::sync::Arc::new(plain))]);
             s.published = super::published(&mut world);
-            s.desk.trial.choice = Some(MenuItem::Carve);
-            s.desk.trial.said =
-                Said::Wrong("B is open: 1234 edges lack a partner; mend it first".into());
+            s.ui_state.trial.choice = Some(MenuItem::Carve);
+            s.ui_state.trial.said =
+                TrialStatus::Wrong("B is open: 1234 edges lack a partner; mend it first".into());
         }
         Tab::Measure => {
-            let found = sculptd_window::viewer::field::measure(
+            let found = sculptd_window::viewer::distance_field::measure(
                 &s.published.mesh,
                 glam::DVec3::NEG_X,
                 &Default::default(),
             )
             .expect("not cancelled");
-            s.desk.sizes.found = Some(Box::new(found));
-            s.desk.look.map = Map::Distance;
-            s.desk.look.scale = (-123.25, 123.25);
-            s.desk.sizes.distances =
-                Some(Distances { min: -123.25, max: 99.5, rms: 0.1, known: (50, 100) });
+            s.ui_state.sizes.found = Some(Box::new(found));
+            s.ui_state.look.map = Map::Distance;
+            s.ui_state.look.scale = (-123.25, 123.25);
+            s.ui_state.sizes.distances =
+                Some(DistanceSummary { min: -123.25, max: 99.5, rms: 0.1, known: (50, 100) });
         }
         Tab::Look => {
             s.published.hands = Some(Default::default());
@@ -182,7 +182,7 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                 let mut least = f32::INFINITY;
                 for tab in TABS {
                     let mut s = state(tab);
-                    s.desk.prefs.light = light;
+                    s.ui_state.prefs.light = light;
                     s.devices = vec![
                         "A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: connected"
                             .into(),
@@ -220,11 +220,11 @@ fn the_search_the_ring_and_a_message_fit_the_smallest_screen() {
     for light in [false, true] {
         for which in 0..3 {
             let mut s = state(Tab::Look);
-            s.desk.prefs.light = light;
+            s.ui_state.prefs.light = light;
             match which {
-                0 => s.desk.search = Some(Default::default()),
-                1 => s.desk.hidden = true,
-                _ => s.desk.say(
+                0 => s.ui_state.search = Some(Default::default()),
+                1 => s.ui_state.hidden = true,
+                _ => s.ui_state.say(
                     "/a/rather/long/path/to/a/file/that/was/not/there.stl: no such file or directory",
                     true,
                 ),

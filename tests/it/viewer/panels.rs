@@ -12,31 +12,31 @@ use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
-use sculptd_window::panels::action::Action;
-use sculptd_window::panels::history::Thumb;
-use sculptd_window::panels::measure::{Distances, Measured};
-use sculptd_window::panels::scene::Said;
-use sculptd_window::panels::timing::FrameFigures;
-use sculptd_window::panels::trim::{Shape, Trim};
+use sculptd_window::look::Map;
+use sculptd_window::panels::state::Action;
+use sculptd_window::panels::state::FrameFigures;
+use sculptd_window::panels::state::StepPicture;
+use sculptd_window::panels::state::{DistanceSummary, Measured};
+use sculptd_window::panels::state::{ThicknessSummary, ThinSpot, TrialStatus};
+use sculptd_window::panels::state::{Trim, TrimShape};
 use sculptd_window::panels::{Tab, UiRequest, UiState, View, all};
-use sculptd_window::viewer::look::Map;
 
 pub(super) struct State {
     pub published: Published,
-    pub desk: UiState,
+    pub ui_state: UiState,
     pub asked: Vec<UiRequest>,
     pub devices: Vec<String>,
-    pub ghosts: bool,
+    pub demo_runs: bool,
 }
 
 pub(super) fn state(tab: Tab) -> State {
     let mut world = super::world(2_000);
     State {
         published: super::published(&mut world),
-        desk: UiState { tab, ..Default::default() },
+        ui_state: UiState { tab, ..Default::default() },
         asked: Vec::new(),
         devices: Vec::new(),
-        ghosts: false,
+        demo_runs: false,
     }
 }
 
@@ -47,12 +47,13 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         camera: s.published.camera,
         devices: &s.devices,
         session: None,
+        recent: &[],
         uploaded: 0,
         adapter: "an adapter",
         frame: FrameFigures::default(),
-        ghosts: s.ghosts,
+        demo_runs: s.demo_runs,
     };
-    all(ui, &view, &mut s.desk, &mut s.asked);
+    all(ui, &view, &mut s.ui_state, &mut s.asked);
 }
 
 fn harness(tab: Tab) -> Harness<'static, State> {
@@ -174,7 +175,7 @@ fn keys_do_what_the_tooltips_say() {
         "{:?}",
         s.asked
     );
-    assert!(s.desk.prefs.done.undone);
+    assert!(s.ui_state.prefs.hints.undone);
     h.state_mut().asked.clear();
     h.key_press(Key::CloseBracket);
     h.run_steps(2);
@@ -197,13 +198,13 @@ fn keys_do_what_the_tooltips_say() {
     assert!((last - before * 1.21).abs() < 1e-5, "{last}");
     h.key_press(Key::T);
     h.run_steps(2);
-    assert_eq!(h.state().desk.look.map, Map::Thickness);
+    assert_eq!(h.state().ui_state.look.map, Map::Thickness);
     // The legend is there, with its unit.
-    h.state_mut().desk.look.scale = (0.5, 2.5);
+    h.state_mut().ui_state.look.scale = (0.5, 2.5);
     h.run_steps(2);
     h.key_press(Key::T);
     h.run_steps(2);
-    assert_eq!(h.state().desk.look.map, Map::None);
+    assert_eq!(h.state().ui_state.look.map, Map::None);
 }
 
 #[test]
@@ -214,11 +215,11 @@ fn the_search_finds_an_action_and_enter_does_it() {
     h.get_by_label("Search actions").type_text("wirefr");
     h.run_steps(3);
     // Letters that are typed are not shortcuts.
-    assert!(!h.state().desk.look.wireframe);
+    assert!(!h.state().ui_state.look.wireframe);
     h.key_press(Key::Enter);
     h.run_steps(3);
-    assert!(h.state().desk.look.wireframe);
-    assert!(h.state().desk.search.is_none());
+    assert!(h.state().ui_state.look.wireframe);
+    assert!(h.state().ui_state.search.is_none());
 }
 
 #[test]
@@ -228,7 +229,7 @@ fn the_radius_is_dragged_with_the_pointer_alone_and_escape_leaves_it() {
     h.run_steps(2);
     h.key_press(Key::F);
     h.run_steps(2);
-    assert!(h.state().desk.modal.is_some());
+    assert!(h.state().ui_state.modal.is_some());
     h.hover_at(egui::pos2(720.0, 300.0));
     h.run_steps(2);
     let before = h.state().published.brush.radius;
@@ -236,7 +237,7 @@ fn the_radius_is_dragged_with_the_pointer_alone_and_escape_leaves_it() {
     assert!((asked - before * 2.0).abs() < 0.01 * before, "{before} to {asked}");
     h.key_press(Key::Escape);
     h.run_steps(2);
-    assert!(h.state().desk.modal.is_none());
+    assert!(h.state().ui_state.modal.is_none());
 }
 
 #[test]
@@ -246,32 +247,32 @@ fn holding_space_opens_the_ring_and_letting_go_chooses() {
     h.run_steps(2);
     h.key_down(Key::Space);
     h.run_steps(2);
-    assert!(h.state().desk.radial.is_some());
+    assert!(h.state().ui_state.radial.is_some());
     // Straight down: the thickness map.
     h.hover_at(egui::pos2(640.0, 440.0));
     h.run_steps(2);
     h.key_up(Key::Space);
     h.run_steps(2);
-    assert_eq!(h.state().desk.look.map, Map::Thickness);
-    assert!(h.state().desk.radial.is_none());
+    assert_eq!(h.state().ui_state.look.map, Map::Thickness);
+    assert!(h.state().ui_state.radial.is_none());
 }
 
 #[test]
 fn hints_are_gone_for_good_once_followed() {
     let mut h = harness(Tab::Look);
-    assert!(h.query_by_label_contains("Touch the clay").is_some());
-    h.state_mut().desk.prefs.done.touched = true;
+    assert!(h.query_by_label_contains("press and drag on the clay").is_some());
+    h.state_mut().ui_state.prefs.hints.touched = true;
     h.run_steps(2);
-    assert!(h.query_by_label_contains("Touch the clay").is_none());
-    assert!(h.query_by_label_contains("Drag beside the form").is_some());
-    h.state_mut().desk.prefs.done.turned = true;
+    assert!(h.query_by_label_contains("press and drag on the clay").is_none());
+    assert!(h.query_by_label_contains("Drag beside the clay").is_some());
+    h.state_mut().ui_state.prefs.hints.turned = true;
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     h.run_steps(3);
-    assert_eq!(h.state().desk.prefs.done.hint(), None);
+    assert_eq!(h.state().ui_state.prefs.hints.hint(), None);
     assert!(h.query_by_label_contains("Shift smooths, Ctrl carves").is_none());
     // Kept from day to day.
-    let kept = toml::to_string(&h.state().desk.prefs).expect("plain data");
-    assert_eq!(sculptd_window::panels::preferences::Preferences::parse(&kept).done.hint(), None);
+    let kept = toml::to_string(&h.state().ui_state.prefs).expect("plain data");
+    assert_eq!(sculptd_window::panels::state::Preferences::parse(&kept).hints.hint(), None);
 }
 
 #[test]
@@ -289,9 +290,9 @@ fn the_device_page_says_what_is_there() {
 #[test]
 fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
     let mut h = harness(Tab::Files);
-    h.state_mut().desk.files.open = "/some/mesh.obj".into();
-    h.state_mut().desk.files.scale = 2.0;
-    h.state_mut().desk.files.unit = 1;
+    h.state_mut().ui_state.files.open = "/some/mesh.obj".into();
+    h.state_mut().ui_state.files.scale = 2.0;
+    h.state_mut().ui_state.files.unit = 1;
     h.run_steps(2);
     // A ball of radius 1, twice as large, in centimetres.
     assert!(h.query_by_label_contains("0.400 x 0.400 x 0.400 cm").is_some());
@@ -300,7 +301,7 @@ fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
     h.get_by_role_and_label(Role::Button, "Export").click();
     h.run_steps(2);
     let asked = &h.state().asked;
-    assert!(matches!(&asked[0], UiRequest::WindowState(p) if p.ends_with("mesh.obj")), "{asked:?}");
+    assert!(matches!(&asked[0], UiRequest::OpenMesh(p) if p.ends_with("mesh.obj")), "{asked:?}");
     assert!(matches!(&asked[1], UiRequest::Export(p) if p.ends_with("sculpture.stl")), "{asked:?}");
 }
 
@@ -324,9 +325,9 @@ fn a_thing_is_taken_up_placed_and_joined() {
 #[test]
 fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
     let mut h = harness(Tab::Walls);
-    h.state_mut().desk.look.map = Map::Thickness;
+    h.state_mut().ui_state.look.map = Map::Thickness;
     let place = glam::Vec3::new(0.1, 0.9, 0.0);
-    h.state_mut().desk.walls.found = Some(Box::new(sculptd_window::panels::analysis::Thickness {
+    h.state_mut().ui_state.walls.found = Some(Box::new(ThicknessSummary {
         min: 0.4,
         max: 3.0,
         median: 1.5,
@@ -335,7 +336,7 @@ fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
         vertices: 100,
         below: 0.07,
         histogram: vec![3; 48],
-        spots: vec![sculptd_window::panels::analysis::Spot { place, thickness: 0.4 }],
+        spots: vec![ThinSpot { place, thickness: 0.4 }],
     }));
     h.run_steps(2);
     h.get_by_label("1: 0.400 mm").click();
@@ -374,19 +375,19 @@ fn a_join_is_tried_then_applied_or_dismissed() {
     h.run_steps(3);
     h.key_press(Key::Enter);
     h.run_steps(3);
-    assert_eq!(h.state().desk.trial.choice, Some(MenuItem::Carve));
-    h.state_mut().desk.trial.said = Said::Shown(321);
+    assert_eq!(h.state().ui_state.trial.choice, Some(MenuItem::Carve));
+    h.state_mut().ui_state.trial.said = TrialStatus::Shown(321);
     h.run_steps(2);
-    assert!(h.query_by_label("321 triangles of the thing").is_some());
-    h.state_mut().desk.trial.said =
-        Said::Wrong("B is open: 3 edges lack a partner; mend it first".into());
+    assert!(h.query_by_label("321 triangles of the held object").is_some());
+    h.state_mut().ui_state.trial.said =
+        TrialStatus::Wrong("B is open: 3 edges lack a partner; mend it first".into());
     h.run_steps(2);
     assert!(h.query_by_label_contains("B is open").is_some());
     h.get_by_label("Dismiss").click();
     h.run_steps(2);
-    assert_eq!(h.state().desk.trial.choice, None);
+    assert_eq!(h.state().ui_state.trial.choice, None);
     assert!(h.state().asked.is_empty());
-    h.state_mut().desk.trial.choice = Some(MenuItem::Add);
+    h.state_mut().ui_state.trial.choice = Some(MenuItem::Add);
     h.run_steps(2);
     h.get_by_label("Apply").click();
     h.run_steps(2);
@@ -411,7 +412,7 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     // The solid "Box" stands above the trim's.
     h.get_all_by_label("Box").last().expect("a button").click();
     h.run_steps(3);
-    assert!(h.state().desk.trim.is_some());
+    assert!(h.state().ui_state.trim.is_some());
     h.drag_at(egui::pos2(480.0, 180.0));
     h.run_steps(2);
     h.hover_at(egui::pos2(640.0, 360.0));
@@ -423,21 +424,21 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     };
     let want = [480.0 / 1280.0, 0.25, 0.5, 0.5];
     assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-3), "{part:?}");
-    assert!(h.state().desk.trim.is_none());
+    assert!(h.state().ui_state.trim.is_none());
     // Escape leaves the work as it is.
-    h.state_mut().desk.trim = Some(Trim { shape: Shape::Line, from: None });
+    h.state_mut().ui_state.trim = Some(Trim { shape: TrimShape::Line, from: None });
     h.run_steps(2);
     h.key_press(Key::Escape);
     h.run_steps(2);
-    assert!(h.state().desk.trim.is_none());
+    assert!(h.state().ui_state.trim.is_none());
 }
 
 #[test]
 fn sizes_are_told_with_their_units_and_the_outline_is_written() {
     let mut h = harness(Tab::Measure);
-    assert!(h.query_by_label_contains("Measured when the work rests").is_some());
+    assert!(h.query_by_label_contains("Measured when nothing changes").is_some());
     let ring = vec![DVec2::ZERO, DVec2::new(3.0, 0.0), DVec2::new(3.0, 2.0), DVec2::ZERO];
-    h.state_mut().desk.sizes.found = Some(Box::new(Measured {
+    h.state_mut().ui_state.sizes.found = Some(Box::new(Measured {
         revision: h.state().published.mesh.revision(),
         volume: 4.18879,
         area: 12.56637,
@@ -454,11 +455,11 @@ fn sizes_are_told_with_their_units_and_the_outline_is_written() {
     assert!(h.query_by_label("Outline of the shadow").is_some());
     h.get_by_label("shadow along x").click();
     h.run_steps(2);
-    assert_eq!(h.state().desk.sizes.direction, DVec3::NEG_X);
+    assert_eq!(h.state().ui_state.sizes.direction, DVec3::NEG_X);
     h.get_by_label("From here").click();
     h.run_steps(2);
     let back = h.state().published.camera.backward().as_dvec3();
-    assert!((h.state().desk.sizes.direction + back).length() < 1e-6);
+    assert!((h.state().ui_state.sizes.direction + back).length() < 1e-6);
     h.get_by_label("SVG").click();
     h.run_steps(2);
     let asked = &h.state().asked;
@@ -473,10 +474,10 @@ fn distances_have_a_map_a_legend_and_a_reference() {
     let mut h = harness(Tab::Measure);
     h.get_by_label("Live distance map").click();
     h.run_steps(2);
-    assert_eq!(h.state().desk.look.map, Map::Distance);
-    h.state_mut().desk.look.scale = (-0.25, 0.25);
-    h.state_mut().desk.sizes.distances =
-        Some(Distances { min: -0.125, max: 0.5, rms: 0.1, known: (50, 100) });
+    assert_eq!(h.state().ui_state.look.map, Map::Distance);
+    h.state_mut().ui_state.look.scale = (-0.25, 0.25);
+    h.state_mut().ui_state.sizes.distances =
+        Some(DistanceSummary { min: -0.125, max: 0.5, rms: 0.1, known: (50, 100) });
     h.run_steps(2);
     assert!(h.query_by_label("-0.1250 mm").is_some());
     assert!(h.query_by_label("+0.5000 mm").is_some());
@@ -502,7 +503,7 @@ fn the_hands_menu_has_its_words_at_its_balls() {
     for choice in MenuItem::EMPTY {
         assert!(h.query_by_label(choice.label()).is_some(), "{}", choice.label());
     }
-    let balls = sculptd_window::panels::hand_menu::balls(&h.state().published);
+    let balls = sculptd_window::panels::hand_menu::menu_balls(&h.state().published);
     assert_eq!(
         balls.iter().map(|b| b.ring).collect::<Vec<_>>(),
         [None, Some(0.4), None, None, None]
@@ -517,8 +518,8 @@ fn a_step_is_gone_to_by_its_picture() {
     let texture = h.ctx.load_texture("thumb", image, Default::default());
     let s = h.state_mut();
     (s.published.undo_steps, s.published.redo_steps) = (4, 2);
-    s.desk.history =
-        (0..=8).map(|step| Thumb { step, mark: 0, texture: texture.clone() }).collect();
+    s.ui_state.history =
+        (0..=8).map(|step| StepPicture { step, mark: 0, texture: texture.clone() }).collect();
     h.run_steps(2);
     assert!(h.query_by_label("After step 7").is_none(), "there is no such step any more");
     h.get_by_label("After step 1").click();

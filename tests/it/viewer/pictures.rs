@@ -5,7 +5,7 @@ use sculptd_clay::brush::GaussianBrush;
 use sculptd_clay::{Clay, Ray, Reach, Workers};
 use sculptd_devices::Clock;
 use sculptd_engine::camera::Camera;
-use sculptd_window::viewer::look::{Look, MATERIALS, Map};
+use sculptd_window::look::{Look, MATERIALS, Map};
 use sculptd_window::viewer::pages::MapValues;
 use sculptd_window::viewer::picture::Painter;
 use sculptd_window::viewer::renderer::Scene;

@@ -1,41 +1,25 @@
-//! Small pictures of the work after each step, by the window's own renderer, taken when the work
-//! rests. Nobody waits for them: the pixels are fetched some frames later.
+//! Takes the small pictures of the steps with the window's own renderer, while the object does not
+//! change. Nobody waits for them: the pixels are fetched some polls later.
 
 use std::sync::mpsc;
 
-use super::look::{Look, Map};
 use super::renderer::Scene;
-use super::window::WindowState;
-use crate::panels::history::{KEPT, Thumb};
+use super::state::WindowState;
+use super::step_pictures::PendingPicture;
+use crate::look::{Look, Map};
+use crate::panels::state::{KEPT, StepPicture};
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 use sculptd_engine::camera::Camera;
 
 /// Pixels; a row is what copies are padded to.
 const SIZE: (u32, u32) = (128, 80);
-/// Where a processor draws, a larger work has no pictures: each costs a frame.
+/// Where a processor draws, a larger object has no pictures: each costs a frame.
 const MOST_ON_A_PROCESSOR: usize = 1_500_000;
-/// The work rests once it has not changed for so long.
+/// Measuring waits until the object has not changed for so long.
 const REST_US: u64 = 150_000;
 /// A pen does not stand still for so long.
 const LONG_REST_US: u64 = 2_000_000;
-
-#[derive(Debug)]
-struct Pending {
-    step: usize,
-    mark: u64,
-    bytes: wgpu::Buffer,
-    mapped: mpsc::Receiver<bool>,
-}
-
-#[derive(Debug, Default)]
-pub struct Thumbs {
-    target: Option<wgpu::Texture>,
-    pending: Option<Pending>,
-    /// The revision that was looked at last, and the steps then.
-    seen: Option<u64>,
-    steps: (usize, usize),
-}
 
 /// One number for which pages these are: an undo brings old ones back.
 fn mark(mesh: &Snapshot) -> u64 {
@@ -45,27 +29,28 @@ fn mark(mesh: &Snapshot) -> u64 {
 }
 
 impl WindowState {
-    /// Takes a picture where one is due, and fetches the last. Once a frame, after it was handed to
-    /// the card.
-    pub(super) fn thumb(&mut self, state: &Published, now: u64) {
-        self.fetch();
+    /// Takes a picture where one is due, and fetches the last; `true` when one has come. Once a
+    /// poll.
+    pub(super) fn take_step_pictures(&mut self, state: &Published, now: u64) -> bool {
+        let fetched = self.fetch();
         let revision = state.mesh.revision();
         let resting_us = now.saturating_sub(self.rested.1);
         let large = self.gpu.software && state.mesh.triangle_count() > MOST_ON_A_PROCESSOR;
-        let t = &mut self.thumbs;
+        let t = &mut self.step_pictures;
         let (step, ahead) = (state.undo_steps, state.redo_steps);
-        // Other clay after as many steps: a stroke that is not done yet, or another work.
-        let known = t.steps == (step, ahead) && self.desk.history.iter().any(|k| k.step == step);
+        // Other clay after as many steps: a stroke that is not done yet, or another object.
+        let known =
+            t.steps == (step, ahead) && self.ui_state.history.iter().any(|k| k.step == step);
         let rests = resting_us > if known { LONG_REST_US } else { REST_US };
         if t.pending.is_some() || t.seen == Some(revision) || !rests || large {
-            return;
+            return fetched;
         }
         t.seen = Some(revision);
         let (before, before_ahead) = std::mem::replace(&mut t.steps, (step, ahead));
         let mark = mark(&state.mesh);
-        let kept = &mut self.desk.history;
+        let kept = &mut self.ui_state.history;
         if kept.iter().any(|k| k.step == step && k.mark == mark) {
-            return;
+            return fetched;
         }
         if ahead == 0 {
             // What was ahead is gone; of a full history the oldest steps are.
@@ -78,13 +63,14 @@ impl WindowState {
         }
         kept.retain(|k| k.step != step);
         self.take(state, step, mark);
+        fetched
     }
 
     fn take(&mut self, state: &Published, step: usize, mark: u64) {
         let device = &self.gpu.device;
         let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
         let format = self.config.format;
-        let texture = self.thumbs.target.get_or_insert_with(|| {
+        let texture = self.step_pictures.target.get_or_insert_with(|| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("thumb"),
                 size,
@@ -107,8 +93,13 @@ impl WindowState {
         if lo.cmple(hi).all() {
             camera.frame(lo, hi);
         }
-        let look =
-            Look { map: Map::None, wireframe: false, grid: false, shade: 0.0, ..self.desk.look };
+        let look = Look {
+            map: Map::None,
+            wireframe: false,
+            grid: false,
+            shade: 0.0,
+            ..self.ui_state.look
+        };
         let scene = Scene {
             mesh: &state.mesh,
             camera: &camera,
@@ -122,8 +113,8 @@ impl WindowState {
         let view = texture.create_view(&Default::default());
         self.renderer.draw(&self.gpu, &mut encoder, &view, SIZE, &scene);
         if self.renderer.waiting > 0 {
-            // Not all of the work is on the card yet: another time.
-            self.thumbs.seen = None;
+            // Not all of the object is on the card yet: another time.
+            self.step_pictures.seen = None;
         }
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
@@ -137,19 +128,21 @@ impl WindowState {
         bytes.slice(..).map_async(wgpu::MapMode::Read, move |r| {
             let _ = done.send(r.is_ok());
         });
-        self.thumbs.pending = Some(Pending { step, mark, bytes, mapped });
+        self.step_pictures.pending = Some(PendingPicture { step, mark, bytes, mapped });
     }
 
-    fn fetch(&mut self) {
-        let Some(pending) = &self.thumbs.pending else { return };
+    fn fetch(&mut self) -> bool {
+        let Some(pending) = &self.step_pictures.pending else { return false };
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         let well = match pending.mapped.try_recv() {
             Ok(well) => well,
-            Err(mpsc::TryRecvError::Empty) => return,
+            Err(mpsc::TryRecvError::Empty) => return false,
             Err(mpsc::TryRecvError::Disconnected) => false,
         };
-        let Some(pending) = self.thumbs.pending.take().filter(|_| well) else { return };
-        let Ok(data) = pending.bytes.slice(..).get_mapped_range() else { return };
+        let Some(pending) = self.step_pictures.pending.take().filter(|_| well) else {
+            return false;
+        };
+        let Ok(data) = pending.bytes.slice(..).get_mapped_range() else { return false };
         let mut pixels = data.to_vec();
         if matches!(
             self.config.format,
@@ -160,14 +153,15 @@ impl WindowState {
         let image =
             egui::ColorImage::from_rgba_unmultiplied([SIZE.0 as usize, SIZE.1 as usize], &pixels);
         let texture = self.egui.egui_ctx().load_texture("thumb", image, Default::default());
-        let kept = &mut self.desk.history;
-        kept.push(Thumb { step: pending.step, mark: pending.mark, texture });
+        let kept = &mut self.ui_state.history;
+        kept.push(StepPicture { step: pending.step, mark: pending.mark, texture });
         kept.sort_by_key(|k| k.step);
         // The farthest from here goes.
         while kept.len() > KEPT {
-            let here = self.thumbs.steps.0;
+            let here = self.step_pictures.steps.0;
             let far = (0..kept.len()).max_by_key(|&i| kept[i].step.abs_diff(here)).unwrap_or(0);
             kept.remove(far);
         }
+        true
     }
 }

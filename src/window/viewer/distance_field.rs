@@ -7,8 +7,8 @@ use crossbeam_channel as cc;
 use glam::{DVec3, Vec3};
 
 use super::pages::MapValues;
-use super::work::Done;
-use crate::panels::measure::{Distances, Measured};
+use super::tasks::TaskReport;
+use crate::panels::state::{DistanceSummary, Measured};
 use sculptd_clay::Snapshot;
 use sculptd_engine::hand::{HeldObject, Similarity};
 use sculptd_geometry::distance::{DistanceSolid, Topology};
@@ -18,33 +18,37 @@ use sculptd_geometry::projection::{ProjectionPlane, area, outline};
 
 /// What distances are measured to.
 #[derive(Debug, Clone)]
-pub enum Reference {
+pub enum DistanceReference {
     Before(Snapshot),
     HeldObject(HeldObject),
 }
 
-impl Reference {
+impl DistanceReference {
     /// The same form, wherever it is.
-    fn same(&self, other: &Reference) -> bool {
+    fn same(&self, other: &DistanceReference) -> bool {
         match (self, other) {
-            (Reference::Before(a), Reference::Before(b)) => a.revision() == b.revision(),
-            (Reference::HeldObject(a), Reference::HeldObject(b)) => Arc::ptr_eq(&a.plain, &b.plain),
+            (DistanceReference::Before(a), DistanceReference::Before(b)) => {
+                a.revision() == b.revision()
+            }
+            (DistanceReference::HeldObject(a), DistanceReference::HeldObject(b)) => {
+                Arc::ptr_eq(&a.plain, &b.plain)
+            }
             _ => false,
         }
     }
 
     fn place(&self) -> Similarity {
         match self {
-            Reference::Before(_) => Similarity::NONE,
-            Reference::HeldObject(thing) => thing.place,
+            DistanceReference::Before(_) => Similarity::NONE,
+            DistanceReference::HeldObject(thing) => thing.place,
         }
     }
 }
 
 #[derive(Debug, Clone)]
-pub struct Wanted {
+pub struct DistanceRequest {
     pub mesh: Snapshot,
-    pub to: Reference,
+    pub to: DistanceReference,
 }
 
 /// Pages between two pictures of the map.
@@ -52,33 +56,38 @@ const BATCH: usize = 64;
 
 /// The distance map as far as it is known.
 #[derive(Debug, Default)]
-pub struct Field {
-    to: Option<(Reference, DistanceSolid)>,
+pub struct DistanceField {
+    to: Option<(DistanceReference, DistanceSolid)>,
     place: Option<Similarity>,
     mesh: Option<Snapshot>,
     /// One a page; `None`: not known.
     pages: Vec<Option<Arc<[f32]>>>,
 }
 
-impl Field {
+impl DistanceField {
     /// Brings the map up to what is wanted, a batch at a time; `false` when nobody listens any
     /// more.
-    pub fn follow(&mut self, wanted: Wanted, job: &Job, say: &cc::Sender<Done>) -> bool {
-        self.bring(wanted, job, say).unwrap_or(true)
+    pub fn follow(
+        &mut self,
+        request: DistanceRequest,
+        job: &Job,
+        say: &cc::Sender<TaskReport>,
+    ) -> bool {
+        self.bring(request, job, say).unwrap_or(true)
     }
 
     fn bring(
         &mut self,
-        wanted: Wanted,
+        request: DistanceRequest,
         job: &Job,
-        say: &cc::Sender<Done>,
+        say: &cc::Sender<TaskReport>,
     ) -> Result<bool, Cancelled> {
-        let Wanted { mesh, to } = wanted;
+        let DistanceRequest { mesh, to } = request;
         if !self.to.as_ref().is_some_and(|(old, _)| old.same(&to)) {
             self.pages.clear();
             let plain = match &to {
-                Reference::Before(before) => Arc::new(before.to_tri()),
-                Reference::HeldObject(thing) => thing.plain.clone(),
+                DistanceReference::Before(before) => Arc::new(before.to_tri()),
+                DistanceReference::HeldObject(thing) => thing.plain.clone(),
             };
             let solid = DistanceSolid::build(&plain, job)?;
             self.to = Some((to.clone(), solid));
@@ -116,7 +125,7 @@ impl Field {
         Ok(!missing.is_empty() || say.send(self.said(&mesh)).is_ok())
     }
 
-    fn said(&self, mesh: &Snapshot) -> Done {
+    fn said(&self, mesh: &Snapshot) -> TaskReport {
         let unknown = |i: usize| -> Arc<[f32]> { vec![f32::NAN; mesh.page(i as u32).own()].into() };
         let pages: Vec<Arc<[f32]>> = self
             .pages
@@ -131,17 +140,17 @@ impl Field {
             squares += f64::from(d) * f64::from(d);
             known += 1;
         }
-        let about = Distances {
+        let about = DistanceSummary {
             min: if known > 0 { min } else { 0.0 },
             max: if known > 0 { max } else { 0.0 },
             rms: (squares / known.max(1) as f64).sqrt() as f32,
             known: (known, mesh.vertex_count()),
         };
-        Done::Distances(MapValues { pages }, about)
+        TaskReport::Distances(MapValues { pages }, about)
     }
 }
 
-/// Measures of the work and its shadow along a direction.
+/// Measures of the object and its shadow along a direction.
 pub fn measure(mesh: &Snapshot, direction: DVec3, job: &Job) -> Result<Measured, Cancelled> {
     let plain = mesh.to_tri();
     job.check()?;

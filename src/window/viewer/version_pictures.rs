@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use crossbeam_channel as cc;
 
-use super::window::WindowState;
+use crate::panels::state::HistoryVersions;
 use sculptd_daemon::session::history::Handle;
 
 /// Pictures kept, of 27 KB each.
@@ -16,9 +16,9 @@ const ASKED: usize = 64;
 /// A picture, or that there is none.
 type Found = (u64, Option<egui::ColorImage>);
 
-/// What goes to and fro.
+/// What the panel was given, and the thread that reads pictures.
 #[derive(Debug, Default)]
-pub(super) struct Places {
+pub(super) struct VersionPictures {
     /// The tree that the panel has: see [`Handle::shape`].
     shape: Option<(u64, u64, usize)>,
     asked: BTreeSet<u64>,
@@ -47,41 +47,46 @@ fn reader(
             context.request_repaint();
         }
     };
-    std::thread::Builder::new().name("sculptd-sights".into()).spawn(read).ok()?;
+    std::thread::Builder::new().name("sculptd-pictures".into()).spawn(read).ok()?;
     Some((wanted, found))
 }
 
-impl WindowState {
-    /// Brings the panel up to date. Once a frame, before the panels are drawn.
-    pub(super) fn places(&mut self, history: &Handle, rate_hz: u32) {
-        let (p, shown) = (&mut self.places, &mut self.desk.places);
+impl VersionPictures {
+    /// Brings the panel's list up to date; `true` when it changed. Once a poll.
+    pub(super) fn update(
+        &mut self,
+        shown: &mut HistoryVersions,
+        context: &egui::Context,
+        (history, rate_hz): (&Handle, u32),
+    ) -> bool {
         let shape = history.shape();
-        if p.shape != Some(shape) {
-            p.shape = Some(shape);
+        let mut changed = self.shape != Some(shape);
+        if changed {
+            self.shape = Some(shape);
             shown.rate_hz = rate_hz;
             shown.set(&history.tree());
         }
-        let context = self.egui.egui_ctx();
-        if p.reader.is_none() {
-            p.reader = reader(history.clone(), context.clone());
+        if self.reader.is_none() {
+            self.reader = reader(history.clone(), context.clone());
         }
-        let Some((wanted, found)) = &p.reader else { return };
+        let Some((wanted, found)) = &self.reader else { return changed };
         for (node, picture) in found.try_iter() {
             if let Some(picture) = picture {
-                shown
-                    .pictures
-                    .insert(node, context.load_texture("place", picture, Default::default()));
+                let texture = context.load_texture("version", picture, Default::default());
+                shown.pictures.insert(node, texture);
+                changed = true;
             }
         }
         if shown.pictures.len() > KEPT {
             let visible: BTreeSet<u64> = shown.visible.iter().copied().collect();
             shown.pictures.retain(|node, _| visible.contains(node));
-            p.asked.retain(|node| visible.contains(node));
+            self.asked.retain(|node| visible.contains(node));
         }
         for node in &shown.visible {
-            if !p.asked.contains(node) && wanted.try_send(*node).is_ok() {
-                p.asked.insert(*node);
+            if !self.asked.contains(node) && wanted.try_send(*node).is_ok() {
+                self.asked.insert(*node);
             }
         }
+        changed
     }
 }

@@ -1,39 +1,37 @@
-//! What the window remembers from day to day: one small file of preferences, written when something
-//! changed.
+//! The file that keeps the preferences between runs. It is written when something changed.
 
 use std::path::PathBuf;
 
-use crate::panels::UiState;
-use crate::panels::preferences::Preferences;
+use crate::panels::state::{Preferences, UiState};
 use sculptd_geometry::io::write_beside;
 
 #[derive(Debug)]
-pub struct Remembered {
+pub struct PreferencesFile {
     path: Option<PathBuf>,
     kept: Preferences,
 }
 
-impl Remembered {
-    /// A desk as the person left it.
-    pub fn load() -> (Remembered, UiState) {
+impl PreferencesFile {
+    /// The state of the window as the person left it.
+    pub fn load() -> (PreferencesFile, UiState) {
         let path = directories::ProjectDirs::from("", "", "sculptd")
             .map(|d| d.config_dir().join("viewer.toml"));
         let text = path.as_ref().and_then(|p| std::fs::read_to_string(p).ok()).unwrap_or_default();
         let prefs = Preferences::parse(&text);
-        let desk = UiState { look: prefs.look, prefs: prefs.clone(), ..Default::default() };
-        (Remembered { path, kept: prefs }, desk)
+        let ui_state = UiState { look: prefs.look, prefs: prefs.clone(), ..Default::default() };
+        (PreferencesFile { path, kept: prefs }, ui_state)
     }
 
-    /// A desk as it comes, of which nothing will be kept.
-    pub fn nothing() -> (Remembered, UiState) {
-        let desk = UiState::default();
-        (Remembered { path: None, kept: desk.prefs.clone() }, desk)
+    /// The state of a new window, of which nothing will be kept.
+    pub fn nothing() -> (PreferencesFile, UiState) {
+        let ui_state = UiState::default();
+        (PreferencesFile { path: None, kept: ui_state.prefs.clone() }, ui_state)
     }
 
     /// Writes what changed; a folder that cannot be written is nobody's concern here.
-    pub fn keep(&mut self, desk: &UiState) {
-        let mut now = desk.prefs.clone();
-        now.look = desk.look;
+    pub fn keep(&mut self, ui_state: &UiState) {
+        let mut now = ui_state.prefs.clone();
+        now.look = ui_state.look;
         // A map is for a moment.
         now.look.map = Default::default();
         now.look.scale = self.kept.look.scale;

@@ -1,5 +1,5 @@
-//! The session's history in the panel: places on branches by a click, places of the line by a drag
-//! and by the slider.
+//! The session's history in the panel: versions on branches by a click, versions of the line by a
+//! drag and by the slider.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -11,7 +11,7 @@ use sculptd_window::panels::{Tab, UiRequest};
 
 use super::panels::{State, show, state};
 
-/// Places one after the other at a second each, where no parent is named by `branches`.
+/// Versions one after the other, a second apart, where no parent is named by `branches`.
 fn tree(count: u64, branches: &[(u64, u64)], cursor: u64) -> Tree {
     let mut tree = Tree::default();
     for id in 0..count {
@@ -37,8 +37,8 @@ fn tree(count: u64, branches: &[(u64, u64)], cursor: u64) -> Tree {
 
 fn harness(tree: &Tree) -> Harness<'static, State> {
     let mut s = state(Tab::Look);
-    s.desk.places.rate_hz = 120;
-    s.desk.places.set(tree);
+    s.ui_state.versions.rate_hz = 120;
+    s.ui_state.versions.set(tree);
     // Tall enough for the whole panel: what is out of sight is not pressed.
     let mut h =
         Harness::builder().with_size([1280.0, 1200.0]).with_max_steps(64).build_ui_state(show, s);
@@ -55,19 +55,19 @@ fn jumps(h: &Harness<'_, State>) -> Vec<u64> {
 }
 
 #[test]
-fn a_place_on_a_branch_is_gone_to_by_a_click() {
+fn a_version_on_a_branch_is_gone_to_by_a_click() {
     let mut h = harness(&tree(5, &[(3, 1)], 4));
-    h.get_by_label("5 places");
-    h.get_by_label("Place 2, at 0:02, on a branch").click();
+    h.get_by_label("5 versions");
+    h.get_by_label("Version 2, at 0:02, on a branch").click();
     h.run_steps(3);
     assert_eq!(jumps(&h), [2]);
     h.state_mut().asked.clear();
     // The work is here already.
-    h.get_by_label("Place 4, at 0:04").click();
+    h.get_by_label("Version 4, at 0:04").click();
     h.run_steps(3);
     assert_eq!(jumps(&h), [] as [u64; 0]);
     // The pictures of what is seen are asked for.
-    assert_eq!(h.state().desk.places.visible, [0, 1, 2, 3, 4]);
+    assert_eq!(h.state().ui_state.versions.visible, [0, 1, 2, 3, 4]);
     // Memory holds nothing to take back, the file does.
     h.get_by_label("Undo").click();
     h.run_steps(3);
@@ -79,10 +79,10 @@ fn a_place_on_a_branch_is_gone_to_by_a_click() {
 }
 
 #[test]
-fn a_drag_goes_through_the_places_and_asks_for_each_once() {
+fn a_drag_goes_through_the_versions_and_asks_for_each_once() {
     let mut h = harness(&tree(5, &[], 4));
     let at = |h: &Harness<'_, State>, n: u64| {
-        h.get_by_label(&format!("Place {n}, at 0:0{n}")).rect().center()
+        h.get_by_label(&format!("Version {n}, at 0:0{n}")).rect().center()
     };
     let press = |pos: egui::Pos2, pressed: bool| egui::Event::PointerButton {
         pos,
@@ -110,76 +110,22 @@ fn a_drag_goes_through_the_places_and_asks_for_each_once() {
 fn a_long_history_shows_where_the_work_is_and_costs_what_is_seen() {
     let mut h = harness(&tree(4000, &[(100, 50), (2000, 1500)], 3990));
     h.run_steps(10);
-    let visible = h.state().desk.places.visible.clone();
+    let visible = h.state().ui_state.versions.visible.clone();
     assert!(visible.contains(&3990) && visible.len() < 12, "{visible:?}");
-    h.get_by_label("Place 3990, at 66:30");
-    assert!(h.query_by_label("Place 0, at 0:00").is_none());
+    h.get_by_label("Version 3990, at 66:30");
+    assert!(h.query_by_label("Version 0, at 0:00").is_none());
     // Elsewhere: the list follows.
     let mut t = tree(4000, &[(100, 50), (2000, 1500)], 3990);
     t.go(60);
-    h.state_mut().desk.places.set(&t);
+    h.state_mut().ui_state.versions.set(&t);
     h.run_steps(10);
-    h.get_by_label_contains("Place 60, ");
-    let before = h.state().desk.places.rows.len();
+    h.get_by_label_contains("Version 60, ");
+    let before = h.state().ui_state.versions.rows.len();
     assert_eq!(before, 4000);
     // Of the line that is left, the slider knows the places only: by keys, one at a time.
-    h.get_by_role_and_label(egui::Role::Slider, "Place").focus();
+    h.get_by_role_and_label(egui::Role::Slider, "Version").focus();
     h.run_steps(2);
     h.key_press(egui::Key::ArrowRight);
     h.run_steps(3);
     assert_eq!(jumps(&h).len(), 1);
-}
-
-/// A session in the real window: three strokes, two taken back, one more; then every place by a
-/// click on its row.
-#[cfg(unix)]
-#[test]
-fn the_places_of_a_session_in_a_real_window() {
-    use serde_json::{Value, json};
-    let dir = tempfile::tempdir().expect("a folder");
-    let path = dir.path().join("s.sculpt");
-    let args = ["--session", path.to_str().expect("UTF-8")];
-    let Some(mut s) = super::window::Stage::open(&args) else { return };
-    type Stage = super::window::Stage;
-    let history = |s: &Stage| s.ask("history", &json!({}));
-    let count = |s: &Stage| history(s)["places"].as_array().map_or(0, Vec::len);
-    let hash = |s: &Stage| s.ask("hash", &Value::Null)["hash"].clone();
-    let mut hashes = vec![hash(&s)];
-    let mut stroke = |s: &mut Stage, from: (i32, i32), to: (i32, i32), places: usize| {
-        s.drag(from, to);
-        s.until("the stroke is kept", |s| count(s) == places);
-        hashes.push(hash(s));
-    };
-    for k in 0..3 {
-        stroke(&mut s, (-100, -70 + 50 * k), (100, -70 + 50 * k), 2 + k as usize);
-    }
-    for left in [2, 1] {
-        s.ask("undo", &Value::Null);
-        s.until("it is taken back", |s| history(s)["here"] == left);
-    }
-    stroke(&mut s, (0, -120), (0, 120), 5);
-    s.seen("places-1-branch");
-    // The rows lie in the left panel, the oldest first; the line's are brighter. From the lowest
-    // up: each that is hit once.
-    let mut met = vec![4u64];
-    for y in (560..720).rev().step_by(10) {
-        s.drive(&["mousemove", "120", &y.to_string()]);
-        s.drive(&["click", "1"]);
-        s.drive(&["mousemove", "640", "650"]);
-        let before = *met.last().expect("one");
-        for _ in 0..10 {
-            let here = history(&s)["here"].as_u64().expect("a place");
-            if here != before {
-                met.push(here);
-                break;
-            }
-            s.drive(&["mousemove", "640", "651"]);
-        }
-        let here = *met.last().expect("one") as usize;
-        s.until("the work is that of the place", |s| hash(s) == hashes[here]);
-    }
-    println!("went to {met:?}");
-    s.look("places-2-gone");
-    assert!(met.len() >= 4 && met.contains(&3), "{met:?}: the branch too");
-    assert!(met.windows(2).all(|w| w[0] != w[1]));
 }

@@ -44,7 +44,7 @@ pub enum Action {
     TryAdd,
     TryCut,
     TryKeep,
-    WindowState,
+    OpenMesh,
     Export,
     Screenshot,
     Turntable,
@@ -58,26 +58,26 @@ pub enum Action {
 
 /// A key with its modifiers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Keys {
+pub struct KeyCombination {
     pub key: Key,
     pub ctrl: bool,
     pub shift: bool,
 }
 
-const fn key(key: Key) -> Option<Keys> {
-    Some(Keys { key, ctrl: false, shift: false })
+const fn key(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination { key, ctrl: false, shift: false })
 }
-const fn shift(key: Key) -> Option<Keys> {
-    Some(Keys { key, ctrl: false, shift: true })
+const fn shift(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination { key, ctrl: false, shift: true })
 }
-const fn ctrl(key: Key) -> Option<Keys> {
-    Some(Keys { key, ctrl: true, shift: false })
+const fn ctrl(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination { key, ctrl: true, shift: false })
 }
-const fn ctrl_shift(key: Key) -> Option<Keys> {
-    Some(Keys { key, ctrl: true, shift: true })
+const fn ctrl_shift(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination { key, ctrl: true, shift: true })
 }
 
-impl std::fmt::Display for Keys {
+impl std::fmt::Display for KeyCombination {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let ctrl = if self.ctrl { "Ctrl+" } else { "" };
         let shift = if self.shift { "Shift+" } else { "" };
@@ -87,23 +87,23 @@ impl std::fmt::Display for Keys {
 
 /// What an action is called, its keys, and words that find it.
 #[derive(Debug, Clone, Copy)]
-pub struct Entry {
+pub struct ActionEntry {
     pub action: Action,
     pub name: &'static str,
-    pub keys: Option<Keys>,
+    pub keys: Option<KeyCombination>,
     pub also: &'static str,
 }
 
 const fn entry(
     action: Action,
     name: &'static str,
-    keys: Option<Keys>,
+    keys: Option<KeyCombination>,
     also: &'static str,
-) -> Entry {
-    Entry { action, name, keys, also }
+) -> ActionEntry {
+    ActionEntry { action, name, keys, also }
 }
 
-pub const ALL: &[Entry] = &[
+pub const ALL: &[ActionEntry] = &[
     entry(Action::Undo, "Undo", ctrl(Key::Z), "back"),
     entry(Action::Redo, "Redo", ctrl_shift(Key::Z), "again"),
     entry(Action::Carve, "Carve or raise", key(Key::X), "invert negative dig subtract"),
@@ -116,7 +116,7 @@ pub const ALL: &[Entry] = &[
     entry(Action::MirrorX, "Mirror over x", ctrl(Key::Num1), "symmetry"),
     entry(Action::MirrorY, "Mirror over y", ctrl(Key::Num2), "symmetry"),
     entry(Action::MirrorZ, "Mirror over z", ctrl(Key::Num3), "symmetry"),
-    entry(Action::Frame, "Frame the work", key(Key::Home), "view all fit camera"),
+    entry(Action::Frame, "Frame the sculpture", key(Key::Home), "view all fit camera"),
     entry(Action::Front, "View from the front", key(Key::Num7), "camera"),
     entry(Action::Back, "View from behind", shift(Key::Num7), "camera back"),
     entry(Action::Right, "View from the right", key(Key::Num8), "camera"),
@@ -126,7 +126,7 @@ pub const ALL: &[Entry] = &[
     entry(Action::Perspective, "Perspective or orthographic", key(Key::Num5), "camera parallel"),
     entry(Action::NextMaterial, "Next material", key(Key::M), "matcap colour"),
     entry(Action::Facets, "Smooth or flat shading", ctrl(Key::F), "facets"),
-    entry(Action::Ssao, "Shade of hollows", shift(Key::H), "ambient occlusion cavity depth"),
+    entry(Action::Ssao, "Ambient occlusion", shift(Key::H), "shade hollows cavity depth"),
     entry(Action::Wireframe, "Wireframe", key(Key::W), "edges triangles"),
     entry(Action::Grid, "Grid", key(Key::G), "floor"),
     entry(Action::Thickness, "Thickness map", key(Key::T), "wall analysis"),
@@ -136,15 +136,15 @@ pub const ALL: &[Entry] = &[
     entry(Action::TrimLine, "Trim by a line", None, "cut off plane"),
     entry(Action::Finer, "Finer level", ctrl(Key::PageUp), "subdivide multires detail"),
     entry(Action::Coarser, "Coarser level", ctrl(Key::PageDown), "multires shape"),
-    entry(Action::TryAdd, "Try to add the thing", None, "boolean union preview join"),
+    entry(Action::TryAdd, "Preview: add the held object", None, "boolean union try join"),
     entry(
         Action::TryCut,
-        "Try to cut with the thing",
+        "Preview: cut with the held object",
         None,
-        "boolean difference preview join carve",
+        "boolean difference try join carve",
     ),
-    entry(Action::TryKeep, "Try to keep what both have", None, "boolean intersection preview join"),
-    entry(Action::WindowState, "Open a mesh", ctrl(Key::O), "file load import"),
+    entry(Action::TryKeep, "Preview: keep what both share", None, "boolean intersection try join"),
+    entry(Action::OpenMesh, "Open a mesh", ctrl(Key::O), "file load import"),
     entry(Action::Export, "Export the mesh", ctrl(Key::E), "file save stl obj ply"),
     entry(Action::Screenshot, "Screenshot", key(Key::F12), "picture png"),
     entry(Action::Turntable, "Turntable frames", ctrl(Key::F12), "animation film pictures png"),
@@ -157,7 +157,7 @@ pub const ALL: &[Entry] = &[
 ];
 
 impl Action {
-    pub fn entry(self) -> &'static Entry {
+    pub fn entry(self) -> &'static ActionEntry {
         ALL.iter().find(|e| e.action == self).unwrap_or(&ALL[0])
     }
 
@@ -215,10 +215,10 @@ pub fn on_brush(action: Action, mut brush: BrushSettings) -> Option<Command> {
 
 /// Actions that hold every word of a search, best first: a name that begins with it, then names,
 /// then other words.
-pub fn search(text: &str) -> Vec<&'static Entry> {
+pub fn search(text: &str) -> Vec<&'static ActionEntry> {
     let text = text.to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
-    let mut found: Vec<(u8, &Entry)> = ALL
+    let mut found: Vec<(u8, &ActionEntry)> = ALL
         .iter()
         .filter_map(|e| {
             let name = e.name.to_lowercase();

@@ -1,6 +1,6 @@
-//! Slow work for the window, on threads of its own: reading and writing meshes, the live thickness
-//! map, file dialogs. The window never waits for it and the loop never hears of it, but for the
-//! command that a loaded mesh becomes.
+//! Background tasks of the window, each on a thread of its own: reading and writing meshes, the live
+//! thickness map, file dialogs. The window never waits for them. The tick loop hears of them only by
+//! the command that a loaded mesh becomes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,10 +10,10 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec3;
 
+use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::Preview;
-use crate::panels::analysis::{Spot, Thickness};
-use crate::panels::measure::{Distances, Measured};
+use crate::panels::state::{DistanceSummary, Measured, ThicknessSummary, ThinSpot};
 use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_daemon::boolean_jobs::JoinError;
@@ -29,20 +29,20 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
 use sculptd_geometry::projection::PlaneRegion;
 
-/// What slow work says when it is done.
+/// What a background task reports.
 #[derive(Debug)]
-pub enum Done {
+pub enum TaskReport {
     /// A line for the messages; `true`: something went wrong.
-    Said(String, bool),
+    Message(String, bool),
     /// A file was loaded or written: it goes to the recent ones.
     Used(PathBuf),
-    Map(MapValues, Box<Thickness>),
+    Map(MapValues, Box<ThicknessSummary>),
     /// A Boolean has ended, well or not.
     Joined,
-    /// A work was opened: distances are to it from now on.
+    /// A mesh was loaded: distances are to it from now on.
     Opened,
     Preview(Result<Option<Arc<Preview>>, String>),
-    Distances(MapValues, Distances),
+    Distances(MapValues, DistanceSummary),
     Measured(Box<Measured>),
     /// A dialog's answer.
     Chosen(Purpose, PathBuf),
@@ -50,32 +50,31 @@ pub enum Done {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    WindowState,
+    Open,
     Export,
 }
 
 /// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is
 /// too thin.
 #[derive(Debug, Clone)]
-struct Wanted {
+struct ThicknessRequest {
     mesh: Snapshot,
     near: Vec3,
     limit: f32,
 }
 
 #[derive(Debug)]
-pub struct Work {
-    say: cc::Sender<Done>,
-    pub done: cc::Receiver<Done>,
-    /// One slot: a newer wish replaces an older one.
-    thickness: Option<(cc::Sender<Wanted>, cc::Receiver<Wanted>)>,
+pub struct Tasks {
+    say: cc::Sender<TaskReport>,
+    pub done: cc::Receiver<TaskReport>,
+    thickness: Option<LatestWins<ThicknessRequest>>,
     dialog: Arc<AtomicBool>,
 }
 
-impl Default for Work {
+impl Default for Tasks {
     fn default() -> Self {
         let (say, done) = cc::unbounded();
-        Work { say, done, thickness: None, dialog: Arc::default() }
+        Tasks { say, done, thickness: None, dialog: Arc::default() }
     }
 }
 
@@ -83,7 +82,7 @@ fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
     let _ = std::thread::Builder::new().name(name.into()).spawn(what);
 }
 
-impl Work {
+impl Tasks {
     /// Reads a mesh and sends it to the loop.
     pub fn load(&self, path: PathBuf, commands: CommandSender) {
         let say = self.say.clone();
@@ -102,14 +101,14 @@ impl Work {
                     // Waits where the loop has many commands: this thread may.
                     match commands.send(command) {
                         Ok(()) => {
-                            let _ = say.send(Done::Opened);
-                            let _ = say.send(Done::Used(path));
-                            Done::Said(text, false)
+                            let _ = say.send(TaskReport::Opened);
+                            let _ = say.send(TaskReport::Used(path));
+                            TaskReport::Message(text, false)
                         }
-                        Err(_) => Done::Said("the loop has ended".into(), true),
+                        Err(_) => TaskReport::Message("the loop has ended".into(), true),
                     }
                 }
-                Err(e) => Done::Said(e.to_string(), true),
+                Err(e) => TaskReport::Message(e.to_string(), true),
             };
             let _ = say.send(said);
         });
@@ -132,18 +131,23 @@ impl Work {
                         size.y,
                         size.z
                     );
-                    let _ = say.send(Done::Used(path));
-                    Done::Said(text, false)
+                    let _ = say.send(TaskReport::Used(path));
+                    TaskReport::Message(text, false)
                 }
-                Err(e) => Done::Said(e.to_string(), true),
+                Err(e) => TaskReport::Message(e.to_string(), true),
             };
             let _ = say.send(said);
         });
     }
 
-    /// Joins the thing in the hands with the work; the result takes the work's place, and undo
-    /// brings the work back.
-    pub fn join(&self, choice: MenuItem, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
+    /// Joins the held object with the object; the result takes the object's place, and undo
+    /// brings the object back.
+    pub fn join(
+        &self,
+        choice: MenuItem,
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
             let (text, wrong) =
@@ -151,12 +155,12 @@ impl Work {
                     Ok(_) => (format!("{}: done", choice.label()), false),
                     Err(e) => (e.to_string(), true),
                 };
-            let _ = say.send(Done::Said(text, wrong));
-            let _ = say.send(Done::Joined);
+            let _ = say.send(TaskReport::Message(text, wrong));
+            let _ = say.send(TaskReport::Joined);
         });
     }
 
-    /// Sends the commands of what changes the whole work, and says how it went.
+    /// Sends the commands of what changes the whole object, and says how it went.
     fn change(
         &self,
         name: &'static str,
@@ -172,8 +176,8 @@ impl Work {
                 }
                 Err(e) => (e.to_string(), true),
             };
-            let _ = say.send(Done::Said(text, wrong));
-            let _ = say.send(Done::Joined);
+            let _ = say.send(TaskReport::Message(text, wrong));
+            let _ = say.send(TaskReport::Joined);
         });
     }
 
@@ -184,8 +188,13 @@ impl Work {
         });
     }
 
-    /// The work one level finer or coarser.
-    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
+    /// The object one level finer or coarser.
+    pub fn level(
+        &self,
+        finer: bool,
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
             Ok((vec![command], format!("Level {} of {of}", at + 1)))
@@ -200,18 +209,18 @@ impl Work {
                 Ok(()) => (format!("Saved {}", path.display()), false),
                 Err(e) => (format!("{}: {e}", path.display()), true),
             };
-            let _ = say.send(Done::Said(text, wrong));
+            let _ = say.send(TaskReport::Message(text, wrong));
         });
     }
 
-    /// For threads that follow the work.
-    pub fn said(&self) -> cc::Sender<Done> {
+    /// For threads that follow the object.
+    pub fn reporter(&self) -> cc::Sender<TaskReport> {
         self.say.clone()
     }
 
     /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where
     /// there is no desktop.
-    pub fn ask(&self, purpose: Purpose) {
+    pub fn open_dialog(&self, purpose: Purpose) {
         if self.dialog.swap(true, Relaxed) {
             return;
         }
@@ -220,32 +229,30 @@ impl Work {
             let dialog = rfd::AsyncFileDialog::new()
                 .add_filter("Meshes", &["stl", "obj", "ply", "off", "glb", "gltf", "3mf"]);
             let chosen = match purpose {
-                Purpose::WindowState => pollster::block_on(dialog.pick_file()),
+                Purpose::Open => pollster::block_on(dialog.pick_file()),
                 Purpose::Export => {
                     pollster::block_on(dialog.set_file_name("sculpture.stl").save_file())
                 }
             };
             open.store(false, Relaxed);
             if let Some(file) = chosen {
-                let _ = say.send(Done::Chosen(purpose, file.path().to_owned()));
+                let _ = say.send(TaskReport::Chosen(purpose, file.path().to_owned()));
             }
         });
     }
 
-    /// Asks for the thickness map of this clay; the newest wish counts.
+    /// Asks for the thickness map of this clay; the newest request counts.
     pub fn thickness(&mut self, mesh: &Snapshot, near: Vec3, limit: f32) {
-        let (wish, slot) = self.thickness.get_or_insert_with(|| {
-            let (wish, wishes) = cc::bounded(1);
-            let (say, mine) = (self.say.clone(), wishes.clone());
-            thread("sculptd-thickness", move || follow(&mine, &say));
-            (wish, wishes)
+        let reports = &self.say;
+        let worker = self.thickness.get_or_insert_with(|| {
+            let say = reports.clone();
+            LatestWins::follow("sculptd-thickness", move |requests| follow(requests, &say))
         });
-        let _ = slot.try_recv();
-        let _ = wish.try_send(Wanted { mesh: mesh.clone(), near, limit });
+        worker.request(ThicknessRequest { mesh: mesh.clone(), near, limit });
     }
 
     pub fn say(&self, text: impl Into<String>, wrong: bool) {
-        let _ = self.say.send(Done::Said(text.into(), wrong));
+        let _ = self.say.send(TaskReport::Message(text.into(), wrong));
     }
 
     /// Writes a picture.
@@ -255,18 +262,22 @@ impl Work {
             let said = super::picture::write_png(&path, &picture);
             match said {
                 Ok(()) if quiet => {}
-                Ok(()) => drop(say.send(Done::Said(format!("Saved {}", path.display()), false))),
-                Err(e) => drop(say.send(Done::Said(format!("{}: {e}", path.display()), true))),
+                Ok(()) => {
+                    drop(say.send(TaskReport::Message(format!("Saved {}", path.display()), false)))
+                }
+                Err(e) => {
+                    drop(say.send(TaskReport::Message(format!("{}: {e}", path.display()), true)))
+                }
             }
         });
     }
 }
 
-/// Vertices measured between two looks for a newer wish: some ten milliseconds.
+/// Vertices measured before the thread looks for a newer request: some ten milliseconds.
 const BATCH: usize = 40_000;
 
-/// Keeps the map of the newest clay until nobody wishes any more.
-fn follow(wishes: &cc::Receiver<Wanted>, say: &cc::Sender<Done>) {
+/// Keeps the map of the newest clay until the window is gone.
+fn follow(requests: &cc::Receiver<Request<ThicknessRequest>>, say: &cc::Sender<TaskReport>) {
     // One worker is left to the loop.
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).build() else {
@@ -275,7 +286,7 @@ fn follow(wishes: &cc::Receiver<Wanted>, say: &cc::Sender<Done>) {
     let job = Job::default();
     let mut map: Option<LiveMap> = None;
     let mut pages: Vec<Arc<[f32]>> = Vec::new();
-    while let Ok(mut wanted) = wishes.recv() {
+    while let Ok((mut wanted, _)) = requests.recv() {
         loop {
             if map.as_mut().is_none_or(|m| pool.install(|| m.advance(&wanted.mesh)).is_err()) {
                 map = pool.install(|| LiveMap::new(&wanted.mesh, 1, &job)).ok();
@@ -285,11 +296,11 @@ fn follow(wishes: &cc::Receiver<Wanted>, say: &cc::Sender<Done>) {
             let left = pool.install(|| map.work(wanted.near, BATCH, &job)).unwrap_or(0);
             gather(&wanted.mesh, map.values(), &mut pages);
             let about = Box::new(about(&wanted, map, left));
-            if say.send(Done::Map(MapValues { pages: pages.clone() }, about)).is_err() {
+            if say.send(TaskReport::Map(MapValues { pages: pages.clone() }, about)).is_err() {
                 return;
             }
-            match wishes.try_recv() {
-                Ok(newer) => wanted = newer,
+            match requests.try_recv() {
+                Ok((newer, _)) => wanted = newer,
                 Err(_) if left > 0 => {}
                 Err(_) => break,
             }
@@ -320,7 +331,7 @@ fn gather(mesh: &Snapshot, values: &[f32], pages: &mut Vec<Arc<[f32]>>) {
 /// Spots listed.
 const SPOTS: usize = 5;
 
-fn about(wanted: &Wanted, map: &LiveMap, left: usize) -> Thickness {
+fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSummary {
     let values = map.values();
     let mut known: Vec<(f32, u32)> = values
         .iter()
@@ -333,13 +344,13 @@ fn about(wanted: &Wanted, map: &LiveMap, left: usize) -> Thickness {
         known.get(((known.len().max(1) - 1) as f64 * share) as usize).map_or(0.0, |k| k.0)
     };
     let (min, max, high) = (at(0.0), at(1.0), at(0.98));
-    let mut histogram = vec![0u32; Thickness::CLASSES];
+    let mut histogram = vec![0u32; ThicknessSummary::CLASSES];
     let span = (high - min).max(1e-12);
     for (v, _) in &known {
-        let class = ((v - min) / span * Thickness::CLASSES as f32) as usize;
-        histogram[class.min(Thickness::CLASSES - 1)] += 1;
+        let class = ((v - min) / span * ThicknessSummary::CLASSES as f32) as usize;
+        histogram[class.min(ThicknessSummary::CLASSES - 1)] += 1;
     }
-    // The thinnest places, each at least a tenth of the work's size from the others.
+    // The thinnest places, each at least a tenth of the object's size from the others.
     let (lo, hi) = wanted.mesh.bounds();
     let apart = (hi - lo).length() * 0.05;
     let mut places = vec![None; values.len()];
@@ -355,14 +366,14 @@ fn about(wanted: &Wanted, map: &LiveMap, left: usize) -> Thickness {
             }
         }
     }
-    let mut spots: Vec<Spot> = Vec::new();
+    let mut spots: Vec<ThinSpot> = Vec::new();
     for &(thickness, id) in thin {
         let Some(place) = places[id as usize] else { continue };
         if spots.len() < SPOTS && spots.iter().all(|s| s.place.distance(place) > apart) {
-            spots.push(Spot { place, thickness });
+            spots.push(ThinSpot { place, thickness });
         }
     }
-    Thickness {
+    ThicknessSummary {
         min,
         max,
         high,

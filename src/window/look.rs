@@ -120,7 +120,7 @@ pub struct Look {
     pub shade: f32,
     /// Edges of triangles over the clay.
     pub wireframe: bool,
-    /// The floor under the work.
+    /// The floor under the object.
     pub grid: bool,
     pub map: Map,
     /// A pale ground instead of a dark one.

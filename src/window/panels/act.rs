@@ -1,0 +1,94 @@
+//! What an action does: it changes the window's own state, or it becomes a request.
+
+use super::cube;
+use super::modal;
+use super::state::action::{self, Action};
+use super::state::{
+    HintsFollowed, ModalSetting, SCALE, SearchBox, Trim, TrimShape, UiRequest, UiState, View,
+};
+use crate::look::{MATERIALS, Map};
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::MenuItem;
+
+/// Does what an action says, or hands it on.
+pub fn act(
+    action: Action,
+    ctx: &egui::Context,
+    view: &View<'_>,
+    ui_state: &mut UiState,
+    out: &mut Vec<UiRequest>,
+) {
+    // Two keys in one frame: the second goes on from the first.
+    let asked = out.iter().rev().find_map(|a| match a {
+        UiRequest::World(Command::Brush(b)) => Some(*b),
+        _ => None,
+    });
+    let brush = asked.unwrap_or(view.state.brush);
+    if let Some(command) = action::on_brush(action, brush) {
+        out.push(UiRequest::World(command));
+        return;
+    }
+    let mut camera = view.camera;
+    if let Some((yaw, pitch)) = cube::side(action, &camera) {
+        (camera.yaw, camera.pitch) = (yaw, pitch);
+        out.push(UiRequest::Camera(camera));
+        return;
+    }
+    match action {
+        Action::Frame => {
+            let (lo, hi) = view.state.mesh.bounds();
+            if lo.cmple(hi).all() {
+                camera.frame(lo, hi);
+                out.push(UiRequest::Camera(camera));
+            }
+        }
+        Action::Perspective => {
+            camera.orthographic = !camera.orthographic;
+            out.push(UiRequest::Camera(camera));
+        }
+        Action::Undo => {
+            ui_state.prefs.hints.undone = true;
+            out.push(UiRequest::World(Command::Undo));
+        }
+        Action::Redo => out.push(UiRequest::World(Command::Redo)),
+        Action::DragRadius => modal::begin(ctx, view, ui_state, ModalSetting::Radius),
+        Action::DragStrength => modal::begin(ctx, view, ui_state, ModalSetting::Strength),
+        Action::NextMaterial => {
+            ui_state.look.material = (ui_state.look.material + 1) % MATERIALS.len()
+        }
+        Action::Facets => ui_state.look.flat = !ui_state.look.flat,
+        Action::Ssao => ui_state.look.shade = if ui_state.look.shade > 0.0 { 0.0 } else { 1.0 },
+        Action::Wireframe => ui_state.look.wireframe = !ui_state.look.wireframe,
+        Action::Grid => ui_state.look.grid = !ui_state.look.grid,
+        Action::Thickness => toggle(&mut ui_state.look.map, Map::Thickness),
+        Action::Distance => toggle(&mut ui_state.look.map, Map::Distance),
+        Action::TrimBox | Action::TrimLine => {
+            let shape = if action == Action::TrimBox { TrimShape::Box } else { TrimShape::Line };
+            ui_state.trim = Some(Trim { shape, from: None });
+        }
+        Action::TryAdd => ui_state.trial.turn(MenuItem::Add),
+        Action::TryCut => ui_state.trial.turn(MenuItem::Carve),
+        Action::TryKeep => ui_state.trial.turn(MenuItem::Keep),
+        Action::Finer => out.push(UiRequest::Level(true)),
+        Action::Coarser => out.push(UiRequest::Level(false)),
+        Action::Mask => toggle(&mut ui_state.look.map, Map::Mask),
+        Action::Search => {
+            ui_state.search = ui_state.search.take().is_none().then(SearchBox::default)
+        }
+        Action::Panels => ui_state.hidden = !ui_state.hidden,
+        Action::LightOrDark => ui_state.prefs.light = !ui_state.prefs.light,
+        Action::LargerText => ui_state.prefs.scale = (ui_state.prefs.scale + 0.1).min(SCALE.1),
+        Action::SmallerText => ui_state.prefs.scale = (ui_state.prefs.scale - 0.1).max(SCALE.0),
+        Action::Hints => ui_state.prefs.hints = HintsFollowed::default(),
+        Action::OpenMesh | Action::Export | Action::Screenshot | Action::Turntable => {
+            out.push(UiRequest::Do(action))
+        }
+        // Of the brush and of the six sides: done above.
+        _ => {}
+    }
+    ctx.request_repaint();
+}
+
+fn toggle(map: &mut Map, to: Map) {
+    *map = if *map == to { Map::None } else { to };
+}

@@ -1,0 +1,140 @@
+//! Where the panels lie: tools at the left, pages at the right, the rest over the clay.
+
+use super::act::act;
+use super::state::action;
+use super::state::{Tab, UiRequest, UiState, View};
+use super::{
+    analysis, brush, cube, curve_stroke, devices, files, hand_menu, hints, history, legend, look,
+    masks, measure, messages, modal, preferences, pressure_curve, radial, scene, search, start,
+    symmetry, theme, timing, trim,
+};
+
+const TABS: [(Tab, &str, &str); 8] = [
+    (Tab::Look, "Look", "How the clay is shown"),
+    (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
+    (Tab::Walls, "Walls", "Wall thickness and thin spots"),
+    (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
+    (Tab::Files, "Files", "Open, export, pictures"),
+    (Tab::Devices, "Pens", "Devices and their live values"),
+    (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
+    (Tab::More, "More", "Preferences and messages"),
+];
+
+/// Width of either panel, points.
+pub const PANEL: f32 = 236.0;
+
+/// Narrower windows, points, have one panel.
+const NARROW: f32 = 760.0;
+
+/// Everything over the clay, once a frame. Returns the part of the window that the panels leave
+/// free, points.
+pub fn all(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    ui_state: &mut UiState,
+    out: &mut Vec<UiRequest>,
+) -> egui::Rect {
+    let ctx = ui.ctx().clone();
+    let wanted = (ui_state.prefs.light, (ui_state.prefs.scale * 100.0).round() as u32);
+    if ui_state.applied != Some(wanted) {
+        theme::apply(&ctx, ui_state.prefs.light);
+        ctx.set_zoom_factor(ui_state.prefs.scale);
+        ui_state.look.pale = ui_state.prefs.light;
+        ui_state.applied = Some(wanted);
+    }
+    ui_state.devices.feel(view);
+    for action in action::pressed(&ctx) {
+        act(action, &ctx, view, ui_state, out);
+    }
+    modal::ui(&ctx, view, ui_state, out);
+    let narrow = ctx.content_rect().width() < NARROW;
+    if !ui_state.hidden {
+        let side = egui::Panel::left("left").exact_size(PANEL).resizable(false);
+        side.show(ui, |ui| {
+            scrolled(ui, |ui| {
+                tools(ui, view, ui_state, out);
+                if narrow {
+                    ui.add_space(10.0);
+                    pages(ui, view, ui_state, out);
+                }
+            });
+        });
+        if !narrow {
+            let side = egui::Panel::right("right").exact_size(PANEL).resizable(false);
+            side.show(ui, |ui| scrolled(ui, |ui| pages(ui, view, ui_state, out)));
+        }
+    }
+    let free = ui.available_rect_before_wrap();
+    trim::ui(&ctx, ui_state, free, out);
+    curve_stroke::ui(&ctx, view, ui_state, free, out);
+    hand_menu::ui(&ctx, view, free);
+    cube::ui(&ctx, view, free, out);
+    legend::ui(&ctx, ui_state, free);
+    hints::ui(&ctx, &ui_state.prefs.hints, view.demo_runs, free);
+    start::ui(&ctx, view, ui_state, free, out);
+    files::replace(&ctx, ui_state, free, out);
+    messages::toast(&ctx, ui_state, free);
+    for action in radial::ui(&ctx, ui_state).into_iter().chain(search::ui(&ctx, ui_state)) {
+        act(action, &ctx, view, ui_state, out);
+    }
+    free
+}
+
+fn scrolled(ui: &mut egui::Ui, what: impl FnOnce(&mut egui::Ui)) {
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ui.set_max_width(PANEL - 26.0);
+        ui.add_space(6.0);
+        what(ui);
+        ui.add_space(6.0);
+    });
+}
+
+fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    ui.heading("sculptd");
+    ui.add_space(6.0);
+    brush::ui(ui, view, out);
+    ui.add_space(8.0);
+    symmetry::ui(ui, view, out);
+    ui.add_space(8.0);
+    pressure_curve::ui(ui, view, &ui_state.devices, out);
+    ui.add_space(8.0);
+    masks::ui(ui, out);
+    ui.add_space(8.0);
+    history::ui(ui, view, ui_state, out);
+}
+
+fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    egui::Grid::new("tabs").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
+        for (i, (tab, name, tip)) in TABS.into_iter().enumerate() {
+            let button =
+                egui::Button::selectable(ui_state.tab == tab, name).min_size([47.0, 22.0].into());
+            if ui.add(button).on_hover_text(tip).clicked() {
+                ui_state.tab = tab;
+            }
+            if i % 4 == 3 {
+                ui.end_row();
+            }
+        }
+    });
+    ui.separator();
+    match ui_state.tab {
+        Tab::Look => look::ui(ui, ui_state, out, view),
+        Tab::Scene => {
+            scene::ui(ui, view, ui_state, out);
+            ui.add_space(8.0);
+            trim::levels(ui, view, ui_state, out);
+            ui.add_space(8.0);
+            trim::buttons(ui, ui_state);
+        }
+        Tab::Walls => analysis::ui(ui, view, ui_state, out),
+        Tab::Measure => measure::ui(ui, view, ui_state, out),
+        Tab::Files => files::ui(ui, view, ui_state, out),
+        Tab::Devices => devices::ui(ui, view, &ui_state.devices),
+        Tab::Loop => timing::ui(ui, view),
+        Tab::More => {
+            preferences::ui(ui, ui_state, view);
+            ui.add_space(10.0);
+            messages::ui(ui, ui_state);
+        }
+    }
+}

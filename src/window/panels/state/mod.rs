@@ -1,0 +1,32 @@
+//! The plain data between the viewer and the panels: what panels see ([`View`]), what they ask for
+//! ([`UiRequest`]) and what a person has set ([`UiState`]). It knows neither wgpu nor the panels.
+
+pub mod action;
+pub mod files;
+pub mod history;
+pub mod kiosk;
+pub mod messages;
+pub mod operation;
+pub mod pens;
+pub mod preferences;
+pub mod request;
+pub mod search;
+pub mod sizes;
+pub mod thickness;
+pub mod ui;
+pub mod view;
+
+pub use action::{Action, ActionEntry};
+pub use files::{FilesPage, UNITS};
+pub use history::{HistoryVersions, KEPT, StepPicture, VersionRow};
+pub use kiosk::KioskPad;
+pub use messages::Message;
+pub use operation::{BooleanTrial, Modal, ModalSetting, TrialStatus, Trim, TrimShape};
+pub use pens::PenTrace;
+pub use preferences::{HintsFollowed, Preferences, SCALE};
+pub use request::UiRequest;
+pub use search::SearchBox;
+pub use sizes::{DistanceSummary, DistanceTarget, Measured, SizesPage};
+pub use thickness::{ThicknessSummary, ThinSpot, WallsPage};
+pub use ui::{Tab, UiState};
+pub use view::{FrameFigures, View};

@@ -1,0 +1,58 @@
+//! Operations that are prepared in the window before they are sent: a Boolean that is previewed, a
+//! trim that is drawn, a setting that is dragged.
+
+use egui::Pos2;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_engine::hand::MenuItem;
+
+/// What a Boolean would make, shown while the held object is carried.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BooleanTrial {
+    pub choice: Option<MenuItem>,
+    pub said: TrialStatus,
+}
+
+impl BooleanTrial {
+    /// Tries this, or no more.
+    pub fn turn(&mut self, choice: MenuItem) {
+        self.choice = (self.choice != Some(choice)).then_some(choice);
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum TrialStatus {
+    #[default]
+    Nothing,
+    UnderWay,
+    /// Triangles that the held object has made.
+    Shown(usize),
+    Wrong(String),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrimShape {
+    Box,
+    Line,
+}
+
+/// A trim that is being drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trim {
+    pub shape: TrimShape,
+    /// Where the pointer went down, points.
+    pub from: Option<Pos2>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModalSetting {
+    Radius,
+    Strength,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct Modal {
+    pub what: ModalSetting,
+    /// Where the pointer was; the ring stays there. Points.
+    pub from: Pos2,
+    pub before: BrushSettings,
+}

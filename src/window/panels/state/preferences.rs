@@ -1,0 +1,99 @@
+//! The preferences that the window keeps between runs.
+
+use std::path::PathBuf;
+
+use crate::look::Look;
+
+/// Which hints were followed so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct HintsFollowed {
+    pub touched: bool,
+    pub turned: bool,
+    pub undone: bool,
+}
+
+impl HintsFollowed {
+    /// The hint for now, if one is left.
+    pub fn hint(&self) -> Option<&'static str> {
+        match (self.touched, self.turned, self.undone) {
+            (false, ..) => Some("Sculpt: press and drag on the clay"),
+            (_, false, _) => Some("Drag beside the clay to turn it, scroll to zoom"),
+            (_, _, false) => Some("Ctrl+Z undoes a stroke, Shift smooths, Ctrl carves"),
+            _ => None,
+        }
+    }
+}
+
+/// Smallest and largest scale of the panels.
+pub const SCALE: (f32, f32) = (0.7, 3.0);
+
+/// Recent files kept.
+const RECENT: usize = 8;
+
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// Of the panels, times what the screen asks for.
+    pub scale: f32,
+    pub light: bool,
+    /// Four samples a pixel, where no graphics card draws: a card always does.
+    pub smooth_edges: bool,
+    /// The speed of a pointer without pressure stands in for it.
+    pub speed_is_pressure: bool,
+    #[serde(alias = "done")]
+    pub hints: HintsFollowed,
+    pub look: Look,
+    pub recent: Vec<PathBuf>,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Preferences {
+            scale: 1.0,
+            light: false,
+            smooth_edges: false,
+            speed_is_pressure: true,
+            hints: HintsFollowed::default(),
+            look: Look::default(),
+            recent: Vec::new(),
+        }
+    }
+}
+
+impl Preferences {
+    /// From the text of the file; what cannot be read takes its default.
+    pub fn parse(text: &str) -> Preferences {
+        let mut p: Preferences = toml::from_str(text).unwrap_or_default();
+        p.scale = if p.scale.is_finite() { p.scale.clamp(SCALE.0, SCALE.1) } else { 1.0 };
+        p.recent.truncate(RECENT);
+        p
+    }
+
+    pub fn used(&mut self, path: PathBuf) {
+        self.recent.retain(|p| *p != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_kept_comes_back_and_nonsense_is_as_at_first() {
+        let mut p = Preferences { scale: 1.4, light: true, ..Default::default() };
+        p.hints.turned = true;
+        for i in 0..12 {
+            p.used(format!("/a/{i}.stl").into());
+        }
+        p.used("/a/9.stl".into());
+        let back = Preferences::parse(&toml::to_string(&p).expect("plain data"));
+        assert_eq!(back, p);
+        assert_eq!(back.recent.len(), RECENT);
+        assert_eq!(back.recent[0], PathBuf::from("/a/9.stl"));
+        assert_eq!(Preferences::parse("scale = \"x\""), Preferences::default());
+        assert_eq!(Preferences::parse("scale = 90.0").scale, SCALE.1);
+    }
+}

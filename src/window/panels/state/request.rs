@@ -1,0 +1,39 @@
+//! What the panels ask of the window.
+
+use std::path::PathBuf;
+
+use glam::Vec3;
+use sculptd_daemon::trim::Part;
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::MenuItem;
+
+use super::action::Action;
+
+/// What a panel asks for.
+#[derive(Debug, Clone)]
+pub enum UiRequest {
+    World(Command),
+    /// To a place of the session's history.
+    Jump(u64),
+    Camera(Camera),
+    /// The camera comes to look at this place.
+    FlyTo(Vec3),
+    OpenMesh(PathBuf),
+    /// The mesh is written, over a file of that name too.
+    Export(PathBuf),
+    /// The window goes on with another session.
+    OpenSession(PathBuf),
+    /// The held object is joined with the object.
+    Join(MenuItem),
+    /// What is seen in this part of the view is cut off.
+    Trim(Part),
+    /// The object one level finer, or coarser.
+    Level(bool),
+    /// Distances are those to the object as it is now.
+    Reference,
+    /// The shadow's outline is written.
+    Outline(PathBuf),
+    /// For the window: dialogs and pictures.
+    Do(Action),
+}

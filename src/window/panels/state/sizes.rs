@@ -1,0 +1,62 @@
+//! What the size page shows: measures, the shadow along a direction, distances to another shape.
+
+use glam::DVec3;
+use sculptd_geometry::projection::PlaneRegion;
+
+/// What was measured of one state of the object; lengths in the mesh's unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    pub revision: u64,
+    pub volume: f64,
+    pub area: f64,
+    pub dimensions: [f64; 3],
+    /// Areas of the shadows along x, y and z.
+    pub projected: [f64; 3],
+    /// What was looked along, and the shadow that way.
+    pub direction: DVec3,
+    pub shadow: f64,
+    pub outline: Vec<PlaneRegion>,
+}
+
+/// What distances are to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DistanceTarget {
+    /// The object as it was opened, or as it was when the person said so.
+    #[default]
+    Before,
+    /// the held object, where it is.
+    HeldObject,
+}
+
+/// What the distance map says.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DistanceSummary {
+    pub min: f32,
+    pub max: f32,
+    /// Mean of the squares' root.
+    pub rms: f32,
+    /// Vertices known, of all.
+    pub known: (usize, usize),
+}
+
+#[derive(Debug)]
+pub struct SizesPage {
+    pub found: Option<Box<Measured>>,
+    pub direction: DVec3,
+    pub against: DistanceTarget,
+    pub distances: Option<DistanceSummary>,
+    /// The drawing's file.
+    pub file: String,
+}
+
+impl Default for SizesPage {
+    fn default() -> Self {
+        SizesPage {
+            found: None,
+            direction: DVec3::NEG_Z,
+            against: DistanceTarget::default(),
+            distances: None,
+            file: "outline.svg".into(),
+        }
+    }
+}

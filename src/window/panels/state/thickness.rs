@@ -1,0 +1,52 @@
+//! What the thickness page shows: the live map's summary, the limit and where it comes from.
+
+use glam::Vec3;
+use sculptd_geometry::thickness::preset::Preset;
+
+/// A place where the wall is thin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThinSpot {
+    pub place: Vec3,
+    pub thickness: f32,
+}
+
+/// What the map says of the whole object; lengths in the mesh's unit.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ThicknessSummary {
+    pub min: f32,
+    pub max: f32,
+    pub median: f32,
+    /// The 98th percentile: where the scale and the histogram end.
+    pub high: f32,
+    pub measured: usize,
+    pub vertices: usize,
+    /// Share of the measured vertices below the limit, 0 to 1.
+    pub below: f32,
+    /// From `min` to `high`.
+    pub histogram: Vec<u32>,
+    pub spots: Vec<ThinSpot>,
+}
+
+impl ThicknessSummary {
+    pub const CLASSES: usize = 48;
+}
+
+#[derive(Debug)]
+pub struct WallsPage {
+    pub found: Option<Box<ThicknessSummary>>,
+    pub presets: Vec<Preset>,
+    /// Index into `presets`; `None`: the person's own limit.
+    pub preset: Option<usize>,
+    pub limit: f32,
+}
+
+impl Default for WallsPage {
+    fn default() -> Self {
+        WallsPage {
+            found: None,
+            presets: Vec::new(),
+            preset: None,
+            limit: 1.0,
+        }
+    }
+}

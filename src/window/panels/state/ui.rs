@@ -1,0 +1,72 @@
+//! What a person has set in the window. Nothing of it belongs to the world.
+
+use super::files::FilesPage;
+use super::history::{HistoryVersions, StepPicture};
+use super::kiosk::KioskPad;
+use super::messages::Message;
+use super::operation::{BooleanTrial, Modal, Trim};
+use super::pens::PenTrace;
+use super::preferences::Preferences;
+use super::search::SearchBox;
+use super::sizes::SizesPage;
+use super::thickness::WallsPage;
+use crate::look::Look;
+
+/// Which page of the right panel is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Tab {
+    #[default]
+    Look,
+    Scene,
+    Walls,
+    Measure,
+    Files,
+    Devices,
+    Loop,
+    More,
+}
+
+/// What the person has set on the window: nothing of the world.
+#[derive(Debug, Default)]
+pub struct UiState {
+    pub look: Look,
+    pub prefs: Preferences,
+    pub tab: Tab,
+    pub hidden: bool,
+    pub search: Option<SearchBox>,
+    pub radial: Option<egui::Pos2>,
+    pub modal: Option<Modal>,
+    pub files: FilesPage,
+    pub messages: Vec<Message>,
+    pub walls: WallsPage,
+    pub devices: PenTrace,
+    /// The offer of earlier sessions was answered.
+    pub start_answered: bool,
+    /// A Boolean is under way.
+    pub joining: bool,
+    pub trial: BooleanTrial,
+    pub trim: Option<Trim>,
+    /// The handle of a curve that was held last.
+    pub handle: Option<usize>,
+    pub sizes: SizesPage,
+    /// Pictures of steps, by step.
+    pub history: Vec<StepPicture>,
+    /// Every version that the session keeps; empty without a session.
+    pub versions: HistoryVersions,
+    /// The screen of an installation.
+    pub pad: KioskPad,
+    /// A theme and scale that are in force, so that they are set once.
+    pub applied: Option<(bool, u32)>,
+}
+
+/// Kept at most.
+const MOST: usize = 50;
+
+impl UiState {
+    pub fn say(&mut self, text: impl Into<String>, wrong: bool) {
+        self.messages.push(Message { text: text.into(), wrong, since: None });
+        if self.messages.len() > MOST {
+            self.messages.remove(0);
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What the panels see: plain data, gathered once a frame.
+
+use std::path::PathBuf;
+
+use sculptd_daemon::Published;
+use sculptd_engine::camera::Camera;
+
+/// What panels see.
+#[derive(Debug)]
+pub struct View<'a> {
+    pub state: &'a Published,
+    /// What each brush begins with.
+    pub presets: &'a sculptd_clay::brush::Presets,
+    /// The camera as the window has it: the world's own follows a tick later.
+    pub camera: Camera,
+    /// One line a device, as the adaptors describe themselves.
+    pub devices: &'a [String],
+    /// The session's file and whether it is well.
+    pub session: Option<&'a str>,
+    /// Earlier sessions, the newest first.
+    pub recent: &'a [PathBuf],
+    /// Bytes of pages sent to the card with the last frame.
+    pub uploaded: u64,
+    pub adapter: &'a str,
+    /// What the window measured of itself.
+    pub frame: FrameFigures,
+    /// The demo performs.
+    pub demo_runs: bool,
+}
+
+/// What the window measured of itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FrameFigures {
+    /// Of the last frames, our own work on the processor, ms: without waiting for the card.
+    pub cpu_ms: f64,
+    pub worst_cpu_ms: f64,
+    /// From a pointer's sample to the state that holds it, ms.
+    pub input_to_snapshot_ms: f64,
+    /// From a pointer's sample to the frame that shows it being handed to the card, ms.
+    pub input_to_submit_ms: f64,
+    /// Pages in view, of all.
+    pub drawn: (usize, usize),
+    /// Frames begun within the last second.
+    pub frames_a_second: usize,
+    /// Samples of this window's pointer sent.
+    pub sent: u64,
+    /// Time of the newest sample that a frame has shown, on the clock.
+    pub newest_us: u64,
+}

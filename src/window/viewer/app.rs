@@ -1,0 +1,133 @@
+//! The event loop, on the main thread. The pointer is an adaptor like the others; panels send
+//! commands.
+
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Duration;
+
+use egui_winit::accesskit_winit::WindowEvent as AccessibilityRequest;
+use glam::Vec2;
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, MouseScrollDelta, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
+
+use super::gpu::NoViewer;
+use super::state::{AccessibilityEvent, WindowState};
+use super::wiring::Wiring;
+
+/// Opens the window and runs until it is closed or `stop` is raised.
+///
+/// # Errors
+/// [`NoViewer`] where there is no display or nothing that can draw on it.
+pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
+    let events = EventLoop::<AccessibilityEvent>::with_user_event()
+        .build()
+        .map_err(|e| NoViewer::Window(e.to_string()))?;
+    let accessibility = events.create_proxy();
+    let mut app = App { wiring, accessibility, open: None, failed: None };
+    events.run_app(&mut app).map_err(|e| NoViewer::Window(e.to_string()))?;
+    if let Some(mut open) = app.open {
+        open.preferences_file.keep(&open.ui_state);
+    }
+    app.failed.map_or(Ok(()), Err)
+}
+
+struct App {
+    wiring: Wiring,
+    accessibility: EventLoopProxy<AccessibilityEvent>,
+    open: Option<WindowState>,
+    failed: Option<NoViewer>,
+}
+
+impl ApplicationHandler<AccessibilityEvent> for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.open.is_none() {
+            match WindowState::new(events, &self.wiring, &self.accessibility) {
+                Ok(open) => self.open = Some(open),
+                Err(e) => {
+                    self.failed = Some(e);
+                    events.exit();
+                }
+            }
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, event: AccessibilityEvent) {
+        let Some(open) = &mut self.open else { return };
+        let context = open.egui.egui_ctx();
+        match event.window_event {
+            AccessibilityRequest::InitialTreeRequested => context.enable_accesskit(),
+            AccessibilityRequest::ActionRequested(request) => {
+                open.egui.on_accesskit_action_request(request);
+            }
+            AccessibilityRequest::AccessibilityDeactivated => context.disable_accesskit(),
+        }
+        open.pacing.want();
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        if self.wiring.stop.load(Relaxed) {
+            events.exit();
+            return;
+        }
+        let now = self.wiring.clock.now_us();
+        if open.pacing.poll_is_due(now) {
+            open.poll(&self.wiring);
+        }
+        if open.pacing.frame_is_due(now) {
+            open.window.request_redraw();
+        }
+        let wait = Duration::from_micros(open.pacing.wait_us(now));
+        #[allow(clippy::disallowed_methods)]
+        // winit takes its deadlines in the machine's own clock.
+        let next = std::time::Instant::now() + wait;
+        events.set_control_flow(ControlFlow::WaitUntil(next));
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        let wiring = &mut self.wiring;
+        if matches!(event, WindowEvent::RedrawRequested) {
+            open.redraw(wiring);
+            return;
+        }
+        if open.egui.on_window_event(&open.window, &event).repaint {
+            open.pacing.want();
+        }
+        match event {
+            // Visitors do not end an installation that staff ends by a number.
+            WindowEvent::CloseRequested if wiring.kiosk.as_ref().is_some_and(|k| k.staff) => {}
+            WindowEvent::CloseRequested => {
+                wiring.stop.store(true, Relaxed);
+                events.exit();
+            }
+            WindowEvent::Resized(size) => open.resize(size.width, size.height, wiring),
+            WindowEvent::ModifiersChanged(m) => open.mods = m.state(),
+            WindowEvent::CursorMoved { position, .. } => {
+                open.moved(Vec2::new(position.x as f32, position.y as f32), wiring);
+            }
+            WindowEvent::CursorLeft { .. } => open.left(wiring),
+            WindowEvent::MouseInput { state, button, .. } => {
+                open.mouse_button(button, state == ElementState::Pressed, wiring);
+            }
+            WindowEvent::Touch(touch) => open.touched(&touch, wiring),
+            WindowEvent::MouseWheel { delta, .. } if !open.over_panel(open.pointer.at) => {
+                let steps = match delta {
+                    MouseScrollDelta::LineDelta(_, y) => y,
+                    MouseScrollDelta::PixelDelta(p) => p.y as f32 / 40.0,
+                };
+                open.camera.zoom(1.12f32.powf(steps));
+                open.send_camera(wiring);
+            }
+            WindowEvent::PinchGesture { delta, .. } => {
+                open.camera.zoom(1.0 + delta as f32);
+                open.send_camera(wiring);
+            }
+            WindowEvent::DroppedFile(path) if wiring.kiosk.is_none() => {
+                open.tasks.load(path, wiring.commands.clone());
+            }
+            _ => {}
+        }
+    }
+}

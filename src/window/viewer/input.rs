@@ -1,0 +1,184 @@
+//! The pointer as a device: on the clay it sculpts, beside the clay it turns the view. A press is
+//! decided by where it happens: [`WindowState::over_panel`].
+
+use glam::Vec2;
+use winit::event::{MouseButton, Touch, TouchPhase};
+
+use super::pointer::{Drag, PLAIN, lent};
+use super::state::WindowState;
+use super::wiring::Wiring;
+use sculptd_devices::{Body, Pen, Sample, Tool};
+use sculptd_engine::command::Command;
+use sculptd_engine::stroke::CurveAction;
+
+impl WindowState {
+    /// The pointer as a pen: it says all that a pen says.
+    fn sample(&mut self, tip: bool, wiring: &mut Wiring) {
+        let t_us = wiring.clock.now_us();
+        let by_speed = self.pointer.speed.pressure(t_us, self.pointer.at / self.view_rect().1.y);
+        let pressure = match self.pointer.force {
+            Some(force) => force,
+            None if self.ui_state.prefs.speed_is_pressure => by_speed,
+            None => PLAIN,
+        };
+        let (corner, size) = self.view_rect();
+        let pen = Pen {
+            tool: Tool::Touch,
+            in_range: self.pointer.inside,
+            tip,
+            pos_mm: self.pointer.at - corner,
+            area_mm: size,
+            raw: self.pointer.at.as_ivec2().to_array(),
+            pressure: Some(if tip { pressure.clamp(0.01, 1.0) } else { 0.0 }),
+            ..Default::default()
+        };
+        let sample =
+            Sample { device: wiring.pointer_id, t_us, device_t_us: None, body: Body::Pen(pen) };
+        wiring.pointer.push(sample);
+        wiring.pointer.flush();
+        self.figures.sent += 1;
+    }
+
+    pub(super) fn moved(&mut self, to: Vec2, wiring: &mut Wiring) {
+        let by = (to - self.pointer.at) / self.view_rect().1;
+        self.pointer.at = to;
+        self.pointer.inside = true;
+        match self.pointer.drag {
+            Drag::Sculpt => self.sample(true, wiring),
+            Drag::Orbit => {
+                self.camera.orbit(by);
+                self.ui_state.prefs.hints.turned = true;
+                self.send_camera(wiring);
+            }
+            Drag::Pan => {
+                self.camera.pan(by);
+                self.send_camera(wiring);
+            }
+            Drag::None => self.sample(false, wiring),
+        }
+        self.pacing.want();
+    }
+
+    /// The pointer is gone: a pen that left the tablet's range.
+    pub(super) fn left(&mut self, wiring: &mut Wiring) {
+        if self.pointer.drag == Drag::None {
+            self.pointer.inside = false;
+            self.sample(false, wiring);
+            self.pacing.want();
+        }
+    }
+
+    /// Whether a place in the window, pixels, lies on a panel or on another surface of egui that
+    /// takes presses. The panels are where the last frame has laid them out, and they do not move
+    /// under a pointer.
+    pub(super) fn over_panel(&self, at: Vec2) -> bool {
+        let context = self.egui.egui_ctx();
+        let at = at / context.pixels_per_point();
+        let at = egui::pos2(at.x, at.y);
+        let above = |layer: egui::LayerId| layer.order != egui::Order::Background;
+        self.free.is_some_and(|free| !free.contains(at))
+            || context.layer_id_at(at).is_some_and(above)
+    }
+
+    /// A press belongs to what is under the pointer at the time of the press, whatever the last
+    /// frame was; what follows until the release belongs there too.
+    pub(super) fn mouse_button(&mut self, button: MouseButton, down: bool, wiring: &mut Wiring) {
+        let bit = match button {
+            MouseButton::Left => 1,
+            MouseButton::Right => 2,
+            MouseButton::Middle => 4,
+            _ => 8,
+        };
+        if down && self.pointer.drag == Drag::None {
+            let dragged = self.held_on_panels != 0;
+            if dragged || self.over_panel(self.pointer.at) {
+                self.held_on_panels |= bit;
+                return;
+            }
+        }
+        if !down && self.held_on_panels & bit != 0 {
+            self.held_on_panels &= !bit;
+            return;
+        }
+        self.button(button, down, wiring);
+    }
+
+    pub(super) fn button(&mut self, button: MouseButton, down: bool, wiring: &mut Wiring) {
+        if !down {
+            if self.pointer.drag == Drag::Sculpt {
+                self.sample(false, wiring);
+                if let Some(brush) = self.pointer.lent.take() {
+                    let _ = wiring.commands.try_send(Command::Brush(brush));
+                }
+            }
+            self.pointer.drag = Drag::None;
+            return;
+        }
+        let busy = self.ui_state.modal.is_some() || self.ui_state.radial.is_some();
+        if busy || self.pointer.drag != Drag::None {
+            return;
+        }
+        self.camera_animation = None;
+        self.pointer.inside = true;
+        let state = wiring.published.load();
+        let view = self.view_point(self.pointer.at);
+        let ray = self.camera.ray(view);
+        // The handle of a curve may lie beside the clay.
+        let draft = &state.draft;
+        let handle = draft.handle_at(view, self.camera.aspect);
+        let on_clay = || handle.is_some() || state.mesh.pick(ray).is_some();
+        if let (MouseButton::Right, Some(handle)) = (button, handle) {
+            let _ = wiring.commands.try_send(Command::CurveStroke(CurveAction::Delete(handle)));
+            return;
+        }
+        self.pointer.drag = match button {
+            MouseButton::Left if on_clay() => Drag::Sculpt,
+            MouseButton::Left => Drag::Orbit,
+            MouseButton::Right if self.mods.shift_key() => Drag::Pan,
+            MouseButton::Right => Drag::Orbit,
+            MouseButton::Middle if self.mods.shift_key() => Drag::Orbit,
+            MouseButton::Middle => Drag::Pan,
+            _ => Drag::None,
+        };
+        if self.pointer.drag == Drag::Sculpt {
+            self.ui_state.prefs.hints.touched = true;
+            let brush = state.brush;
+            let mut now = brush;
+            if draft.is_empty() {
+                now = lent(brush, self.mods, &wiring.presets);
+            }
+            if now != brush {
+                self.pointer.lent = Some(brush);
+                let _ = wiring.commands.try_send(Command::Brush(now));
+            }
+            self.sample(true, wiring);
+        }
+    }
+
+    /// A finger is a pointer that is in range only while it touches, and may know how hard.
+    pub(super) fn touched(&mut self, touch: &Touch, wiring: &mut Wiring) {
+        let to = Vec2::new(touch.location.x as f32, touch.location.y as f32);
+        if self.pointer.finger.is_some_and(|f| f != touch.id) {
+            return;
+        }
+        // A finger that begins on a panel stays with it.
+        let begins = touch.phase == TouchPhase::Started;
+        if begins && self.over_panel(to) || !begins && self.pointer.finger.is_none() {
+            return;
+        }
+        self.pointer.force = touch.force.map(|f| f.normalized() as f32);
+        match touch.phase {
+            TouchPhase::Started => {
+                self.pointer.finger = Some(touch.id);
+                self.pointer.at = to;
+                self.button(MouseButton::Left, true, wiring);
+            }
+            TouchPhase::Moved => self.moved(to, wiring),
+            TouchPhase::Ended | TouchPhase::Cancelled => {
+                self.button(MouseButton::Left, false, wiring);
+                (self.pointer.finger, self.pointer.force) = (None, None);
+                self.left(wiring);
+            }
+        }
+    }
+}

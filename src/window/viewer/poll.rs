@@ -1,0 +1,144 @@
+//! What the window looks at between frames, at a pace of its own: the published state, background
+//! tasks, the session's history, the devices. A frame follows only where something changed.
+
+use super::state::WindowState;
+use super::tasks::{Purpose, TaskReport};
+use super::wiring::Wiring;
+use crate::look::Map;
+use crate::panels::state::{Tab, UiRequest};
+use sculptd_daemon::Published;
+use sculptd_engine::hand::HeldObject;
+
+/// How often the devices are listed, the preferences kept and the Loop page refreshed.
+const SECOND_US: u64 = 1_000_000;
+
+/// Whether two states look the same: everything that the window shows of them, but for the figures
+/// of the Loop page.
+fn looks_the_same(a: &Published, b: &Published) -> bool {
+    let held = |t: &Option<HeldObject>| {
+        t.as_ref().map(|t| (std::sync::Arc::as_ptr(&t.plain) as usize, t.place))
+    };
+    a.mesh.revision() == b.mesh.revision()
+        && a.camera == b.camera
+        && a.brush == b.brush
+        && a.brush_radius == b.brush_radius
+        && a.pens == b.pens
+        && a.draft == b.draft
+        && a.hands == b.hands
+        && a.poses == b.poses
+        && held(&a.thing) == held(&b.thing)
+        && a.menu == b.menu
+        && a.fatigue == b.fatigue
+        && a.calibrating == b.calibrating
+        && (a.undo_steps, a.redo_steps) == (b.undo_steps, b.redo_steps)
+        && (a.extent, a.middle, a.volume) == (b.extent, b.middle, b.volume)
+}
+
+impl WindowState {
+    /// Looks at everything that may have changed; asks for a frame where something did.
+    pub(super) fn poll(&mut self, wiring: &Wiring) {
+        let state = wiring.published.load_full();
+        let now = wiring.clock.now_us();
+        let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
+        changed |= self.drawn_demo != (now < wiring.demo_until_us);
+        changed |= self.camera_animation.is_some() || self.turning.is_some();
+        changed |= self.take_reports(&state, wiring);
+        changed |= self.follow(&state, wiring);
+        if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
+            let devices = (wiring.devices)();
+            changed |= self.ui_state.tab == Tab::Devices && devices != self.devices;
+            changed |= self.ui_state.tab == Tab::Loop && !self.ui_state.hidden;
+            (self.devices, self.listed_us) = (devices, now);
+            self.preferences_file.keep(&self.ui_state);
+        }
+        match &wiring.kiosk {
+            Some(screen) => {
+                let view = screen.desk.view.lock().ok().and_then(|v| *v);
+                changed |= view != self.drawn_kiosk;
+                self.drawn_kiosk = view;
+            }
+            None => changed |= self.poll_history(&state, now, wiring),
+        }
+        if changed {
+            self.pacing.want();
+        }
+    }
+
+    /// The versions of the session, or the pictures of the steps where there is none.
+    fn poll_history(&mut self, state: &Published, now: u64, wiring: &Wiring) -> bool {
+        match &wiring.history {
+            Some((history, rate_hz)) => {
+                let context = self.egui.egui_ctx().clone();
+                let shown = &mut self.ui_state.versions;
+                self.version_pictures.update(shown, &context, (history, *rate_hz))
+            }
+            None => self.take_step_pictures(state, now),
+        }
+    }
+
+    /// Takes the reports of background tasks; `true` when there were any.
+    fn take_reports(&mut self, state: &Published, wiring: &Wiring) -> bool {
+        let mut changed = false;
+        while let Ok(done) = self.tasks.done.try_recv() {
+            changed = true;
+            match done {
+                TaskReport::Message(text, wrong) => self.ui_state.say(text, wrong),
+                TaskReport::Joined => self.ui_state.joining = false,
+                TaskReport::Used(path) => self.ui_state.prefs.used(path),
+                TaskReport::Map(values, about) => {
+                    self.values = Some(values);
+                    self.ui_state.walls.found = Some(about);
+                }
+                TaskReport::Opened => self.opened = Some(wiring.clock.now_us()),
+                TaskReport::Preview(done) => self.previewed(done),
+                TaskReport::Distances(values, about) => {
+                    self.ui_state.sizes.distances = Some(about);
+                    self.distances = Some(values);
+                }
+                TaskReport::Measured(found) => self.ui_state.sizes.found = Some(found),
+                TaskReport::Chosen(Purpose::Open, path) => {
+                    self.tasks.load(path, wiring.commands.clone())
+                }
+                TaskReport::Chosen(Purpose::Export, path) => {
+                    self.ui_state.files.export = path.display().to_string();
+                    self.answer(UiRequest::Export(path), state, wiring);
+                }
+            }
+        }
+        // The tick loop takes a mesh that was sent a tick or two later.
+        let now = wiring.clock.now_us();
+        if self.opened.is_some_and(|since| now.saturating_sub(since) > 100_000) {
+            self.opened = None;
+            self.before = Some(state.mesh.clone());
+        }
+        if self.distances.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
+            self.distances = None;
+        }
+        if self.values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
+            self.values = None;
+        }
+        let scale = match (
+            self.ui_state.look.map,
+            &self.ui_state.walls.found,
+            self.ui_state.sizes.distances,
+        ) {
+            (Map::Thickness, Some(found), _) => (found.min, found.high),
+            // Both ends as far from nothing; an object that did not change is pale all over.
+            (Map::Distance, _, Some(d)) => {
+                let most = d.max.max(-d.min).max(state.extent * 1e-5);
+                (-most, most)
+            }
+            _ => (0.0, 1.0),
+        };
+        changed |= self.ui_state.look.scale != scale;
+        self.ui_state.look.scale = scale;
+        if self.ui_state.look.map == Map::Thickness {
+            let wanted = (state.mesh.revision(), self.ui_state.walls.limit);
+            if self.asked_map != Some(wanted) || self.values.is_none() && self.asked_map.is_none() {
+                self.asked_map = Some(wanted);
+                self.tasks.thickness(&state.mesh, self.camera.target, wanted.1);
+            }
+        }
+        changed
+    }
+}

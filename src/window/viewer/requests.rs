@@ -1,0 +1,80 @@
+//! What the panels asked for.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use super::camera_animation::CameraAnimation;
+use super::state::WindowState;
+use super::tasks::Purpose;
+use super::wiring::Wiring;
+use crate::panels::state::{Action, UiRequest};
+use sculptd_daemon::Published;
+use sculptd_daemon::session::history::Want;
+use sculptd_engine::command::Command;
+
+impl WindowState {
+    pub(super) fn answer(&mut self, request: UiRequest, state: &Published, wiring: &Wiring) {
+        match request {
+            UiRequest::World(command) => {
+                self.ui_state.prefs.hints.undone |= matches!(command, Command::Undo);
+                let _ = wiring.commands.try_send(command);
+            }
+            UiRequest::Jump(node) => {
+                self.ui_state.prefs.hints.undone = true;
+                if let Some((history, _)) = &wiring.history {
+                    history.want(Want::Node(node));
+                }
+            }
+            UiRequest::Camera(camera) => {
+                self.camera_animation = None;
+                self.camera = camera;
+                self.send_camera(wiring);
+            }
+            UiRequest::FlyTo(place) => {
+                let now = wiring.clock.now_us();
+                self.camera_animation = Some(CameraAnimation::to_place(
+                    self.camera,
+                    place,
+                    state.middle,
+                    state.extent,
+                    now,
+                ));
+            }
+            UiRequest::OpenMesh(path) => self.tasks.load(path, wiring.commands.clone()),
+            UiRequest::OpenSession(path) => {
+                if let Ok(mut next) = wiring.open_next.lock() {
+                    *next = Some(path);
+                }
+                // This session is closed as by closing the window.
+                wiring.stop.store(true, Relaxed);
+            }
+            UiRequest::Export(path) => {
+                let (factor, unit) = self.ui_state.files.factor();
+                self.tasks.export(path, state.mesh.clone(), factor, unit);
+            }
+            UiRequest::Join(choice) => {
+                self.ui_state.joining = true;
+                self.tasks.join(choice, wiring.published.clone(), wiring.commands.clone());
+            }
+            UiRequest::Trim(part) => {
+                self.ui_state.joining = true;
+                self.tasks.trim(part, wiring.published.clone(), wiring.commands.clone());
+            }
+            UiRequest::Level(finer) => {
+                self.ui_state.joining = true;
+                self.tasks.level(finer, wiring.published.clone(), wiring.commands.clone());
+            }
+            UiRequest::Reference => self.before = Some(state.mesh.clone()),
+            UiRequest::Outline(path) => {
+                if let Some(found) = &self.ui_state.sizes.found {
+                    self.tasks.outline(path, &found.outline);
+                }
+            }
+            UiRequest::Do(Action::OpenMesh) => self.tasks.open_dialog(Purpose::Open),
+            UiRequest::Do(Action::Export) => self.tasks.open_dialog(Purpose::Export),
+            UiRequest::Do(Action::Screenshot) => self.screenshot = true,
+            UiRequest::Do(Action::Turntable) => self.begin_turntable(),
+            UiRequest::Do(_) => {}
+        }
+        self.pacing.want();
+    }
+}

@@ -1,0 +1,68 @@
+//! The latest-wins workers that follow the newest snapshot: previews of Booleans, distances,
+//! measures. Each has a thread of its own, made when it is first asked for.
+
+use glam::DVec3;
+
+use super::distance_field::{self, DistanceField};
+use super::latest_wins::LatestWins;
+use super::preview;
+use super::tasks::{TaskReport, Tasks};
+use sculptd_clay::Snapshot;
+
+#[derive(Debug, Default)]
+pub struct SnapshotWorkers {
+    preview: Option<LatestWins<preview::PreviewRequest>>,
+    field: Option<LatestWins<distance_field::DistanceRequest>>,
+    sizes: Option<LatestWins<(Snapshot, DVec3)>>,
+}
+
+impl SnapshotWorkers {
+    pub fn preview(&mut self, wanted: preview::PreviewRequest, tasks: &Tasks) {
+        let say = tasks.reporter();
+        let thread = self.preview.get_or_insert_with(|| {
+            LatestWins::start("sculptd-preview", move |wanted: preview::PreviewRequest, job| {
+                let done = preview::compute(&wanted, job).map_err(|e| e.to_string());
+                job.cancelled()
+                    || say.send(TaskReport::Preview(done.map(|p| p.map(Into::into)))).is_ok()
+            })
+        });
+        thread.request(wanted);
+    }
+
+    pub fn distances(&mut self, wanted: distance_field::DistanceRequest, tasks: &Tasks) {
+        let say = tasks.reporter();
+        let thread = self.field.get_or_insert_with(|| {
+            let mut field = DistanceField::default();
+            // One worker is left to the loop.
+            let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+            let pool = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).build().ok();
+            LatestWins::start("sculptd-distance", move |wanted, job| match &pool {
+                Some(pool) => pool.install(|| field.follow(wanted, job, &say)),
+                None => field.follow(wanted, job, &say),
+            })
+        });
+        thread.request(wanted);
+    }
+
+    pub fn sizes(&mut self, wanted: (Snapshot, DVec3), tasks: &Tasks) {
+        let say = tasks.reporter();
+        let thread = self.sizes.get_or_insert_with(|| {
+            LatestWins::start(
+                "sculptd-measure",
+                move |(mesh, direction): (Snapshot, DVec3), job| match distance_field::measure(
+                    &mesh, direction, job,
+                ) {
+                    Ok(found) => say.send(TaskReport::Measured(Box::new(found))).is_ok(),
+                    Err(_) => true,
+                },
+            )
+        });
+        thread.request(wanted);
+    }
+
+    pub fn no_preview(&self) {
+        if let Some(thread) = &self.preview {
+            thread.cancel();
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! An open window: its surface, what it draws with, and what it has asked of others.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec2};
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::keyboard::ModifiersState;
+use winit::window::Window;
+
+use super::camera_animation::CameraAnimation;
+use super::gpu::{Gpu, NoViewer, instance};
+use super::overlay;
+use super::overlay_mesh::Triangles;
+use super::pacing::Pacing;
+use super::pages::MapValues;
+use super::pointer::Pointer;
+use super::preferences_file::PreferencesFile;
+use super::preview::Preview;
+use super::renderer::Renderer;
+use super::snapshot_workers::SnapshotWorkers;
+use super::step_pictures::StepPictures;
+use super::tasks::Tasks;
+use super::turntable::Turntable;
+use super::version_pictures::VersionPictures;
+use super::wiring::Wiring;
+use crate::panels::hand_menu::MenuBall;
+use crate::panels::state::{FrameFigures, UiState};
+use sculptd_clay::Snapshot;
+use sculptd_daemon::Published;
+use sculptd_daemon::kiosk::View as KioskView;
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::{MenuItem, Similarity};
+
+/// What a screen reader asks for, from its own thread.
+pub(super) type AccessibilityEvent = egui_winit::accesskit_winit::Event;
+
+/// What the mesh over the clay was made from: the held object and its transform, the Boolean that
+/// is previewed, the menu.
+pub(super) type OverlayKey = (Option<(usize, Similarity)>, Option<MenuItem>, Vec<MenuBall>);
+
+/// An open window and all that it draws with.
+pub(super) struct WindowState {
+    pub(super) window: Arc<Window>,
+    pub(super) surface: wgpu::Surface<'static>,
+    pub(super) config: wgpu::SurfaceConfiguration,
+    pub(super) gpu: Gpu,
+    pub(super) adapter: String,
+    pub(super) renderer: Renderer,
+    pub(super) samples: u32,
+    pub(super) egui: egui_winit::State,
+    pub(super) paint: egui_wgpu::Renderer,
+    pub(super) pointer: Pointer,
+    pub(super) mods: ModifiersState,
+    /// The camera as this window last wanted it; the world's own follows a tick later.
+    pub(super) camera: Camera,
+    pub(super) camera_animation: Option<CameraAnimation>,
+    pub(super) ui_state: UiState,
+    pub(super) tasks: Tasks,
+    pub(super) preferences_file: PreferencesFile,
+    pub(super) values: Option<MapValues>,
+    /// The revision and limit that a thickness map was last asked for.
+    pub(super) asked_map: Option<(u64, f32)>,
+    pub(super) devices: Vec<String>,
+    /// When the devices were listed last.
+    pub(super) listed_us: u64,
+    pub(super) uploaded: u64,
+    pub(super) figures: FrameFigures,
+    pub(super) workers: SnapshotWorkers,
+    /// The newest preview; what was requested, and when.
+    pub(super) preview: Option<Arc<Preview>>,
+    pub(super) asked_preview: Option<((u64, Similarity, MenuItem), u64)>,
+    /// What distances are measured to, and the request that was sent last: the revision, that of
+    /// `before`, the held object's transform.
+    pub(super) before: Option<Snapshot>,
+    pub(super) asked_distance: Option<(u64, u64, Option<Similarity>)>,
+    pub(super) asked_sizes: Option<(u64, DVec3)>,
+    /// The newest revision, and since when.
+    pub(super) rested: (u64, u64),
+    /// When a mesh was loaded that may not be published yet.
+    pub(super) opened: Option<u64>,
+    pub(super) distances: Option<MapValues>,
+    pub(super) step_pictures: StepPictures,
+    pub(super) version_pictures: VersionPictures,
+    pub(super) overlay_mesh: Triangles,
+    pub(super) overlay_key: OverlayKey,
+    /// A turntable under way.
+    pub(super) turning: Option<Turntable>,
+    pub(super) screenshot: bool,
+    pub(super) pacing: Pacing,
+    /// What the last frame showed.
+    pub(super) drawn: Option<Arc<Published>>,
+    pub(super) drawn_demo: bool,
+    pub(super) drawn_kiosk: Option<KioskView>,
+    /// The part of the window between the panels, points; all of it before the first frame.
+    pub(super) free: Option<egui::Rect>,
+    /// The picture of the clay, as large as the free part, where the surface takes copies.
+    pub(super) clay_picture: Option<wgpu::Texture>,
+    /// Buttons and fingers that went down on a panel and are still down.
+    pub(super) held_on_panels: u32,
+}
+
+impl WindowState {
+    pub(super) fn new(
+        events: &ActiveEventLoop,
+        wiring: &Wiring,
+        accessibility: &EventLoopProxy<AccessibilityEvent>,
+    ) -> Result<WindowState, NoViewer> {
+        let no_window = |e: String| NoViewer::Window(e);
+        let mut wanted = Window::default_attributes().with_title("sculptd").with_visible(false);
+        // A window manager may be absent (a kiosk): the size is set as well as the mode.
+        let monitor = events.primary_monitor().or_else(|| events.available_monitors().next());
+        wanted = match (wiring.full_screen, monitor) {
+            (true, Some(m)) => wanted
+                .with_inner_size(m.size())
+                .with_fullscreen(Some(winit::window::Fullscreen::Borderless(Some(m)))),
+            // Never larger than the screen.
+            (false, Some(m)) => {
+                let screen = m.size().to_logical::<f64>(m.scale_factor());
+                let size = (screen.width.clamp(320.0, 1440.0), screen.height.clamp(240.0, 900.0));
+                wanted.with_inner_size(winit::dpi::LogicalSize::new(size.0, size.1))
+            }
+            _ => wanted.with_inner_size(winit::dpi::LogicalSize::new(1280.0, 720.0)),
+        };
+        let window = Arc::new(events.create_window(wanted).map_err(|e| no_window(e.to_string()))?);
+        let instance = instance();
+        let surface =
+            instance.create_surface(window.clone()).map_err(|e| no_window(e.to_string()))?;
+        let gpu = Gpu::new(instance, Some(&surface))?;
+        let size = window.inner_size();
+        let mut config = surface
+            .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| no_window("the adapter cannot draw on this window".into()))?;
+        let formats = surface.get_capabilities(&gpu.adapter).formats;
+        if let Some(srgb) = formats.iter().find(|f| f.is_srgb()) {
+            config.format = *srgb;
+        }
+        let usages = surface.get_capabilities(&gpu.adapter).usages;
+        config.usage |= usages & wgpu::TextureUsages::COPY_DST;
+        surface.configure(&gpu.device, &config);
+        let (preferences_file, mut ui_state) = match wiring.kiosk {
+            None => PreferencesFile::load(),
+            // Nothing of yesterday's visitors.
+            Some(_) => PreferencesFile::nothing(),
+        };
+        ui_state.walls.presets.clone_from(&wiring.thickness_presets);
+        let samples = gpu.samples(ui_state.prefs.smooth_edges);
+        let renderer = Renderer::new(&gpu, config.format, samples);
+        let context = egui::Context::default();
+        let scale = window.scale_factor() as f32;
+        let mut egui = egui_winit::State::new(
+            context,
+            egui::ViewportId::ROOT,
+            &window,
+            Some(scale),
+            None,
+            None,
+        );
+        // A screen reader meets a window that is not shown yet, else it would miss its first state.
+        egui.init_accesskit(events, &window, accessibility.clone());
+        window.set_visible(true);
+        if wiring.full_screen {
+            // Without a window manager nobody else gives it the keyboard.
+            window.focus_window();
+        }
+        let rate = window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
+        let pacing = Pacing::new(gpu.software, rate);
+        pacing.listen(egui.egui_ctx(), &wiring.clock);
+        let paint = egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
+        let state = wiring.published.load();
+        let mut camera = state.camera;
+        // A new object is seen from the front: from the side a mirrored stroke looks lopsided.
+        let untouched = state.undo_steps == 0 && state.redo_steps == 0;
+        if untouched && wiring.demo_until_us == 0 && wiring.kiosk.is_none() {
+            (camera.yaw, camera.pitch) = (0.0, 0.0);
+        }
+        camera.aspect = size.width.max(1) as f32 / size.height.max(1) as f32;
+        let mut open = WindowState {
+            adapter: gpu.name(),
+            window,
+            surface,
+            config,
+            gpu,
+            renderer,
+            samples,
+            egui,
+            paint,
+            pointer: Pointer::default(),
+            mods: ModifiersState::empty(),
+            camera,
+            camera_animation: None,
+            ui_state,
+            tasks: Tasks::default(),
+            preferences_file,
+            values: None,
+            asked_map: None,
+            devices: Vec::new(),
+            listed_us: 0,
+            uploaded: 0,
+            figures: FrameFigures::default(),
+            workers: Default::default(),
+            preview: None,
+            asked_preview: None,
+            before: None,
+            asked_distance: None,
+            asked_sizes: None,
+            rested: (0, 0),
+            opened: None,
+            distances: None,
+            step_pictures: Default::default(),
+            version_pictures: Default::default(),
+            overlay_mesh: Triangles::default(),
+            overlay_key: Default::default(),
+            turning: None,
+            screenshot: false,
+            pacing,
+            drawn: None,
+            drawn_demo: false,
+            drawn_kiosk: None,
+            free: None,
+            clay_picture: None,
+            held_on_panels: 0,
+        };
+        open.send_camera(wiring);
+        Ok(open)
+    }
+
+    /// The part of the window that shows the clay, pixels: its top left corner and its size.
+    pub(super) fn view_rect(&self) -> (Vec2, Vec2) {
+        let whole = Vec2::new(self.config.width as f32, self.config.height as f32);
+        let Some(free) = self.free.filter(|_| self.takes_copies()) else {
+            return (Vec2::ZERO, whole);
+        };
+        let scale = self.egui.egui_ctx().pixels_per_point();
+        let corner = |p: egui::Pos2| (Vec2::new(p.x, p.y) * scale).round().clamp(Vec2::ZERO, whole);
+        let (min, max) = (corner(free.min), corner(free.max));
+        if (max - min).min_element() < 1.0 { (Vec2::ZERO, whole) } else { (min, max - min) }
+    }
+
+    /// Whether the picture of the clay can be copied into a part of the window.
+    pub(super) fn takes_copies(&self) -> bool {
+        self.config.usage.contains(wgpu::TextureUsages::COPY_DST)
+    }
+
+    /// The view point of a place in the window, pixels; 0 to 1 within the view.
+    pub(super) fn view_point(&self, at: Vec2) -> Vec2 {
+        let (min, size) = self.view_rect();
+        overlay::view_point(at - min, size)
+    }
+
+    pub(super) fn send_camera(&mut self, wiring: &Wiring) {
+        let _ = wiring.commands.try_send(Command::Camera(self.camera));
+        self.pacing.want();
+    }
+
+    /// Gives the camera the proportions of the view.
+    pub(super) fn fit_camera(&mut self, wiring: &Wiring) {
+        let (_, size) = self.view_rect();
+        let aspect = (size.x / size.y).clamp(0.05, 20.0);
+        if (self.camera.aspect - aspect).abs() > 1e-4 {
+            self.camera.aspect = aspect;
+            self.send_camera(wiring);
+        }
+    }
+
+    pub(super) fn resize(&mut self, width: u32, height: u32, wiring: &Wiring) {
+        (self.config.width, self.config.height) = (width.max(1), height.max(1));
+        self.surface.configure(&self.gpu.device, &self.config);
+        // Until the next frame has laid out the panels.
+        self.free = None;
+        self.fit_camera(wiring);
+        self.pacing.want();
+    }
+}

@@ -1,0 +1,49 @@
+//! What joins the window to the daemon.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+
+use arc_swap::ArcSwap;
+use sculptd_clay::brush::Presets;
+use sculptd_daemon::Published;
+use sculptd_daemon::command_queue::CommandSender;
+use sculptd_devices::queue::Sender;
+use sculptd_devices::{Clock, DeviceId};
+use sculptd_geometry::thickness::preset::Preset;
+
+/// Everything that joins the window to the daemon.
+pub struct Wiring {
+    pub commands: CommandSender,
+    pub published: Arc<ArcSwap<Published>>,
+    /// The pointer's own way into the channel.
+    pub pointer: Sender,
+    pub pointer_id: DeviceId,
+    /// What each brush begins with.
+    pub presets: Presets,
+    /// Limits of wall thickness by process and material, for the panel of walls.
+    pub thickness_presets: Vec<Preset>,
+    pub clock: Clock,
+    /// Raised from outside, or by closing the window.
+    pub stop: Arc<AtomicBool>,
+    /// One line a device; asked for once a second.
+    pub devices: Box<dyn Fn() -> Vec<String>>,
+    pub session: Option<String>,
+    /// The session's history, and the ticks a second that its versions are counted in.
+    pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,
+    /// Sessions to offer at the start, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// Takes the session that a person chooses to open next; the window then ends.
+    pub open_next: Arc<Mutex<Option<PathBuf>>>,
+    /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
+    pub demo_until_us: u64,
+    pub full_screen: bool,
+    /// The screen of an installation, in the place of the panels.
+    pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
+}
+
+impl std::fmt::Debug for Wiring {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Wiring").finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,83 @@
+//! Nothing happens when nothing happens: what an idle window takes of the processor.
+
+use std::collections::BTreeMap;
+
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::shapes;
+use serde_json::json;
+
+use super::stage::{Stage, pause};
+
+/// Ticks of the processor a second, as Linux counts them for `/proc`.
+const TICKS: f64 = 100.0;
+
+/// Seconds of the processor that each thread of a process has taken, by the thread's number.
+fn threads(pid: u32) -> BTreeMap<u64, (String, f64)> {
+    let mut out = BTreeMap::new();
+    for entry in std::fs::read_dir(format!("/proc/{pid}/task")).expect("threads").flatten() {
+        let id = entry.file_name().to_string_lossy().parse().expect("a number");
+        let Ok(text) = std::fs::read_to_string(entry.path().join("stat")) else { continue };
+        let Some((name, rest)) = text.split_once('(').and_then(|t| t.1.rsplit_once(')')) else {
+            continue;
+        };
+        let fields: Vec<f64> = rest.split_whitespace().filter_map(|f| f.parse().ok()).collect();
+        // The state is no number: utime and stime are the 11th and 12th of what is left.
+        out.insert(id, (name.to_owned(), (fields[10] + fields[11]) / TICKS));
+    }
+    out
+}
+
+/// Shares of one core over `seconds`, by the threads' names.
+fn shares(s: &Stage, seconds: u64) -> BTreeMap<String, f64> {
+    let pid = s.daemon.0.id();
+    let before = threads(pid);
+    pause(seconds * 1000);
+    let mut out = BTreeMap::new();
+    for (id, (name, now)) in threads(pid) {
+        let then = before.get(&id).map_or(0.0, |t| t.1);
+        *out.entry(name).or_insert(0.0) += (now - then) / seconds as f64;
+    }
+    out
+}
+
+/// Of the window's threads: all but those that tick and keep the session.
+fn of_the_window(shares: &BTreeMap<String, f64>) -> f64 {
+    let daemon = ["sculptd-tick", "sculptd-journal", "sculptd-tail", "sculptd-history"];
+    let own = |name: &str| daemon.iter().any(|d| d.starts_with(name));
+    shares.iter().filter(|(name, _)| !own(name)).map(|(_, share)| share).sum()
+}
+
+fn told(what: &str, shares: &BTreeMap<String, f64>) {
+    let busy: Vec<String> = shares
+        .iter()
+        .filter(|(_, share)| **share > 0.0005)
+        .map(|(name, share)| format!("{name} {:.1} %", share * 100.0))
+        .collect();
+    let all = of_the_window(shares) * 100.0;
+    println!("{what}: the window's threads {all:.2} % of one core; {}", busy.join(", "));
+}
+
+#[test]
+fn an_idle_window_takes_no_processor() {
+    let Some(mut s) = Stage::open(&[]) else { return };
+    s.seen("idle-start");
+    // Away from the clay and the panels' buttons.
+    s.drive(&["mousemove", "640", "700"]);
+    pause(5000);
+    let idle = shares(&s, 30);
+    told("idle, the start ball", &idle);
+    assert!(of_the_window(&idle) <= 0.01, "{idle:?}");
+    if std::env::var_os("SCULPTD_LONG").is_none_or(|v| v != "1") {
+        return;
+    }
+    let path = s.dir.path().join("large.ply");
+    write_mesh(&path, &shapes::sphere_of_about(2_500_000).to_poly()).expect("written");
+    let begun = s.figure("vertices");
+    s.ask("load", &json!({ "path": path }));
+    s.until("it is loaded", |s| s.figure("vertices") != begun);
+    s.seen("idle-large");
+    pause(5000);
+    let idle = shares(&s, 30);
+    told("idle, 5 M triangles", &idle);
+    assert!(of_the_window(&idle) <= 0.01, "{idle:?}");
+}

@@ -1,0 +1,12 @@
+//! The real window on a screen of its own: a binary apart, for these tests run one at a time.
+//!
+//! `SCULPTD_SHOTS=folder` keeps the pictures; `SCULPTD_BLESS=1` writes the kept references anew:
+//! look at them first.
+#![cfg(unix)]
+#![allow(clippy::print_stdout)] // Figures and skips are told on standard output.
+
+mod first_minutes;
+mod idle;
+mod presses;
+mod stage;
+mod versions;

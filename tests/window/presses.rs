@@ -1,0 +1,38 @@
+//! No press is lost and none goes astray: it belongs to what is under the pointer at that time.
+
+use serde_json::json;
+
+use super::stage::{MIDDLE, Stage};
+
+/// Two brushes of the left panel: where their buttons are, and their names.
+const BRUSHES: [((i32, i32), &str); 2] = [((43, 64), "draw"), ((113, 64), "clay")];
+/// Presses on each side.
+const PRESSES: u32 = 100;
+
+#[test]
+fn a_press_right_after_entering_or_leaving_a_panel_goes_where_it_is() {
+    let Some(mut s) = Stage::open(&[]) else { return };
+    s.seen("presses-start");
+    let kind = |s: &Stage| s.ask("brush", &json!({}))["kind"].as_str().map(str::to_owned);
+    let go = |s: &Stage, (x, y): (i32, i32), wait_ms: u32| {
+        let (x, y, wait) = (x.to_string(), y.to_string(), format!("0.{wait_ms:03}"));
+        s.tool("xdotool", &["mousemove", &x, &y, "sleep", &wait, "click", "1"]).expect("driven");
+    };
+    let mut right = 0;
+    for i in 0..PRESSES {
+        // 0 to 50 ms, each wait twice over the run.
+        let wait_ms = i * 51 / PRESSES;
+        let before = s.figure("undo_steps");
+        let at = (MIDDLE.0 - 60 + (i % 11) as i32 * 12, MIDDLE.1 - 60 + (i / 11) as i32 * 12);
+        go(&s, at, wait_ms);
+        s.until("the press on the clay is a stroke", |s| s.figure("undo_steps") == before + 1);
+        right += 1;
+        let (button, name) = BRUSHES[i as usize % 2];
+        go(&s, button, wait_ms);
+        s.until("the press on the panel is the panel's", |s| kind(s).as_deref() == Some(name));
+        assert_eq!(s.figure("undo_steps"), before + 1, "a press on the panel is no stroke");
+        right += 1;
+    }
+    println!("{right} of {} presses went where they were", 2 * PRESSES);
+    assert_eq!(right, 2 * PRESSES);
+}

@@ -1,0 +1,256 @@
+//! A screen of its own (Xvfb, software Vulkan) with the daemon's window on it, driven by a
+//! synthetic pointer and keys. One stage at a time: each waits for the one before.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use image::RgbaImage;
+use image::imageops::FilterType;
+use sculptd_daemon::control::client::call;
+use serde_json::Value;
+
+pub const SIZE: (u32, u32) = (1280, 720);
+/// The middle of the clay: between two panels.
+pub const MIDDLE: (i32, i32) = (640, 360);
+const PATIENCE: Duration = Duration::from_secs(30);
+/// References are kept this small: form and colour, not the pixels of one driver.
+const KEPT: (u32, u32) = (160, 90);
+/// Mean difference of a kept picture, of 255.
+const TOLERANCE: f64 = 10.0;
+/// Pictures that differ by less than this, of 255 in the mean, show the same: a light stroke of
+/// smoothing is twice as much.
+const STILL: f64 = 0.02;
+
+/// One generous bound for whatever a test waits for: the machine may be loaded.
+const BOUND: Duration = Duration::from_secs(120);
+
+/// Real windows run one at a time: they measure and they click.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+pub struct Ended(pub Child);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+pub struct Stage {
+    pub dir: tempfile::TempDir,
+    display: String,
+    // In this order: the daemon goes before its screen.
+    pub daemon: Ended,
+    _screen: Ended,
+    pub last: Option<RgbaImage>,
+    _alone: MutexGuard<'static, ()>,
+}
+
+fn present(tool: &str) -> bool {
+    Command::new(tool).arg("-help").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+}
+
+#[allow(clippy::disallowed_methods)] // A test waits for other processes.
+pub fn pause(ms: u64) {
+    std::thread::sleep(Duration::from_millis(ms));
+}
+
+fn start(dir: &Path, display: &str, args: &[&str]) -> Ended {
+    let daemon = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+        .arg("run")
+        .args(args)
+        .env("DISPLAY", display)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("XDG_RUNTIME_DIR", dir)
+        .env("XDG_CONFIG_HOME", dir)
+        .env("XDG_DATA_HOME", dir.join("data"))
+        .env("HOME", dir)
+        .stdout(Stdio::null())
+        .stderr(std::fs::File::create(dir.join("log")).expect("a file"))
+        .spawn()
+        .expect("the daemon starts");
+    Ended(daemon)
+}
+
+/// What a condition gives once it gives something.
+#[allow(clippy::disallowed_methods)] // A test waits for other processes.
+fn wait<T>(what: &str, mut so: impl FnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(found) = so() {
+            return found;
+        }
+        assert!(begun.elapsed() < BOUND, "never: {what}");
+        pause(20);
+    }
+}
+
+impl Stage {
+    /// A screen and the daemon's window on it; `None`, and why, where one of the tools is missing.
+    pub fn open(args: &[&str]) -> Option<Stage> {
+        for tool in ["Xvfb", "xdotool", "import"] {
+            if !present(tool) {
+                println!("skipped: {tool} is not installed");
+                return None;
+            }
+        }
+        let alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let dir = tempfile::tempdir().expect("a folder");
+        // Xvfb chooses a free number and writes it.
+        let told = dir.path().join("display");
+        let file = std::fs::File::create(&told).expect("a file");
+        let screen = Command::new("Xvfb")
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                &format!("{}x{}x24", SIZE.0, SIZE.1),
+                "-nolisten",
+                "tcp",
+            ])
+            .stdout(file)
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb starts");
+        let screen = Ended(screen);
+        let display = wait("Xvfb has chosen a display", || {
+            std::fs::read_to_string(&told).ok().filter(|d| d.ends_with('\n'))
+        });
+        let display = format!(":{}", display.trim());
+        let daemon = start(dir.path(), &display, args);
+        let mut stage = Stage { dir, display, daemon, _screen: screen, last: None, _alone: alone };
+        stage.shown().then_some(stage)
+    }
+
+    /// Waits for the window and gives it the keyboard; `false`, and why, where it cannot open.
+    fn shown(&mut self) -> bool {
+        self.until("the daemon answers", |s| s.asked("status", &Value::Null).is_some());
+        let log = self.dir.path().join("log");
+        let mut id = String::new();
+        self.until("the window is there, or cannot be", |s| {
+            let find = ["search", "--onlyvisible", "--name", "^sculptd$"];
+            id = s.tool("xdotool", &find).unwrap_or_default();
+            let text = std::fs::read_to_string(&log).unwrap_or_default();
+            !id.trim().is_empty() || text.contains("without a window")
+        });
+        if id.trim().is_empty() {
+            let why = std::fs::read_to_string(&log).unwrap_or_default();
+            let required = std::env::var_os("SCULPTD_REQUIRE_ADAPTER").is_some();
+            assert!(!required, "no window: {why}");
+            println!("skipped: {}", why.trim());
+            return false;
+        }
+        self.drive(&["windowfocus", id.lines().next().expect("a window")]);
+        true
+    }
+
+    /// Ends the daemon as a closed window does, and starts it again.
+    pub fn restart(&mut self, args: &[&str]) {
+        self.ask("shutdown", &Value::Null);
+        self.until("the daemon ends", |s| s.daemon.0.try_wait().is_ok_and(|d| d.is_some()));
+        self.daemon = start(self.dir.path(), &self.display, args);
+        assert!(self.shown());
+    }
+
+    pub fn tool(&self, name: &str, args: &[&str]) -> Option<String> {
+        let out = Command::new(name).args(args).env("DISPLAY", &self.display).output().ok()?;
+        out.status.success().then(|| String::from_utf8_lossy(&out.stdout).into_owned())
+    }
+
+    pub fn drive(&self, args: &[&str]) {
+        let _ = self.tool("xdotool", args);
+        pause(60);
+    }
+
+    fn asked(&self, method: &str, params: &Value) -> Option<Value> {
+        call(&self.dir.path().join("sculptd.sock"), method, params, PATIENCE).ok()
+    }
+
+    pub fn ask(&self, method: &str, params: &Value) -> Value {
+        call(&self.dir.path().join("sculptd.sock"), method, params, PATIENCE)
+            .unwrap_or_else(|e| panic!("{method}: {e:?}"))
+    }
+
+    pub fn figure(&self, name: &str) -> u64 {
+        self.ask("status", &Value::Null)[name].as_u64().unwrap_or(0)
+    }
+
+    #[allow(clippy::disallowed_methods)] // A test waits for other processes.
+    pub fn until(&mut self, what: &str, mut so: impl FnMut(&mut Stage) -> bool) {
+        let begun = Instant::now();
+        while !so(self) {
+            assert!(begun.elapsed() < BOUND, "never: {what}");
+            pause(20);
+        }
+    }
+
+    /// A drag over the clay, in pixels from its middle.
+    pub fn drag(&self, from: (i32, i32), to: (i32, i32)) {
+        let at = |p: (i32, i32)| [(MIDDLE.0 + p.0).to_string(), (MIDDLE.1 + p.1).to_string()];
+        let go = |p: (i32, i32)| {
+            let [x, y] = at(p);
+            self.drive(&["mousemove", &x, &y]);
+        };
+        go(from);
+        self.drive(&["mousedown", "1"]);
+        for i in 1..=8 {
+            go((from.0 + (to.0 - from.0) * i / 8, from.1 + (to.1 - from.1) * i / 8));
+        }
+        self.drive(&["mouseup", "1"]);
+    }
+
+    /// The screen as it is, kept where asked for.
+    pub fn look(&self, name: &str) -> RgbaImage {
+        let path = self.dir.path().join(format!("{name}.png"));
+        let text = path.display().to_string();
+        self.tool("import", &["-window", "root", &text]).expect("a picture");
+        if let Some(folder) = std::env::var_os("SCULPTD_SHOTS") {
+            let _ = std::fs::copy(&path, PathBuf::from(folder).join(format!("{name}.png")));
+        }
+        image::open(&path).expect("a PNG").to_rgba8()
+    }
+
+    /// The next picture, once it is another than the last one: what was asked for is on the screen,
+    /// and stands still.
+    #[allow(clippy::disallowed_methods)] // A test waits for other processes.
+    pub fn seen(&mut self, name: &str) -> RgbaImage {
+        let begun = Instant::now();
+        while begun.elapsed() < BOUND {
+            let now = self.look(name);
+            // Nothing is drawn yet while all is black.
+            let drawn = now.pixels().any(|p| p.0[0] > 0);
+            let moved = drawn && self.last.as_ref().is_none_or(|last| differs(last, &now) > STILL);
+            pause(250);
+            if moved && differs(&now, &self.look(name)) < STILL {
+                self.last = Some(now.clone());
+                return now;
+            }
+        }
+        panic!("{name}: nothing new on the screen");
+    }
+}
+
+/// Mean difference of two pictures over the clay, of 255.
+pub fn differs(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let sum: u64 = a.iter().zip(b.iter()).map(|(x, y)| u64::from(x.abs_diff(*y))).sum();
+    sum as f64 / a.len() as f64
+}
+
+/// DistanceTarget the small picture that is kept.
+pub fn as_kept(name: &str, now: &RgbaImage) {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/window/{name}.png"));
+    let small = image::imageops::resize(now, KEPT.0, KEPT.1, FilterType::Triangle);
+    if std::env::var_os("SCULPTD_BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        small.save(&path).expect("written");
+        return;
+    }
+    let kept = image::open(&path).expect("the reference").to_rgba8();
+    let off = differs(&kept, &small);
+    println!("{name}: {off:.2} of 255 from its reference");
+    assert!(off < TOLERANCE, "{name}: {off:.2} of 255 from its reference");
+}
