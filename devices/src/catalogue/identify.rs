@@ -302,7 +302,8 @@ fn base(name: &str) -> &str {
     }
 }
 
-/// Whether the names agree but for a version, or share a model code: a word with letters and digits.
+/// Whether the names agree but for a version, or share a model code: a word with letters and
+/// digits.
 fn alike_named(model: &str, device: &str) -> bool {
     let codes = |name: &str| {
         let plain = name.split_whitespace().map(|word| {
