@@ -4,16 +4,13 @@
 use std::sync::Arc;
 
 use super::found::{Found, Identification};
-use super::identity::Identity;
+use super::identity::{Identity, TABLET_VENDORS, UC_LOGIC};
 use super::params::Params;
 use super::rewritten::rewritten;
 use super::size;
 use crate::descriptor::{Bits, CollectionKind, Descriptor, PenLayout};
 use crate::tablet::{Area, Family, Id, PadFacts, PenFacts, Tablet};
 
-/// Vendors whose reports are UC-Logic's, whatever their descriptors say: those call the second
-/// button an eraser.
-pub(super) const UC_LOGIC: [u16; 3] = [0x5543, 0x256c, 0x28bd];
 /// A size in whole inches and the descriptor's agree within this share.
 const NOMINAL: f64 = 0.2;
 
@@ -25,11 +22,15 @@ pub(super) fn described(who: &Identity, d: &Descriptor, known: Option<&Tablet>) 
     let uc_logic = UC_LOGIC.contains(&who.vid);
     let by_kernel = rewritten(who, d);
     let params = Params::of(who).filter(|_| uc_logic && by_kernel.is_none());
-    let own = d.pens.iter().filter(|p| !p.as_mouse);
+    // An absolute pointer without pressure is a pen only where the vendor sells nothing else: a
+    // virtual machine's mouse and many touch screens are described like it.
+    let only_tablets = TABLET_VENDORS.contains(&who.vid);
+    let pens = || d.pens.iter().filter(|p| !p.bare || only_tablets);
     let pen = by_kernel
-        .or_else(|| own.clone().find(|p| p.pressure.is_some()))
-        .or_else(|| d.pens.iter().find(|p| p.pressure.is_some()))
-        .or(d.pens.first());
+        .or_else(|| pens().find(|p| !p.as_mouse && p.pressure.is_some()))
+        .or_else(|| pens().find(|p| p.pressure.is_some()))
+        .or_else(|| pens().find(|p| !p.bare))
+        .or_else(|| pens().next());
     let Some((pen, (x, y))) = pen.and_then(|p| Some((p, p.x.as_ref().zip(p.y.as_ref())?))) else {
         return match params.filter(|_| d.kinds.contains(&CollectionKind::Vendor)) {
             Some(params) => Identification::Identified(by_params(who, d, params)),

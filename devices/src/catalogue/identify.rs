@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::described::{UC_LOGIC, described};
+use super::described::described;
 use super::found::{Found, Identification};
-use super::identity::Identity;
+use super::identity::{Identity, UC_LOGIC};
 use super::params::Params;
 use super::rewritten::rewritten;
 use super::{Catalogue, size};
@@ -51,9 +51,9 @@ impl Catalogue {
         let (mut best, score) = self.candidates(who, d, false);
         if best.is_empty() {
             best = self.candidates(who, d, true).0;
-        } else if score < score::NAME
+        } else if score < score::BASE_NAME + score::PARAMS
             && self.shared(who)
-            && (d.is_some_and(|d| !d.pens.is_empty()) || Params::of(who).is_some())
+            && (d.is_some_and(|d| d.pens.iter().any(|p| !p.bare)) || Params::of(who).is_some())
         {
             // Neither a string nor a name speaks for it, its ids stand for many models, and the
             // device states its own ranges.
@@ -182,7 +182,9 @@ fn fits_length(id: &Id, who: &Identity, d: Option<&Descriptor>, relaxed: bool) -
     }
     match usize::from(id.length) {
         // The product id alone decides, unless the interface is for fingers only.
-        0 => !d.is_some_and(|d| d.kinds.contains(&CollectionKind::Touch) && d.pens.is_empty()),
+        0 => !d.is_some_and(|d| {
+            d.kinds.contains(&CollectionKind::Touch) && d.pens.iter().all(|p| p.bare)
+        }),
         n => has(n),
     }
 }
@@ -228,15 +230,17 @@ fn standing(
     if who.seen_lengths.contains(&n) || d.is_some_and(|d| d.longest_input() == n) {
         score += score::LENGTH;
     }
-    if named(&tablet.name, &who.name) {
+    let (full, part) = (named(&tablet.name, &who.name), alike_named(&tablet.name, &who.name));
+    let by_name = full || part;
+    if full {
         score += score::NAME;
-    } else if named(base(&tablet.name), base(&who.name)) {
+    } else if part {
         score += score::BASE_NAME;
     }
     let uc_logic = UC_LOGIC.contains(&who.vid);
     let params = if uc_logic { Params::all(who) } else { Vec::new() };
     if !params.is_empty() {
-        score += params.iter().filter_map(|p| agreement(tablet, p, shared)).max()?;
+        score += params.iter().filter_map(|p| agreement(tablet, p, shared && !by_name)).max()?;
     }
     if uc_logic && params.is_empty() {
         score += d.map_or(0, |d| by_descriptor(tablet, d));
@@ -245,7 +249,9 @@ fn standing(
 }
 
 /// What one parameter string adds; `None`: it contradicts the model.
-fn agreement(tablet: &Tablet, p: &Params, shared: bool) -> Option<i32> {
+///
+/// `anonymous`: the model shares its ids, and no name speaks for it.
+fn agreement(tablet: &Tablet, p: &Params, anonymous: bool) -> Option<i32> {
     let a = &tablet.area;
     let near =
         |a: i32, b: u32| (f64::from(a) - f64::from(b)).abs() <= COUNT_TOLERANCE * f64::from(a);
@@ -253,10 +259,11 @@ fn agreement(tablet: &Tablet, p: &Params, shared: bool) -> Option<i32> {
     if tablet.pen.max_pressure.abs_diff(p.max_pressure) > 1 {
         return None;
     }
-    // Of models that share their ids, the one with the same counts may be of another size. The size
-    // of a model with ids of its own is known better than the resolution that it states.
+    // Of models that share their ids, the one with the same counts may be of another size. Where
+    // the ids or the name tell the model, its size is known better than the resolution that the
+    // device states.
     let (w, h) = p.size_mm();
-    if shared && (other_size(w, a.width_mm) || other_size(h, a.height_mm)) {
+    if anonymous && (other_size(w, a.width_mm) || other_size(h, a.height_mm)) {
         return None;
     }
     match (same, near(a.max_x, p.max_x) && near(a.max_y, p.max_y)) {
@@ -293,6 +300,24 @@ fn base(name: &str) -> &str {
         Some((before, v)) if v.len() == 2 && v.starts_with(['V', 'v']) => before,
         _ => name,
     }
+}
+
+/// Whether the names agree but for a version, or share a model code: a word with letters and
+/// digits.
+fn alike_named(model: &str, device: &str) -> bool {
+    let codes = |name: &str| {
+        let plain = name.split_whitespace().map(|word| {
+            let kept = word.chars().filter(char::is_ascii_alphanumeric);
+            kept.collect::<String>().to_ascii_lowercase()
+        });
+        let code = |w: &String| {
+            let has = |f: fn(&char) -> bool| w.chars().any(|c| f(&c));
+            w.len() >= 3 && has(char::is_ascii_digit) && has(char::is_ascii_alphabetic)
+        };
+        plain.filter(code).collect::<Vec<_>>()
+    };
+    let theirs = codes(device);
+    named(base(model), base(device)) || codes(model).iter().any(|c| theirs.contains(c))
 }
 
 /// Whether the device's name ends in the model's, letters and digits only, the brand left out.

@@ -9,7 +9,7 @@
 //! Source: Linux `hid-uclogic-params.c` and `hid-uclogic-rdesc.h` (report ids of the frame), the
 //! descriptors of public collections that were taken under `hid-uclogic`.
 
-use super::identity::Identity;
+use super::identity::{Identity, UC_LOGIC};
 use crate::descriptor::{Descriptor, PenLayout};
 
 /// Report ids that `hid-uclogic` gives the keys, rings and dials that it splits off pen reports.
@@ -32,7 +32,7 @@ pub(super) fn rewritten<'a>(who: &Identity, d: &'a Descriptor) -> Option<&'a Pen
 
 /// No device describes these reports itself: its own protocol is on a vendor's page.
 fn by_shape(who: &Identity, d: &Descriptor, pen: &PenLayout) -> bool {
-    if !super::described::UC_LOGIC.contains(&who.vid) {
+    if !UC_LOGIC.contains(&who.vid) {
         return false;
     }
     let framed = FRAME_IDS.iter().any(|id| d.declares_id(*id));

@@ -127,7 +127,8 @@ impl Descriptor {
             }
         }
         if pen.x.is_none() && mouse.is_pen() {
-            pen = PenLayout { report_id: id, as_mouse: true, ..mouse.into_layout() };
+            let bare = mouse.is_bare();
+            pen = PenLayout { report_id: id, as_mouse: true, bare, ..mouse.into_layout() };
         }
         if pen.x.is_some() && pen.y.is_some() {
             self.pens.push(pen);

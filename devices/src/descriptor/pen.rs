@@ -5,6 +5,9 @@ use hidreport::{ArrayField, FieldAttributes, VariableField};
 use super::bits::Bits;
 use super::page_id;
 
+/// Smallest range of a bare pointer's axis that may be a tablet's.
+const LEAST_RANGE: i32 = 1000;
+
 /// An array field: its value, less `bits.min`, is the index of the control that is pressed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selector {
@@ -57,6 +60,9 @@ pub struct PenLayout {
     /// what a tablet sends before a driver switches it over; its range then covers the whole area,
     /// whatever the size of the area.
     pub as_mouse: bool,
+    /// The report has neither pressure nor proximity: an absolute pointer, which may be a pen, a
+    /// touch screen or a virtual machine's mouse.
+    pub bare: bool,
 }
 
 impl PenLayout {
@@ -132,9 +138,15 @@ impl AbsoluteMouse {
         }
     }
 
-    /// It has axes, and pressure or proximity.
+    /// It has absolute axes of a tablet's resolution, or pressure or proximity.
     pub(super) fn is_pen(&self) -> bool {
-        self.0.x.is_some() && (self.0.pressure.is_some() || self.0.in_range.is_some())
+        let fine = self.0.x.as_ref().is_some_and(|x| x.max >= LEAST_RANGE);
+        self.0.x.is_some() && (fine || !self.is_bare())
+    }
+
+    /// Nothing but axes and buttons.
+    pub(super) fn is_bare(&self) -> bool {
+        self.0.pressure.is_none() && self.0.in_range.is_none()
     }
 
     pub(super) fn into_layout(self) -> PenLayout {

@@ -57,7 +57,11 @@ impl Engine {
     /// `descriptor` of the interface; empty where it is unknown.
     pub fn new(tablet: &Tablet, id: &Id, descriptor: &[u8]) -> Engine {
         let quirk = |q| id.quirks.contains(&q);
-        let described = Descriptor::parse(descriptor).unwrap_or_default();
+        let mut described = Descriptor::parse(descriptor).unwrap_or_default();
+        // A bare pointer beside a pen is a mouse.
+        if described.pens.iter().any(|p| !p.bare) {
+            described.pens.retain(|p| !p.bare);
+        }
         let uclogic = |packing| {
             let range = described.pens.iter().find_map(|p| p.in_range.as_ref());
             let range_bit =
@@ -122,7 +126,7 @@ impl Engine {
             Family::VeikkA15 => vendor(|b| vendors::veikk(b, true), true),
             Family::Acepen => vendor(vendors::acepen, true),
             Family::Kye => vendor(vendors::kye, false),
-            Family::KyePlain => vendor(vendors::kye_plain, false),
+            Family::KyePlain => vendor(vendors::kye_plain, true),
             Family::TenMoons => vendor(vendors::ten_moons, false),
             Family::Plain => vendor(vendors::plain, false),
             Family::Xenx => vendor(vendors::xenx, true),

@@ -172,9 +172,17 @@ pub fn wood_pad(b: &[u8]) -> Parsed {
     })
 }
 
-/// KYE's newer form, report 10: the plain layout.
+/// KYE's newer form, report 10: the plain layout with the tip in bit 0 and proximity in bit 7 of
+/// byte 1 (the descriptors of Linux `hid-kye.c`).
 pub fn kye_plain(b: &[u8]) -> Parsed {
-    if byte(b, 0) == 0x10 { plain(b) } else { Parsed::Nothing }
+    if byte(b, 0) != 0x10 {
+        return Parsed::Nothing;
+    }
+    match plain(b) {
+        Parsed::Pen(_) if b[1] & 0x80 == 0 => Parsed::Away,
+        Parsed::Pen(pen) => Parsed::Pen(PenReport { tip: Some(b[1] & 1 != 0), ..pen }),
+        other => other,
+    }
 }
 
 #[cfg(test)]

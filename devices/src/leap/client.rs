@@ -80,7 +80,8 @@ pub struct LeapStatus {
     /// Messages that gave nothing: not JSON, too large, too deep.
     pub errors: u64,
     /// Frames with `nan` or `inf` in them, used all the same.
-    pub mended: u64,
+    #[serde(rename = "mended")] // The name in status output, which is stable.
+    pub repaired: u64,
     /// Frames that repeated or preceded one that was already here.
     pub stale: u64,
     /// Frames over the rate cap.
@@ -318,7 +319,7 @@ impl Client {
         let delay = self.map.delay_us(now);
         self.note(|s| {
             s.frames += 1;
-            s.mended += u64::from(frame.mended);
+            s.repaired += u64::from(frame.repaired);
             s.dropped_hands += u64::from(frame.dropped_hands);
             s.delay_us = delay;
             if let Some(us) = since.filter(|us| *us > 0) {

@@ -124,12 +124,12 @@ fn silence_ends_the_hands_and_the_greeting_is_short() {
     rig.clock.set_us(9_300_000);
     assert!(matches!(rig.rx.next_within(SOON).unwrap().body, Body::Hands(h) if h.count == 0));
     rig.step(9_310_000);
-    let wishes = rig.tracker.wishes();
+    let requests = rig.tracker.requests();
     assert_eq!(
-        wishes,
+        requests,
         [r#"{"background":true}"#, r#"{"optimizeHMD":false}"#, r#"{"focused":true}"#]
     );
-    assert!(wishes.iter().all(|w| w.len() < 32));
+    assert!(requests.iter().all(|w| w.len() < 32));
 }
 
 /// A server of the worst kind: each connection gets the next of these answers.
@@ -244,9 +244,9 @@ fn a_server_that_breaks_every_rule_is_survived() {
     rx.drain(100, &mut got);
     let counts: Vec<u8> =
         got.iter().map(|s| if let Body::Hands(h) = s.body { h.count } else { 9 }).collect();
-    assert_eq!(counts, [0, 1, 0], "the mended frame without its hand, the good one, and its end");
+    assert_eq!(counts, [0, 1, 0], "the repaired frame without its hand, the good one, and its end");
     let status = client.status.lock().unwrap().clone();
-    assert!(status.errors >= 4 && status.mended == 1, "{status:?}");
+    assert!(status.errors >= 4 && status.repaired == 1, "{status:?}");
 }
 
 #[test]

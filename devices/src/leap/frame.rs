@@ -68,7 +68,7 @@ pub struct Frame {
     /// Hands left out: over [`MAX_HANDS`], with no palm position, or with an id already taken.
     pub dropped_hands: u32,
     /// The text held `nan` or `inf`, which is not JSON; those numbers were read as absent.
-    pub mended: bool,
+    pub repaired: bool,
 }
 
 #[derive(Deserialize)]
@@ -148,7 +148,7 @@ pub fn parse_frame(json: &str) -> Result<Frame, FrameError> {
 /// Decodes any message of protocol 6 or 7.
 pub fn parse_message(json: &str) -> Result<Message, FrameError> {
     let holds_nan = check(json)?;
-    let text = if holds_nan { mend(json) } else { Cow::Borrowed(json) };
+    let text = if holds_nan { numbers_repaired(json) } else { Cow::Borrowed(json) };
     let mut raw: RawMessage =
         serde_json::from_str(&text).map_err(|e| FrameError::NotJson(e.to_string()))?;
     if let Some(hands) = raw.hands.take() {
@@ -157,7 +157,7 @@ pub fn parse_message(json: &str) -> Result<Message, FrameError> {
             device_t_us: raw.timestamp.int().and_then(|t| u64::try_from(t).ok()),
             rate: raw.rate.f32().filter(|r| *r >= 0.0),
             dropped_hands: 0,
-            mended: holds_nan,
+            repaired: holds_nan,
         };
         fill(&mut frame, &hands, raw.pointables.as_deref().unwrap_or_default());
         return Ok(Message::Frame(frame));
@@ -207,7 +207,7 @@ fn ends_with(json: &str, at: usize, word: &str) -> bool {
 }
 
 /// Writes `null` for every bare word that begins like `nan` or `inf`, with its sign.
-fn mend(json: &str) -> Cow<'_, str> {
+fn numbers_repaired(json: &str) -> Cow<'_, str> {
     let mut out = String::with_capacity(json.len() + 64);
     let mut in_string = false;
     let mut chars = json.chars().peekable();

@@ -75,10 +75,10 @@ fn words_that_are_not_json_are_read_as_absent_numbers() {
                 "type":"in\"f nan"}}],"timestamp":5}}"#
         );
         let f = parse_frame(&text).unwrap_or_else(|e| panic!("{word}: {e}"));
-        assert!(f.mended && f.hands.hands[0].wrist.is_none() && f.hands.count == 1, "{word}");
+        assert!(f.repaired && f.hands.hands[0].wrist.is_none() && f.hands.count == 1, "{word}");
     }
     let sound = parse_frame(r#"{"hands":[],"x":[false,true,null,1e3]}"#).unwrap();
-    assert!(!sound.mended);
+    assert!(!sound.repaired);
 }
 
 #[test]

@@ -185,3 +185,115 @@ fn usb_strings_tell_namesakes_apart() {
     assert_eq!(with("HUION_T194_190619"), "Huion HS610");
     assert!(with("HUION_X999_190619").contains("Declined"), "{}", with("HUION_X999_190619"));
 }
+
+fn text_string(index: u8, text: &str) -> (u8, Vec<u8>) {
+    let mut raw = vec![(2 + 2 * text.len()) as u8, 3];
+    raw.extend(text.encode_utf16().flat_map(u16::to_le_bytes));
+    (index, raw)
+}
+
+/// String 100: largest coordinates, full pressure, lines an inch.
+fn params_string(x: u16, y: u16, pressure: u16, lines: u16) -> (u8, Vec<u8>) {
+    let mut raw = vec![12, 3];
+    for v in [x, y, 3, pressure, lines] {
+        raw.extend(v.to_le_bytes());
+    }
+    (100, raw)
+}
+
+fn identified(who: &Identity) -> sculptd_devices::catalogue::Found {
+    match Catalogue::builtin().unwrap().identify(who) {
+        Identification::Identified(found) => found,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A vendor's collection of one report, as Huion's first interface has it.
+const VENDOR: &[u8] = &[
+    0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x08, 0x75, 0x08, 0x95, 0x07, 0x09, 0x01, 0x81,
+    0x02, 0xc0,
+];
+
+#[test]
+fn parameters_that_contradict_weigh_more_than_a_string_or_a_name() {
+    let who = |name: &str, params| Identity {
+        vid: 0x256c,
+        pid: 0x006e,
+        interface: Some(0),
+        name: name.to_owned(),
+        descriptor: VENDOR.to_vec(),
+        strings: vec![text_string(121, "HA60-F400"), params],
+        seen_lengths: vec![8],
+        ..Identity::default()
+    };
+    // Monoprice's 10594 has the same firmware string, 40,000 counts and 2,047 levels.
+    for name in ["Huion New 1060 Plus", "Monoprice 10594"] {
+        let found = identified(&who(name, params_string(50_800, 31_750, 8191, 5080)));
+        let (a, p) = (found.tablet.area, found.tablet.pen.max_pressure);
+        assert_eq!((a.max_x, a.max_y, p), (50_800, 31_750, 8191), "{}", found.tablet.name);
+        assert_eq!((a.width_mm.round(), a.height_mm.round()), (254.0, 159.0));
+        assert!(found.tablet.source.contains("the device itself"), "{}", found.tablet.name);
+    }
+    let same = identified(&who("Monoprice 10594", params_string(40_000, 25_000, 2047, 4000)));
+    assert_eq!(same.tablet.name, "Monoprice 10594");
+}
+
+#[test]
+fn the_parameter_string_states_full_pressure_better_than_the_descriptor() {
+    use sculptd_devices::hid::decoder::Decoder;
+    // Report 9 of a mouse with absolute axes to 32,767 and pressure to 2,047.
+    let descriptor = [
+        &[0x05, 0x01, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x09, 0x09, 0x01, 0xa1, 0x00, 0x05, 0x09][..],
+        &[0x19, 0x01, 0x29, 0x03, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x03, 0x81, 0x02][..],
+        &[0x95, 0x05, 0x81, 0x03, 0x05, 0x01, 0x09, 0x30, 0x09, 0x31, 0x26, 0xff, 0x7f, 0x75][..],
+        &[0x10, 0x95, 0x02, 0x81, 0x02, 0x05, 0x0d, 0x09, 0x30, 0x26, 0xff, 0x07, 0x95, 0x01][..],
+        &[0x81, 0x02, 0xc0, 0xc0][..],
+    ]
+    .concat();
+    let who = Identity {
+        vid: 0x28bd,
+        pid: 0x0905,
+        name: "XP-Pen Deco 01 V2".to_owned(),
+        descriptor: descriptor.clone(),
+        strings: vec![params_string(50_800, 31_750, 8191, 5080)],
+        seen_lengths: vec![8],
+        ..Identity::default()
+    };
+    let mut decoder = Decoder::new(&identified(&who), &descriptor, DeviceId(0));
+    let (mut pressed, mut place) = (Vec::new(), 0.0);
+    for (i, p) in [0u16, 2047, 4096, 8191].into_iter().enumerate() {
+        let [lo, hi] = p.to_le_bytes();
+        let report = [9, 1, 0xff, 0x7f, i as u8, 0, lo, hi];
+        decoder.feed(&report, i as u64 * 5000, &mut |s| {
+            if let Body::Pen(p) = s.body {
+                pressed.push((p.pressure.unwrap() * 8191.0).round() as u32);
+                place = p.pos_mm.x;
+            }
+        });
+    }
+    assert_eq!(pressed, [0, 2047, 4096, 8191]);
+    assert!((place - 254.0).abs() < 0.1, "{place}");
+}
+
+#[test]
+fn models_that_were_declined_are_known() {
+    for (pid, length, parser) in [
+        (0x00de, 10, "wacom-simple"),
+        (0x00df, 10, "wacom-simple"),
+        (0x00d1, 9, "wacom-simple"),
+        (0x00d1, 10, "wacom-simple"),
+        (0x00d9, 10, "wacom-simple"),
+        (0x00dc, 10, "wacom-simple"),
+        (0x0379, 51, "wacom-intuos-bluetooth"),
+        (0x0377, 51, "wacom-intuos-bluetooth"),
+        (0x0360, 361, "wacom-pro-bluetooth"),
+        (0x0361, 361, "wacom-pro-bluetooth"),
+    ] {
+        let who = Identity { vid: 0x056a, pid, seen_lengths: vec![length], ..Identity::default() };
+        assert_eq!(identified(&who).id().parser.name(), parser, "056a:{pid:04x}");
+    }
+    for pid in [0x5005, 0x500f, 0x5013, 0x5015] {
+        let who = Identity { vid: 0x0458, pid, seen_lengths: vec![8], ..Identity::default() };
+        assert_eq!(identified(&who).id().parser.name(), "kye-plain", "0458:{pid:04x}");
+    }
+}

@@ -6,7 +6,7 @@ use sculptd_devices::recording::hid_recorder;
 
 const FACTS: &str = include_str!("facts.txt");
 
-/// A maker's own usages are compared by their page: parsers differ in how they go on when a field
+/// A vendor's own usages are compared by their page: parsers differ in how they go on when a field
 /// has more controls than names.
 fn named(usage: u32) -> u32 {
     if usage >= 0xff00_0000 { usage & 0xffff_0000 } else { usage }

@@ -91,8 +91,10 @@ fn no_size_is_nonsense_or_contradicts_the_catalogue() {
             assert!(a.width_mm.max(a.height_mm) <= 720.0, "{at}");
             assert!((a.width_mm - a.height_mm).abs() > 1.0, "{at}: square");
             let aspect = a.width_mm / a.height_mm;
-            // UC-Logic's counts are square wherever the axes have ranges of their own.
+            // UC-Logic's counts are square wherever the axes have ranges of their own. A model's
+            // file knows better: a G430 of 4 by 3 inches counts as one of 9 by 5.75 does.
             if matches!(who.vid, 0x5543 | 0x256c | 0x28bd)
+                && found.tablet.source == "the device itself"
                 && let Ok(d) = Descriptor::parse(&who.descriptor)
                 && let Some(pen) = d.pens.iter().find(|p| !p.as_mouse && p.pressure.is_some())
                 && let (Some(x), Some(y)) = (&pen.x, &pen.y)

@@ -96,15 +96,12 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
         Family::Floogoo => of(12, &[0x02]),
         Family::Veikk | Family::Acepen => of(13, &[0x09, 0x41, 0xc0]),
         Family::VeikkA15 => of(9, &[0x09, 0x41, 0xc0]),
+        Family::KyePlain => of(8, &[0x10]),
         Family::Xenx => of(8, &[0x01]),
         Family::RobotPen => of(12, &[0x02, 0x40]),
         Family::WoodPad => of(14, &[0x02]),
         Family::Digitiser => of(10, &[0x01]),
-        Family::WacomBambooPad
-        | Family::Kye
-        | Family::KyePlain
-        | Family::TenMoons
-        | Family::Plain => None,
+        Family::WacomBambooPad | Family::Kye | Family::TenMoons | Family::Plain => None,
     }
 }
 
@@ -311,7 +308,7 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
         Family::Kye => {
             vec![0x02, x[0], x[1], y[0], y[1], bit(c.tip, 4) | (c.buttons as u8) << 3, p[0], p[1]]
         }
-        Family::KyePlain => vec![0x10, f, x[0], x[1], y[0], y[1], p[0], p[1]],
+        Family::KyePlain => vec![0x10, 0x80 | f, x[0], x[1], y[0], y[1], p[0], p[1]],
         Family::Plain => vec![0x01, f, x[0], x[1], y[0], y[1], p[0], p[1]],
         Family::Xenx => {
             vec![0x01, 0x80 | bit(c.eraser, 0x40) | f, x[0], x[1], y[0], y[1], p[0], p[1]]

@@ -41,5 +41,9 @@ fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
         "{seen}"
     );
     assert_eq!(seen["bones"].as_u64(), seen["hands"].as_u64().map(|h| 20 * h));
-    assert!(tracker.wishes().iter().any(|w| w.contains("background")), "{:?}", tracker.wishes());
+    assert!(
+        tracker.requests().iter().any(|w| w.contains("background")),
+        "{:?}",
+        tracker.requests()
+    );
 }

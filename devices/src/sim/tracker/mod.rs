@@ -150,8 +150,8 @@ impl Tracker {
     }
 
     /// Every request that clients have sent, in order.
-    pub fn wishes(&self) -> Vec<String> {
-        self.server.wishes()
+    pub fn requests(&self) -> Vec<String> {
+        self.server.requests()
     }
 
     /// Every client is cut off, as when the service stops.

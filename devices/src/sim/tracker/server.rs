@@ -14,8 +14,8 @@ use crate::device_thread::{self, DeviceThread, StopToken};
 /// Nothing that a client may say is longer than a few dozen bytes.
 const MAX_FROM_CLIENT: usize = 4096;
 const MAX_CLIENTS: usize = 8;
-/// Wishes kept; a client that talks on is no longer written down.
-const MAX_WISHES: usize = 64;
+/// Most requests that are kept; later ones are not.
+const MAX_REQUESTS: usize = 64;
 /// How often a waiting connection is looked for.
 const ACCEPT_SLICE: Duration = Duration::from_millis(5);
 /// For each step of the handshake, and for a frame to be taken.
@@ -30,7 +30,7 @@ struct ServerShared {
 #[derive(Debug, Default)]
 struct Clients {
     open: Vec<WebSocket<TcpStream>>,
-    wishes: Vec<String>,
+    requests: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -65,8 +65,8 @@ impl Server {
         self.lock().open.len()
     }
 
-    pub(super) fn wishes(&self) -> Vec<String> {
-        self.lock().wishes.clone()
+    pub(super) fn requests(&self) -> Vec<String> {
+        self.lock().requests.clone()
     }
 
     pub(super) fn wait_for_clients(&self, n: usize, patience: Duration) -> bool {
@@ -86,8 +86,8 @@ impl Server {
     /// Reads the messages that clients have sent since the last call.
     pub(super) fn listen(&self) {
         let mut clients = self.lock();
-        let Clients { open, wishes } = &mut *clients;
-        open.retain_mut(|c| hear(c, wishes).is_ok());
+        let Clients { open, requests } = &mut *clients;
+        open.retain_mut(|c| receive(c, requests).is_ok());
     }
 
     pub(super) fn cut(&self) {
@@ -95,14 +95,16 @@ impl Server {
     }
 }
 
-fn hear(
+fn receive(
     client: &mut WebSocket<TcpStream>,
-    wishes: &mut Vec<String>,
+    requests: &mut Vec<String>,
 ) -> Result<(), tungstenite::Error> {
     client.get_ref().set_nonblocking(true)?;
     let heard = loop {
         match client.read() {
-            Ok(Message::Text(text)) if wishes.len() < MAX_WISHES => wishes.push(text.to_string()),
+            Ok(Message::Text(text)) if requests.len() < MAX_REQUESTS => {
+                requests.push(text.to_string())
+            }
             Ok(Message::Close(_)) => break Err(tungstenite::Error::ConnectionClosed),
             Ok(_) => {}
             Err(tungstenite::Error::Io(e)) if e.kind() == std::io::ErrorKind::WouldBlock => {
