@@ -30,15 +30,17 @@ pub fn page_bytes(data: &[u8]) {
 /// One line for the control socket.
 #[cfg(unix)]
 pub fn rpc_bytes(data: &[u8]) {
-    if let Ok(request) = sculptd_daemon::control::protocol::parse(data) {
-        // What a method makes of its parameters: the settings that most of them are.
-        let _ =
-            serde_json::from_value::<sculptd_clay::brush::BrushSettings>(request.params.clone())
-                .map(|b| b.clamped());
-        let _ = serde_json::from_value::<sculptd_engine::camera::Camera>(request.params.clone())
+    if let Ok(line) = sculptd_control::wire::parse(data) {
+        // The settings that a method merges with those in force.
+        let _ = serde_json::from_value::<sculptd_clay::brush::BrushSettings>(line.params.clone())
+            .map(|b| b.clamped());
+        let _ = serde_json::from_value::<sculptd_engine::camera::Camera>(line.params.clone())
             .map(|c| c.is_sane());
-        let _ = serde_json::from_value::<sculptd_engine::hand::ReachBox>(request.params)
-            .map(|r| r.is_sane());
+        if let Ok(sculptd_control::Request::Stroke(stroke)) =
+            sculptd_control::Request::read(&line.method, line.params)
+        {
+            let _ = stroke.check();
+        }
     }
 }
 

@@ -10,13 +10,13 @@ use parry3d::math::Vector;
 use parry3d::query::PointQuery;
 use parry3d::shape::{TriMesh as Peer, TriMeshFlags};
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::distance::{Sign, Solid};
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::distance::{DistanceSolid, Sign};
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::march::default_epsilon;
-use sculptd_geometry::projection::{By, Plane, outline, sample};
-use sculptd_geometry::remesh::{Settings, remesh};
+use sculptd_geometry::projection::{PointTest, ProjectionPlane, outline, sample};
+use sculptd_geometry::remesh::{RemeshSettings, remesh};
 use sculptd_geometry::shapes::icosphere;
 
 /// Median of five, seconds.
@@ -40,7 +40,7 @@ fn random(seed: &mut u64) -> f64 {
 
 fn rates(name: &str, mesh: &TriMesh) {
     let job = Job::default();
-    let solid = Solid::build(mesh, &job).unwrap();
+    let solid = DistanceSolid::build(mesh, &job).unwrap();
     let normal = solid.clone().with_sign(Sign::Pseudonormal);
     let peer = Peer::with_flags(
         mesh.positions.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect(),
@@ -99,7 +99,8 @@ fn rates(name: &str, mesh: &TriMesh) {
             median(|| {
                 pools[i].install(|| {
                     std::hint::black_box(
-                        Grid::sample(&solid, Grid::layout((lo, hi), side, 1), &job).unwrap(),
+                        DistanceGrid::sample(&solid, DistanceGrid::layout((lo, hi), side, 1), &job)
+                            .unwrap(),
                     );
                 })
             })
@@ -111,24 +112,25 @@ fn rates(name: &str, mesh: &TriMesh) {
             pools[i].install(|| drop(std::hint::black_box(solid.nearest(&volume, &job).unwrap())))
         })
     });
-    let plane = Plane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
-    let field = Grid::sample(&solid, Grid::layout((lo, hi), 128, 1), &job).unwrap();
+    let plane = ProjectionPlane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
+    let field = DistanceGrid::sample(&solid, DistanceGrid::layout((lo, hi), 128, 1), &job).unwrap();
     pools[0].install(|| {
         for (what, plane) in
-            [("turned", plane), ("along z", Plane::along(DVec3::NEG_Z, 0.0).unwrap())]
+            [("turned", plane), ("along z", ProjectionPlane::along(DVec3::NEG_Z, 0.0).unwrap())]
         {
             let exact = median(|| drop(std::hint::black_box(outline(&solid.topology, &plane))));
             println!("  exact silhouette, {what}: {:.3} ms", exact * 1e3);
         }
-        let rays = median(|| drop(sample(&solid, &plane, 25_000, 1, By::Rays, &job).unwrap()));
-        let by = By::Marching(&field, default_epsilon(&field));
+        let rays =
+            median(|| drop(sample(&solid, &plane, 25_000, 1, PointTest::Rays, &job).unwrap()));
+        let by = PointTest::Marching(&field, default_epsilon(&field));
         let march = median(|| drop(sample(&solid, &plane, 25_000, 1, by, &job).unwrap()));
         println!("  25,000 points by rays {:.2} ms, by marching {:.2} ms", rays * 1e3, march * 1e3);
     });
     let new = median(|| {
         pools[1].install(|| {
-            let solid = Solid::build(mesh, &job).unwrap();
-            let _ = std::hint::black_box(remesh(mesh, &solid, Settings::default(), &job));
+            let solid = DistanceSolid::build(mesh, &job).unwrap();
+            let _ = std::hint::black_box(remesh(mesh, &solid, RemeshSettings::default(), &job));
         })
     });
     println!("  remesh at 256 a side, two threads, tree included: {new:.2} s");

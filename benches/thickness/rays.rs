@@ -12,11 +12,13 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use sculptd_devices::Clock;
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::bvh::{Bvh8, Ray, Stack};
+use sculptd_geometry::bvh::{Bvh8, Ray, TraversalStack};
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::cone::frame;
-use sculptd_geometry::thickness::{Cone, Method, Settings, Surface, Weights, measure};
+use sculptd_geometry::thickness::{
+    Cone, ThicknessMethod, ThicknessSettings, Weights, WeldedSurface, measure,
+};
 
 /// `around` by `along` vertices on a closed ring of quadrilaterals.
 fn ring(around: u32, along: u32, at: impl Fn(f64, f64) -> DVec3) -> TriMesh {
@@ -84,7 +86,7 @@ fn main() {
     let tree = Bvh8::build(&mesh, &Job::default()).unwrap_or_else(|e| panic!("{e}"));
     let build = cpu_seconds(&clock) - start;
 
-    let surface = Surface::new(&mesh, 0.7);
+    let surface = WeldedSurface::new(&mesh, 0.7);
     let (lo, hi) = mesh.bounds();
     let step = (hi - lo).length() * 1e-4;
     let cone = Cone::new(10, 120f32.to_radians(), Weights::Plain);
@@ -95,7 +97,7 @@ fn main() {
     }
     rays.truncate(4_000_000);
     // The second of two passes: Embree's script warms up, too.
-    let mut stack = Stack::new();
+    let mut stack = TraversalStack::new();
     let (mut hits, mut seconds, mut met) = (0, 0.0, Vec::new());
     for _ in 0..2 {
         let start = cpu_seconds(&clock);
@@ -123,10 +125,14 @@ fn main() {
     }
     let mut whole = Vec::new();
     if args.get(2).is_none() {
-        for (rays, method) in
-            [(1, Method::Ray), (10, Method::Ray), (100, Method::Ray), (1, Method::Sphere)]
-        {
-            let settings = Settings { rays, method, opening: 120.0, ..Settings::default() };
+        for (rays, method) in [
+            (1, ThicknessMethod::Ray),
+            (10, ThicknessMethod::Ray),
+            (100, ThicknessMethod::Ray),
+            (1, ThicknessMethod::Sphere),
+        ] {
+            let settings =
+                ThicknessSettings { rays, method, opening: 120.0, ..ThicknessSettings::default() };
             let start = clock.now_us();
             let done = measure(&mesh, &settings, &Job::default());
             let wall = (clock.now_us() - start) as f64 * 1e-6;

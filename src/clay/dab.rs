@@ -205,7 +205,7 @@ struct Displace<'a, K> {
 }
 
 impl<K: Kernel> WideWork for Displace<'_, K> {
-    type Out = ();
+    type Output = ();
     #[inline(always)]
     fn run<W: Wide>(self, _: W) {
         displace(self.slot, self.side, self.old, self.before, self.kernel);
@@ -221,7 +221,7 @@ struct Turn<'a> {
 }
 
 impl WideWork for Turn<'_> {
-    type Out = ();
+    type Output = ();
     #[inline(always)]
     fn run<W: Wide>(self, w: W) {
         turn(w, self.slot, self.side, self.old, self.now);

@@ -9,10 +9,10 @@
 use glam::{DVec3, Vec3};
 
 use crate::{Corner, Cut, Home, NewVertex, Page, Snapshot, home_of};
-use sculptd_geometry::boolean::arrange::Arrangement;
+use sculptd_geometry::boolean::arrange::{Arrangement, FaceState};
 use sculptd_geometry::boolean::classify::crossings;
 use sculptd_geometry::boolean::points::Map;
-use sculptd_geometry::boolean::{Error, NAMES, Operation, Options, check};
+use sculptd_geometry::boolean::{BooleanError, BooleanOptions, NAMES, Operation, check};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, triangulate};
 
@@ -22,9 +22,9 @@ pub fn local(
     clay: &Snapshot,
     tool: &PolyMesh,
     operation: Operation,
-    options: &Options,
+    options: &BooleanOptions,
     job: &Job,
-) -> Result<Option<Cut>, Error> {
+) -> Result<Option<Cut>, BooleanError> {
     if !matches!(operation, Operation::Union | Operation::Difference) {
         return Ok(None);
     }
@@ -42,7 +42,9 @@ pub fn local(
     for factor in [1.0, 0.125, 1.0 / 64.0] {
         let eps = (wanted * factor).max(floor);
         let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(&around), job, &mut |_| ())?;
-        if let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job) {
+        if a.doubt.is_none()
+            && let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job)
+        {
             job.check()?;
             return Ok(Some(Cut::new(
                 clay,
@@ -123,9 +125,10 @@ impl ToolSurroundings {
         let mut kept = vec![false; self.triangles.len()];
         let mut added: Vec<[u32; 3]> = Vec::new();
         let mut from: Vec<Option<u32>> = Vec::new();
-        a.faces(operation, keep_contact, job, |origin, corners, whole| {
+        a.faces(operation, keep_contact, job, |origin, corners, state| {
             let clay = origin.operand == 0;
-            if clay && whole && self.mesh.face(origin.face as usize) == corners {
+            if clay && state == FaceState::Whole && self.mesh.face(origin.face as usize) == corners
+            {
                 kept[origin.face as usize] = true;
                 return;
             }

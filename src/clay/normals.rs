@@ -170,7 +170,7 @@ mod tests {
     struct Around<'a>(&'a mut Page, &'a [Vec4], &'a mut [u8], u32);
 
     impl WideWork for Around<'_> {
-        type Out = ();
+        type Output = ();
         #[inline(always)]
         fn run<W: Wide>(self, w: W) {
             around_moved(w, self.0, self.1, self.2, self.3);

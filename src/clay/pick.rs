@@ -63,7 +63,7 @@ struct InPage<'a> {
 }
 
 impl WideWork for InPage<'_> {
-    type Out = ();
+    type Output = ();
     #[inline(always)]
     fn run<W: Wide>(self, w: W) {
         search(w, self.ray, self.page, self.number, self.best);
@@ -82,7 +82,7 @@ struct Everywhere<'a> {
 }
 
 impl WideWork for Everywhere<'_> {
-    type Out = Option<Found>;
+    type Output = Option<Found>;
     #[inline(always)]
     fn run<W: Wide>(self, w: W) -> Option<Found> {
         let mut best = None;

@@ -7,11 +7,14 @@ use glam::DVec3;
 use sculptd_devices::Clock;
 use serde::Serialize;
 
+use super::convert::{FileFacts, write_checked};
 use super::distance::warn;
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::boolean;
-use sculptd_geometry::boolean::{Operation, Options, Report, Solid};
-use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
+use sculptd_geometry::boolean::{
+    BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, Precision, ResultFaces,
+};
+use sculptd_geometry::io::{read_mesh, writable_format};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, repair};
 
@@ -37,6 +40,15 @@ pub enum Solve {
     Winding,
 }
 
+/// Which polygons a result has where a face was cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Polygons {
+    /// Convex ones, which every program reads alike.
+    Convex,
+    /// As few as can be had, concave ones among them.
+    Any,
+}
+
 #[derive(Debug, clap::Args)]
 pub struct BooleanArgs {
     pub what: What,
@@ -48,8 +60,9 @@ pub struct BooleanArgs {
     /// stand before the ending.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
-    /// Length within which faces are in contact; 0 for what the numbers say. Otherwise taken from
-    /// the operands' rounding.
+    /// Length within which faces are in contact; 0 for what the numbers say. Without it, what the
+    /// operands' coordinates can resolve: their digits, single precision, and their distance from
+    /// the origin.
     #[arg(long, value_name = "MM")]
     pub tolerance: Option<f64>,
     /// Keep faces in which the solids only touch in the intersection.
@@ -58,6 +71,17 @@ pub struct BooleanArgs {
     /// Make operands that are broken or cross themselves into solids first.
     #[arg(long, value_enum)]
     pub solve: Option<Solve>,
+    /// Write polygons where faces were cut. Without it, triangles come out where triangles went in,
+    /// and convex polygons where polygons did.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "SHAPE",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "convex"
+    )]
+    pub polygons: Option<Polygons>,
     /// Leave out the look for triangles that cross within an operand.
     #[arg(long)]
     pub trust: bool,
@@ -76,12 +100,36 @@ struct Answer {
     seconds: f64,
     /// Seconds by phase.
     phases: BTreeMap<String, f64>,
+    /// Length within which places were taken as one; of several steps, the largest.
     tolerance: f64,
+    /// What the operands' coordinates resolve, the coarsest.
+    precision: Option<Precision>,
+    /// Distances that the tolerance decided.
+    contact: ContactAnswer,
+    /// Whether another tolerance may give another result.
+    depends_on_tolerance: bool,
+    /// How far a volume may be from that of the operands as they are.
+    volume_bound: f64,
     /// Pieces of the curve in which the surfaces meet.
     cut_segments: usize,
     /// That curve, in polylines.
     cut: Vec<Line>,
     warnings: Vec<String>,
+}
+
+#[derive(Debug, Default, Serialize)]
+struct ContactAnswer {
+    places: usize,
+    farthest: f64,
+    near_misses: usize,
+}
+
+impl ContactAnswer {
+    fn add(&mut self, found: Contact) {
+        self.places += found.places;
+        self.farthest = self.farthest.max(found.farthest);
+        self.near_misses += found.near_misses;
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -99,23 +147,25 @@ struct Made {
     file: PathBuf,
     vertices: usize,
     faces: usize,
-    /// Of a closed result.
+    /// Of a closed result; 0 of an empty one.
     volume: Option<f64>,
     area: f64,
     components: usize,
     genus: Option<i64>,
     closed: bool,
     manifold: bool,
+    /// Pairs of triangles of the file that cross; none with `--trust`.
+    self_intersections: Option<usize>,
     /// With `--details`: operand (in the order of the command line, from 0) and face in it, one a
     /// face.
     #[serde(skip_serializing_if = "Option::is_none")]
     origins: Option<Vec<(usize, u32)>>,
 }
 
-impl From<boolean::Error> for Fail {
-    fn from(e: boolean::Error) -> Self {
+impl From<boolean::BooleanError> for Fail {
+    fn from(e: boolean::BooleanError) -> Self {
         match e {
-            boolean::Error::Inconsistent(_) => Fail::Check(e.to_string()),
+            boolean::BooleanError::Inconsistent(_) => Fail::Check(e.to_string()),
             _ => Fail::Input(e.to_string()),
         }
     }
@@ -152,8 +202,22 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         operands.push(operand(path, args, &job, &now, &mut out)?);
     }
     let start = now();
-    let options = Options { tolerance: args.tolerance, keep_contact: args.keep_contact };
-    let solids: Vec<(String, Solid, Origins)> = match plane {
+    let faces = match args.polygons {
+        Some(Polygons::Any) => ResultFaces::Polygons,
+        Some(Polygons::Convex) => ResultFaces::ConvexPolygons,
+        None if operands.iter().any(|m| m.faces().any(|f| f.len() != 3)) => {
+            ResultFaces::ConvexPolygons
+        }
+        None => ResultFaces::Triangles,
+    };
+    // These formats hold triangles only.
+    let faces = match writable_format(&args.out)? {
+        "stl" | "glb" | "3mf" => ResultFaces::Triangles,
+        _ => faces,
+    };
+    let options =
+        BooleanOptions { tolerance: args.tolerance, faces, keep_contact: args.keep_contact };
+    let solids: Vec<(String, BooleanSolid, Origins)> = match plane {
         Some((normal, offset)) => {
             let (made, report) = boolean::split(&operands[0], normal, offset, &options, &job, now)?;
             out.note(report, args.details);
@@ -165,13 +229,15 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     };
     out.seconds = now() - start;
     let several = solids.len() > 1;
+    let check = (!args.trust).then_some(out.tolerance);
     for (name, s, origins) in &solids {
         let file = if several { named(&args.out, name) } else { args.out.clone() };
         if s.mesh.face_count() == 0 {
             out.warnings.push(format!("the {name} is empty"));
         }
-        write_mesh(&file, &s.mesh)?;
-        let mut made = Made::of(name, file, &s.mesh, &job)?;
+        let written = write_checked(&file, &s.mesh, check, &job)?;
+        out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
+        let mut made = Made::of(name, file, written);
         if args.details {
             let plain = || s.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
             made.origins = Some(origins.clone().unwrap_or_else(plain));
@@ -189,11 +255,11 @@ type Origins = Option<Vec<(usize, u32)>>;
 fn join(
     operands: &[PolyMesh],
     args: &BooleanArgs,
-    options: &Options,
+    options: &BooleanOptions,
     job: &Job,
     now: &impl Fn() -> f64,
     out: &mut Answer,
-) -> Result<Vec<(String, Solid, Origins)>, Fail> {
+) -> Result<Vec<(String, BooleanSolid, Origins)>, Fail> {
     let operations = match args.what {
         What::Union => vec![Operation::Union],
         What::Intersection => vec![Operation::Intersection],
@@ -201,14 +267,14 @@ fn join(
         What::ReverseDifference => vec![Operation::ReverseDifference],
         _ => Operation::ALL.to_vec(),
     };
-    let mut solids: Vec<(String, Solid, Origins)> = Vec::new();
+    let mut solids: Vec<(String, BooleanSolid, Origins)> = Vec::new();
     for (n, right) in operands.iter().enumerate().skip(1) {
         let left = solids.pop();
         let first = left.as_ref().map_or(&operands[0], |l| &l.1.mesh);
         let (made, report) = boolean::compute([first, right], &operations, options, job, now)?;
         out.note(report, args.details);
         let known = left.as_ref().and_then(|l| l.2.as_ref());
-        let of = |o: &boolean::Origin| match (o.operand, known) {
+        let of = |o: &boolean::FaceOrigin| match (o.operand, known) {
             (0, Some(known)) => known[o.face as usize],
             (0, None) => (0, o.face),
             _ => (n, o.face),
@@ -230,19 +296,23 @@ fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: Answer, json: bool) -> O
     for (n, shell) in boolean::shells(mesh).iter().enumerate() {
         let name = (n + 1).to_string();
         let file = named(&args.out, &name);
-        write_mesh(&file, shell)?;
-        out.results.push(Made::of(&name, file, shell, &job)?);
+        let written = write_checked(&file, shell, None, &job)?;
+        out.results.push(Made::of(&name, file, written));
     }
     told(args, &out, json);
     Ok(())
 }
 
 impl Answer {
-    fn note(&mut self, report: Report, details: bool) {
+    fn note(&mut self, report: BooleanReport, details: bool) {
         for (name, seconds) in report.phases {
             *self.phases.entry(name.into()).or_default() += seconds;
         }
-        self.tolerance = report.tolerance;
+        self.tolerance = self.tolerance.max(report.tolerance);
+        self.precision = self.precision.max(report.precision);
+        self.contact.add(report.contact);
+        self.depends_on_tolerance |= report.depends_on_tolerance;
+        self.volume_bound += report.volume_bound;
         self.warnings.extend(report.warnings);
         for line in report.cut {
             self.cut_segments += line.len() - 1;
@@ -256,21 +326,21 @@ impl Answer {
 }
 
 impl Made {
-    fn of(name: &str, file: PathBuf, mesh: &PolyMesh, job: &Job) -> Result<Made, Fail> {
-        let facts = check::report(mesh, false, job).map_err(|e| Fail::Input(e.to_string()))?;
-        Ok(Made {
+    fn of(name: &str, file: PathBuf, facts: FileFacts) -> Made {
+        Made {
             name: name.to_owned(),
             file,
-            vertices: mesh.positions.len(),
-            faces: mesh.face_count(),
+            vertices: facts.vertices,
+            faces: facts.faces,
             volume: facts.volume,
             area: facts.area,
             components: facts.components,
             genus: facts.genus,
             closed: facts.closed,
             manifold: facts.manifold,
+            self_intersections: facts.self_intersections,
             origins: None,
-        })
+        }
     }
 }
 
@@ -322,10 +392,18 @@ fn operand(
     }
     let crossed = facts.self_intersections.unwrap_or(0);
     phase(out, "look");
-    if args.solve.is_some()
-        && (!facts.closed || crossed > 0 || facts.volume.is_some_and(|v| v < 0.0))
-    {
-        let turned = repair::orient(&mut mesh);
+    // Whether the faces' directions say what is inside.
+    let directed = facts.closed && facts.oriented && facts.volume.is_some_and(|v| v > 0.0);
+    if args.solve.is_some() && (!directed || crossed > 0 || args.trust || facts.components > 1) {
+        let oriented = if directed { Default::default() } else { repair::orient_shells(&mut mesh) };
+        let turned = oriented.turned;
+        if oriented.guessed > 0 && oriented.crossing > 0 {
+            out.warnings.push(format!(
+                "{}: the direction of {} shells was guessed (outwards where shells cross)",
+                path.display(),
+                oriented.guessed
+            ));
+        }
         let holes = repair::fill_holes(&mut mesh, usize::MAX);
         let was = mesh.face_count();
         mesh = boolean::solve(&mesh, job)?;

@@ -1,14 +1,14 @@
 //! `sculptd convert`: a mesh from one format to another, scaled or mended on the way.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
-use sculptd_geometry::job::Job;
-use sculptd_geometry::repair;
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::{boolean, check, repair, written};
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct ConvertArgs {
@@ -24,7 +24,8 @@ pub struct ConvertArgs {
     /// Make one vertex of vertices nearer than this; 0 for those in exactly the same place.
     #[arg(long, value_name = "DISTANCE")]
     pub weld: Option<f64>,
-    /// Remove faces without extent, turn all faces outwards and close holes.
+    /// Remove faces without extent, turn all faces outwards, close holes, and make one solid of
+    /// shells that overlap, by how often the surface goes around a place.
     #[arg(long)]
     pub mend: bool,
 }
@@ -34,25 +35,122 @@ pub(super) struct Written {
     pub file: String,
     pub vertices: usize,
     pub faces: usize,
+    /// Of a closed mesh; 0 of an empty one.
+    pub volume: Option<f64>,
+    pub closed: bool,
+    pub manifold: bool,
     pub warnings: Vec<String>,
 }
 
-/// Writes `mesh` and says so: the end of every command that makes a mesh.
-pub(super) fn deliver(
-    path: &std::path::Path,
+/// What a file holds, as it is read again.
+#[derive(Debug, Clone)]
+pub(super) struct FileFacts {
+    pub vertices: usize,
+    pub faces: usize,
+    pub volume: Option<f64>,
+    pub area: f64,
+    pub components: usize,
+    pub genus: Option<i64>,
+    pub closed: bool,
+    pub manifold: bool,
+    /// None where it was not asked for.
+    pub self_intersections: Option<usize>,
+    pub warnings: Vec<String>,
+}
+
+/// Writes `mesh`, reads the file again and says what is in it. `crossings`: what is written is
+/// looked at for triangles that cross after rounding to the format, and repaired within the
+/// format's precision and this tolerance.
+pub(super) fn write_checked(
+    path: &Path,
     mesh: &PolyMesh,
-    warnings: Vec<String>,
-    json: bool,
-) -> Outcome {
+    crossings: Option<f64>,
+    job: &Job,
+) -> Result<FileFacts, Fail> {
+    let stop = |e: Cancelled| Fail::Input(e.to_string());
+    let kind = writable_format(path)?;
+    let mut warnings = Vec::new();
+    if let Some(tolerance) = crossings.filter(|_| mesh.face_count() > 0) {
+        let made = written::for_file(mesh, kind, tolerance, job).map_err(stop)?;
+        write_mesh(path, &made.mesh)?;
+        if made.crossings > 0 {
+            warnings.push(format!(
+                "{} pairs of triangles cross in {} after rounding to the format",
+                made.crossings,
+                path.display()
+            ));
+        }
+        return file_facts(path, Some(made.crossings), warnings, job);
+    }
+    write_mesh(path, mesh)?;
+    if mesh.face_count() == 0 {
+        // An empty solid: a valid file of its format, which no reader takes for a mesh.
+        return Ok(FileFacts {
+            vertices: mesh.positions.len(),
+            faces: 0,
+            volume: Some(0.0),
+            area: 0.0,
+            components: 0,
+            genus: None,
+            closed: true,
+            manifold: true,
+            self_intersections: crossings.map(|_| 0),
+            warnings,
+        });
+    }
+    file_facts(path, None, warnings, job)
+}
+
+fn file_facts(
+    path: &Path,
+    self_intersections: Option<usize>,
+    mut warnings: Vec<String>,
+    job: &Job,
+) -> Result<FileFacts, Fail> {
+    let loaded = read_mesh(path, job)?;
+    let mut mesh = loaded.mesh;
+    // STL says the corners of each triangle anew.
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")) {
+        repair::weld(&mut mesh, 0.0);
+    }
+    let facts = check::report(&mesh, false, job).map_err(|e| Fail::Input(e.to_string()))?;
+    if facts.closed && !facts.manifold {
+        warnings.push(format!("{} is closed but not manifold as it was written", path.display()));
+    }
+    Ok(FileFacts {
+        vertices: facts.vertices,
+        faces: facts.faces,
+        volume: facts.volume,
+        area: facts.area,
+        components: facts.components,
+        genus: facts.genus,
+        closed: facts.closed,
+        manifold: facts.manifold,
+        self_intersections,
+        warnings,
+    })
+}
+
+/// Writes `mesh` and says so: the end of every command that makes a mesh.
+pub(super) fn deliver(path: &Path, mesh: &PolyMesh, warnings: Vec<String>, json: bool) -> Outcome {
     if mesh.positions.iter().any(|p| !p.as_vec3().is_finite()) {
         return Err(Fail::Check(
             "the result has coordinates beyond 3.4e38; nothing was written".into(),
         ));
     }
-    write_mesh(path, mesh)?;
+    let facts = write_checked(path, mesh, None, &Job::default())?;
     let file = path.display().to_string();
-    let written =
-        Written { file, vertices: mesh.positions.len(), faces: mesh.face_count(), warnings };
+    let mut all = warnings;
+    all.extend(facts.warnings);
+    let written = Written {
+        file,
+        vertices: facts.vertices,
+        faces: facts.faces,
+        volume: facts.volume,
+        closed: facts.closed,
+        manifold: facts.manifold,
+        warnings: all,
+    };
     answer(json, &written, |out| {
         for w in &written.warnings {
             writeln!(out, "warning: {w}")?;
@@ -92,16 +190,28 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     }
     if args.mend {
         done(repair::remove_degenerate(&mut mesh), "faces without extent removed");
-        done(repair::orient(&mut mesh), "faces turned over");
+        let oriented = repair::orient_shells(&mut mesh);
+        done(oriented.turned, "faces turned over");
+        if oriented.crossing > 0 {
+            done(oriented.guessed, "shells whose direction was guessed");
+        }
         let filled = repair::fill_holes(&mut mesh, usize::MAX);
         done(filled.holes, "holes closed");
         done(filled.left, "open borders that are no simple loop left as they are");
+        if oriented.crossing + oriented.nested > 0 {
+            done(oriented.crossing, "pairs of shells that cross made one solid");
+            done(
+                oriented.nested,
+                "shells within others that face outwards made one solid with them",
+            );
+            match boolean::solve(&mesh, &job) {
+                Ok(solved) => mesh = solved,
+                Err(e) => return Err(Fail::Check(format!("shells overlap and {e}"))),
+            }
+        }
     }
     if args.triangulate {
-        let (triangles, of) = mesh.triangles();
-        mesh.corners = triangles.into_iter().flatten().collect();
-        mesh.face_starts = (0..=of.len() as u32).map(|t| t * 3).collect();
-        mesh.groups = mesh.groups.map(|g| of.iter().map(|&f| g[f as usize]).collect());
+        mesh = written::triangulated(&mesh);
     }
     deliver(&args.output, &mesh, warnings, json)
 }

@@ -1,4 +1,4 @@
-//! `sculptd ctl`: one question to the running daemon.
+//! `sculptd ctl`: one request to the running daemon.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,12 +7,11 @@ use serde_json::Value;
 
 use super::config::plain_numbers;
 use super::{Fail, Outcome, answer};
-use sculptd_daemon::control::client::{ClientError, call};
-use sculptd_daemon::control::default_path;
+use sculptd_control::client::{ClientError, call, default_path};
 
 #[derive(Debug, clap::Args)]
 pub struct CtlArgs {
-    /// What to ask; `methods` lists all.
+    /// The method to call; `methods` lists all.
     pub method: String,
     /// Parameters, a JSON object.
     pub params: Option<String>,
@@ -21,7 +20,7 @@ pub struct CtlArgs {
     pub socket: Option<PathBuf>,
 }
 
-/// A large file takes its time to load.
+/// Longest wait for an answer: a large file takes its time to load.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn run(args: &CtlArgs, json: bool) -> Outcome {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::convert::deliver;
 use super::info::interrupted;
 use super::{Fail, Outcome};
-use sculptd_geometry::decimate::{Target, quadric};
+use sculptd_geometry::decimate::{DecimationTarget, quadric};
 use sculptd_geometry::io::{read_mesh, writable_format};
 use sculptd_geometry::job::Job;
 
@@ -30,7 +30,8 @@ pub fn run(args: &DecimateArgs, json: bool) -> Outcome {
     let job = Job::default();
     let loaded = read_mesh(&args.mesh, &job)?;
     let mut warnings = loaded.warnings;
-    let target = Target { triangles: args.faces, error: args.max_error.unwrap_or(f64::INFINITY) };
+    let target =
+        DecimationTarget { triangles: args.faces, error: args.max_error.unwrap_or(f64::INFINITY) };
     let made = quadric(&loaded.mesh, target, &job).map_err(interrupted)?;
     if args.max_error.is_none() && made.face_count() > args.faces {
         warnings.push(format!(

@@ -70,6 +70,7 @@ pub fn show(wired: &Wired<'_>) -> Result<(), String> {
         history: wired.history.clone(),
         ghosts_until_us: wired.ghosts_until_us,
         full_screen: wired.full_screen,
+        presets: super::thickness::presets::all().map_err(|e| e.to_string())?,
         kiosk: wired.kiosk.clone(),
     };
     sculptd_window::viewer::run(wiring).map_err(|e| e.to_string())

@@ -7,10 +7,10 @@ use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use sculptd_geometry::TriMesh;
+use sculptd_geometry::CentredMesh;
 use sculptd_geometry::bvh::REACH;
-use sculptd_geometry::distance::{Sign, Solid};
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::distance::{DistanceSolid, Sign};
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 
@@ -68,29 +68,47 @@ struct GridFacts {
     file: Option<PathBuf>,
 }
 
-/// Reads a mesh as triangles and makes it ready; with the reader's warnings.
-pub fn solid(path: &Path, job: &Job) -> Result<(TriMesh, Solid, Vec<String>), Fail> {
+/// A mesh as triangles in its own frame, ready for questions of distance.
+#[derive(Debug)]
+pub struct Ready {
+    pub part: CentredMesh,
+    /// In the part's frame: `part.centre` is taken from what is asked and added to what is told.
+    pub solid: DistanceSolid,
+    /// The reader's, and whether the surface is open.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a mesh and makes it ready, in its own frame.
+pub fn solid(path: &Path, job: &Job) -> Result<Ready, Fail> {
+    solid_about(path, None, job)
+}
+
+/// The same in the frame of another part, by its centre.
+pub fn solid_about(path: &Path, centre: Option<DVec3>, job: &Job) -> Result<Ready, Fail> {
     let loaded = read_mesh(path, job)?;
-    let (mesh, _) = loaded.mesh.triangulate();
-    if mesh.triangles.is_empty() {
+    let part = match centre {
+        Some(centre) => CentredMesh::about(&loaded.mesh, centre, 1.0),
+        None => CentredMesh::new(&loaded.mesh, 1.0),
+    };
+    if part.mesh.triangles.is_empty() {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
-    let (lo, hi) = mesh.bounds();
+    let (lo, hi) = part.mesh.bounds();
     let most = lo.abs().max(hi.abs()).max_element();
     if most as f64 > REACH {
         return Err(Fail::Input(format!(
-            "{}: expected coordinates up to {REACH:e}, found {most:e}",
+            "{}: expected an extent of up to {REACH:e}, found {most:e}",
             path.display()
         )));
     }
-    let solid = Solid::build(&mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
+    let solid = DistanceSolid::build(&part.mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
     let mut warnings = loaded.warnings;
     if !solid.topology.closed {
         warnings.push(
             "the surface is not closed: inside is where its winding number is above a half".into(),
         );
     }
-    Ok((mesh, solid, warnings))
+    Ok(Ready { part, solid, warnings })
 }
 
 /// Prints warnings on standard error.
@@ -139,7 +157,7 @@ fn read_points(path: &Path) -> Result<Vec<DVec3>, Fail> {
 pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     let job = Job::default();
     let points = args.points.as_deref().map(read_points).transpose()?;
-    let (_, solid, warnings) = solid(&args.mesh, &job)?;
+    let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
     let solid = solid.with_sign(match args.sign {
         SignArg::Winding => Sign::Winding,
         SignArg::Pseudonormal => Sign::Pseudonormal,
@@ -156,7 +174,8 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
         warnings,
     };
     if let Some(points) = &points {
-        let (distances, seconds) = timed(|| solid.signed_distances(points, &job));
+        let own: Vec<DVec3> = points.iter().map(|&p| p - part.centre).collect();
+        let (distances, seconds) = timed(|| solid.signed_distances(&own, &job));
         let distances = distances.map_err(cancelled)?;
         (out.count, out.seconds) = (points.len(), seconds);
         if let Some(file) = &args.out {
@@ -167,13 +186,14 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     } else {
         let (lo, hi) = solid.tree.bounds();
         let side = args.grid.unwrap_or(30) as usize;
-        let layout = Grid::layout(
+        let layout = DistanceGrid::layout(
             (lo.as_dvec3(), hi.as_dvec3()),
             side,
             args.margin.min((side / 2).saturating_sub(1)),
         );
-        let (grid, seconds) = timed(|| Grid::sample(&solid, layout, &job));
-        let grid = grid.map_err(cancelled)?;
+        let (grid, seconds) = timed(|| DistanceGrid::sample(&solid, layout, &job));
+        let mut grid = grid.map_err(cancelled)?;
+        grid.origin += part.centre;
         if let Some(file) = &args.out {
             write_beside(file, |w| grid.write_npy(w)).map_err(|e| Fail::io(file, &e))?;
         }

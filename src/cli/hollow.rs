@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::distance::{solid, timed, warn};
+use super::distance::{Ready, solid, timed, warn};
 use super::remesh::{How, finish};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
@@ -29,8 +29,8 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
     if !(args.wall > 0.0 && args.wall.is_finite()) {
         return Err(Fail::Usage("expected a wall thicker than nothing".into()));
     }
-    let (mesh, solid, mut warnings) = solid(&args.mesh, &job)?;
-    let (made, seconds) = timed(|| hollow(&mesh, &solid, args.wall, args.how.side, &job));
+    let Ready { part, solid, mut warnings } = solid(&args.mesh, &job)?;
+    let (made, seconds) = timed(|| hollow(&part.mesh, &solid, args.wall, args.how.side, &job));
     let made = made?;
     if made.spacing > args.wall * 0.5 {
         warnings.push(format!(
@@ -39,5 +39,5 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
         ));
     }
     warn(&args.mesh, &warnings);
-    finish(&args.out, &made.mesh, seconds, warnings, json)
+    finish(&args.out, &made.mesh, part.centre, seconds, warnings, json)
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use sculptd_geometry::check::{Report, report};
+use sculptd_geometry::check::{MeshReport, report};
 use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::{Cancelled, Job};
 
@@ -24,7 +24,7 @@ struct Facts {
     file: String,
     format: &'static str,
     #[serde(flatten)]
-    report: Report,
+    report: MeshReport,
     warnings: Vec<String>,
 }
 
@@ -82,7 +82,13 @@ fn text(out: &mut dyn Write, facts: &Facts) -> std::io::Result<()> {
         r.euler,
         r.genus.map(|g| format!(", genus {g}")).unwrap_or_default()
     )?;
-    writeln!(out, "  size {}, from {:?} to {:?}", size.join(" x "), r.bounds.min, r.bounds.max)?;
+    writeln!(
+        out,
+        "  size {}, from {:?} to {:?}",
+        size.join(" x "),
+        r.bounds.min.to_array(),
+        r.bounds.max.to_array()
+    )?;
     let volume = r.volume.map(|v| format!("volume {v}, ")).unwrap_or_default();
     writeln!(out, "  {volume}area {}", r.area)?;
     for (n, what) in [

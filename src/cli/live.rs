@@ -2,8 +2,8 @@
 //! beside them.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::run::{export, stop_signal};
@@ -78,7 +78,7 @@ pub fn run(
         history.connect(live.commands.clone());
     }
     let stop = stop_signal();
-    let _control = control(&live, health.clone(), history.clone(), &stop)?;
+    let _control = control(&live, &factory, &clock, health.clone(), history.clone(), &stop)?;
     #[cfg(unix)]
     let _service = service(&run, &live, health, config)?;
     let ghosts = match run.ghosts {
@@ -185,21 +185,22 @@ fn service(
 #[cfg(unix)]
 fn control(
     live: &Live,
+    factory: &SenderFactory,
+    clock: &Clock,
     journal: Option<Health>,
     history: Option<Handle>,
     stop: &Arc<AtomicBool>,
 ) -> Result<Option<sculptd_daemon::control::Server>, Fail> {
     use sculptd_daemon::control::server::ServeError;
+    use sculptd_daemon::control::stroke::VirtualPen;
     use sculptd_daemon::control::{Host, Server, default_path};
+    let pen = VirtualPen::new(factory, clock.clone());
     let host = Host {
-        commands: live.commands.clone(),
-        published: live.published.clone(),
-        presets: crate::presets().clone(),
         stop: stop.clone(),
-        thickness: Arc::default(),
-        joining: Arc::default(),
         journal,
         history,
+        pen: Some(Arc::new(Mutex::new(pen))),
+        ..Host::new(live.commands.clone(), live.published.clone(), crate::presets().clone())
     };
     match Server::start(&default_path(), host) {
         Ok(server) => Ok(Some(server)),
@@ -215,6 +216,8 @@ fn control(
 #[cfg(not(unix))]
 fn control(
     _: &Live,
+    _: &SenderFactory,
+    _: &Clock,
     _: Option<Health>,
     _: Option<Handle>,
     _: &Arc<AtomicBool>,

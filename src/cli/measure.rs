@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::thickness::{How, load};
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::measure::{measures, projected_area};
-use sculptd_geometry::thickness::check::{Limits, check};
+use sculptd_geometry::measure::{measures, overlaps, projected_area};
+use sculptd_geometry::thickness::check::{ThicknessLimits, check};
 
 #[derive(Debug, clap::Args)]
 pub struct MeasureArgs {
@@ -49,8 +49,9 @@ struct Statistics {
 
 /// Millimetres.
 #[derive(Debug, Serialize)]
-struct Answer {
-    volume: f64,
+struct MeasureAnswer {
+    /// Of a closed mesh only. Where shells overlap, the common part counts once for each.
+    volume: Option<f64>,
     area: f64,
     dimensions: [f64; 3],
     centroid: Option<[f64; 3]>,
@@ -60,6 +61,8 @@ struct Answer {
     vertices: usize,
     triangles: usize,
     closed: bool,
+    /// Shells, or parts of one, lie in each other.
+    overlapping: bool,
     warnings: Vec<String>,
 }
 
@@ -79,10 +82,11 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let (part, notes) = load(&args.mesh, &args.how, &job)?;
     let clock = Clock::monotonic();
     let file = args.mesh.display().to_string();
-    let checked = check(&file, &part, &args.how.settings(), Limits::default(), &job, || {
-        clock.now_us() as f64 * 1e-6
-    })
-    .map_err(|e| Fail::Usage(e.to_string()))?;
+    let checked =
+        check(&file, &part, &args.how.settings(), ThicknessLimits::default(), &job, || {
+            clock.now_us() as f64 * 1e-6
+        })
+        .map_err(|e| Fail::Usage(e.to_string()))?;
     let m = measures(&part.mesh);
     let along =
         |d: Vec3| projected_area(&part.mesh, d, &job).map_err(|e| Fail::Input(e.to_string()));
@@ -90,11 +94,24 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let mut warnings = notes;
     warnings.extend(checked.answer.warnings);
     let faults = checked.thickness.surface.faults;
-    let out = Answer {
-        volume: m.volume,
+    let closed = faults.boundary_edges == 0 && faults.crowded_edges == 0;
+    let overlapping =
+        closed && overlaps(&part.mesh, &job).map_err(|e| Fail::Input(e.to_string()))?;
+    if overlapping {
+        warnings.push(
+            "shells overlap: volume, area and centroid count the common part once for each; \
+             unite them first (sculptd boolean union, sculptd remesh)"
+                .into(),
+        );
+    }
+    if !closed {
+        warnings.push("the surface is not closed: it has no volume".into());
+    }
+    let out = MeasureAnswer {
+        volume: closed.then_some(m.volume),
         area: m.area,
         dimensions: m.dimensions,
-        centroid: m.centroid.map(|c| (c + part.centre).to_array()),
+        centroid: m.centroid.filter(|_| closed).map(|c| (c + part.centre).to_array()),
         projected_area: Projected { x: along(Vec3::X)?, y: along(Vec3::Y)?, z: along(Vec3::Z)? },
         directions: args
             .direction
@@ -111,7 +128,8 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
         },
         vertices: part.counts[0],
         triangles: part.counts[1],
-        closed: faults.boundary_edges == 0,
+        closed,
+        overlapping,
         warnings,
     };
     for w in &out.warnings {
@@ -119,7 +137,10 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     }
     answer(json, &out, |w| {
         let [x, y, z] = out.dimensions;
-        writeln!(w, "volume      {:.4} mm3", out.volume)?;
+        match out.volume {
+            Some(v) => writeln!(w, "volume      {v:.4} mm3")?,
+            None => writeln!(w, "volume      none: the surface is open")?,
+        }
         writeln!(w, "area        {:.4} mm2", out.area)?;
         writeln!(w, "dimensions  {x:.4} x {y:.4} x {z:.4} mm")?;
         let p = &out.projected_area;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::distance::{solid, timed, warn};
+use super::distance::{Ready, solid, solid_about, timed, warn};
 use super::remesh::{How, finish};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
@@ -36,15 +36,16 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
     if !args.radius.is_finite() || !args.distance.unwrap_or(0.0).is_finite() {
         return Err(Fail::Usage("expected lengths that are finite".into()));
     }
-    let (_, a, mut warnings) = solid(&args.mesh, &job)?;
+    let Ready { part, solid: a, mut warnings } = solid(&args.mesh, &job)?;
     let (made, seconds) = match (&args.unite, args.distance) {
         (Some(other), _) => {
-            let (_, b, more) = solid(other, &job)?;
+            let Ready { solid: b, warnings: more, .. } =
+                solid_about(other, Some(part.centre), &job)?;
             warnings.extend(more);
             timed(|| smooth_union(&a, &b, args.radius, args.how.side, &job))
         }
         (None, distance) => timed(|| offset(&a, distance.unwrap_or(0.0), args.how.side, &job)),
     };
     warn(&args.mesh, &warnings);
-    finish(&args.out, &made?, seconds, warnings, json)
+    finish(&args.out, &made?, part.centre, seconds, warnings, json)
 }

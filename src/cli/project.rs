@@ -5,15 +5,16 @@ use std::path::PathBuf;
 use glam::Vec3;
 use serde::Serialize;
 
-use super::distance::{solid, timed, warn};
+use super::distance::{Ready, solid, timed, warn};
 use super::measure::direction;
 use super::{Fail, Outcome, answer};
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::march::default_epsilon;
 use sculptd_geometry::projection::{
-    By, Plane, Polygon, area, outline, png, sample, shadow_areas, spread_directions, svg,
+    PlaneRegion, PointTest, ProjectionPlane, area, outline, png, sample, shadow_areas,
+    spread_directions, svg,
 };
 
 #[derive(Debug, clap::Args)]
@@ -105,8 +106,8 @@ struct Answer {
 pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     let job = Job::default();
     let cancelled = |e: Cancelled| Fail::Input(e.to_string());
-    let (_, solid, warnings) = solid(&args.mesh, &job)?;
-    let plane = Plane::along(args.direction.as_dvec3(), args.turn.to_radians())
+    let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
+    let plane = ProjectionPlane::along(args.direction.as_dvec3(), args.turn.to_radians())
         .ok_or_else(|| Fail::Usage("expected a direction that is not zero".into()))?;
     let mut out = Answer {
         method: args.method,
@@ -120,25 +121,29 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         seconds: 0.0,
         warnings,
     };
-    let polygons: Vec<Polygon> = if let MethodArg::Exact = args.method {
+    let polygons: Vec<PlaneRegion> = if let MethodArg::Exact = args.method {
         let (polygons, seconds) = timed(|| outline(&solid.topology, &plane));
         (out.area, out.seconds) = (area(&polygons), seconds);
         polygons
     } else {
         let grid = match (args.method, &args.field) {
             (MethodArg::March, Some(file)) => {
-                Some(Grid::read_npy(file).map_err(|e| Fail::Input(e.to_string()))?)
+                let mut grid =
+                    DistanceGrid::read_npy(file).map_err(|e| Fail::Input(e.to_string()))?;
+                grid.origin -= part.centre;
+                Some(grid)
             }
             (MethodArg::March, None) => {
                 let (lo, hi) = solid.tree.bounds();
-                let layout = Grid::layout((lo.as_dvec3(), hi.as_dvec3()), args.grid as usize, 1);
-                Some(Grid::sample(&solid, layout, &job).map_err(cancelled)?)
+                let layout =
+                    DistanceGrid::layout((lo.as_dvec3(), hi.as_dvec3()), args.grid as usize, 1);
+                Some(DistanceGrid::sample(&solid, layout, &job).map_err(cancelled)?)
             }
             _ => None,
         };
         let by = match &grid {
-            Some(g) => By::Marching(g, args.epsilon.unwrap_or_else(|| default_epsilon(g))),
-            None => By::Rays,
+            Some(g) => PointTest::Marching(g, args.epsilon.unwrap_or_else(|| default_epsilon(g))),
+            None => PointTest::Rays,
         };
         let (samples, seconds) =
             timed(|| sample(&solid, &plane, args.samples as usize, args.seed, by, &job));

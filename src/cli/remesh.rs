@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use serde::Serialize;
 
-use super::distance::{solid, timed, warn};
+use super::distance::{Ready, solid, timed, warn};
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::io::{writable_format, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::remesh::{RemeshError, Settings, remesh};
+use sculptd_geometry::remesh::{RemeshError, RemeshSettings, remesh};
 
 #[derive(Debug, clap::Args)]
 pub struct RemeshArgs {
@@ -54,15 +55,18 @@ impl From<RemeshError> for Fail {
     }
 }
 
-/// Writes the mesh and prints what it is.
+/// Writes the mesh, whose frame has its origin at `centre`, and prints what it is.
 pub fn finish(
     out: &Path,
     mesh: &TriMesh,
+    centre: DVec3,
     seconds: f64,
     warnings: Vec<String>,
     json: bool,
 ) -> Outcome {
-    write_mesh(out, &mesh.to_poly())?;
+    let mut poly = mesh.to_poly();
+    poly.positions.iter_mut().for_each(|p| *p += centre);
+    write_mesh(out, &poly)?;
     let m = sculptd_geometry::measure::measures(mesh);
     let made = Made {
         file: out.into(),
@@ -83,9 +87,9 @@ pub fn finish(
 pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
     let job = Job::default();
     writable_format(&args.out)?;
-    let (mesh, solid, warnings) = solid(&args.mesh, &job)?;
-    let settings = Settings { side: args.how.side, sharp: args.sharp };
-    let (made, seconds) = timed(|| remesh(&mesh, &solid, settings, &job));
+    let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
+    let settings = RemeshSettings { side: args.how.side, sharp: args.sharp };
+    let (made, seconds) = timed(|| remesh(&part.mesh, &solid, settings, &job));
     warn(&args.mesh, &warnings);
-    finish(&args.out, &made?, seconds, warnings, json)
+    finish(&args.out, &made?, part.centre, seconds, warnings, json)
 }

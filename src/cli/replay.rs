@@ -10,7 +10,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_clay::{BuildError, Workers};
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::session;
-use sculptd_daemon::session::film::Film;
+use sculptd_daemon::session::film::ReplayFrames;
 use sculptd_daemon::session::history::reopen;
 use sculptd_daemon::session::replay::{Replayed, replay_seen};
 use sculptd_daemon::session::{OpenError, Opened};
@@ -68,7 +68,7 @@ type Done = Result<(Replayed, u32), Fail>;
 /// Takes pictures: with a GPU as the window shows the work, else on the CPU.
 enum Camera {
     None,
-    Plain(Film),
+    Plain(ReplayFrames),
     #[cfg(feature = "viewer")]
     Gpu(Box<sculptd_window::viewer::timelapse::Timelapse>),
 }
@@ -82,7 +82,7 @@ impl Camera {
             Ok(lapse) => return Ok(Camera::Gpu(Box::new(lapse))),
             Err(e) => eprintln!("sculptd: warning: pictures are drawn on the CPU: {e}"),
         }
-        Film::new(folder, every, PICTURE).map(Camera::Plain).map_err(Fail::Input)
+        ReplayFrames::new(folder, every, PICTURE).map(Camera::Plain).map_err(Fail::Input)
     }
 
     fn see(&mut self, tick: u64, world: &mut World) -> Result<(), String> {
@@ -140,6 +140,13 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
     });
     let (replayed, frames, checkpoint) = match near.flatten() {
         Some(r) => (r.replayed, 0, Some(r.checkpoint)),
+        None if opened.replay_from.is_some() => {
+            let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
+            return Err(Fail::Input(format!(
+                "{}: it cannot be replayed from its start: {why}; --from-checkpoint begins later",
+                args.session.display()
+            )));
+        }
         None => {
             let (replayed, frames) = replay(args, &opened, workers)?;
             (replayed, frames, None)

@@ -8,7 +8,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_daemon::config::state_dir;
 
 use sculptd_daemon::session::catalog;
-use sculptd_daemon::session::catalog::Entry;
+use sculptd_daemon::session::catalog::SessionEntry;
 use sculptd_daemon::session::history::retention::Freed;
 use sculptd_daemon::session::history::{Store, StoreError, listing};
 use sculptd_daemon::session::salvage::{SalvageError, salvage};
@@ -49,11 +49,11 @@ pub enum SessionCommand {
     Save { session: PathBuf },
 }
 
-fn list(folder: &Path) -> Result<Vec<Entry>, Fail> {
+fn list(folder: &Path) -> Result<Vec<SessionEntry>, Fail> {
     catalog::list(folder).map_err(|e| Fail::io(folder, &e))
 }
 
-fn line(out: &mut dyn std::io::Write, e: &Entry) -> std::io::Result<()> {
+fn line(out: &mut dyn std::io::Write, e: &SessionEntry) -> std::io::Result<()> {
     let facts = e.facts.as_ref().map_or_else(
         || "unreadable".into(),
         |f| {
@@ -181,6 +181,10 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 writeln!(out, "last tick       {:>12}   at {} Hz", f.last_tick, f.rate_hz)?;
                 writeln!(out, "ticks           {:>12}   that had input", f.ticks)?;
                 writeln!(out, "commands        {:>12}", f.commands)?;
+                writeln!(out, "layout          {:>12}", f.layout)?;
+                if let Some(why) = &f.replay_from {
+                    writeln!(out, "opens at a checkpoint, not from its start: {why}")?;
+                }
                 let Some(h) = &entry.history else { return Ok(()) };
                 writeln!(
                     out,
@@ -203,8 +207,8 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 }
             });
             match entry {
-                Entry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
-                Entry { damage: Some(_), .. } => {
+                SessionEntry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
+                SessionEntry { damage: Some(_), .. } => {
                     let text = format!(
                         "damaged; mend it with: sculptd session save '{}'",
                         session.display()

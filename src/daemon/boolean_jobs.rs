@@ -5,6 +5,7 @@
 //! waits for it. Where the work was changed meanwhile elsewhere, a cut is made all the same; where
 //! it was changed there, it is computed again: nothing that was sculpted is lost.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -19,7 +20,7 @@ use sculptd_engine::command::{Carving, Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::boolean;
-use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
@@ -35,7 +36,7 @@ pub enum JoinError {
     #[error("nothing is in the hands")]
     Empty,
     #[error(transparent)]
-    Boolean(#[from] boolean::Error),
+    Boolean(#[from] boolean::BooleanError),
     #[error("this part of the view holds nothing that could be cut off")]
     NoPart,
     #[error(transparent)]
@@ -70,7 +71,7 @@ pub fn join(
     operation: Operation,
     job: &Job,
 ) -> Result<Vec<QueuedCommand>, JoinError> {
-    let options = Options::default();
+    let options = BooleanOptions::default();
     if let Some(cut) = sculptd_clay::local_boolean::local(work, tool, operation, &options, job)?
         && cut.page_count() <= MOST_PAGES
         && cut.can_be_made(work)
@@ -80,7 +81,7 @@ pub fn join(
     }
     let masks = work.masks();
     let work = work.to_tri().to_poly();
-    job.check().map_err(boolean::Error::from)?;
+    job.check().map_err(boolean::BooleanError::from)?;
     let (solids, _) = boolean::compute([&work, tool], &[operation], &options, job, || 0.0)?;
     let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
     if solid.mesh.face_count() == 0 {
@@ -138,17 +139,17 @@ pub struct BooleanJobs {
 impl BooleanJobs {
     /// # Errors
     /// If no thread can be started.
-    pub fn start(
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) -> std::io::Result<Self> {
+    pub fn start(shown: Arc<ArcSwap<Published>>, commands: CommandSender) -> std::io::Result<Self> {
         let (asked, todo) = cc::bounded::<MenuItem>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
             for choice in todo {
-                match at_rest(&shown, choice, &Job::default(), &commands) {
-                    Ok(_) => {}
-                    Err(JoinError::Ended) => return,
-                    Err(e) => tracing::warn!("{}: {e}", choice.label()),
+                // A bug in one Boolean must not end those that follow.
+                let join = || at_rest(&shown, choice, &Job::default(), &commands);
+                match catch_unwind(AssertUnwindSafe(join)) {
+                    Ok(Ok(_)) => {}
+                    Ok(Err(JoinError::Ended)) => return,
+                    Ok(Err(e)) => tracing::warn!("{}: {e}", choice.label()),
+                    Err(_) => tracing::error!("{}: the Boolean ended by a bug", choice.label()),
                 }
             }
         })?;
@@ -173,14 +174,23 @@ pub struct Joined {
     pub tries: usize,
 }
 
-/// Joins the work as it is now with the thing in the hands.
+/// Joins the work as it is now with the thing in the hands, by a choice of the hands' menu.
 pub fn at_rest(
     shown: &ArcSwap<Published>,
     choice: MenuItem,
     job: &Job,
     commands: &CommandSender,
 ) -> Result<Joined, JoinError> {
-    let operation = operation(choice).ok_or(JoinError::Empty)?;
+    join_held(shown, operation(choice).ok_or(JoinError::Empty)?, job, commands)
+}
+
+/// A Boolean of the object as it is now and what the hands hold.
+pub fn join_held(
+    shown: &ArcSwap<Published>,
+    operation: Operation,
+    job: &Job,
+    commands: &CommandSender,
+) -> Result<Joined, JoinError> {
     let held =
         |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
     carry_out(shown, held, true, operation, job, commands)
@@ -214,7 +224,7 @@ pub fn carry_out(
     for tries in 1..=TRIES {
         let before = shown.load_full();
         let mut done = join(&before.mesh, &tool(&before)?, held, operation, job)?;
-        job.check().map_err(boolean::Error::from)?;
+        job.check().map_err(boolean::BooleanError::from)?;
         if let [QueuedCommand { command: Command::Cut(_), result, .. }] = &mut done[..] {
             let (answer, made) = cc::bounded(1);
             *result = Some(answer);

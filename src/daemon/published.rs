@@ -9,8 +9,8 @@ use arc_swap::ArcSwap;
 use glam::Vec3;
 
 use crate::tick_statistics::{Losses, Percentiles};
-use sculptd_clay::{GarbageSink, Snapshot};
 use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{GarbageSink, Snapshot};
 use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
 use sculptd_engine::camera::Camera;

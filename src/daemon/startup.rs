@@ -11,7 +11,7 @@ use sculptd_devices::queue::Sender;
 use sculptd_devices::recording::Player;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::{World, WorldOptions};
-use sculptd_geometry::io::{ReadError, read_mesh};
+use sculptd_geometry::io::{MAX_FILE, ReadError, read_mesh_within};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -42,18 +42,31 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads a work from a file, or makes the ball that a session starts with.
+/// Reads a mesh from a file, or makes the ball that a session starts with.
 pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
-    let (plain, mut warnings, name) = match path {
-        Some(path) => {
-            let loaded = read_mesh(path, job)?;
-            let (plain, _) = loaded.mesh.triangulate();
-            (plain, loaded.warnings, path.display().to_string())
+    match path {
+        Some(path) => load_within(path, MAX_FILE, job),
+        None => {
+            let ball = shapes::sphere_of_about(START_VERTICES);
+            build(ball, vec![], "the start ball".into(), job)
         }
-        None => (shapes::sphere_of_about(START_VERTICES), vec![], "the start ball".into()),
-    };
-    let mesh =
-        Clay::build(&plain, job).map_err(|source| StartupError::Build { path: name, source })?;
+    }
+}
+
+/// Reads a mesh from a regular file of at most `limit` bytes.
+pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, StartupError> {
+    let loaded = read_mesh_within(path, limit, job)?;
+    let (plain, _) = loaded.mesh.triangulate();
+    build(plain, loaded.warnings, path.display().to_string(), job)
+}
+
+fn build(
+    plain: TriMesh,
+    mut warnings: Vec<String>,
+    path: String,
+    job: &Job,
+) -> Result<Loaded, StartupError> {
+    let mesh = Clay::build(&plain, job).map_err(|source| StartupError::Build { path, source })?;
     warnings.extend(mesh.warnings().iter().cloned());
     Ok(Loaded { plain, mesh, warnings })
 }
@@ -98,7 +111,8 @@ pub fn begin(
     config: &Config,
     job: &Job,
 ) -> Result<Begun, BeginError> {
-    if let Some(path) = session.filter(|p| p.exists()) {
+    let half_made = session.is_some_and(|p| p.exists() && session::is_half_made(p));
+    if let Some(path) = session.filter(|p| p.exists() && !half_made) {
         let workers = Workers::new(config.r#loop.worker_count());
         let mut warnings = Vec::new();
         let mut path = path.to_path_buf();
@@ -106,7 +120,11 @@ pub fn begin(
         if !matches!(
             &opened,
             Ok(Opened { loss: None, .. })
-                | Err(OpenError::OtherLayout { .. } | OpenError::Io { .. })
+                | Err(
+                    OpenError::OtherLayout { .. }
+                        | OpenError::Io { .. }
+                        | OpenError::ReadOnlyFolder { .. }
+                )
         ) {
             // A damaged file is kept as it is; the work goes on in another, beside it.
             match session::salvage(&path) {
@@ -125,6 +143,11 @@ pub fn begin(
         let (mut replayed, purge, node) =
             match session::history::reopen(&path, &opened, None, count, job) {
                 Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
+                None if opened.replay_from.is_some() => {
+                    let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
+                    let path = path.display().to_string();
+                    return Err(OpenError::NoCheckpoint { path, why }.into());
+                }
                 None => {
                     let replayed =
                         session::replay::replay(&opened, None, workers, job).map_err(|source| {
@@ -153,6 +176,12 @@ pub fn begin(
     }
     let loaded = load(mesh, job)?;
     let mut warnings = loaded.warnings;
+    if half_made && let Some(path) = session {
+        warnings.push(format!(
+            "{}: it was empty, or left by a start that was interrupted; it is begun anew",
+            path.display()
+        ));
+    }
     let mut world = world(loaded.mesh, config);
     let journal = match session {
         None => None,

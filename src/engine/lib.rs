@@ -12,6 +12,7 @@
 pub mod camera;
 pub mod command;
 pub mod hand;
+pub mod old_layout;
 pub mod payload;
 mod replaced;
 // Its items are being documented: remove this line when they are.

@@ -4,11 +4,11 @@
 use glam::DVec2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::silhouette::{Chain, Polygon};
+use super::silhouette::{Chain, PlaneRegion};
 
 /// Polygons and area of the shape of `points`, which are finite. Of random points the area is low
 /// by about the perimeter times half their spacing: they rarely lie on the border.
-pub fn alpha_shape(points: &[DVec2], alpha: f64) -> (Vec<Polygon>, f64) {
+pub fn alpha_shape(points: &[DVec2], alpha: f64) -> (Vec<PlaneRegion>, f64) {
     let (lo, hi) = points
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));

@@ -1,18 +1,19 @@
 //! What a mesh is: counts, topology, size, and whether it crosses itself.
 
-use glam::DVec3;
 use serde::Serialize;
 
-use super::PolyMesh;
-use super::edges::{Edges, Sets};
+use super::disjoint_sets::DisjointSets;
+use super::edges::EdgeTable;
+use super::{Aabb, PolyMesh};
 use crate::job::{Cancelled, Job};
 use crate::self_intersection;
 
 /// The facts of a mesh, as `sculptd info --json` prints them. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Report {
+pub struct MeshReport {
     /// All vertices, those that no face uses too.
     pub vertices: usize,
+    /// Polygons, those without area too.
     pub faces: usize,
     /// After cutting polygons into triangles.
     pub triangles: usize,
@@ -29,9 +30,10 @@ pub struct Report {
     /// Handles of all components together; of a closed manifold only.
     pub genus: Option<i64>,
     /// Of the vertices that faces use.
-    pub bounds: Bounds,
+    pub bounds: Aabb,
     /// Of a closed mesh; negative if it is inside out.
     pub volume: Option<f64>,
+    /// The sum of the triangles' areas.
     pub area: f64,
     /// Pairs of triangles that cross, beyond the vertices and edges that they share. `None` if not
     /// asked for.
@@ -50,27 +52,21 @@ pub struct Report {
     pub unused_vertices: usize,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Bounds {
-    pub min: [f64; 3],
-    pub max: [f64; 3],
-}
-
 /// Looks at everything; `crossings`: also for triangles that cross, the slowest part.
 /// Sums run in double precision around the middle of the box, in the order of the faces.
-pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<Report, Cancelled> {
-    let edges = Edges::of(mesh);
+pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<MeshReport, Cancelled> {
+    let edges = EdgeTable::of(mesh);
     job.check()?;
     let (mut boundary, mut nonmanifold, mut misoriented, mut count) = (0, 0, 0, 0i64);
-    let mut together = Sets::new(mesh.positions.len());
+    let mut together = DisjointSets::new(mesh.positions.len());
     // The corners of a vertex that faces with a common edge join: one set a fan.
-    let mut fans = Sets::new(mesh.corners.len());
-    for sides in edges.each() {
+    let mut fans = DisjointSets::new(mesh.corners.len());
+    for half_edges in edges.each() {
         count += 1;
-        let first = sides[0];
+        let first = half_edges[0];
         let vertex = |corner: u32| mesh.corners[corner as usize];
         together.join(first.ends.0, first.ends.1);
-        match *sides {
+        match *half_edges {
             [_] => boundary += 1,
             [a, b] => {
                 let (a2, b2) = (edges.next(mesh, a.corner), edges.next(mesh, b.corner));
@@ -93,12 +89,10 @@ pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<Report, Can
         used[c as usize] = true;
     }
     let in_use = used.iter().filter(|&&u| u).count();
-    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for (p, _) in mesh.positions.iter().zip(&used).filter(|(_, u)| **u || in_use == 0) {
-        (min, max) = (min.min(*p), max.max(*p));
-    }
+    let counted = mesh.positions.iter().zip(&used).filter(|(_, u)| **u || in_use == 0);
+    let bounds = Aabb::of(counted.map(|(p, _)| *p));
     let (triangles, of) = mesh.triangles();
-    let middle = min / 2.0 + max / 2.0;
+    let middle = bounds.centre();
     let (mut area, mut volume) = (0.0, 0.0);
     let mut degenerate = vec![false; mesh.face_count()];
     let mut face_area = 0.0;
@@ -139,7 +133,7 @@ pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<Report, Can
     } else {
         None
     };
-    Ok(Report {
+    Ok(MeshReport {
         vertices: mesh.positions.len(),
         faces,
         triangles: triangles.len(),
@@ -149,7 +143,7 @@ pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<Report, Can
         oriented: misoriented == 0,
         euler,
         genus: (closed && manifold).then_some((2 * components as i64 - euler) / 2),
-        bounds: Bounds { min: min.to_array(), max: max.to_array() },
+        bounds,
         volume: closed.then_some(volume),
         area,
         self_intersections: crossed.map(|c| c.pairs),

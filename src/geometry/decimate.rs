@@ -1,5 +1,6 @@
-//! Fewer triangles: edges are collapsed in the order of the error that it makes (Garland and
-//! Heckbert 1997).
+//! Fewer triangles, by quadric error metrics (QEM): edges are collapsed in the order of the error
+//! that it makes (Garland and Heckbert, "Surface simplification using quadric error metrics",
+//! 1997).
 //!
 //! A collapse is refused if it would break the surface (link condition: the edge's ends share
 //! exactly the vertices opposite the edge), turn a triangle by more than about 75 degrees or make a
@@ -12,12 +13,12 @@ use std::collections::BinaryHeap;
 use glam::{DMat3, DVec3};
 
 use super::PolyMesh;
-use super::edges::Edges;
+use super::edges::EdgeTable;
 use crate::job::{Cancelled, Job};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
-pub struct Target {
+pub struct DecimationTarget {
     /// Stop at this many triangles.
     pub triangles: usize,
     /// And before the mean square distance to the planes that a vertex stands for exceeds this one
@@ -75,7 +76,7 @@ impl Quadric {
     }
 }
 
-struct Surface {
+struct CollapseSurface {
     /// Around the middle of the box, so that the forms lose no digits to the place of the mesh.
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -89,11 +90,15 @@ struct Surface {
 }
 
 /// Errors as bits: those of non-negative numbers sort as the numbers do.
-type Entry = Reverse<(u64, u32, u32, u32, u32)>;
+type CollapseCandidate = Reverse<(u64, u32, u32, u32, u32)>;
 
 /// Collapses edges of the mesh's triangles (polygons are cut first) until `target` is reached or
 /// nothing more may go.
-pub fn quadric(mesh: &PolyMesh, target: Target, job: &Job) -> Result<PolyMesh, Cancelled> {
+pub fn quadric(
+    mesh: &PolyMesh,
+    target: DecimationTarget,
+    job: &Job,
+) -> Result<PolyMesh, Cancelled> {
     let (triangles, _) = mesh.triangles();
     let middle = mesh
         .positions
@@ -101,8 +106,8 @@ pub fn quadric(mesh: &PolyMesh, target: Target, job: &Job) -> Result<PolyMesh, C
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let middle =
         if mesh.positions.is_empty() { DVec3::ZERO } else { middle.0 / 2.0 + middle.1 / 2.0 };
-    let mut s = Surface::of(mesh, triangles, middle);
-    let mut heap: BinaryHeap<Entry> = BinaryHeap::new();
+    let mut s = CollapseSurface::of(mesh, triangles, middle);
+    let mut heap: BinaryHeap<CollapseCandidate> = BinaryHeap::new();
     let mut pairs: Vec<(u32, u32)> = s
         .triangles
         .iter()
@@ -153,11 +158,11 @@ pub fn quadric(mesh: &PolyMesh, target: Target, job: &Job) -> Result<PolyMesh, C
     Ok(out)
 }
 
-impl Surface {
-    fn of(mesh: &PolyMesh, mut triangles: Vec<[u32; 3]>, middle: DVec3) -> Surface {
+impl CollapseSurface {
+    fn of(mesh: &PolyMesh, mut triangles: Vec<[u32; 3]>, middle: DVec3) -> CollapseSurface {
         triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
         let n = mesh.positions.len();
-        let mut s = Surface {
+        let mut s = CollapseSurface {
             positions: mesh.positions.iter().map(|&p| p - middle).collect(),
             alive: vec![true; triangles.len()],
             around: vec![Vec::new(); n],
@@ -178,9 +183,9 @@ impl Surface {
                 s.forms[v as usize].add(&form);
             }
         }
-        for sides in Edges::of(&flat).each() {
-            let (u, v) = sides[0].ends;
-            match sides {
+        for half_edges in EdgeTable::of(&flat).each() {
+            let (u, v) = half_edges[0].ends;
+            match half_edges {
                 [one] => {
                     let [a, b, c] =
                         s.triangles[one.corner as usize / 3].map(|v| s.positions[v as usize]);
@@ -247,7 +252,7 @@ impl Surface {
         (best.0 + 1e-9 * form.weight * length * length, best.1)
     }
 
-    fn offer(&self, a: u32, b: u32, bound: f64, heap: &mut BinaryHeap<Entry>) {
+    fn offer(&self, a: u32, b: u32, bound: f64, heap: &mut BinaryHeap<CollapseCandidate>) {
         let (a, b) = (a.min(b), a.max(b));
         if self.fixed[a as usize] || self.fixed[b as usize] {
             return;
@@ -348,7 +353,7 @@ mod tests {
     use crate::subdivide::loop_;
 
     fn down(mesh: &PolyMesh, triangles: usize, error: f64) -> PolyMesh {
-        quadric(mesh, Target { triangles, error }, &Job::default()).unwrap()
+        quadric(mesh, DecimationTarget { triangles, error }, &Job::default()).unwrap()
     }
 
     #[test]
@@ -388,7 +393,7 @@ mod tests {
                 positions: fine.positions.clone(),
                 ..PolyMesh::new()
             };
-            for (e, s) in Edges::of(&flat).each().enumerate() {
+            for (e, s) in EdgeTable::of(&flat).each().enumerate() {
                 let (u, v) = s[0].ends;
                 middle.positions[fine.positions.len() + e] =
                     (fine.positions[u as usize] + fine.positions[v as usize]) / 2.0;

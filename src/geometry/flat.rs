@@ -1,5 +1,6 @@
 //! Meshes as plain arrays: what a file holds, what a Boolean takes, what an analysis reads. The
-//! clay itself is paged ([`sculptd_clay::Mesh`]); these are the shapes in which it comes and goes.
+//! clay of a sculpture is paged (crate `sculptd-clay`); these are the forms in which it is loaded
+//! and saved.
 
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -7,10 +8,12 @@ use serde::{Deserialize, Serialize};
 /// A polygon mesh in double precision. Corners run counter-clockwise seen from outside.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PolyMesh {
+    /// In the unit of the file, millimetres as a rule.
     pub positions: Vec<DVec3>,
     /// Face `f` owns `corners[face_starts[f]..face_starts[f + 1]]`; one entry more than faces, the
     /// first is 0.
     pub face_starts: Vec<u32>,
+    /// Vertex indices, each below the number of positions.
     pub corners: Vec<u32>,
     /// One RGBA a vertex, sRGB, where the file has colours.
     pub colours: Option<Vec<[u8; 4]>>,
@@ -19,22 +22,27 @@ pub struct PolyMesh {
 }
 
 impl PolyMesh {
+    /// A mesh of nothing.
     pub fn new() -> Self {
         PolyMesh { face_starts: vec![0], ..Default::default() }
     }
 
+    /// The number of faces.
     pub fn face_count(&self) -> usize {
         self.face_starts.len().saturating_sub(1)
     }
 
+    /// The corners of face `f`, counter-clockwise seen from outside.
     pub fn face(&self, f: usize) -> &[u32] {
         &self.corners[self.face_starts[f] as usize..self.face_starts[f + 1] as usize]
     }
 
+    /// The corners of each face, in order.
     pub fn faces(&self) -> impl Iterator<Item = &[u32]> {
         self.face_starts.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
     }
 
+    /// Adds a face. The caller extends `groups` where the mesh has them.
     pub fn push_face(&mut self, corners: &[u32]) {
         if self.face_starts.is_empty() {
             self.face_starts.push(0);
@@ -47,17 +55,21 @@ impl PolyMesh {
 /// A triangle mesh in single precision, the clay's own.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TriMesh {
+    /// In the unit of the file, millimetres as a rule.
     pub positions: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// One RGBA a vertex, sRGB.
     pub colours: Option<Vec<[u8; 4]>>,
 }
 
 impl TriMesh {
+    /// The positions of triangle `t`. Panics where an index is out of range.
     pub fn corners(&self, t: usize) -> [Vec3; 3] {
         self.triangles[t].map(|v| self.positions[v as usize])
     }
 
+    /// Lower and upper corner of the box around all vertices; (+inf, -inf) without any.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.positions
             .iter()

@@ -16,10 +16,12 @@ pub struct Job {
 pub struct Cancelled;
 
 impl Job {
+    /// Asks the worker to stop; from any thread.
     pub fn cancel(&self) {
         self.cancelled.store(true, Relaxed);
     }
 
+    /// Whether the asker lost interest.
     pub fn cancelled(&self) -> bool {
         self.cancelled.load(Relaxed)
     }
@@ -34,6 +36,7 @@ impl Job {
         self.per_mille.store((done.clamp(0.0, 1.0) * 1000.0) as u32, Relaxed);
     }
 
+    /// The progress last reported, 0 to 1 in steps of a thousandth.
     pub fn done(&self) -> f32 {
         self.per_mille.load(Relaxed) as f32 / 1000.0
     }

@@ -4,17 +4,19 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::TriMesh;
+use crate::distance::DistanceSolid;
 use crate::job::{Cancelled, Job};
 
-/// Strips that a projection is cut into.
+/// Strips that a projection is cut into: see [`projected_area`].
 const STRIPS: usize = 2048;
 
-/// Lengths in the mesh's unit.
+/// What [`measures`] gives. Lengths in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {
     /// Enclosed volume; of an open mesh, what the divergence theorem says of it, which means
     /// little.
     pub volume: f64,
+    /// The sum of the triangles' areas.
     pub area: f64,
     /// Extent along x, y and z.
     pub dimensions: [f64; 3],
@@ -43,6 +45,34 @@ pub fn measures(mesh: &TriMesh) -> Measures {
         dimensions: (hi.as_dvec3() - lo.as_dvec3()).to_array(),
         centroid: (six != 0.0).then(|| centre + moment / (4.0 * six)),
     }
+}
+
+/// Triangles that [`overlaps`] looks at, evenly over the mesh.
+const LOOKED_AT: usize = 4096;
+
+/// Whether a closed surface lies within itself: somewhere outside of a triangle is still inside the
+/// solid, by the winding number. Looked at in front of at most 4,096 triangles, so an overlap that
+/// covers less than one of them can be missed.
+pub fn overlaps(mesh: &TriMesh, job: &Job) -> Result<bool, Cancelled> {
+    let solid = DistanceSolid::build(mesh, job)?;
+    let (lo, hi) = mesh.bounds();
+    let step = (hi - lo).as_dvec3().length() * 1e-5;
+    let sign = if measures(mesh).volume < 0.0 { -1.0 } else { 1.0 };
+    let every = mesh.triangles.len().div_ceil(LOOKED_AT).max(1);
+    let chosen: Vec<usize> = (0..mesh.triangles.len()).step_by(every).collect();
+    let found = chosen
+        .par_chunks(64)
+        .map(|chunk| {
+            job.check()?;
+            Ok(chunk.iter().any(|&t| {
+                let [a, b, c] = mesh.corners(t).map(Vec3::as_dvec3);
+                let normal = (b - a).cross(c - a).normalize_or_zero() * sign;
+                let p = (a + b + c) / 3.0 + normal * step;
+                normal != DVec3::ZERO && solid.winding(p) * sign > 0.5
+            }))
+        })
+        .collect::<Result<Vec<bool>, Cancelled>>()?;
+    Ok(found.contains(&true))
 }
 
 /// Area of the part's shadow along `direction` (any length but zero). The shadow is cut into
@@ -143,6 +173,26 @@ fn union(spans: &mut [(f64, f64)]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::cuboid;
+
+    #[test]
+    fn shells_that_overlap_are_found_and_cavities_are_not() {
+        let boxes = |second: (f64, f64), turned: bool| {
+            let mut mesh = cuboid(DVec3::ZERO, DVec3::ONE).triangulate().0;
+            let (lo, hi) = second;
+            let other = cuboid(DVec3::splat(lo), DVec3::splat(hi)).triangulate().0;
+            let base = mesh.positions.len() as u32;
+            mesh.positions.extend(&other.positions);
+            mesh.triangles.extend(other.triangles.iter().map(|t| {
+                let [a, b, c] = t.map(|v| v + base);
+                if turned { [a, c, b] } else { [a, b, c] }
+            }));
+            overlaps(&mesh, &Job::default()).unwrap()
+        };
+        assert!(boxes((0.5, 1.5), false));
+        assert!(!boxes((2.0, 3.0), false));
+        assert!(!boxes((0.25, 0.75), true), "a cavity");
+    }
 
     #[test]
     fn overlapping_spans_count_once() {

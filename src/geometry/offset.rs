@@ -1,14 +1,17 @@
-//! Solids grown, shrunk, hollowed and melted together, from the same field.
+//! Solids offset, hollowed and joined with a fillet, from the sampled signed distance: the level set
+//! is extracted by dual marching cubes (Nielson 2004, see [`crate::remesh::dual`]) and its vertices
+//! are moved to the exact distance.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::distance::Solid;
-use super::grid::Grid;
+use super::distance::DistanceSolid;
+use super::grid::DistanceGrid;
 use super::remesh::dual::extract;
 use super::remesh::{MARGIN, RemeshError, layout};
 use super::unfold::{even, settle_all};
 use crate::TriMesh;
+use crate::disjoint_sets::DisjointSets;
 use crate::job::Job;
 
 /// Newton steps that put a vertex at its distance from the old surface.
@@ -25,7 +28,7 @@ const ROOM: f64 = 0.25;
 
 /// Moves `p` until the surface is `distance` away (negative inside), as far as it can be in a few
 /// steps.
-fn settle(solid: &Solid, start: DVec3, distance: f64, h: f64) -> DVec3 {
+fn settle(solid: &DistanceSolid, start: DVec3, distance: f64, h: f64) -> DVec3 {
     let mut p = start;
     for _ in 0..STEPS {
         let Some(n) = solid.tree.nearest(p, f64::INFINITY) else { return p };
@@ -42,22 +45,31 @@ fn settle(solid: &Solid, start: DVec3, distance: f64, h: f64) -> DVec3 {
 }
 
 /// A surface, and the spacing of the samples that it was made from.
-struct Made {
+struct OffsetSurface {
     points: Vec<Vec3>,
     faces: Vec<[u32; 3]>,
     spacing: f64,
 }
 
-impl Made {
+impl OffsetSurface {
     fn mesh(self) -> TriMesh {
         TriMesh { positions: self.points, triangles: self.faces, colours: None }
     }
 }
 
 /// The surface at `distance` from the solid's, possibly of nothing.
-fn at_distance(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<Made, RemeshError> {
-    let grid =
-        Grid::band([solid], |[d]| d - distance, layout(solid, distance.max(0.0), side)?, job)?;
+fn at_distance(
+    solid: &DistanceSolid,
+    distance: f64,
+    side: usize,
+    job: &Job,
+) -> Result<OffsetSurface, RemeshError> {
+    let grid = DistanceGrid::band(
+        [solid],
+        |[d]| d - distance,
+        layout(solid, distance.max(0.0), side)?,
+        job,
+    )?;
     let h = grid.spacing;
     let (from, faces) = extract(&grid, middle, job)?;
     let mut moved = even(&from, &faces, h * ROOM);
@@ -66,14 +78,14 @@ fn at_distance(solid: &Solid, distance: f64, side: usize, job: &Job) -> Result<M
         *p = settle(solid, p.as_dvec3(), distance, h).as_vec3();
         Ok::<_, RemeshError>(())
     })?;
-    Ok(Made { points: settle_all(&from, moved, &faces, job)?, faces, spacing: h })
+    Ok(OffsetSurface { points: settle_all(&from, moved, &faces, job)?, faces, spacing: h })
 }
 
 /// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold, vertices
 /// at that distance to about a ten-thousandth of the spacing except at creases.
 /// [`RemeshError::Empty`] where shrinking leaves nothing.
 pub fn offset(
-    solid: &Solid,
+    solid: &DistanceSolid,
     distance: f64,
     side: usize,
     job: &Job,
@@ -97,25 +109,77 @@ pub struct Hollow {
     pub spacing: f64,
 }
 
-/// Hollows `mesh` to a wall of `wall`: the old surface is kept, and a cavity everywhere further
-/// than `wall` inside is cut out, together with every partition within it that is thinner than the
-/// wall. So the wall is nowhere thinner than that by more than the chord of a cavity's triangle,
-/// `spacing^2 / (4 wall)`, except at the old surface's own sharp edges. [`RemeshError::Empty`]
+/// The cavity everywhere further than `depth` inside, without partitions thinner than `wall`.
+fn cavity_at(
+    solid: &DistanceSolid,
+    depth: f64,
+    wall: f64,
+    side: usize,
+    job: &Job,
+) -> Result<OffsetSurface, RemeshError> {
+    let deep = at_distance(solid, -depth, side, job)?;
+    let h = deep.spacing;
+    let deep = OffsetSurface { faces: without_specks(&deep.points, deep.faces, h), ..deep };
+    if deep.faces.is_empty() {
+        return Err(RemeshError::Empty);
+    }
+    closed(deep, wall * 0.5, job)
+}
+
+/// Rounds of [`hollow`] after which the wall is as it is: the second, as a rule, finds nothing.
+const ROUNDS: usize = 4;
+
+/// The least distance from the solid's surface to a cavity, at the corners, the middles of the edges
+/// and the centre of each of its triangles.
+fn least_wall(
+    solid: &DistanceSolid,
+    cavity: &OffsetSurface,
+    job: &Job,
+) -> Result<f64, RemeshError> {
+    let least = cavity
+        .faces
+        .par_chunks(256)
+        .map(|faces| {
+            job.check()?;
+            let mut least = f64::INFINITY;
+            for face in faces {
+                let [a, b, c] = face.map(|v| cavity.points[v as usize].as_dvec3());
+                let middles = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0];
+                for p in [a, b, c].into_iter().chain(middles) {
+                    // A bound makes the search faster: what is farther does not matter.
+                    least = solid.tree.nearest(p, least).map_or(least, |n| least.min(n.distance()));
+                }
+            }
+            Ok(least)
+        })
+        .collect::<Result<Vec<f64>, RemeshError>>()?;
+    Ok(least.into_iter().fold(f64::INFINITY, f64::min))
+}
+
+/// Hollows `mesh` to a wall of at least `wall`: the old surface is kept, and a cavity everywhere
+/// further than `wall` inside is cut out, together with every partition within it that is thinner
+/// than the wall. The wall is measured at seven points of each of the cavity's triangles, and the
+/// cavity is made again, deeper, until none is nearer than `wall`. [`RemeshError::Empty`]
 /// where the solid is nowhere thick enough for a cavity.
 pub fn hollow(
     mesh: &TriMesh,
-    solid: &Solid,
+    solid: &DistanceSolid,
     wall: f64,
     side: usize,
     job: &Job,
 ) -> Result<Hollow, RemeshError> {
-    let deep = at_distance(solid, -wall, side, job)?;
-    let h = deep.spacing;
-    let deep = Made { faces: without_specks(&deep.points, deep.faces, h), ..deep };
-    if deep.faces.is_empty() {
-        return Err(RemeshError::Empty);
+    // A cavity's chords come nearer to the old surface than its vertices do: what is missing of the
+    // wall is measured and added until nothing is.
+    let (mut depth, mut cavity) = (wall, cavity_at(solid, wall, wall, side, job)?);
+    for _ in 0..ROUNDS {
+        let missing = wall - least_wall(solid, &cavity, job)?;
+        if missing <= 0.0 {
+            break;
+        }
+        depth += missing * 1.05 + cavity.spacing * 1e-4;
+        cavity = cavity_at(solid, depth, wall, side, job)?;
     }
-    let Made { points: inner, faces, .. } = closed(deep, wall * 0.5, job)?;
+    let OffsetSurface { points: inner, faces, spacing: h } = cavity;
     let mut out = mesh.clone();
     let base = out.positions.len() as u32;
     // Only the points that a cavity kept uses, in their order.
@@ -139,10 +203,10 @@ pub fn hollow(
 /// morphology", 1982). Where the solid is about twice the wall thick, what lies further inside than
 /// the wall falls into several rooms with partitions as thin as may be between them; this takes out
 /// every partition that a ball of `radius` does not fit into, and leaves all else.
-fn closed(cavity: Made, radius: f64, job: &Job) -> Result<Made, RemeshError> {
+fn closed(cavity: OffsetSurface, radius: f64, job: &Job) -> Result<OffsetSurface, RemeshError> {
     let h = cavity.spacing;
-    let next = |made: Made, distance: f64| {
-        let solid = Solid::build(&made.mesh(), job)?;
+    let next = |made: OffsetSurface, distance: f64| {
+        let solid = DistanceSolid::build(&made.mesh(), job)?;
         let (lo, hi) = solid.tree.bounds();
         let longest = (hi - lo).max_element() as f64 + 2.0 * distance.max(0.0);
         let side = (longest / h).ceil() as usize + 1 + 2 * MARGIN;
@@ -150,31 +214,22 @@ fn closed(cavity: Made, radius: f64, job: &Job) -> Result<Made, RemeshError> {
     };
     let back = next(next(cavity, radius)?, -radius)?;
     let faces = without_specks(&back.points, back.faces, h);
-    if faces.is_empty() { Err(RemeshError::Empty) } else { Ok(Made { faces, ..back }) }
+    if faces.is_empty() { Err(RemeshError::Empty) } else { Ok(OffsetSurface { faces, ..back }) }
 }
 
 /// The cavities without those that are flatter than the samples can tell: where a solid is about
 /// twice the wall thick, its middle comes out as flat flakes. Leaving one out makes the part more
 /// solid there, never thinner.
 fn without_specks(points: &[Vec3], faces: Vec<[u32; 3]>, h: f64) -> Vec<[u32; 3]> {
-    let mut parent: Vec<u32> = (0..points.len() as u32).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    }
+    let mut shells = DisjointSets::new(points.len());
     for &[a, b, c] in &faces {
-        for (u, v) in [(a, b), (b, c)] {
-            let (u, v) = (root(&mut parent, u), root(&mut parent, v));
-            parent[u.max(v) as usize] = u.min(v);
-        }
+        shells.join(a, b);
+        shells.join(b, c);
     }
     // Six times the volume and twice the area of each cavity, about a point of its own.
     let mut sums = vec![(0.0f64, 0.0f64); points.len()];
     for &face in &faces {
-        let home = root(&mut parent, face[0]);
+        let home = shells.root(face[0]);
         let [a, b, c] = face.map(|v| (points[v as usize] - points[home as usize]).as_dvec3());
         let sum = &mut sums[home as usize];
         sum.0 += a.dot(b.cross(c));
@@ -182,7 +237,7 @@ fn without_specks(points: &[Vec3], faces: Vec<[u32; 3]>, h: f64) -> Vec<[u32; 3]
     }
     // A ball of radius r has 3 V / A = r, a sheet of thickness t has 1.5 t.
     let mut keeps = |v: u32| {
-        let (volume, area) = sums[root(&mut parent, v) as usize];
+        let (volume, area) = sums[shells.root(v) as usize];
         volume > h * area
     };
     faces.into_iter().filter(|f| keeps(f[0])).collect()
@@ -201,8 +256,8 @@ pub fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
 /// Two solids as one, with a fillet of about `radius` along their seam; a radius of zero is the
 /// plain union.
 pub fn smooth_union(
-    a: &Solid,
-    b: &Solid,
+    a: &DistanceSolid,
+    b: &DistanceSolid,
     radius: f64,
     side: usize,
     job: &Job,
@@ -213,8 +268,8 @@ pub fn smooth_union(
     layout(b, 0.0, side)?;
     let room = DVec3::splat(k * 0.25);
     let both = (alo.min(blo).as_dvec3() - room, ahi.max(bhi).as_dvec3() + room);
-    let shape = Grid::layout(both, side, MARGIN);
-    let grid = Grid::band([a, b], |[p, q]| smooth_min(p, q, k), shape, job)?;
+    let shape = DistanceGrid::layout(both, side, MARGIN);
+    let grid = DistanceGrid::band([a, b], |[p, q]| smooth_min(p, q, k), shape, job)?;
     let h = grid.spacing;
     let field = |p: DVec3| smooth_min(a.signed_distance(p), b.signed_distance(p), k);
     let (mut positions, triangles) = extract(&grid, middle, job)?;
@@ -236,4 +291,30 @@ pub fn smooth_union(
     })?;
     job.progress(1.0);
     Ok(TriMesh { positions, triangles, colours: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::icosphere;
+
+    #[test]
+    fn the_wall_is_nowhere_thinner_than_asked() {
+        let ball = icosphere(10.0, 12);
+        let job = Job::default();
+        let solid = DistanceSolid::build(&ball, &job).unwrap();
+        let made = hollow(&ball, &solid, 2.0, 32, &job).unwrap();
+        let cavity = &made.mesh.triangles[made.mesh.triangles.len() - made.cavity..];
+        let mut least = f64::INFINITY;
+        for t in cavity {
+            let [a, b, c] = t.map(|v| made.mesh.positions[v as usize].as_dvec3());
+            // Other places than those that the cavity was made by.
+            for (u, v) in [(0.25, 0.0), (0.25, 0.25), (0.6, 0.2), (0.1, 0.45)] {
+                let p = a + (b - a) * u + (c - a) * v;
+                let near = solid.tree.nearest(p, f64::INFINITY).unwrap();
+                least = least.min(near.distance());
+            }
+        }
+        assert!((1.999..2.2).contains(&least), "{least}");
+    }
 }

@@ -1,4 +1,4 @@
-//! A picture of a mesh, drawn on the CPU: for reports, for `--png`, for machines without a GPU. The
+//! A picture of a mesh, rasterised with a depth buffer on the CPU: for reports, for `--png`, for machines without a GPU. The
 //! same mesh and camera give the same bytes everywhere: no threads share a pixel, no time, no
 //! library's mathematics but `sqrt`.
 
@@ -55,8 +55,11 @@ impl Camera {
 /// Eight bits a channel, rows from the top.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picture {
+    /// Pixels.
     pub width: usize,
+    /// Pixels.
     pub height: usize,
+    /// sRGB, `width * height` pixels, row by row from the top, each from the left.
     pub rgb: Vec<[u8; 3]>,
 }
 

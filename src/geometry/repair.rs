@@ -1,11 +1,17 @@
-//! Mending: one vertex for one place, no faces without extent, all faces outwards, no holes.
-//! Each works in place and says how much it changed; none moves a vertex.
+//! Repair: one vertex for one place, no faces without extent, all faces outwards, no holes. Each
+//! function works in place and returns how much it changed; none moves a vertex.
+
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 
 use super::PolyMesh;
-use super::edges::{Edges, Sets};
-use super::triangulate;
+use super::boolean::box_tree::Span;
+use super::boolean::classify::crossings;
+use super::disjoint_sets::DisjointSets;
+use super::edges::EdgeTable;
+use super::job::Job;
+use super::{self_intersection, triangulate};
 
 /// Turns every face over.
 pub fn flip(mesh: &mut PolyMesh) {
@@ -60,7 +66,7 @@ fn without_repeats(face: &[u32], out: &mut Vec<u32>) {
 pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     let n = mesh.positions.len();
     let p = |i: u32| mesh.positions[i as usize];
-    let mut sets = Sets::new(n);
+    let mut sets = DisjointSets::new(n);
     if distance > 0.0 {
         // Cells of the distance's size: what is near lies in the same or a neighbouring cell.
         let cell = |q: DVec3| (q / distance).floor();
@@ -96,7 +102,7 @@ pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     }
     let merged = n - sets.count();
     if merged > 0 {
-        let home: Vec<u32> = (0..n as u32).map(|i| sets.find(i)).collect();
+        let home: Vec<u32> = (0..n as u32).map(|i| sets.root(i)).collect();
         rebuild(mesh, |face, out| {
             let moved: Vec<u32> = face.iter().map(|&c| home[c as usize]).collect();
             without_repeats(&moved, out);
@@ -172,129 +178,185 @@ fn reversed(a: &[u32], b: &[u32]) -> bool {
     n == b.len() && (0..n).all(|i| a[i] == b[(start + n - i) % n])
 }
 
-/// Makes neighbours agree across every edge of two faces (the first face of a patch leads), then
-/// turns closed patches so that the outermost face out and what lies inside an odd number of others
-/// (cavities) faces in. Returns how many faces were turned. A one-sided surface keeps a seam;
-/// [`super::check::report`] then still says so.
+/// What [`orient_shells`] did and what it could not know.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct OrientedShells {
+    /// Faces that were turned.
+    pub turned: usize,
+    /// Pairs of closed shells that cross each other.
+    pub crossing: usize,
+    /// Closed shells that lie within another and face the same way as it does: their inside is
+    /// counted twice.
+    pub nested: usize,
+    /// Shells whose direction the mesh itself does not tell: neighbouring faces disagreed, or an
+    /// outermost shell faced inwards.
+    pub guessed: usize,
+}
+
+/// As [`orient_shells`]; returns how many faces were turned.
 pub fn orient(mesh: &mut PolyMesh) -> usize {
-    let edges = Edges::of(mesh);
+    orient_shells(mesh).turned
+}
+
+/// Makes neighbours agree across every edge of two faces (the first face of a shell leads), then
+/// decides for each closed shell which way it faces. Where the mesh is consistent as it is (no
+/// neighbours disagree, every outermost shell faces outwards), its directions are kept: a shell
+/// that faces inwards is a cavity. Else shells in no other face outwards, and shells that others go
+/// around an odd number of times face inwards; a shell that crosses another is not within it.
+/// A one-sided surface keeps a seam; [`super::check::report`] then still says so.
+pub fn orient_shells(mesh: &mut PolyMesh) -> OrientedShells {
+    let edges = EdgeTable::of(mesh);
     let faces = mesh.face_count();
     // Neighbours across edges of exactly two faces, and whether they run along it in the same
     // direction (so disagree).
     let mut links: Vec<(u32, u32, bool)> = Vec::new();
     let mut open = Vec::new();
-    for sides in edges.each() {
-        let face = |i: usize| edges.face_of[sides[i].corner as usize];
-        if let [a, b] = sides {
+    for half_edges in edges.each() {
+        let face = |i: usize| edges.face_of[half_edges[i].corner as usize];
+        if let [a, b] = half_edges {
             let same = mesh.corners[a.corner as usize] == mesh.corners[b.corner as usize];
             links.push((face(0), face(1), same));
             links.push((face(1), face(0), same));
         } else {
-            open.extend((0..sides.len()).map(face));
+            open.extend((0..half_edges.len()).map(face));
         }
     }
     links.sort_unstable();
-    let mut patch = vec![u32::MAX; faces];
+    let mut shell = vec![u32::MAX; faces];
     let mut turned = vec![false; faces];
-    let mut patches = 0u32;
+    let mut shells = 0u32;
     for start in 0..faces {
-        if patch[start] != u32::MAX {
+        if shell[start] != u32::MAX {
             continue;
         }
-        patch[start] = patches;
+        shell[start] = shells;
         let mut todo = vec![start as u32];
         while let Some(f) = todo.pop() {
             let first = links.partition_point(|l| l.0 < f);
             for &(_, g, same) in links[first..].iter().take_while(|l| l.0 == f) {
-                if patch[g as usize] == u32::MAX {
-                    patch[g as usize] = patches;
+                if shell[g as usize] == u32::MAX {
+                    shell[g as usize] = shells;
                     turned[g as usize] = turned[f as usize] ^ same;
                     todo.push(g);
                 }
             }
         }
-        patches += 1;
+        shells += 1;
     }
-    turn_out(mesh, &patch, patches as usize, &open, &mut turned);
-    let mut count = 0;
+    let mut out = turn_out(mesh, &shell, shells as usize, &open, &mut turned);
     for (f, _) in turned.iter().enumerate().filter(|(_, t)| **t) {
         let (a, b) = (mesh.face_starts[f] as usize, mesh.face_starts[f + 1] as usize);
         mesh.corners[a..b].reverse();
-        count += 1;
+        out.turned += 1;
     }
-    count
+    out
 }
 
-/// Decides for each closed patch whether it must be turned as a whole.
-fn turn_out(mesh: &PolyMesh, patch: &[u32], patches: usize, open: &[u32], turned: &mut [bool]) {
-    let mut closed = vec![true; patches];
+/// Decides for each closed shell whether it must be turned as a whole.
+fn turn_out(
+    mesh: &PolyMesh,
+    shell: &[u32],
+    shells: usize,
+    open: &[u32],
+    turned: &mut [bool],
+) -> OrientedShells {
+    let mut closed = vec![true; shells];
     for &f in open {
-        closed[patch[f as usize] as usize] = false;
+        closed[shell[f as usize] as usize] = false;
     }
-    let (triangles, of) = mesh.triangles();
-    let mut volume = vec![0.0; patches];
-    let mut bounds = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); patches];
-    let mut sample = vec![DVec3::ZERO; patches];
-    let mut lists: Vec<Vec<u32>> = vec![Vec::new(); patches];
+    let mut known = vec![true; shells];
+    turned.iter().zip(shell).filter(|(t, _)| **t).for_each(|(_, &s)| known[s as usize] = false);
+    let (mut triangles, of) = mesh.triangles();
+    let mut volume = vec![0.0; shells];
+    let mut bounds = vec![Span::EMPTY; shells];
+    let mut sample = vec![DVec3::ZERO; shells];
+    let mut lists: Vec<Vec<[DVec3; 3]>> = vec![Vec::new(); shells];
     let origin = mesh.positions.first().copied().unwrap_or_default();
-    for (t, corners) in triangles.iter().enumerate() {
-        let f = of[t] as usize;
-        let p = patch[f] as usize;
-        let [a, b, c] = corners.map(|v| mesh.positions[v as usize]);
-        let sign = if turned[f] { -1.0 } else { 1.0 };
-        volume[p] += sign * (a - origin).dot((b - origin).cross(c - origin));
-        let (lo, hi) = bounds[p];
-        bounds[p] = (lo.min(a).min(b).min(c), hi.max(a).max(b).max(c));
-        sample[p] = a;
-        lists[p].push(t as u32);
+    for (t, &f) in triangles.iter_mut().zip(&of) {
+        if turned[f as usize] {
+            t.swap(1, 2);
+        }
+        let s = shell[f as usize] as usize;
+        let corners = t.map(|v| mesh.positions[v as usize]);
+        let [a, b, c] = corners;
+        volume[s] += (a - origin).dot((b - origin).cross(c - origin));
+        bounds[s] = bounds[s].join(Span::of(corners));
+        sample[s] = a;
+        lists[s].push(corners);
     }
-    // Aslant, so that it meets no edge of a part built along the axes.
-    let direction = DVec3::new(0.577_215_7, 0.702_340_1, 0.416_593_3);
-    let turn: Vec<bool> = (0..patches)
-        .map(|p| {
-            if !closed[p] {
-                return false;
-            }
-            let q = sample[p];
-            let around = (0..patches)
-                .filter(|&o| {
-                    o != p && closed[o] && q.cmpgt(bounds[o].0).all() && q.cmplt(bounds[o].1).all()
-                })
-                .filter(|&o| {
-                    let hits = lists[o].iter().filter(|&&t| {
-                        hits(
-                            q,
-                            direction,
-                            triangles[t as usize].map(|v| mesh.positions[v as usize]),
-                        )
-                    });
-                    hits.count() % 2 == 1
-                })
-                .count();
-            (volume[p] < 0.0) != (around % 2 == 1)
-        })
+    let beside: Vec<(usize, usize)> = (0..shells)
+        .flat_map(|a| (0..shells).map(move |b| (a, b)))
+        .filter(|&(a, b)| a != b && closed[a] && closed[b] && bounds[a].meets(&bounds[b]))
         .collect();
-    for (t, &p) in turned.iter_mut().zip(patch) {
-        *t ^= turn[p as usize];
+    let crossing = crossing_shells(mesh, &triangles, |t| shell[of[t] as usize], &beside);
+    let around = |s: usize| -> Vec<usize> {
+        let others = beside.iter().filter(|p| p.0 == s).map(|p| p.1);
+        let around = others.filter(|&o| {
+            let (q, reach) = (sample[s], (bounds[o].hi - bounds[o].lo).length() * 2.0);
+            q.cmpgt(bounds[o].lo).all()
+                && q.cmplt(bounds[o].hi).all()
+                && !crossing.contains(&(s.min(o), s.max(o)))
+                && crossings(q, reach, |p, visit| {
+                    let inverse = 1.0 / (p - q);
+                    for t in &lists[o] {
+                        let lo = (t[0].min(t[1]).min(t[2]) - q) * inverse;
+                        let hi = (t[0].max(t[1]).max(t[2]) - q) * inverse;
+                        let (near, far) = (lo.min(hi).max_element(), lo.max(hi).min_element());
+                        if near.max(0.0) <= far.min(1.0) + 1e-9 && !visit(*t) {
+                            return;
+                        }
+                    }
+                }) != 0
+        });
+        around.collect()
+    };
+    let holders: Vec<Vec<usize>> =
+        (0..shells).map(|s| if closed[s] { around(s) } else { Vec::new() }).collect();
+    let mut out = OrientedShells { crossing: crossing.len(), ..Default::default() };
+    let outermost = |s: usize| closed[s] && holders[s].is_empty();
+    let wrong =
+        (0..shells).filter(|&s| closed[s] && (!known[s] || (outermost(s) && volume[s] < 0.0)));
+    out.guessed = wrong.count();
+    if out.guessed == 0 {
+        let same = |&s: &usize| {
+            let count = |o: &usize| if volume[*o] < 0.0 { -1 } else { 1 };
+            volume[s] > 0.0 && holders[s].iter().map(count).sum::<i32>() > 0
+        };
+        out.nested = (0..shells).filter(same).count();
+        return out;
     }
+    let turn: Vec<bool> = (0..shells)
+        .map(|s| closed[s] && (volume[s] < 0.0) != (holders[s].len() % 2 == 1))
+        .collect();
+    for (t, &s) in turned.iter_mut().zip(shell) {
+        *t ^= turn[s as usize];
+    }
+    out
 }
 
-/// Whether the ray meets the triangle (Moller and Trumbore 1997).
-fn hits(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let (e1, e2) = (b - a, c - a);
-    let p = direction.cross(e2);
-    let det = e1.dot(p);
-    let s = (origin - a) / det;
-    let u = s.dot(p);
-    let q = s.cross(e1);
-    let v = direction.dot(q);
-    det != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && e2.dot(q) > 0.0
+/// Pairs of shells, the lower first, of which triangles cross; only shells that are in `beside`.
+fn crossing_shells(
+    mesh: &PolyMesh,
+    triangles: &[[u32; 3]],
+    of: impl Fn(usize) -> u32,
+    beside: &[(usize, usize)],
+) -> BTreeSet<(usize, usize)> {
+    let asked: BTreeSet<usize> = beside.iter().map(|p| p.0).collect();
+    let list: Vec<usize> =
+        (0..triangles.len()).filter(|&t| asked.contains(&(of(t) as usize))).collect();
+    let some: Vec<[u32; 3]> = list.iter().map(|&t| triangles[t]).collect();
+    let found = self_intersection::pairs(&mesh.positions, &some, &Job::default());
+    let shell = |t: u32| of(list[t as usize]) as usize;
+    let pairs = found.unwrap_or_default().into_iter().map(|(s, t)| (shell(s), shell(t)));
+    pairs.filter(|(s, t)| s != t).map(|(s, t)| (s.min(t), s.max(t))).collect()
 }
 
 /// What [`fill_holes`] did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Filled {
+    /// Loops of open edges that were closed.
     pub holes: usize,
+    /// Triangles that were added.
     pub faces: usize,
     /// Open edges that belong to no simple loop, or to one longer than asked for.
     pub left: usize,
@@ -306,7 +368,7 @@ const LEAST_AREA: usize = 160;
 /// Closes every loop of open edges of at most `longest` edges with triangles: of least total area
 /// (Barequet and Sharir 1995) for loops up to 160 edges, by ears in the loop's mean plane beyond.
 pub fn fill_holes(mesh: &mut PolyMesh, longest: usize) -> Filled {
-    let edges = Edges::of(mesh);
+    let edges = EdgeTable::of(mesh);
     // Of each open edge: from, to, as the hole's face will run along it.
     let mut open: Vec<(u32, u32)> = edges
         .each()
@@ -401,7 +463,6 @@ fn least_area(positions: &[DVec3], ring: &[u32], out: &mut Vec<[u32; 3]>) {
 mod tests {
     use super::*;
     use crate::check::report;
-    use crate::job::Job;
     use crate::shapes::{cuboid, icosphere, torus};
 
     fn volume(mesh: &PolyMesh) -> Option<f64> {
@@ -448,6 +509,35 @@ mod tests {
         }
         orient(&mut mesh);
         assert!((volume(&mesh).unwrap() - (216.0 - 64.0 + 8.0)).abs() < 1e-9);
+    }
+
+    fn boxes(list: &[(f64, f64, bool)]) -> PolyMesh {
+        let mut mesh = PolyMesh::new();
+        for &(lo, hi, turned) in list {
+            let mut b = cuboid(DVec3::splat(lo), DVec3::splat(hi));
+            if turned {
+                flip(&mut b);
+            }
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(&b.positions);
+            b.faces()
+                .for_each(|f| mesh.push_face(&f.iter().map(|c| c + first).collect::<Vec<_>>()));
+        }
+        mesh
+    }
+
+    #[test]
+    fn shells_that_cross_are_not_within_each_other() {
+        let mut crossed = boxes(&[(0.0, 2.0, false), (1.0, 3.0, true)]);
+        let done = orient_shells(&mut crossed);
+        assert_eq!((done.crossing, done.turned, done.guessed), (1, 6, 1));
+        assert_eq!(volume(&crossed), Some(16.0));
+        // Directions that are consistent stay: a cavity, and a solid within a solid.
+        let mut cavity = boxes(&[(0.0, 3.0, false), (1.0, 2.0, true)]);
+        assert_eq!(orient_shells(&mut cavity), OrientedShells::default());
+        let mut twice = boxes(&[(0.0, 3.0, false), (1.0, 2.0, false)]);
+        let done = orient_shells(&mut twice);
+        assert_eq!(done, OrientedShells { nested: 1, ..Default::default() });
     }
 
     #[test]

@@ -8,6 +8,8 @@
 //! go through each other are among these: such surfaces have a line in common, and each piece of it
 //! is inside of, or an edge of, a face of either.
 
+use std::cmp::Ordering;
+
 use glam::{DVec3, Vec3};
 use obvhs::aabb::Aabb;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
@@ -84,6 +86,11 @@ pub fn pairs(
                         if u <= t || !boxes[u as usize].intersect_aabb(own) {
                             continue;
                         }
+                        // Triangles at one edge are compared in their order around it, below.
+                        let (own, other) = (triangles[t as usize], triangles[u as usize]);
+                        if own.iter().filter(|v| other.contains(v)).count() == 2 {
+                            continue;
+                        }
                         match meet(positions, triangles[t as usize], triangles[u as usize]) {
                             Meet::No => {}
                             Meet::Cross => out.push((t, u)),
@@ -101,9 +108,86 @@ pub fn pairs(
         touches.extend(t);
     }
     through(positions, triangles, touches, &mut crossed);
+    along_shared_edges(positions, triangles, &mut crossed);
     crossed.sort_unstable();
     crossed.dedup();
     Ok(crossed)
+}
+
+/// Pairs of triangles that share an edge cross only where they lie in one plane, on the same side of
+/// the edge. The triangles at each edge are sorted by their direction around it, so that thousands
+/// at one edge are not compared each with each.
+fn along_shared_edges(positions: &[DVec3], triangles: &[[u32; 3]], out: &mut Vec<(u32, u32)>) {
+    // (lower vertex, upper vertex, triangle)
+    let mut uses: Vec<(u32, u32, u32)> = triangles
+        .iter()
+        .enumerate()
+        .filter(|(_, t)| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+        .flat_map(|(i, t)| {
+            [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (a.min(b), a.max(b), i as u32))
+        })
+        .collect();
+    uses.par_sort_unstable();
+    let p = |v: u32| positions[v as usize];
+    for edge in uses.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).filter(|e| e.len() > 1) {
+        let (a, b) = (edge[0].0, edge[0].1);
+        let third = |t: u32| triangles[t as usize].into_iter().find(|v| *v != a && *v != b);
+        let mut fan: Vec<(u32, DVec3)> =
+            edge.iter().filter_map(|e| Some((e.2, p(third(e.2)?)))).collect();
+        // Three points on a line are no triangle, and tell no direction.
+        fan.retain(|&(_, q)| !on_a_line(p(a), p(b), q));
+        if fan.is_empty() {
+            continue;
+        }
+        let meets = |x: DVec3, y: DVec3| {
+            side(p(a), p(b), x, y) == 0.0 && overlap([p(a), p(b), x], [p(a), p(b), y])
+        };
+        if let &[x, y] = &fan[..] {
+            if meets(x.1, y.1) {
+                out.push((x.0.min(y.0), x.0.max(y.0)));
+            }
+            continue;
+        }
+        // Around the edge from the first one's direction on: first the half turn on one side of its
+        // plane, its own direction before all, the opposite one between.
+        let first = fan[0].1;
+        let half = |q: DVec3| {
+            let s = side(p(a), p(b), first, q);
+            if s > 0.0 {
+                1
+            } else if s < 0.0 {
+                3
+            } else if q == first || meets(first, q) {
+                0
+            } else {
+                2
+            }
+        };
+        let mut turned: Vec<(i32, u32, DVec3)> =
+            fan.drain(..).map(|(t, q)| (half(q), t, q)).collect();
+        turned.sort_by(|x, y| {
+            let around = || side(p(a), p(b), y.2, x.2).total_cmp(&0.0);
+            let same_half = x.0 == y.0 && (x.0 == 1 || x.0 == 3);
+            x.0.cmp(&y.0).then_with(|| if same_half { around() } else { Ordering::Equal })
+        });
+        for group in turned.chunk_by(|x, y| x.0 == y.0 && side(p(a), p(b), x.2, y.2) == 0.0) {
+            for (i, x) in group.iter().enumerate() {
+                for y in &group[i + 1..] {
+                    if meets(x.2, y.2) {
+                        out.push((x.1.min(y.1), x.1.max(y.1)));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether three points lie on one line, exactly.
+fn on_a_line(a: DVec3, b: DVec3, c: DVec3) -> bool {
+    (0..3).all(|axis| {
+        let flat = |p: DVec3| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
+        orient2d(flat(a), flat(b), flat(c)) == 0.0
+    })
 }
 
 /// Counts the pairs of [`pairs`].
@@ -117,6 +201,12 @@ pub fn count(
     crossed.sort_unstable();
     crossed.dedup();
     Ok(Crossings { pairs: found.len(), triangles: crossed.len() })
+}
+
+/// Whether the insides of two triangles have a line or an area in common, beyond the corners that
+/// they share.
+pub fn crosses(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> bool {
+    meet(positions, s, t) != Meet::No
 }
 
 fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {

@@ -190,3 +190,25 @@ fn faces_around_one_line_cross_where_they_come_in_turns() {
         }
     }
 }
+
+#[test]
+fn thousands_of_faces_at_one_edge_are_sorted_around_it() {
+    // A fan of 8,000 faces around the z axis; then three that repeat a direction of it.
+    let fan = 8000;
+    let mut positions = vec![DVec3::ZERO, DVec3::Z];
+    positions.extend((0..fan).map(|i| {
+        let (s, c) = (i as f64 * std::f64::consts::TAU / fan as f64).sin_cos();
+        DVec3::new(c, s, 0.5)
+    }));
+    let mut triangles: Vec<[u32; 3]> = (0..fan).map(|i| [0, 1, i + 2]).collect();
+    let job = Job::default();
+    assert_eq!(pairs(&positions, &triangles, &job).unwrap(), []);
+    for i in [0usize, 2345, 7999] {
+        positions.push(positions[i + 2] * 0.5 + DVec3::Z * 0.1);
+        triangles.push([1, 0, positions.len() as u32 - 1]);
+    }
+    let found = pairs(&positions, &triangles, &job).unwrap();
+    // Halves and sums of coordinates are exact, and so is whether four points lie in one plane.
+    assert!(found.contains(&(0, 8000)), "{found:?}");
+    assert!(found.iter().all(|&(a, b)| [0, 2345, 7999].contains(&a) && b >= 8000), "{found:?}");
+}

@@ -1,5 +1,5 @@
 //! The outline of a mesh seen along a direction: a chain of directed edges, and the region that it
-//! goes around.
+//! goes around (the non-zero rule, resolved in whole numbers by the crate `i_overlay`).
 //!
 //! The triangles that face the viewer cover each point of the plane as often as their common border
 //! goes around it. So the shadow is the region where the border's winding number is not zero, and
@@ -21,28 +21,33 @@ const REACH: f64 = (1 << 28) as f64;
 /// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit
 /// length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub struct ProjectionPlane {
+    /// To the right in the picture.
     pub u: DVec3,
+    /// Up in the picture.
     pub v: DVec3,
+    /// Towards the viewer.
     pub towards: DVec3,
 }
 
-impl Plane {
+impl ProjectionPlane {
     /// Seen along `direction`, which is not zero, turned by `turn` radians about it. Along an axis,
     /// `u` and `v` are axes.
-    pub fn along(direction: DVec3, turn: f64) -> Option<Plane> {
+    pub fn along(direction: DVec3, turn: f64) -> Option<ProjectionPlane> {
         let towards = -direction.try_normalize()?;
         let up = if towards.z.abs() < 0.9 { DVec3::Z } else { DVec3::Y };
         let u = up.cross(towards).normalize();
         let v = towards.cross(u);
         let (s, c) = turn.sin_cos();
-        Some(Plane { u: u * c + v * s, v: v * c - u * s, towards })
+        Some(ProjectionPlane { u: u * c + v * s, v: v * c - u * s, towards })
     }
 
+    /// The coordinates of `p` in the plane.
     pub fn flat(&self, p: DVec3) -> DVec2 {
         DVec2::new(p.dot(self.u), p.dot(self.v))
     }
 
+    /// The point of the plane through the origin at these coordinates.
     pub fn solid(&self, p: DVec2) -> DVec3 {
         self.u * p.x + self.v * p.y
     }
@@ -50,8 +55,10 @@ impl Plane {
 
 /// A region of the plane: an outer loop, counter-clockwise, and holes, clockwise.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Polygon {
+pub struct PlaneRegion {
+    /// The first point stands again at the end.
     pub outer: Vec<DVec2>,
+    /// Each with its first point again at the end.
     pub holes: Vec<Vec<DVec2>>,
 }
 
@@ -61,11 +68,13 @@ fn twice(ring: &[DVec2]) -> f64 {
     ring.windows(2).map(|w| (w[0] - o).perp_dot(w[1] - o)).sum()
 }
 
-impl Polygon {
+impl PlaneRegion {
+    /// The outer loop, then the holes.
     pub fn rings(&self) -> impl Iterator<Item = &Vec<DVec2>> {
         std::iter::once(&self.outer).chain(&self.holes)
     }
 
+    /// Area without the holes, in the square of the unit.
     pub fn area(&self) -> f64 {
         (twice(&self.outer).abs() - self.holes.iter().map(|h| twice(h).abs()).sum::<f64>()) * 0.5
     }
@@ -87,10 +96,12 @@ impl Chain {
         Chain { centre: (lo + hi) * 0.5, scale, edges: Vec::new() }
     }
 
+    /// The whole-number coordinates of a point within the box.
     pub fn whole(&self, p: DVec2) -> [i32; 2] {
         ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i32)
     }
 
+    /// Adds the edge from `a` to `b`; an edge of no length is none.
     #[inline]
     pub fn push(&mut self, a: [i32; 2], b: [i32; 2]) {
         if a != b {
@@ -158,7 +169,7 @@ impl Chain {
     }
 
     /// The region that the chain goes around, as polygons with holes.
-    pub fn resolve(mut self) -> Vec<Polygon> {
+    pub fn resolve(mut self) -> Vec<PlaneRegion> {
         let loops = self.loops();
         let mut overlay = Overlay::<i32>::new(self.edges.len());
         for l in &loops {
@@ -174,7 +185,7 @@ impl Chain {
                     ring.extend(ring.first().copied());
                     ring
                 });
-                Some(Polygon { outer: rings.next()?, holes: rings.collect() })
+                Some(PlaneRegion { outer: rings.next()?, holes: rings.collect() })
             })
             .collect()
     }
@@ -182,7 +193,7 @@ impl Chain {
 
 /// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent. Rings repeat their first
 /// point at the end.
-pub fn outline(topology: &Topology, plane: &Plane) -> Vec<Polygon> {
+pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion> {
     let flat: Vec<DVec2> = topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).collect();
     let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for &p in &flat {

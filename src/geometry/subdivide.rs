@@ -1,4 +1,6 @@
-//! Subdivision surfaces: one level makes every face smaller and the surface rounder.
+//! Subdivision surfaces: one level makes every face smaller and the surface rounder. Loop's scheme
+//! for triangles ("Smooth subdivision surfaces based on triangles", 1987) and Catmull and Clark's for
+//! polygons ("Recursively generated B-spline surfaces on arbitrary topological meshes", 1978).
 //!
 //! Borders are smoothed as curves of their own (a border edge's vertex at its middle, a border
 //! vertex at 1/8, 3/4, 1/8), so that two meshes that share a border still do afterwards. Vertices
@@ -8,14 +10,14 @@
 use glam::DVec3;
 
 use super::PolyMesh;
-use super::edges::Edges;
+use super::edges::EdgeTable;
 use crate::job::{Cancelled, Job};
 
 /// More corners than this are not made: 2^31.
 pub const MAX_CORNERS: u64 = 1 << 31;
 
 /// What both schemes need to know of a mesh.
-struct Around {
+struct VertexSurroundings {
     /// The edge of each corner's side.
     edge_of: Vec<u32>,
     ends: Vec<(u32, u32)>,
@@ -31,11 +33,11 @@ struct Around {
     fixed: Vec<bool>,
 }
 
-impl Around {
-    fn of(mesh: &PolyMesh) -> Around {
-        let edges = Edges::of(mesh);
+impl VertexSurroundings {
+    fn of(mesh: &PolyMesh) -> VertexSurroundings {
+        let edges = EdgeTable::of(mesh);
         let n = mesh.positions.len();
-        let mut a = Around {
+        let mut a = VertexSurroundings {
             edge_of: vec![u32::MAX; mesh.corners.len()],
             ends: Vec::new(),
             uses: Vec::new(),
@@ -44,19 +46,19 @@ impl Around {
             faces: vec![0; n],
             fixed: vec![false; n],
         };
-        for sides in edges.each() {
+        for half_edges in edges.each() {
             let id = a.ends.len() as u32;
-            let (u, v) = sides[0].ends;
-            for s in sides {
+            let (u, v) = half_edges[0].ends;
+            for s in half_edges {
                 a.edge_of[s.corner as usize] = id;
             }
             a.ends.push((u, v));
-            a.uses.push(sides.len() as u32);
+            a.uses.push(half_edges.len() as u32);
             for (from, to) in [(u, v), (v, u)] {
                 let p = mesh.positions[to as usize];
                 let ring = &mut a.ring[from as usize];
                 *ring = (ring.0 + 1, ring.1 + p);
-                match sides.len() {
+                match half_edges.len() {
                     1 => {
                         let b = &mut a.border[from as usize];
                         *b = (b.0 + 1, b.1 + p);
@@ -72,12 +74,12 @@ impl Around {
         a
     }
 
-    fn rule(&self, v: usize) -> Rule {
+    fn rule(&self, v: usize) -> VertexRule {
         match self.border[v].0 {
-            _ if self.fixed[v] || self.ring[v].0 == 0 => Rule::Stays,
-            0 if self.ring[v].0 == self.faces[v] => Rule::Inside,
-            2 if self.ring[v].0 == self.faces[v] + 1 => Rule::Border,
-            _ => Rule::Stays,
+            _ if self.fixed[v] || self.ring[v].0 == 0 => VertexRule::Stays,
+            0 if self.ring[v].0 == self.faces[v] => VertexRule::Inside,
+            2 if self.ring[v].0 == self.faces[v] + 1 => VertexRule::Border,
+            _ => VertexRule::Stays,
         }
     }
 
@@ -85,16 +87,16 @@ impl Around {
     fn special(&self, mesh: &PolyMesh, v: usize) -> Option<DVec3> {
         let p = mesh.positions[v];
         match self.rule(v) {
-            Rule::Inside => None,
-            Rule::Border => Some(p * 0.75 + self.border[v].1 * 0.125),
-            Rule::Stays => Some(p),
+            VertexRule::Inside => None,
+            VertexRule::Border => Some(p * 0.75 + self.border[v].1 * 0.125),
+            VertexRule::Stays => Some(p),
         }
     }
 }
 
 /// What decides where a vertex goes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Rule {
+enum VertexRule {
     Inside,
     Border,
     Stays,
@@ -122,14 +124,14 @@ pub struct Stencils {
 impl Stencils {
     /// Of a mesh of triangles.
     pub fn of(mesh: &PolyMesh) -> Stencils {
-        let around = Around::of(mesh);
+        let around = VertexSurroundings::of(mesh);
         let n = mesh.positions.len();
         let mut rows: Vec<(u32, u32, f64)> = Vec::with_capacity(n * 7 + around.ends.len() * 4);
         for v in 0..n {
             let own = match around.rule(v) {
-                Rule::Stays => 1.0,
-                Rule::Border => 0.75,
-                Rule::Inside => {
+                VertexRule::Stays => 1.0,
+                VertexRule::Border => 0.75,
+                VertexRule::Inside => {
                     let k = f64::from(around.ring[v].0);
                     1.0 - k * beta(k)
                 }
@@ -139,10 +141,10 @@ impl Stencils {
         for (e, &(u, v)) in around.ends.iter().enumerate() {
             for (to, from) in [(u, v), (v, u)] {
                 match around.rule(to as usize) {
-                    Rule::Stays => {}
-                    Rule::Border if around.uses[e] != 1 => {}
-                    Rule::Border => rows.push((to, from, 0.125)),
-                    Rule::Inside => {
+                    VertexRule::Stays => {}
+                    VertexRule::Border if around.uses[e] != 1 => {}
+                    VertexRule::Border => rows.push((to, from, 0.125)),
+                    VertexRule::Inside => {
                         rows.push((to, from, beta(f64::from(around.ring[to as usize].0))))
                     }
                 }
@@ -238,7 +240,7 @@ pub fn loop_(mesh: &PolyMesh, levels: u32, job: &Job) -> Result<PolyMesh, Cancel
 }
 
 fn loop_once(mesh: &PolyMesh) -> PolyMesh {
-    let around = Around::of(mesh);
+    let around = VertexSurroundings::of(mesh);
     let n = mesh.positions.len();
     let mut out = PolyMesh::new();
     out.positions.reserve_exact(n + around.ends.len());
@@ -295,7 +297,7 @@ pub fn catmull_clark(mesh: &PolyMesh, levels: u32, job: &Job) -> Result<PolyMesh
 }
 
 fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
-    let around = Around::of(mesh);
+    let around = VertexSurroundings::of(mesh);
     let (n, edges) = (mesh.positions.len(), around.ends.len());
     let centres: Vec<DVec3> = mesh
         .faces()

@@ -7,7 +7,10 @@
 //! polygon that crosses itself gives triangles too, one fewer than corners less one; they overlap
 //! as it does.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
+use rayon::prelude::*;
 use robust::{Coord, orient2d};
 
 use super::{PolyMesh, TriMesh};
@@ -25,7 +28,75 @@ impl PolyMesh {
             }
             of.resize(out.len(), f as u32);
         }
+        if out.len() > self.face_count() {
+            self.separate_diagonals(&mut out, &of);
+        }
         (out, of)
+    }
+
+    /// Cuts faces anew whose diagonal is another face's diagonal or edge too: that edge would have
+    /// four triangles, and the mesh would no longer be manifold.
+    fn separate_diagonals(&self, triangles: &mut [[u32; 3]], of: &[u32]) {
+        let key = |a: u32, b: u32| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+        let sides = |t: &[u32; 3]| [key(t[0], t[1]), key(t[1], t[2]), key(t[2], t[0])];
+        // Within one face's triangles a diagonal is an edge that comes twice.
+        let mut diagonals: Vec<(u64, u32)> = Vec::new();
+        let mut edges: Vec<u64> = Vec::new();
+        let mut start = 0;
+        for group in of.chunk_by(|a, b| a == b) {
+            let own = &triangles[start..start + group.len()];
+            start += group.len();
+            if own.len() < 2 {
+                continue;
+            }
+            edges.clear();
+            edges.extend(own.iter().flat_map(sides));
+            edges.sort_unstable();
+            let twice = edges.chunk_by(|a, b| a == b).filter(|g| g.len() == 2);
+            diagonals.extend(twice.map(|g| (g[0], group[0])));
+        }
+        diagonals.sort_unstable();
+        // One bit a diagonal, by a hash, so that few of the mesh's edges are searched for.
+        let bits = (diagonals.len() * 16).next_power_of_two().max(64);
+        let slot = |k: u64| (k.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 20) as usize & (bits - 1);
+        let mut marked = vec![0u64; bits / 64];
+        diagonals.iter().for_each(|d| marked[slot(d.0) / 64] |= 1 << (slot(d.0) % 64));
+        let border = |f: usize| {
+            let c = self.face(f);
+            (0..c.len()).map(move |i| key(c[i], c[(i + 1) % c.len()]))
+        };
+        let shared = |f: usize| {
+            border(f).filter_map(|k| {
+                let maybe = marked[slot(k) / 64] >> (slot(k) % 64) & 1 == 1;
+                let at = maybe.then(|| diagonals.partition_point(|d| d.0 < k))?;
+                diagonals.get(at).filter(|d| d.0 == k).map(|d| d.1)
+            })
+        };
+        let mut again: Vec<u32> =
+            (0..self.face_count()).into_par_iter().flat_map_iter(shared).collect();
+        for same in diagonals.chunk_by(|a, b| a.0 == b.0) {
+            again.extend(same[1..].iter().map(|d| d.1));
+        }
+        if again.is_empty() {
+            return;
+        }
+        again.sort_unstable();
+        again.dedup();
+        let mut taken: BTreeSet<u64> = diagonals
+            .iter()
+            .filter(|d| again.binary_search(&d.1).is_err())
+            .map(|d| d.0)
+            .chain((0..self.face_count()).flat_map(border))
+            .collect();
+        let mut made = Vec::new();
+        for f in again {
+            made.clear();
+            let corners = self.face(f as usize);
+            face_avoiding(&self.positions, corners, |a, b| taken.contains(&key(a, b)), &mut made);
+            let start = of.partition_point(|&g| g < f);
+            triangles[start..start + made.len()].copy_from_slice(&made);
+            taken.extend(made.iter().flat_map(sides));
+        }
     }
 
     /// The same surface in triangles and single precision, and the face of each triangle.
@@ -46,16 +117,13 @@ pub fn area_vector(positions: &[DVec3], corners: &[u32]) -> DVec3 {
         .sum()
 }
 
-/// Appends the triangles of one polygon.
-pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
-    if corners.len() < 3 {
-        return;
-    }
+/// The corners in the plane, seen along the axis of the normal's largest component and so that the
+/// polygon runs counter-clockwise.
+fn projected(positions: &[DVec3], corners: &[u32]) -> Vec<Coord<f64>> {
     let n = area_vector(positions, corners);
     let a = n.abs();
-    // Looked at so that the polygon runs counter-clockwise.
-    let flat = |v: u32| {
-        let p = positions[v as usize];
+    let flat = |v: &u32| {
+        let p = positions[*v as usize];
         let (x, y, up) = if a.x >= a.y && a.x >= a.z {
             (p.y, p.z, n.x)
         } else if a.y >= a.z {
@@ -65,7 +133,28 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
         };
         if up < 0.0 { Coord { x: y, y: x } } else { Coord { x, y } }
     };
-    let points: Vec<Coord<f64>> = corners.iter().map(|&c| flat(c)).collect();
+    corners.iter().map(flat).collect()
+}
+
+/// Appends the triangles of one polygon by diagonals that `taken` does not hold, where there are
+/// such.
+fn face_avoiding(
+    positions: &[DVec3],
+    corners: &[u32],
+    taken: impl Fn(u32, u32) -> bool,
+    out: &mut Vec<[u32; 3]>,
+) {
+    let points = projected(positions, corners);
+    let turn = |i: usize, j: usize, k: usize| orient2d(points[i], points[j], points[k]);
+    ears(corners, &points, turn, |i, j| !taken(corners[i], corners[j]), out);
+}
+
+/// Appends the triangles of one polygon.
+pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
+    if corners.len() < 3 {
+        return;
+    }
+    let points = projected(positions, corners);
     let turn = |i: usize, j: usize, k: usize| orient2d(points[i], points[j], points[k]);
     if corners.len() == 4 {
         let good = |i: usize, j: usize, k: usize| turn(i, j, k) > 0.0;
@@ -83,13 +172,15 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
         out.extend(order.map(|t| t.map(|i| corners[i])));
         return;
     }
-    ears(corners, &points, turn, out);
+    ears(corners, &points, turn, |_, _| true, out);
 }
 
+/// Cuts ears; a diagonal that is not `allowed` is taken only where no other ear is left.
 fn ears(
     corners: &[u32],
     points: &[Coord<f64>],
     turn: impl Fn(usize, usize, usize) -> f64,
+    allowed: impl Fn(usize, usize) -> bool,
     out: &mut Vec<[u32; 3]>,
 ) {
     let n = corners.len();
@@ -105,18 +196,19 @@ fn ears(
             && turn(q, p, r) >= 0.0
     };
     let (mut left, mut at, mut tried) = (n, 0, 0);
-    // Rounds of ever lower demands: a true ear; any convex corner; any corner. Simple polygons need
-    // the first only.
+    // Rounds of ever lower demands: a true ear by an allowed diagonal; a true ear; any convex
+    // corner; any corner. Simple polygons without neighbours in the way need the first only.
     let mut demand = 0;
     while left > 3 {
         let (p, q) = (prev[at], next[at]);
         let convex = turn(p, at, q) > 0.0;
         let good = match demand {
-            0 => {
-                convex
+            0 | 1 => {
+                (demand > 0 || allowed(p, q))
+                    && convex
                     && !reflex.iter().any(|&r| r != p && r != at && r != q && inside(p, at, q, r))
             }
-            1 => convex,
+            2 => convex,
             _ => true,
         };
         if !good {
@@ -182,6 +274,23 @@ mod tests {
                 "{points:?}: {sum} {want} {least}"
             );
         }
+    }
+
+    #[test]
+    fn two_faces_over_the_same_corners_take_different_diagonals() {
+        // A pillow of two squares: both would be cut along the shorter diagonal from 0 to 2.
+        let mut m = polygon(&[(0., 0.), (1., 0.1), (1., 1.), (0., 1.1)]);
+        m.positions[2].z = 0.1;
+        m.push_face(&[3, 2, 1, 0]);
+        let mut sides: Vec<(u32, u32)> = m
+            .triangles()
+            .0
+            .iter()
+            .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
+            .map(|(a, b)| (a.min(b), a.max(b)))
+            .collect();
+        sides.sort_unstable();
+        assert!(sides.chunk_by(|a, b| a == b).all(|g| g.len() == 2), "{sides:?}");
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub struct Winding {
 }
 
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct DipoleSum {
     moment: DVec3,
     area: f64,
     weighted: DVec3,
@@ -48,8 +48,8 @@ fn corners(pack: &Pack, i: usize) -> [DVec3; 3] {
         .map(|c| DVec3::new(pack.v[c][0][i] as f64, pack.v[c][1][i] as f64, pack.v[c][2][i] as f64))
 }
 
-fn pack_sum(pack: &Pack) -> Sum {
-    let mut s = Sum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
+fn pack_sum(pack: &Pack) -> DipoleSum {
+    let mut s = DipoleSum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
     for i in 0..4 {
         if pack.id[i] == NO_TRIANGLE {
             continue;
@@ -67,16 +67,17 @@ fn pack_sum(pack: &Pack) -> Sum {
 }
 
 impl Winding {
+    /// The dipoles of every node of `tree`, in time linear in its size.
     pub fn build(tree: &Bvh8) -> Winding {
         let nodes = tree.nodes();
         let none = Dipoles { centre: [[1e9; 8]; 3], moment: [[0.0; 8]; 3], far: [-1.0; 8] };
         let mut dipoles = vec![none; nodes.len()];
-        let mut sums = vec![Sum::default(); nodes.len()];
+        let mut sums = vec![DipoleSum::default(); nodes.len()];
         // Children come after their parent.
         for at in (0..nodes.len()).rev() {
             let node = &nodes[at];
             let mut all =
-                Sum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
+                DipoleSum { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY, ..Default::default() };
             for i in 0..8 {
                 if node.planes[0][i] == f32::INFINITY {
                     continue;
@@ -112,7 +113,7 @@ impl Winding {
         if self.dipoles.is_empty() || tree.out_of_range(p) {
             return 0.0;
         }
-        wide::dispatch(tree.scalar(), Walk { winding: self, tree, p })
+        wide::dispatch(tree.scalar(), WindingQuery { winding: self, tree, p })
     }
 }
 
@@ -125,18 +126,18 @@ pub fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     up.atan2(down) / (2.0 * PI)
 }
 
-struct Walk<'a> {
+struct WindingQuery<'a> {
     winding: &'a Winding,
     tree: &'a Bvh8,
     p: DVec3,
 }
 
-impl WideWork for Walk<'_> {
-    type Out = f64;
+impl WideWork for WindingQuery<'_> {
+    type Output = f64;
 
     #[inline(always)]
     fn run<W: Wide>(self, _: W) -> f64 {
-        let Walk { winding, tree, p: exact } = self;
+        let WindingQuery { winding, tree, p: exact } = self;
         let p = exact.as_vec3().to_array();
         let mut inline = [0u32; 128];
         let mut heap =

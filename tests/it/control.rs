@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use sculptd_clay::Clay;
+use sculptd_control::METHODS;
 use sculptd_daemon::command_queue::{QueuedCommand, command_queue};
 use sculptd_daemon::config::Config;
-use sculptd_daemon::control::methods::{METHODS, call as answer};
-use sculptd_daemon::control::server::{Host, Server, permitted};
-use sculptd_daemon::control::{MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
+use sculptd_daemon::control::handler::call as answer;
+use sculptd_daemon::control::server::{Server, permitted};
+use sculptd_daemon::control::{Host, MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
 use sculptd_daemon::published::{Published, PublishedFigures};
 use sculptd_daemon::startup;
 use sculptd_geometry::job::Job;
@@ -35,16 +36,8 @@ impl Rig {
         let mut world = startup::world(mesh, &config);
         let published = Published::of(&mut world, PublishedFigures::default());
         let (sender, commands) = command_queue(4096);
-        let host = Host {
-            commands: sender,
-            published: Arc::new(ArcSwap::from_pointee(published)),
-            presets: sculptd::presets().clone(),
-            thickness: Arc::default(),
-            joining: Arc::default(),
-            journal: None,
-            history: None,
-            stop: Arc::default(),
-        };
+        let shown = Arc::new(ArcSwap::from_pointee(published));
+        let host = Host::new(sender, shown, sculptd::presets().clone());
         Rig { host, commands, dir: tempfile::tempdir().expect("a folder") }
     }
 
@@ -172,8 +165,9 @@ fn requests_and_clients_are_counted() {
     let line = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"hash\"}\n";
     client.out.write_all(line.repeat(4 * MAX_RATE as usize).as_bytes()).expect("sent");
     let answers = (0..4 * MAX_RATE).map(|_| client.hear().expect("an answer"));
-    let slow = answers.filter(|a| a["error"]["code"] == -32001).count();
-    assert!(slow > 0, "a flood was served");
+    let slow: Vec<Value> = answers.filter(|a| a["error"]["code"] == -32001).collect();
+    assert!(!slow.is_empty(), "a flood was served");
+    assert!(slow.iter().all(|a| a["id"] == 1), "an error carries the request's id");
     drop(client);
     let mut all: Vec<Client> = Vec::new();
     let mut refused = 0;
@@ -187,32 +181,135 @@ fn requests_and_clients_are_counted() {
     assert!(all.len() <= MAX_CLIENTS && refused >= 3, "{} {refused}", all.len());
 }
 
-/// The list that `methods` gives out and the code that answers are one.
+/// A refused request does nothing, and `methods` lists what the table has.
 #[test]
-fn the_schema_is_the_code() {
+fn every_method_refuses_what_it_does_not_know() {
     let rig = Rig::new();
-    for (name, what) in METHODS {
+    for method in METHODS {
+        let name = method.name;
         let e = answer(&rig.host, name, json!({ "no such parameter": 1 })).expect_err(name);
-        assert_eq!(e.code, -32602, "{name} {what}: {}", e.message);
+        assert_eq!(e.code, -32602, "{name}: {}", e.message);
     }
     assert!(rig.commands.is_empty(), "a refused request sent a command");
     assert!(!rig.host.stop.load(std::sync::atomic::Ordering::Relaxed));
     assert_eq!(answer(&rig.host, "frobnicate", Value::Null).expect_err("unknown").code, -32601);
     let listed = answer(&rig.host, "methods", Value::Null).expect("a list");
     assert_eq!(listed.as_object().map(|o| o.len()), Some(METHODS.len()));
-    // Every arm of the code is on the list.
-    let code = include_str!("../../src/daemon/control/methods.rs");
-    let (_, arms) = code.split_once("match method {").expect("the arms");
-    let named = arms.lines().filter(|l| l.starts_with("        \"")).flat_map(|l| {
-        let (names, _) = l.split_once("=>").unwrap_or((l, ""));
-        names.split('|').map(|n| n.trim().trim_matches('"').to_owned()).collect::<Vec<_>>()
-    });
-    let mut count = 0;
-    for name in named {
-        assert!(METHODS.iter().any(|(m, _)| *m == name), "{name} is not listed");
-        count += 1;
+}
+
+/// The types of the protocol have every setting of the brush and the camera, and lose none.
+#[test]
+fn settings_come_back_as_they_are() {
+    let rig = Rig::new();
+    let shown = rig.host.published.load_full();
+    assert_eq!(answer(&rig.host, "brush", json!({})).expect("settings"), json!(shown.brush));
+    assert_eq!(answer(&rig.host, "camera", json!({})).expect("settings"), json!(shown.camera));
+    let wider = answer(&rig.host, "brush", json!({ "radius": 0.5, "tilt": 1 })).expect("settings");
+    assert_eq!((&wider["radius"], &wider["tilt"]), (&json!(0.5), &json!(1.0)));
+    for (params, named) in [
+        (json!({ "radius": 1e308 }), "brush.radius"),
+        (json!({ "spacing": 0 }), "brush.spacing"),
+        (json!({ "tilt": -3 }), "brush.tilt"),
+        (json!({ "colour": [1, 2, 3, 256] }), "256"),
+        (json!({ "kind": "broom" }), "broom"),
+    ] {
+        let e = answer(&rig.host, "brush", params.clone()).expect_err(&params.to_string());
+        assert!(e.code == -32602 && e.message.contains(named), "{params}: {}", e.message);
     }
-    assert_eq!(count, METHODS.len());
+}
+
+/// Numbers that no world can be made of: refused at the door by field, value and range.
+#[test]
+fn numbers_out_of_range_send_no_command() {
+    let rig = Rig::new();
+    for (method, params, named) in [
+        ("camera", json!({ "target": [1e38, 0, 0] }), "target[0] = 1e+38"),
+        ("camera", json!({ "distance": 1e38 }), "distance = 1e+38"),
+        ("mask", json!({ "action": { "cavity": -1 } }), "action.cavity = -1"),
+        (
+            "boolean",
+            json!({ "operation": "union", "path": "/none.stl", "at": [1e308, 0, 0] }),
+            "at[0] = 1e+308",
+        ),
+        ("join", json!({ "operation": "ball" }), "ball"),
+        ("thickness", json!({ "rays": 5000 }), "rays = 5000"),
+    ] {
+        let e = answer(&rig.host, method, params.clone()).expect_err(&params.to_string());
+        assert!(e.code == -32602 && e.message.contains(named), "{params}: {}", e.message);
+    }
+    assert!(rig.commands.is_empty());
+}
+
+#[test]
+fn only_regular_files_within_the_bound_are_loaded() {
+    let rig = Rig::new();
+    let sparse = rig.dir.path().join("sparse.stl");
+    std::fs::File::create(&sparse).and_then(|f| f.set_len(2 << 30)).expect("made");
+    let pipe = rig.dir.path().join("pipe.stl");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.is_ok_and(|s| s.success()), "mkfifo");
+    let zero = PathBuf::from("/dev/zero");
+    for path in [&sparse, &pipe, &zero] {
+        for method in ["load", "take-up", "boolean", "picture"] {
+            let params = match method {
+                "boolean" => json!({ "operation": "union", "path": path }),
+                _ => json!({ "path": path }),
+            };
+            let e = answer(&rig.host, method, params).expect_err("refused");
+            let told = e.message.contains("regular file") || e.message.contains("at most");
+            assert!(told, "{method} {}: {}", path.display(), e.message);
+        }
+    }
+    assert!(rig.commands.is_empty());
+}
+
+#[test]
+fn versions_are_agreed_on() {
+    let rig = Rig::new();
+    let hello = answer(&rig.host, "hello", json!({})).expect("a version");
+    assert_eq!(hello["protocol"], PROTOCOL);
+    let older = json!({ "versions": { "min": 0, "max": 1 } });
+    assert_eq!(answer(&rig.host, "hello", older).expect("a version")["protocol"], 1);
+    let newer = json!({ "versions": { "min": PROTOCOL + 1, "max": PROTOCOL + 9 } });
+    let e = answer(&rig.host, "hello", newer).expect_err("refused");
+    let all = [1, PROTOCOL, PROTOCOL + 1, PROTOCOL + 9].map(|v| v.to_string());
+    assert!(e.code == -32002 && all.iter().all(|v| e.message.contains(v)), "{}", e.message);
+}
+
+/// Clients that connect and say nothing, or half a line, must not keep the owner out, and lose
+/// their places.
+#[test]
+fn half_open_clients_do_not_lock_the_owner_out() {
+    let rig = Rig::new();
+    let path = rig.dir.path().join("s.sock");
+    let idle = Duration::from_millis(1500);
+    let server = Server::start_with_idle(&path, rig.host.clone(), idle).expect("listens");
+    let mut silent: Vec<Client> = (0..MAX_CLIENTS - 1).map(|_| Client::new(&path)).collect();
+    silent[0].out.write_all(b"{\"jsonrpc\":").expect("sent");
+    // Subscribers may be silent.
+    let subscribe = r#"{"jsonrpc":"2.0","id":1,"method":"subscribe"}"#;
+    assert!(silent[1].ask(subscribe).expect("an answer")["result"].is_object());
+    let ask = |method: &str| {
+        let line = format!(r#"{{"jsonrpc":"2.0","id":"me","method":"{method}"}}"#);
+        Client::new(&path).ask(&line).expect("an answer")
+    };
+    let full = ask("status");
+    assert!(full["error"]["message"].as_str().is_some_and(|m| m.contains("too many")), "{full}");
+    assert_eq!(full["id"], "me");
+    assert_eq!(ask("cancel")["result"], json!({ "cancelled": false }));
+    // The silent ones are let go in time, and their places are free.
+    assert_eq!(silent[0].hear(), None, "half a line");
+    assert_eq!(silent[2].hear(), None, "nothing");
+    let served = (0..100).any(|_| ask("status")["result"].is_object());
+    assert!(served);
+    assert!(silent[1].status(&json!({}))["result"].is_object(), "the subscriber is served");
+    let _full: Vec<Client> = (0..2 * MAX_CLIENTS).map(|_| Client::new(&path)).collect();
+    let stopped = (0..100).any(|_| {
+        let _ = crossbeam_channel::never::<()>().recv_timeout(Duration::from_millis(100));
+        ask("shutdown")["result"] == json!({ "stopping": true })
+    });
+    assert!(stopped && rig.host.stop.load(std::sync::atomic::Ordering::Relaxed));
+    drop(server);
 }
 
 #[test]

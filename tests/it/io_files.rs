@@ -6,18 +6,18 @@ use std::process::{Command, Output};
 
 use glam::DVec3;
 use sculptd_geometry::PolyMesh;
-use sculptd_geometry::check::{Report, report};
+use sculptd_geometry::check::{MeshReport, report};
 use sculptd_geometry::io;
-use sculptd_geometry::io::{Format, Stop, encode, read_mesh, write_mesh};
+use sculptd_geometry::io::{MeshFormat, ParseError, encode, read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
-fn model(name: &str) -> io::Loaded {
+fn model(name: &str) -> io::LoadedMesh {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);
     read_mesh(&path, &Job::default()).unwrap()
 }
 
-fn facts(mesh: &PolyMesh) -> Report {
+fn facts(mesh: &PolyMesh) -> MeshReport {
     report(mesh, true, &Job::default()).unwrap()
 }
 
@@ -27,13 +27,13 @@ fn bytes(kind: &str, mesh: &PolyMesh) -> Vec<u8> {
     out
 }
 
-fn parse(name: &str, bytes: &[u8]) -> Result<io::Loaded, Stop> {
+fn parse(name: &str, bytes: &[u8]) -> Result<io::LoadedMesh, ParseError> {
     io::parse(bytes, Path::new(name), &Job::default())
 }
 
 fn complaint(name: &str, bytes: &[u8]) -> String {
     match parse(name, bytes) {
-        Err(Stop::Problem(p)) => p.to_string(),
+        Err(ParseError::Problem(p)) => p.to_string(),
         other => panic!("{name}: {other:?}"),
     }
 }
@@ -43,7 +43,7 @@ fn each_format_holds_what_was_written_into_it() {
     let pyramid = model("pyramid.obj");
     assert_eq!(
         (pyramid.format, pyramid.mesh.positions.len(), pyramid.mesh.face_count()),
-        (Format::Obj, 5, 5)
+        (MeshFormat::Obj, 5, 5)
     );
     assert_eq!(pyramid.mesh.face(0), [0, 3, 2, 1]);
     assert_eq!(pyramid.mesh.face(2), [1, 2, 4]);
@@ -53,12 +53,12 @@ fn each_format_holds_what_was_written_into_it() {
     assert!(f.closed && f.manifold && (f.volume.unwrap() - 2.0).abs() < 1e-14, "{f:?}");
 
     let wedge = model("wedge.off");
-    assert_eq!((wedge.format, wedge.mesh.face_count()), (Format::Off, 5));
+    assert_eq!((wedge.format, wedge.mesh.face_count()), (MeshFormat::Off, 5));
     assert_eq!(wedge.mesh.colours.as_ref().unwrap()[2], [0, 0, 255, 255]);
     assert!(facts(&wedge.mesh).closed && (facts(&wedge.mesh).volume.unwrap() - 3.0).abs() < 1e-14);
 
     let tetra = model("tetra.stl");
-    assert_eq!((tetra.format, tetra.mesh.positions.len()), (Format::StlAscii, 4));
+    assert_eq!((tetra.format, tetra.mesh.positions.len()), (MeshFormat::StlAscii, 4));
     assert!((facts(&tetra.mesh).volume.unwrap() - 1.0 / 6.0).abs() < 1e-15);
 
     let strip = model("strip.ply");
@@ -68,7 +68,7 @@ fn each_format_holds_what_was_written_into_it() {
 
     let two = model("two.gltf");
     let f = facts(&two.mesh);
-    assert!(two.format == Format::Gltf && f.closed && f.components == 2, "{f:?}");
+    assert!(two.format == MeshFormat::Gltf && f.closed && f.components == 2, "{f:?}");
     assert!(
         (f.volume.unwrap() - (1.0 + 8.0) / 6.0).abs() < 1e-12
             && f.bounds.min[0] == -2.0
@@ -134,7 +134,7 @@ fn a_round_trip_changes_nothing_that_the_format_can_hold() {
         big.extend(row[1..].chunks_exact(4).flat_map(|v| v.iter().rev()));
     }
     let back = parse("a.ply", &big).unwrap();
-    assert_eq!((back.format, back.mesh), (Format::PlyBig, mesh));
+    assert_eq!((back.format, back.mesh), (MeshFormat::PlyBig, mesh));
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn a_binary_file_whose_header_says_solid_is_binary_all_the_same() {
     stl[..80].fill(b' ');
     stl[..26].copy_from_slice(b"solid facet normal endsoli");
     let loaded = parse("a.stl", &stl).unwrap();
-    assert_eq!((loaded.format, loaded.mesh.positions.len()), (Format::StlBinary, 8));
+    assert_eq!((loaded.format, loaded.mesh.positions.len()), (MeshFormat::StlBinary, 8));
     stl.extend(b"trailer");
     stl[..5].copy_from_slice(b"Solid");
     stl[20] = 0;

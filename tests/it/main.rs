@@ -8,6 +8,8 @@ mod brushes;
 mod clay;
 #[cfg(unix)]
 mod control;
+#[cfg(target_os = "linux")]
+mod faulty_disk;
 mod field;
 #[cfg(unix)]
 mod gallery;

@@ -96,8 +96,8 @@ fn one_kill(ms: u64) -> u64 {
     assert!(recovered + 30 >= last, "recovered up to tick {recovered}, acknowledged {last}");
     assert_eq!(replay(&session, Some(tick))["hash"], known["hash"], "at tick {tick}");
     // Nobody goes on with this session.
-    sculptd_daemon::session::shared_memory_log::of(&session)
-        .into_iter()
+    sculptd_daemon::session::catalog::logs_of(&session)
+        .iter()
         .for_each(sculptd_daemon::session::shared_memory_log::remove);
     last.saturating_sub(recovered)
 }
@@ -111,6 +111,55 @@ fn a_killed_daemon_loses_a_quarter_of_a_second_at_most() {
         "{kills} kills, at most {worst} ticks of 120 a second lost ({} ms)",
         worst * 1000 / 120
     );
+}
+
+/// A daemon that is killed while it makes its session leaves a whole one or none: the next start
+/// with the same name goes on.
+#[test]
+fn a_kill_while_the_session_is_made_never_stops_the_next_start() {
+    let kills = if std::env::var_os("SCULPTD_LONG").is_some() { 100 } else { 10 };
+    let mut rng = sim::faults::Rng::new(23);
+    let (mut none, mut whole) = (0, 0);
+    for n in 0..kills {
+        let dir = tempfile::tempdir().expect("a folder");
+        let session = dir.path().join("s.sculpt");
+        let start = || {
+            sculptd()
+                .args(["run", "--headless", "--for", "0.2", "--session"])
+                .arg(&session)
+                .env("XDG_RUNTIME_DIR", dir.path())
+                .env("XDG_CONFIG_HOME", dir.path())
+                .stderr(Stdio::piped())
+                .stdout(Stdio::null())
+                .spawn()
+                .expect("the daemon starts")
+        };
+        let mut daemon = Daemon { child: start() };
+        // From the first sign of a file on: the start before it takes as long as the machine
+        // likes.
+        let seen = || std::fs::read_dir(dir.path()).is_ok_and(|f| {
+            f.flatten().any(|e| e.file_name().to_string_lossy().contains("s.sculpt"))
+        });
+        let mut waited = 0;
+        while !seen() && waited < 20_000 {
+            pause(1);
+            waited += 1;
+        }
+        pause(rng.below(200));
+        let _ = daemon.child.kill();
+        daemon.child.wait().expect("gone");
+        match session.exists() {
+            true => whole += 1,
+            false => none += 1,
+        }
+        let again = start().wait_with_output().expect("ends");
+        let said = String::from_utf8_lossy(&again.stderr);
+        assert!(again.status.success(), "kill {n}: {said}");
+        assert!(!said.contains("damaged"), "kill {n}: {said}");
+        let opened = sculptd_daemon::session::open(&session).expect("opens");
+        assert_eq!(opened.loss, None, "kill {n}");
+    }
+    println!("{kills} kills: {none} before the session had its name, {whole} after");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use sculptd_daemon::live::Journal;
 use sculptd_daemon::published::{Published, PublishedFigures, Publisher};
 use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::{session, startup};
-use sculptd_devices::serial::{SerialDecoder, Protocol};
+use sculptd_devices::serial::{Protocol, SerialDecoder};
 use sculptd_devices::sim::faults::Rng;
 use sculptd_devices::{DeviceId, queue, sim};
 use sculptd_engine::command::Command;

@@ -6,7 +6,7 @@ use glam::{Vec3, vec3};
 use sculptd_devices::leap::parse_frame;
 use sculptd_devices::sim::hand::skeleton;
 use sculptd_devices::sim::tracker::frame_json;
-use sculptd_devices::sim::{HandKey, HandScript, Performer, Jitter, JitterState};
+use sculptd_devices::sim::{HandKey, HandScript, Jitter, JitterState, Performer};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose};
 

@@ -3,7 +3,9 @@
 use glam::{Quat, Vec3};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::thickness::{Correction, Method, Outliers, Reason, Settings, measure};
+use sculptd_geometry::thickness::{
+    Correction, Outliers, Reason, ThicknessMethod, ThicknessSettings, measure,
+};
 
 use crate::thickness_shapes::{ribbed, shell, slab, tube, wedge};
 
@@ -51,7 +53,7 @@ fn shapes() -> Vec<Known> {
 }
 
 /// Median and largest of the errors, per cent.
-fn errors(shape: &Known, settings: &Settings) -> (f32, f32) {
+fn errors(shape: &Known, settings: &ThicknessSettings) -> (f32, f32) {
     let found = measure(&shape.mesh, settings, &Job::default()).expect("sane settings");
     let mut off: Vec<f32> = shape
         .exact
@@ -69,10 +71,15 @@ fn errors(shape: &Known, settings: &Settings) -> (f32, f32) {
 
 #[test]
 fn the_error_tables() {
-    let one = Settings { rays: 1, ..Settings::default() };
-    let cone =
-        |opening, correction| Settings { rays: 25, opening, correction, ..Settings::default() };
-    let sphere = Settings { method: Method::Sphere, ..Settings::default() };
+    let one = ThicknessSettings { rays: 1, ..ThicknessSettings::default() };
+    let cone = |opening, correction| ThicknessSettings {
+        rays: 25,
+        opening,
+        correction,
+        ..ThicknessSettings::default()
+    };
+    let sphere =
+        ThicknessSettings { method: ThicknessMethod::Sphere, ..ThicknessSettings::default() };
     let rows = [
         ("one ray", one, [0.01; 5]),
         ("cone 60 x 25, plain", cone(60.0, Correction::None), [9.0; 5]),
@@ -93,7 +100,7 @@ fn the_error_tables() {
         print!("{name:28}");
         for (shape, limit) in shapes.iter().zip(limits) {
             let (mut median, mut largest) = errors(shape, &settings);
-            if settings.method == Method::Sphere && shape.name.starts_with("wedge") {
+            if settings.method == ThicknessMethod::Sphere && shape.name.starts_with("wedge") {
                 // The ball that touches both sides of a wedge at distance d from its tip: 2 d
                 // tan(angle / 2).
                 let ball = 2.0 * 5f32.to_radians().tan() / 10f32.to_radians().tan();
@@ -116,10 +123,14 @@ fn the_error_tables() {
 #[test]
 fn on_a_closed_mesh_every_value_is_there() {
     for shape in shapes() {
-        for method in [Method::Ray, Method::Sphere] {
+        for method in [ThicknessMethod::Ray, ThicknessMethod::Sphere] {
             for rays in [1, 25] {
-                let settings =
-                    Settings { method, rays, outliers: Outliers::SigmaMean, ..Settings::default() };
+                let settings = ThicknessSettings {
+                    method,
+                    rays,
+                    outliers: Outliers::SigmaMean,
+                    ..ThicknessSettings::default()
+                };
                 let found =
                     measure(&shape.mesh, &settings, &Job::default()).expect("sane settings");
                 let missing = found.values.iter().filter(|v| !v.is_finite()).count();

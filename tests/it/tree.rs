@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::bvh::{Bvh8, Ray, Stack, TreeHit};
+use sculptd_geometry::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 use sculptd_geometry::job::{Cancelled, Job};
 
 use crate::thickness_shapes::{Random, sphere};
@@ -53,7 +53,7 @@ fn many_rays_at_once_meet_what_each_meets_alone() {
     let mut random = Random(5);
     for (across, along) in [(40, 60), (600, 360)] {
         let tree = Bvh8::build(&sphere(1.0, across, along), &Job::default()).unwrap();
-        let mut stack = Stack::new();
+        let mut stack = TraversalStack::new();
         let mut many = Vec::new();
         for n in [0, 1, 3, 4, 5, 500, 0, 7] {
             let rays = rays(&mut random, n);

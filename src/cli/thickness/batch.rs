@@ -9,7 +9,7 @@ use super::{ThicknessArgs, judge, one, write_report};
 use crate::cli::{Fail, Outcome, answer};
 use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::thickness::check::{Limits, Verdict};
+use sculptd_geometry::thickness::check::{ThicknessLimits, Verdict};
 use sculptd_geometry::thickness::report::{escape, fnv, head};
 
 /// One file's outcome, kept as `NAME.json` in the folder.
@@ -38,7 +38,7 @@ struct All<'a> {
     reused: usize,
 }
 
-pub(super) fn run(args: &ThicknessArgs, limits: Limits, json: bool) -> Outcome {
+pub(super) fn run(args: &ThicknessArgs, limits: ThicknessLimits, json: bool) -> Outcome {
     let folder = args.out.as_deref().ok_or_else(|| {
         Fail::Usage("several files need a folder for their reports: say --out FOLDER".into())
     })?;
@@ -104,7 +104,7 @@ fn row(
     name: &str,
     folder: &Path,
     args: &ThicknessArgs,
-    limits: Limits,
+    limits: ThicknessLimits,
 ) -> Result<(Row, bool), Fail> {
     let file = path.display().to_string();
     let unreadable = |why: String| Row {

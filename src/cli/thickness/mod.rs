@@ -1,6 +1,7 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
 mod batch;
+pub mod presets;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,14 +9,18 @@ use std::path::{Path, PathBuf};
 use sculptd_devices::Clock;
 
 use super::{Fail, Outcome, answer};
+use sculptd_geometry::CentredMesh;
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::picture::{Camera, draw};
-use sculptd_geometry::thickness::check::{Answer, Checked, Limits, Part, Verdict, check};
+use sculptd_geometry::thickness::check::{
+    CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict, add_places, check,
+};
 use sculptd_geometry::thickness::preset::Preset;
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
-    At, Correction, EdgePolicy, Method, Outliers, Settings, Side, Thickness, Weights,
+    Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, Thickness, ThicknessMethod,
+    ThicknessSettings, Weights,
 };
 
 #[derive(Debug, clap::Args)]
@@ -116,10 +121,10 @@ macro_rules! choice {
         }
     };
 }
-choice!(MethodArg -> Method { Ray, Sphere });
+choice!(MethodArg -> ThicknessMethod { Ray, Sphere });
 choice!(CorrectionArg -> Correction { None, Angle, Chord });
 choice!(WeightsArg -> Weights { Plain, InverseAngle });
-choice!(SideArg -> Side { Wall, Gap });
+choice!(SideArg -> MeasuredSide { Wall, Gap });
 choice!(EdgesArg -> EdgePolicy { Raw, Extrapolate, Sphere, Neutral });
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -149,20 +154,29 @@ fn outliers(text: &str) -> Result<Outliers, String> {
         "keep" => Ok(Outliers::Keep),
         "sigma-mean" => Ok(Outliers::SigmaMean),
         "sigma-median" => Ok(Outliers::SigmaMedian),
+        _ if text.starts_with("within:") => {
+            let shares = text["within:".len()..].split_once('-');
+            shares
+                .and_then(|(low, high)| Some((low.parse().ok()?, high.parse().ok()?)))
+                .filter(|&(low, high): &(f32, f32)| 0.0 <= low && low < high && high <= 1.0)
+                .map(|(low, high)| Outliers::Within(low, high))
+                .ok_or_else(|| "expected two shares of the range, such as within:0.1-0.9".into())
+        }
         _ => text
             .strip_prefix("range:")
             .and_then(|s| s.parse().ok())
             .filter(|s| (0.1..=0.9).contains(s))
             .map(Outliers::Range)
             .ok_or_else(|| {
-                "expected keep, range:0.1 to range:0.9, sigma-mean or sigma-median".into()
+                "expected keep, within:0.1-0.9, range:0.1 to range:0.9, sigma-mean or sigma-median"
+                    .into()
             }),
     }
 }
 
 impl How {
-    pub fn settings(&self) -> Settings {
-        Settings {
+    pub fn settings(&self) -> ThicknessSettings {
+        ThicknessSettings {
             method: self.method.into(),
             side: self.side.into(),
             rays: self.rays,
@@ -172,24 +186,24 @@ impl How {
             weights: self.weights.into(),
             edges: self.edges.into(),
             crease: self.crease,
-            at: At::Vertices,
+            at: MeasuredPlaces::Vertices,
         }
     }
 }
 
 impl LimitArgs {
     /// The preset's limits, each replaced by what was said itself.
-    pub fn limits(&self) -> Result<Limits, Fail> {
-        let mut limits = Limits::default();
+    pub fn limits(&self) -> Result<ThicknessLimits, Fail> {
+        let mut limits = ThicknessLimits::default();
         if let Some(name) = &self.preset {
             let preset = if name.ends_with(".toml") {
                 let text =
                     std::fs::read_to_string(name).map_err(|e| Fail::io(Path::new(name), &e))?;
-                Preset::parse(name, &text).map_err(|e| Fail::Config(e.to_string()))?
+                Preset::read(name, &text).map_err(|e| Fail::Config(e.to_string()))?
             } else {
-                Preset::named(name).map_err(|e| Fail::Usage(e.to_string()))?
+                presets::named(name).map_err(|e| Fail::Usage(e.to_string()))?
             };
-            limits = Limits::from(&preset);
+            limits = ThicknessLimits::from(&preset);
         }
         limits.fail_below = self.fail_below.or(limits.fail_below);
         limits.warn_below = self.warn_below.or(limits.warn_below);
@@ -208,13 +222,13 @@ impl LimitArgs {
 }
 
 /// A part read from its file.
-pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fail> {
+pub fn load(path: &Path, how: &How, job: &Job) -> Result<(CentredMesh, Vec<String>), Fail> {
     let loaded = read_mesh(path, job)?;
     if loaded.mesh.face_count() == 0 {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
-    let mut part = Part::new(&loaded.mesh, how.unit.scale());
-    part.refine(how.spacing, how.crease);
+    let mut part = CentredMesh::new(&loaded.mesh, how.unit.scale());
+    add_places(&mut part.mesh, how.spacing, how.crease);
     Ok((part, loaded.warnings))
 }
 
@@ -259,9 +273,9 @@ pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
 fn one(
     path: &Path,
     args: &ThicknessArgs,
-    limits: Limits,
+    limits: ThicknessLimits,
     job: &Job,
-) -> Result<(Part, Checked), Fail> {
+) -> Result<(CentredMesh, CheckedPart), Fail> {
     let (part, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
@@ -273,16 +287,17 @@ fn one(
 }
 
 /// The report of a checked part to `out`.
-fn write_report(out: &Path, path: &Path, part: &Part, checked: &Checked) -> Outcome {
+fn write_report(out: &Path, path: &Path, part: &CentredMesh, checked: &CheckedPart) -> Outcome {
     let bytes = std::fs::read(path).map_err(|e| Fail::io(path, &e))?;
     let program = concat!("sculptd ", env!("CARGO_PKG_VERSION"));
-    let origin = report::Origin { hash: report::fnv(&bytes), bytes: bytes.len() as u64, program };
+    let origin =
+        report::ReportOrigin { hash: report::fnv(&bytes), bytes: bytes.len() as u64, program };
     let page = report::html(part, checked, origin)
         .map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
     write_beside(out, |w| w.write_all(page.as_bytes())).map_err(|e| Fail::io(out, &e))
 }
 
-fn judge(a: &Answer) -> Outcome {
+fn judge(a: &ThicknessAnswer) -> Outcome {
     if a.verdict != Verdict::Fail {
         return Ok(());
     }
@@ -307,7 +322,7 @@ fn judge(a: &Answer) -> Outcome {
     Err(Fail::Check(format!("{}: {}", a.file, why.join("; "))))
 }
 
-fn text(w: &mut dyn Write, a: &Answer) -> std::io::Result<()> {
+fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
     let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
     let s = &a.summary;
     writeln!(
@@ -367,7 +382,7 @@ pub fn verdict(v: Verdict) -> &'static str {
 
 /// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none),
 /// reason.
-fn write_ply(w: &mut dyn Write, part: &Part, t: &Thickness) -> std::io::Result<()> {
+fn write_ply(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std::io::Result<()> {
     let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
     write!(
         w,

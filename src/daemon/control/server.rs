@@ -1,6 +1,6 @@
 //! Listening: one thread that accepts, one a client, all bounded.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
@@ -8,33 +8,19 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use arc_swap::ArcSwap;
 use serde_json::Value;
 
-use super::protocol::{Code, Response, RpcError, parse};
-use super::{MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, methods, user_id};
-use crate::Published;
-use crate::command_queue::CommandSender;
+use super::host::{Host, locked};
+use super::{IDLE_SECONDS, MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, user_id};
+use sculptd_control::method::{self, ALWAYS_ANSWERED};
+use sculptd_control::wire::{Code, Response, parse};
+use sculptd_control::{Request, RpcError};
 use sculptd_devices::Clock;
 
-/// What a request may touch.
-#[derive(Debug, Clone)]
-pub struct Host {
-    pub commands: CommandSender,
-    pub published: Arc<ArcSwap<Published>>,
-    /// What each brush begins with.
-    pub presets: sculptd_clay::brush::Presets,
-    /// The wall thickness of the work, as last asked for.
-    pub thickness: Arc<Mutex<Option<sculptd_clay::live_thickness::LiveMap>>>,
-    /// The Boolean under way.
-    pub joining: Arc<Mutex<Option<Arc<sculptd_geometry::job::Job>>>>,
-    /// How the session file stands; `None`: the run is not recorded.
-    pub journal: Option<crate::session::Health>,
-    /// The history of the session, if one is kept.
-    pub history: Option<crate::session::history::Handle>,
-    /// Raised by `shutdown`.
-    pub stop: Arc<AtomicBool>,
-}
+/// Longest that a reply may wait for its reader.
+const WRITE_PATIENCE: Duration = Duration::from_secs(5);
+/// Longest that the client on the owner's place may take for its one request.
+const OWNER_PATIENCE: Duration = Duration::from_secs(2);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
@@ -52,7 +38,20 @@ pub struct Server {
 }
 
 impl Server {
+    /// Listens. A client that sends nothing for [`IDLE_SECONDS`] is disconnected unless it is
+    /// subscribed.
+    ///
+    /// # Errors
+    /// Where another daemon listens there, and what the system says.
     pub fn start(path: &Path, host: Host) -> Result<Self, ServeError> {
+        Server::start_with_idle(path, host, Duration::from_secs(IDLE_SECONDS))
+    }
+
+    /// As [`Server::start`], with another time that a silent client keeps its place.
+    ///
+    /// # Errors
+    /// As [`Server::start`].
+    pub fn start_with_idle(path: &Path, host: Host, idle: Duration) -> Result<Self, ServeError> {
         let io = |source| ServeError::Io { path: path.into(), source };
         if let Some(dir) = path.parent().filter(|d| !d.exists()) {
             std::fs::DirBuilder::new().recursive(true).mode(0o700).create(dir).map_err(io)?;
@@ -70,7 +69,7 @@ impl Server {
         let closed = closing.clone();
         std::thread::Builder::new()
             .name("sculptd-control".into())
-            .spawn(move || accept(&listener, &host, &closed))
+            .spawn(move || accept(&listener, &host, idle, &closed))
             .map_err(io)?;
         Ok(Server { path: path.into(), closing })
     }
@@ -89,36 +88,69 @@ impl Drop for Server {
     }
 }
 
-fn accept(listener: &UnixListener, host: &Host, closing: &AtomicBool) {
-    let clients = Arc::new(AtomicUsize::new(0));
+/// One of a number of places; given back when dropped, by a panic too.
+#[derive(Debug)]
+struct ClientPlace(Arc<AtomicUsize>);
+
+impl ClientPlace {
+    /// `None`: `most` are taken.
+    fn take(taken: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+        let free = |n: usize| (n < most).then_some(n + 1);
+        taken.fetch_update(SeqCst, SeqCst, free).ok().map(|_| ClientPlace(taken.clone()))
+    }
+}
+
+impl Drop for ClientPlace {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, SeqCst);
+    }
+}
+
+fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &AtomicBool) {
+    let (clients, owner) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
     for stream in listener.incoming() {
         if closing.load(SeqCst) {
             return;
         }
-        let Ok(mut stream) = stream else { continue };
-        let refuse = |stream: &mut UnixStream, why: &str| {
-            let r = Response::of(Value::Null, Err(RpcError::new(Code::Failed, why)));
-            let _ = serde_json::to_writer(&mut *stream, &r);
-            let _ = stream.write_all(b"\n");
-        };
+        let Ok(stream) = stream else { continue };
+        // A client that reads nothing must not hold up those that wait to be accepted.
+        let _ = stream.set_write_timeout(Some(WRITE_PATIENCE));
         if !allowed(&stream, user_id()) {
-            refuse(&mut stream, "another user's daemon");
+            refuse(&stream, "another user's daemon");
             continue;
         }
-        if clients.load(SeqCst) >= MAX_CLIENTS {
-            refuse(&mut stream, "too many clients at a time");
-            continue;
-        }
-        clients.fetch_add(1, SeqCst);
-        let (host, counter) = (host.clone(), clients.clone());
-        let started = std::thread::Builder::new().name("sculptd-client".into()).spawn(move || {
-            serve(stream, &host);
-            counter.fetch_sub(1, SeqCst);
-        });
-        if started.is_err() {
-            clients.fetch_sub(1, SeqCst);
+        let host = host.clone();
+        // The last place is the owner's.
+        if let Some(place) = ClientPlace::take(&clients, MAX_CLIENTS - 1) {
+            start(place, move || serve(stream, &host, idle));
+        } else if let Some(place) = ClientPlace::take(&owner, 1) {
+            start(place, move || serve_owner(&stream, &host));
+        } else {
+            refuse(&stream, TOO_MANY);
         }
     }
+}
+
+const TOO_MANY: &str = "too many clients at a time; only 'shutdown' and 'cancel' are answered";
+
+/// Serves on a thread of its own, which holds the place.
+fn start(place: ClientPlace, serve: impl FnOnce() + Send + 'static) {
+    // Where no thread can be started the closure is dropped, and the place and the stream with it.
+    let _ = std::thread::Builder::new().name("sculptd-client".into()).spawn(move || {
+        let _place = place;
+        serve();
+    });
+}
+
+fn refuse(stream: &UnixStream, why: &str) {
+    write_line(stream, &Response::new(Value::Null, Err(RpcError::failed(why))));
+}
+
+/// `false`: nobody reads.
+fn write_line(mut out: &UnixStream, response: &Response) -> bool {
+    let Ok(mut bytes) = serde_json::to_vec(response) else { return false };
+    bytes.push(b'\n');
+    out.write_all(&bytes).is_ok()
 }
 
 /// Only the daemon's own user and root, as the kernel names the peer.
@@ -134,10 +166,44 @@ pub fn permitted(peer: u32, owner: u32) -> bool {
     peer == owner || peer == 0
 }
 
-fn serve(stream: UnixStream, host: &Host) {
-    // A client that sends half a line and sleeps is let go after a minute; one that is merely quiet
-    // is not.
-    let _ = stream.set_write_timeout(Some(Duration::from_secs(5)));
+/// Answers one request while every other place is taken: what ends the daemon, or what holds a
+/// place.
+fn serve_owner(stream: &UnixStream, host: &Host) {
+    let clock = Clock::monotonic();
+    let until = clock.now_us() + OWNER_PATIENCE.as_micros() as u64;
+    let mut line = Vec::new();
+    let mut part = [0; 512];
+    // By single reads, so that a client that sends a byte a second takes no longer either.
+    while !line.contains(&b'\n') && line.len() <= MAX_MESSAGE {
+        let left = until.saturating_sub(clock.now_us());
+        if left == 0 || stream.set_read_timeout(Some(Duration::from_micros(left))).is_err() {
+            return;
+        }
+        let mut input = stream;
+        match input.read(&mut part) {
+            Ok(n @ 1..) => line.extend_from_slice(&part[..n]),
+            _ => return,
+        }
+    }
+    let line = line.split(|b| *b == b'\n').next().unwrap_or(&[]);
+    let response = match parse(line.trim_ascii()) {
+        Err(e) => Response::new(Value::Null, Err(e)),
+        Ok(asked) => {
+            let id = asked.id.unwrap_or(Value::Null);
+            let result = match ALWAYS_ANSWERED.contains(&asked.method.as_str()) {
+                true => super::handler::call(host, &asked.method, asked.params),
+                false => Err(RpcError::failed(TOO_MANY)),
+            };
+            Response::new(id, result)
+        }
+    };
+    write_line(stream, &response);
+}
+
+fn serve(stream: UnixStream, host: &Host, idle: Duration) {
+    if stream.set_read_timeout(Some(idle)).is_err() {
+        return;
+    }
     let Ok(out) = stream.try_clone() else { return };
     // Answers and events take turns, a line each.
     let out = Arc::new(Mutex::new(out));
@@ -150,28 +216,18 @@ fn serve(stream: UnixStream, host: &Host) {
     let mut line = Vec::new();
     loop {
         line.clear();
-        match lines.by_ref().take(MAX_MESSAGE as u64 + 2).read_until(b'\n', &mut line) {
-            Ok(0) | Err(_) => return,
-            Ok(_) => {}
+        if !read_line(&mut lines, &mut line, idle, subscribed) {
+            return;
         }
         let whole = line.ends_with(b"\n");
         let now = clock.now_us() / 1_000_000;
         (second, asked) = if now == second { (second, asked + 1) } else { (now, 1) };
-        let (response, subscribes) = if asked > MAX_RATE {
-            let slow = RpcError::new(Code::Slow, format!("at most {MAX_RATE} requests a second"));
-            (Some(Response::of(Value::Null, Err(slow))), false)
-        } else {
-            answer(host, line.trim_ascii())
-        };
+        let (response, subscribes) = answer(host, line.trim_ascii(), asked > MAX_RATE);
         // Taken before the client is told: nothing after its answer is missed.
         let before =
             (subscribes && !std::mem::replace(&mut subscribed, true)).then(|| events::look(host));
-        if let Some(response) = response {
-            let Ok(mut bytes) = serde_json::to_vec(&response) else { return };
-            bytes.push(b'\n');
-            if out.lock().map_or(true, |mut o| o.write_all(&bytes).is_err()) {
-                return;
-            }
+        if response.is_some_and(|r| !write_line(&locked(&out), &r)) {
+            return;
         }
         if let Some(before) = before {
             let _ = events::start(host, before, out.clone(), gone.clone());
@@ -179,6 +235,43 @@ fn serve(stream: UnixStream, host: &Host) {
         // What follows an oversized line cannot be told apart from it.
         if !whole {
             return;
+        }
+    }
+}
+
+/// Reads one line, or as much of it as a message may have. `false`: the client has gone, was silent
+/// for too long (a subscriber may be), or takes longer than that for one line.
+fn read_line(
+    lines: &mut BufReader<UnixStream>,
+    line: &mut Vec<u8>,
+    idle: Duration,
+    subscribed: bool,
+) -> bool {
+    let clock = Clock::monotonic();
+    let mut until = u64::MAX;
+    loop {
+        let found = match lines.fill_buf() {
+            Ok(found) => found,
+            Err(e) if e.kind() == ErrorKind::Interrupted => continue,
+            Err(e) => {
+                let silent = matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut);
+                if silent && subscribed && line.is_empty() {
+                    continue;
+                }
+                return false;
+            }
+        };
+        let room = MAX_MESSAGE + 2 - line.len();
+        let end = found.iter().take(room).position(|b| *b == b'\n').map(|i| i + 1);
+        let taken = end.unwrap_or(found.len().min(room));
+        line.extend_from_slice(&found[..taken]);
+        lines.consume(taken);
+        if taken == 0 || end.is_some() || line.len() == MAX_MESSAGE + 2 {
+            return !line.is_empty();
+        }
+        until = until.min(clock.now_us() + idle.as_micros() as u64);
+        if clock.now_us() > until {
+            return false;
         }
     }
 }
@@ -192,17 +285,51 @@ impl Drop for Leaving {
     }
 }
 
-/// The answer, if one is wanted, and whether events follow it.
-fn answer(host: &Host, line: &[u8]) -> (Option<Response>, bool) {
+/// The answer, if one is wanted, and whether events follow it. `flood`: the client has asked too
+/// often in this second.
+fn answer(host: &Host, line: &[u8], flood: bool) -> (Option<Response>, bool) {
     if line.is_empty() {
         return (None, false);
     }
-    match parse(line) {
-        Err(e) => (Some(Response::of(Value::Null, Err(e))), false),
-        Ok(request) => {
-            let result = methods::call(host, &request.method, request.params);
-            let subscribes = request.method == "subscribe" && result.is_ok();
-            (request.id.map(|id| Response::of(id, result)), subscribes)
-        }
+    let asked = match parse(line) {
+        Err(e) => return (Some(Response::new(Value::Null, Err(e))), false),
+        Ok(asked) => asked,
+    };
+    let mut subscribes = false;
+    let result = if flood {
+        let text = format!("at most {MAX_RATE} requests a second");
+        Err(RpcError::new(Code::TooManyRequests, text))
+    } else {
+        Request::read(&asked.method, asked.params).and_then(|request| {
+            let wanted = matches!(request, Request::Subscribe(_));
+            let reply = method::answer(host, request);
+            subscribes = wanted && reply.is_ok();
+            reply
+        })
+    };
+    (asked.id.map(|id| Response::new(id, result)), subscribes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_in_a_client_s_thread_gives_its_place_back() {
+        let taken = Arc::new(AtomicUsize::new(0));
+        let place = ClientPlace::take(&taken, 1).expect("free");
+        assert!(ClientPlace::take(&taken, 1).is_none());
+        let (ended, wait) = crossbeam_channel::bounded::<()>(0);
+        start(place, move || {
+            let _ended = ended;
+            panic!("a bug in a method (expected in this test)");
+        });
+        // Disconnected by the panic; the place is given back right after.
+        assert!(wait.recv().is_err());
+        let free = (0..1000).any(|_| {
+            let _ = crossbeam_channel::never::<()>().recv_timeout(Duration::from_millis(5));
+            ClientPlace::take(&taken, 1).is_some()
+        });
+        assert!(free, "the place is lost");
     }
 }

@@ -16,7 +16,7 @@ pub enum Stage {
 
 /// What the cycle asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Act {
+pub enum KioskAct {
     /// A visitor came: what the attract loop made goes.
     Begin,
     /// The visitor left: the work may be kept, then everything is put back.
@@ -71,7 +71,7 @@ impl Cycle {
 
     /// One tick. `touched`: a visitor's pen or hand was felt in it. `done`: the visitor pressed
     /// "finished".
-    pub fn step(&mut self, touched: bool, done: bool) -> Option<Act> {
+    pub fn step(&mut self, touched: bool, done: bool) -> Option<KioskAct> {
         self.now += 1;
         if touched {
             self.touched = self.now;
@@ -80,7 +80,7 @@ impl Cycle {
             Stage::Attract if touched => {
                 self.stage = Stage::Working;
                 self.begun = self.now;
-                return Some(Act::Begin);
+                return Some(KioskAct::Begin);
             }
             Stage::Attract => {}
             _ if done => return Some(self.end()),
@@ -94,21 +94,21 @@ impl Cycle {
         None
     }
 
-    fn end(&mut self) -> Act {
+    fn end(&mut self) -> KioskAct {
         self.stage = Stage::Attract;
         self.visits += 1;
-        Act::End { seconds: ((self.touched - self.begun) as f64 / self.rate_hz) as u64 }
+        KioskAct::End { seconds: ((self.touched - self.begun) as f64 / self.rate_hz) as u64 }
     }
 
     /// Staff typed `number`. An empty `pin` lets nobody out; after some wrong ones nothing is taken
     /// for a while.
-    pub fn staff(&mut self, number: &str, pin: &str) -> Option<Act> {
+    pub fn staff(&mut self, number: &str, pin: &str) -> Option<KioskAct> {
         if pin.is_empty() || self.now < self.locked_until {
             return None;
         }
         if number == pin {
             self.wrong = 0;
-            return Some(Act::Quit);
+            return Some(KioskAct::Quit);
         }
         self.wrong += 1;
         if self.wrong >= TRIES {
@@ -137,7 +137,7 @@ impl Cycle {
 mod tests {
     use super::*;
 
-    fn idle(cycle: &mut Cycle, ticks: u64) -> Option<Act> {
+    fn idle(cycle: &mut Cycle, ticks: u64) -> Option<KioskAct> {
         (0..ticks).find_map(|_| cycle.step(false, false))
     }
 
@@ -145,29 +145,29 @@ mod tests {
     fn any_touch_stops_the_countdown_and_without_one_the_visit_ends() {
         let mut c = Cycle::new(10.0, 2.0, 1.0);
         assert_eq!(idle(&mut c, 1000), None);
-        assert_eq!(c.step(true, false), Some(Act::Begin));
+        assert_eq!(c.step(true, false), Some(KioskAct::Begin));
         assert_eq!(idle(&mut c, 25), None);
         assert_eq!((c.view().stage, c.view().seconds_left), (Stage::Countdown, 1));
         assert_eq!(c.step(true, false), None);
         assert_eq!(c.view().stage, Stage::Working);
         assert_eq!(idle(&mut c, 29), None);
-        assert_eq!(idle(&mut c, 1), Some(Act::End { seconds: 2 }));
+        assert_eq!(idle(&mut c, 1), Some(KioskAct::End { seconds: 2 }));
         assert_eq!((c.view().stage, c.view().visits), (Stage::Attract, 1));
         c.step(true, false);
-        assert_eq!(c.step(false, true), Some(Act::End { seconds: 0 }));
+        assert_eq!(c.step(false, true), Some(KioskAct::End { seconds: 0 }));
     }
 
     #[test]
     fn the_staff_s_number_lets_out_and_guessing_is_slow() {
         let mut c = Cycle::new(10.0, 2.0, 1.0);
         assert_eq!(c.staff("", ""), None);
-        assert_eq!(c.staff("1234", "1234"), Some(Act::Quit));
+        assert_eq!(c.staff("1234", "1234"), Some(KioskAct::Quit));
         for n in ["0000", "0001", "0002"] {
             assert_eq!(c.staff(n, "1234"), None);
         }
         assert!(c.view().locked);
         assert_eq!(c.staff("1234", "1234"), None);
         idle(&mut c, 600);
-        assert_eq!(c.staff("1234", "1234"), Some(Act::Quit));
+        assert_eq!(c.staff("1234", "1234"), Some(KioskAct::Quit));
     }
 }

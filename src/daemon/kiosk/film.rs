@@ -18,7 +18,7 @@ const STEP_US: u64 = 7_500;
 
 /// Samples in order, their times counted from the film's beginning.
 #[derive(Debug)]
-pub struct Film {
+pub struct AttractRecording {
     samples: Vec<Sample>,
     next: usize,
     ends_us: u64,
@@ -33,23 +33,23 @@ fn touches(sample: &Sample) -> bool {
     }
 }
 
-impl Film {
+impl AttractRecording {
     /// Reads a recording to its end; a film without a touch has no samples.
     pub fn open(
         path: &Path,
         as_device: DeviceId,
         aspect: f32,
         all: &Catalogue,
-    ) -> Result<Film, RecordingError> {
+    ) -> Result<AttractRecording, RecordingError> {
         let mut player = Player::open(path, as_device, all)?;
         let area = used_area(Player::open(path, as_device, all)?, aspect);
         let mut samples = Vec::new();
         player.advance(u64::MAX, &mut |sample| samples.push(laid(sample, area)));
-        Ok(Film::cut(samples))
+        Ok(AttractRecording::cut(samples))
     }
 
     /// The strokes that come with the program.
-    pub fn own(as_device: DeviceId) -> Film {
+    pub fn own(as_device: DeviceId) -> AttractRecording {
         let journal = sim::journal();
         let sample = |t_us: u64| {
             let pose = journal.pen.at(t_us);
@@ -65,14 +65,14 @@ impl Film {
             };
             Sample { device: as_device, t_us, device_t_us: None, body: Body::Pen(pen) }
         };
-        Film::cut((0..=journal.pen.end_us() / STEP_US + 1).map(|i| sample(i * STEP_US)).collect())
+        AttractRecording::cut((0..=journal.pen.end_us() / STEP_US + 1).map(|i| sample(i * STEP_US)).collect())
     }
 
     /// Leaves out what comes before the first touch and shortens every pause. The last word of each
     /// visit stays.
-    fn cut(all: Vec<Sample>) -> Film {
+    fn cut(all: Vec<Sample>) -> AttractRecording {
         let Some(first) = all.iter().position(touches) else {
-            return Film { samples: vec![], next: 0, ends_us: 0 };
+            return AttractRecording { samples: vec![], next: 0, ends_us: 0 };
         };
         let begin = all[first].t_us.saturating_sub(REST_US);
         // Shown time is the sample's own, less what was taken out before it.
@@ -88,7 +88,7 @@ impl Film {
             samples.push(sample);
         }
         let ends_us = samples.last().map_or(0, |s| s.t_us) + REST_US;
-        Film { samples, next: 0, ends_us }
+        AttractRecording { samples, next: 0, ends_us }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -151,7 +151,7 @@ mod tests {
         all.extend((0..100).map(|i| pen(60_000_000 + i * 10_000, true)));
         all.extend((0..600).map(|i| pen(61_000_000 + i * 100_000, false)));
         all.extend((0..100).map(|i| pen(121_000_000 + i * 10_000, true)));
-        let film = Film::cut(all);
+        let film = AttractRecording::cut(all);
         let touched: Vec<u64> =
             film.samples.iter().filter(|s| touches(s)).map(|s| s.t_us).collect();
         assert_eq!(touched.len(), 200);
@@ -161,12 +161,12 @@ mod tests {
         let pause = touched[100] - touched[99];
         assert!((PAUSE_US..PAUSE_US + 300_000).contains(&pause), "{pause}");
         assert!(film.samples.windows(2).all(|p| p[0].t_us <= p[1].t_us));
-        assert!(Film::cut(vec![pen(0, false)]).is_empty());
+        assert!(AttractRecording::cut(vec![pen(0, false)]).is_empty());
     }
 
     #[test]
     fn the_built_in_film_is_short_and_touches() {
-        let film = Film::own(DeviceId(1));
+        let film = AttractRecording::own(DeviceId(1));
         assert!(film.samples.iter().filter(|s| touches(s)).count() > 300);
         assert!(film.ends_us < 20_000_000);
         assert!(!touches(film.samples.last().expect("samples")));

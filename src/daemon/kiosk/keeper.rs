@@ -9,14 +9,14 @@ use std::time::Duration;
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
-use super::film::Film;
+use super::film::AttractRecording;
 #[cfg(unix)]
 use super::share;
 use super::spool::Spool;
-use crate::command_queue::{CommandSender, QueuedCommand};
-use super::{Act, Cycle, KioskConfig, Language, Stage, View, gallery};
+use super::{KioskAct, Cycle, KioskConfig, Language, Stage, View, gallery};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
+use crate::command_queue::{CommandSender, QueuedCommand};
 use sculptd_clay::Clay;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::catalogue::Catalogue;
@@ -85,7 +85,7 @@ pub struct Keeper {
     pub thread: JoinHandle<()>,
 }
 
-struct Keeping {
+struct KioskThread {
     config: KioskConfig,
     start: Start,
     published: Arc<ArcSwap<Published>>,
@@ -95,7 +95,7 @@ struct Keeping {
     stop: Arc<AtomicBool>,
     desk: Arc<Desk>,
     /// What plays while nobody is there; never empty.
-    films: Vec<Film>,
+    films: Vec<AttractRecording>,
     film: usize,
     playing: bool,
     began_us: u64,
@@ -118,7 +118,7 @@ pub fn start(
     let catalogue = Catalogue::builtin().map_err(|e| e.to_string())?;
     let mut films = Vec::new();
     for (path, id) in config.attract.iter().zip(ATTRACT_IDS.cycle()) {
-        let film = Film::open(path, DeviceId(id), start.camera.aspect, &catalogue)
+        let film = AttractRecording::open(path, DeviceId(id), start.camera.aspect, &catalogue)
             .map_err(|e| e.to_string())?;
         if film.is_empty() {
             return Err(format!("{}: nothing in it touches the work", path.display()));
@@ -126,7 +126,7 @@ pub fn start(
         films.push(film);
     }
     if films.is_empty() {
-        films.push(Film::own(DeviceId(ATTRACT_IDS.start)));
+        films.push(AttractRecording::own(DeviceId(ATTRACT_IDS.start)));
     }
     let spool = match config.gallery_store.as_str() {
         "" => None,
@@ -143,7 +143,7 @@ pub fn start(
         }
     };
     let desk = Arc::new(Desk::default());
-    let mut keeping = Keeping {
+    let mut keeping = KioskThread {
         config,
         start,
         published,
@@ -169,7 +169,7 @@ pub fn start(
     Ok(Keeper { desk, thread })
 }
 
-impl Keeping {
+impl KioskThread {
     fn run(&mut self) {
         let mut cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
         let mut felt = None;
@@ -200,11 +200,11 @@ impl Keeping {
         }
     }
 
-    fn obey(&mut self, act: Option<Act>, cycle: &Cycle) {
+    fn obey(&mut self, act: Option<KioskAct>, cycle: &Cycle) {
         match act {
             None => {}
-            Some(Act::Quit) => self.stop.store(true, Relaxed),
-            Some(Act::Begin) => {
+            Some(KioskAct::Quit) => self.stop.store(true, Relaxed),
+            Some(KioskAct::Begin) => {
                 if std::mem::take(&mut self.playing) {
                     self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
                 }
@@ -213,7 +213,7 @@ impl Keeping {
                 self.dabs_before = self.published.load().figures.dabs;
                 self.put_back();
             }
-            Some(Act::End { seconds }) => {
+            Some(KioskAct::End { seconds }) => {
                 let state = self.published.load_full();
                 let dabs = state.figures.dabs.saturating_sub(self.dabs_before);
                 let mut kept = false;

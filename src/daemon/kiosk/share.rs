@@ -50,7 +50,7 @@ pub struct Link {
 }
 
 #[derive(Debug, Clone)]
-struct Good {
+struct ServedFile {
     file: PathBuf,
     until_us: u64,
 }
@@ -61,7 +61,7 @@ pub struct Share {
     at: SocketAddr,
     name: String,
     lasts: Duration,
-    links: Arc<Mutex<BTreeMap<String, Good>>>,
+    links: Arc<Mutex<BTreeMap<String, ServedFile>>>,
     clock: Clock,
     closing: Arc<AtomicBool>,
 }
@@ -92,7 +92,7 @@ impl Share {
         let listener = TcpListener::bind(at)?;
         let at = listener.local_addr()?;
         let name = if name.is_empty() { at.ip().to_string() } else { name.to_owned() };
-        let links: Arc<Mutex<BTreeMap<String, Good>>> = Arc::default();
+        let links: Arc<Mutex<BTreeMap<String, ServedFile>>> = Arc::default();
         let closing = Arc::new(AtomicBool::new(false));
         let (closed, good, known, time) =
             (closing.clone(), links.clone(), name.clone(), clock.clone());
@@ -134,7 +134,7 @@ impl Share {
                 };
                 links.remove(&oldest);
             }
-            links.insert(token, Good { file: file.to_path_buf(), until_us });
+            links.insert(token, ServedFile { file: file.to_path_buf(), until_us });
         }
         Ok(Link { url, code, until_us })
     }
@@ -153,7 +153,7 @@ fn serve(
     mut stream: TcpStream,
     at: SocketAddr,
     name: &str,
-    links: &Mutex<BTreeMap<String, Good>>,
+    links: &Mutex<BTreeMap<String, ServedFile>>,
     clock: &Clock,
 ) -> std::io::Result<()> {
     let Some(head) = read_head(&mut stream)? else { return Ok(()) };
@@ -176,7 +176,7 @@ fn answer(
     head: &[u8],
     at: SocketAddr,
     name: &str,
-    links: &Mutex<BTreeMap<String, Good>>,
+    links: &Mutex<BTreeMap<String, ServedFile>>,
     clock: &Clock,
 ) -> Result<(&'static str, Vec<u8>), (&'static str, &'static str)> {
     const GONE: (&str, &str) = ("404 Not Found", "there is nothing here, or no longer");

@@ -75,17 +75,17 @@ fn catch_up(folder: &Path) -> std::io::Result<()> {
 
 /// Where works go to.
 #[derive(Debug)]
-enum Place {
+enum SpoolTarget {
     Folder(PathBuf),
     #[cfg(feature = "s3")]
     Bucket(Box<super::bucket::Bucket>),
 }
 
-impl Place {
-    fn open(place: &str) -> Result<Place, String> {
+impl SpoolTarget {
+    fn open(place: &str) -> Result<SpoolTarget, String> {
         #[cfg(feature = "s3")]
         if place.contains("://") {
-            return super::bucket::Bucket::open(place).map(|b| Place::Bucket(Box::new(b)));
+            return super::bucket::Bucket::open(place).map(|b| SpoolTarget::Bucket(Box::new(b)));
         }
         if place.contains("://") {
             return Err(format!(
@@ -93,7 +93,7 @@ impl Place {
             ));
         }
         std::fs::create_dir_all(place).map_err(|e| format!("{place}: {e}"))?;
-        Ok(Place::Folder(place.into()))
+        Ok(SpoolTarget::Folder(place.into()))
     }
 
     /// Puts one file, whole or not at all.
@@ -101,13 +101,13 @@ impl Place {
         #[cfg(not(feature = "s3"))]
         let _ = stop; // A folder answers at once.
         match self {
-            Place::Folder(folder) => {
+            SpoolTarget::Folder(folder) => {
                 // A share that is not mounted is an empty folder above it: it is not made up here.
                 write_beside(&folder.join(name), |out| out.write_all(bytes))
                     .map_err(|e| e.to_string())
             }
             #[cfg(feature = "s3")]
-            Place::Bucket(bucket) => bucket.put(name, bytes, stop),
+            SpoolTarget::Bucket(bucket) => bucket.put(name, bytes, stop),
         }
     }
 }
@@ -118,7 +118,7 @@ impl Spool {
     /// # Errors
     /// In words, where `place` is nothing that can be sent to.
     pub fn start(folder: &Path, place: &str) -> Result<Spool, String> {
-        let to = Place::open(place)?;
+        let to = SpoolTarget::open(place)?;
         catch_up(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let (wake, calls) = cc::bounded::<()>(1);
         let stand = Arc::new(Stand::default());
@@ -180,7 +180,7 @@ impl Drop for Spool {
 }
 
 /// Sends the oldest work that waits, and the page after it. False: none waits.
-fn send_next(to: &Place, folder: &Path, stop: &AtomicBool) -> Result<bool, String> {
+fn send_next(to: &SpoolTarget, folder: &Path, stop: &AtomicBool) -> Result<bool, String> {
     let all = waiting(folder);
     let Some(name) = all.first() else { return Ok(false) };
     let mark = folder.join(OUTGOING).join(name);

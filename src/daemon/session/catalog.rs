@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::acknowledgement::{self, Acknowledged};
 use super::history::{Store, StoreError, listing};
 use super::reader::open;
+use super::shared_memory_log::{self, FileIdentity, LogName};
 use crate::session::history::retention::{Freed, bound};
 
 /// The ending of a session file's name.
@@ -13,23 +15,23 @@ pub const ENDING: &str = "sculpt";
 
 /// One session, as `sculptd session` tells of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Entry {
+pub struct SessionEntry {
     pub path: PathBuf,
     /// With its write-ahead log.
     pub bytes: u64,
     /// Seconds since 1970 of the last write.
     pub written_s: u64,
     /// Absent where the file cannot be read at all.
-    pub facts: Option<Facts>,
+    pub facts: Option<SessionFacts>,
     /// What could not be read, or why nothing could.
     pub damage: Option<String>,
     /// Places of the history, branches among them, and the bytes of their pages.
-    pub history: Option<Kept>,
+    pub history: Option<HistoryFigures>,
 }
 
 /// The history, in figures.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Kept {
+pub struct HistoryFigures {
     pub places: usize,
     pub branches: usize,
     pub checkpoints: u64,
@@ -41,7 +43,7 @@ pub struct Kept {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Facts {
+pub struct SessionFacts {
     pub start_vertices: u64,
     pub rate_hz: u32,
     /// Ticks that had input.
@@ -49,6 +51,10 @@ pub struct Facts {
     pub last_tick: u64,
     pub samples: u64,
     pub commands: u64,
+    /// The layout of the file.
+    pub layout: u32,
+    /// Why it opens at a checkpoint and cannot be replayed from its start, where that is so.
+    pub replay_from: Option<String>,
 }
 
 fn wal(path: &Path) -> PathBuf {
@@ -58,32 +64,34 @@ fn wal(path: &Path) -> PathBuf {
 }
 
 /// Reads one session to its end.
-pub fn look(path: &Path) -> std::io::Result<Entry> {
+pub fn look(path: &Path) -> std::io::Result<SessionEntry> {
     let about = std::fs::metadata(path)?;
     let log = std::fs::metadata(wal(path)).ok();
     let modified = log.as_ref().unwrap_or(&about).modified().ok();
     let since = modified.and_then(|t| t.duration_since(std::time::UNIX_EPOCH).ok());
     let (facts, damage) = match open(path) {
         Ok(o) => {
-            let facts = Facts {
+            let facts = SessionFacts {
                 start_vertices: o.start.positions.len() as u64,
                 rate_hz: o.settings.rate_hz,
                 ticks: o.input.len() as u64,
                 last_tick: o.input.last().map_or(0, |t| t.tick),
                 samples: o.input.iter().map(|t| t.samples.len() as u64).sum(),
                 commands: o.input.iter().map(|t| t.commands.len() as u64).sum(),
+                layout: o.layout,
+                replay_from: o.replay_from.map(|r| r.why),
             };
             (Some(facts), o.loss.map(|l| l.to_string()))
         }
         Err(e) => (None, Some(e.to_string())),
     };
-    Ok(Entry {
+    Ok(SessionEntry {
         path: path.into(),
         bytes: about.len() + log.map_or(0, |m| m.len()),
         written_s: since.map_or(0, |d| d.as_secs()),
         facts,
         damage,
-        history: listing::read(path).ok().filter(|h| !h.places.is_empty()).map(|h| Kept {
+        history: listing::read(path).ok().filter(|h| !h.places.is_empty()).map(|h| HistoryFigures {
             places: h.places.len(),
             branches: h.places.iter().filter(|p| p.branch).count(),
             checkpoints: h.checkpoints,
@@ -95,7 +103,7 @@ pub fn look(path: &Path) -> std::io::Result<Entry> {
 }
 
 /// Every session in a folder, the newest first. Links and folders are no sessions.
-pub fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
+pub fn list(folder: &Path) -> std::io::Result<Vec<SessionEntry>> {
     let mut all = Vec::new();
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
@@ -110,7 +118,7 @@ pub fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
 
 /// The sessions that may go so that `keep` of them stay: the oldest, never one that a daemon
 /// writes, never a damaged one (somebody may still want to save it).
-pub fn spare(mut all: Vec<Entry>, keep: usize) -> Vec<Entry> {
+pub fn spare(mut all: Vec<SessionEntry>, keep: usize) -> Vec<SessionEntry> {
     let old = all.split_off(keep.min(all.len()));
     old.into_iter().filter(|e| e.damage.is_none() && !in_use(&e.path)).collect()
 }
@@ -132,7 +140,7 @@ pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     // Held until all is done: no daemon opens it meanwhile.
     let lock = std::fs::File::open(path).map_err(damaged)?;
     if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock))
-        || !Store::read(path)?.has_tables()
+        || !Store::read(path)?.has_tables()?
     {
         return Ok(None);
     }
@@ -153,11 +161,21 @@ pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     Ok(Some(freed))
 }
 
+/// What this very file's processes left in shared memory.
+pub fn logs_of(path: &Path) -> Vec<LogName> {
+    match acknowledgement::read(path) {
+        Ok(Acknowledged::Known(a)) => FileIdentity::of(path, a.identity)
+            .map(|f| shared_memory_log::logs_of(&f))
+            .unwrap_or_default(),
+        _ => Vec::new(),
+    }
+}
+
 /// Removes a session with what belongs to it.
 pub fn remove(path: &Path) -> std::io::Result<()> {
-    let tail = crate::session::shared_memory_log::of(path);
+    let logs = logs_of(path);
     std::fs::remove_file(path)?;
-    tail.into_iter().for_each(crate::session::shared_memory_log::remove);
+    logs.iter().for_each(shared_memory_log::remove);
     for ending in ["-wal", "-shm"] {
         let mut name = path.as_os_str().to_owned();
         name.push(ending);

@@ -9,7 +9,7 @@ use sculptd_geometry::picture::{Camera, draw};
 
 /// Pictures of one replay. The same session gives the same bytes on every machine of one kind.
 #[derive(Debug)]
-pub struct Film {
+pub struct ReplayFrames {
     folder: PathBuf,
     every: u64,
     size: (u32, u32),
@@ -18,15 +18,15 @@ pub struct Film {
     pub frames: u32,
 }
 
-impl Film {
+impl ReplayFrames {
     /// A picture of `size` pixels every `every` ticks, as `frame-00000.png`, ... in `folder`, which
     /// is made.
     ///
     /// # Errors
     /// In words, where the folder cannot be made.
-    pub fn new(folder: &Path, every: u64, size: (u32, u32)) -> Result<Film, String> {
+    pub fn new(folder: &Path, every: u64, size: (u32, u32)) -> Result<ReplayFrames, String> {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        Ok(Film { folder: folder.into(), every: every.max(1), size, next: 0, frames: 0 })
+        Ok(ReplayFrames { folder: folder.into(), every: every.max(1), size, next: 0, frames: 0 })
     }
 
     /// Takes the pictures that are due: one for every step of time, also where nothing happened, so

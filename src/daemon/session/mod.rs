@@ -6,13 +6,19 @@
 //! * The tick thread only hands over data and never waits ([`writer`]).
 //! * Input is safe from a kill as soon as the journal has it ([`shared_memory_log`]), is committed
 //!   at most [`GROUP_MS`] after its tick, and then synced, safe from a power cut.
-//! * What was written is never rewritten: a group is a row, a row carries its checksum, a torn tail
-//!   is dropped and said.
+//! * What was written is never rewritten: a group is a row, a row carries its number, its checksum
+//!   and the chain of all before it; what is missing or torn is told in ticks ([`reader`]).
+//! * A file of a session's name is a whole session or none ([`create`]).
+//! * A damaged file is never written to: what can be read goes into a new one ([`salvage`]).
 
+pub mod acknowledgement;
+pub mod carve;
 pub mod catalog;
+mod create;
 pub mod film;
 pub mod format;
 pub mod history;
+mod input_end;
 pub mod reader;
 pub mod replay;
 pub mod salvage;
@@ -20,6 +26,7 @@ pub mod shared_memory_log;
 mod syncer;
 pub mod writer;
 
+pub use create::is_half_made;
 pub use reader::{Loss, OpenError, Opened, open};
 pub use salvage::{Saved, salvage};
 pub use writer::{Fault, Health, SessionWriter, create, resume};
@@ -28,10 +35,10 @@ pub use writer::{Fault, Health, SessionWriter, create, resume};
 /// that a crash may cost.
 pub const GROUP_MS: u64 = 50;
 
-/// The version of the file's layout, and of what the clay does with the input in it: where strokes
-/// fall, what brushes and levels do. A session is its input, so a file of another version is
-/// refused by name and left as it is.
-pub const VERSION: u32 = 3;
+/// The version of the file's layout. Files of older layouts open at their newest checkpoint; those
+/// of newer ones are refused by name and left as they are. It goes up with every release in which
+/// the bytes change, or what the clay does with the same input.
+pub const VERSION: u32 = 4;
 
 /// "SCLP": tells a session from any other SQLite file (`PRAGMA application_id`).
 pub const APPLICATION_ID: i32 = 0x53_43_4c_50;

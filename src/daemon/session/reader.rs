@@ -1,17 +1,32 @@
-//! Opening a session: the start, then every group whose checksum holds.
+//! Opening a session: the start, then every group whose checksums hold, compared with what must be
+//! there.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use rusqlite::{Connection, OpenFlags, OptionalExtension};
+use rusqlite::types::Type;
+use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension};
 
-use super::format::{META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TickInput, ticks};
+use super::acknowledgement::{self, Acknowledged, Acknowledgement};
+use super::carve::log_salts;
+use super::create::companion;
+use super::format::{
+    InputRow, META_IDENTITY, META_REPLAY_FROM, META_SETTINGS, META_START, META_SUMS, ReplayFrom,
+    Settings, TickInput, chain_start, field_counts, ticks, v3,
+};
+use super::history::Store;
+use super::shared_memory_log::{FileIdentity, following, logs_of, read as read_log};
 use super::{APPLICATION_ID, VERSION};
-use crate::session::shared_memory_log;
+use sculptd_engine::old_layout::from_bytes;
 use sculptd_geometry::TriMesh;
 
 /// Largest start mesh that is read back, bytes; more than the 24 GiB machine's working set makes no
 /// session.
 const MAX_START_BYTES: i64 = 8 << 30;
+/// How often a session that is being written is read again, until its file and its log in memory
+/// agree.
+const TRIES: u32 = 5;
+/// A log that SQLite began again after an acknowledgement has a first salt that is larger by one.
+const RESTARTS: u32 = 16;
 
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
@@ -20,25 +35,37 @@ pub enum OpenError {
     )]
     NotASession { path: String },
     #[error(
-        "{path}: written by {} sculptd (layout {found}, this one reads {VERSION}): the same input makes other clay in \
-         each; nothing was changed, open it with that one and export the work",
-        if *.found > VERSION { "a newer" } else { "an older" }
+        "{path}: written by {} sculptd (layout {found}, this one reads {VERSION}{}); nothing was changed, open it \
+         with that one and export the sculpture",
+        if *.found > VERSION { "a newer" } else { "an older" },
+        if *.found > VERSION { "" } else { ", and older ones that have a checkpoint: this one has none" }
     )]
     OtherLayout { path: String, found: u32 },
+    #[error("{path}: it can be opened at a checkpoint only, and none can be read: {why}")]
+    NoCheckpoint { path: String, why: String },
     #[error("{path}: {what} cannot be read: {source}")]
     Damaged { path: String, what: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
     #[error("{path}: {source}")]
     Io { path: String, source: std::io::Error },
+    #[error(
+        "{path}: its folder cannot be written, and its log ({path}-wal) must be taken over there: copy both to a folder \
+         that can be written"
+    )]
+    ReadOnlyFolder { path: String },
 }
 
 /// A session, read.
 #[derive(Debug)]
 pub struct Opened {
     /// The file; its history is read when it is asked for.
-    pub path: std::path::PathBuf,
+    pub path: PathBuf,
+    /// The layout of the file, [`VERSION`] or an older one.
+    pub layout: u32,
     pub start: TriMesh,
     pub settings: Settings,
     pub input: Vec<TickInput>,
+    /// Present where a replay from the start is refused.
+    pub replay_from: Option<ReplayFrom>,
     /// What could not be read.
     pub loss: Option<Loss>,
 }
@@ -48,15 +75,15 @@ pub struct Opened {
 pub struct Loss {
     /// The last tick that was read.
     pub kept: u64,
-    /// The last tick that the file speaks of, where it could be made out.
+    /// The last tick that the session had, where it could be made out.
     pub last: Option<u64>,
     pub cause: String,
 }
 
 impl Loss {
-    /// Ticks of input lost, where the file still says how far it went.
+    /// Ticks of input lost, where it could be made out how far the session went.
     pub fn ticks(&self) -> Option<u64> {
-        self.last.map(|l| l.saturating_sub(self.kept)).filter(|n| *n > 0)
+        self.last.map(|l| l.saturating_sub(self.kept))
     }
 }
 
@@ -64,6 +91,7 @@ impl std::fmt::Display for Loss {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "kept up to tick {}; ", self.kept)?;
         match self.ticks() {
+            Some(0) => write!(f, "no ticks are lost at the end")?,
             Some(n) => write!(f, "{n} ticks are lost, up to tick {}", self.kept + n)?,
             None => write!(f, "what came after it is lost, how many ticks cannot be told")?,
         }
@@ -71,33 +99,126 @@ impl std::fmt::Display for Loss {
     }
 }
 
-/// Reads a session and changes nothing in it, also while a daemon writes it. A damaged tail is left
-/// out and said in [`Opened::loss`]; a damaged start is an error.
+/// Reads a session and changes nothing in it, also while a daemon writes it. What is missing or
+/// damaged after a readable start is said in [`Opened::loss`]; a damaged start is an error.
+///
+/// # Errors
+/// [`OpenError`]
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
-    read(path, true)
+    let mut opened = read(path)?;
+    for _ in 1..TRIES {
+        // Somebody writes: what was read of the file may be older than what was read of the log.
+        if opened.loss.is_none() || !super::catalog::in_use(path) {
+            break;
+        }
+        opened = read(path)?;
+    }
+    if opened.loss.is_none()
+        && let Some(cause) = history_damage(path)
+    {
+        let kept = opened.input.last().map_or(0, |t| t.tick);
+        opened.loss = Some(Loss { kept, last: Some(kept), cause });
+    }
+    Ok(opened)
 }
 
-/// `strict`: the checksums of start and settings must hold. Otherwise it is enough that they make
-/// sense.
-pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
-    let name = path.display().to_string();
-    if let Err(source) = std::fs::metadata(path) {
-        return Err(OpenError::Io { path: name, source });
+/// What is damaged in a session's history, if anything.
+pub fn history_damage(path: &Path) -> Option<String> {
+    let damage = Store::read(path).and_then(|s| s.check());
+    match damage {
+        Ok(None) => None,
+        Ok(Some(text)) => Some(format!("the history is damaged: {text}")),
+        Err(e) => Some(format!("the history cannot be read: {e}")),
     }
-    let not = |_| OpenError::NotASession { path: name.clone() };
-    let db = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(not)?;
-    db.busy_timeout(std::time::Duration::from_secs(2)).map_err(not)?;
+}
+
+/// A connection that reads. `alone`: the main file without its log.
+pub(super) fn connect(path: &Path, alone: bool) -> rusqlite::Result<Connection> {
+    let plain = OpenFlags::SQLITE_OPEN_READ_ONLY;
+    if !alone {
+        let db = Connection::open_with_flags(path, plain)?;
+        db.busy_timeout(std::time::Duration::from_secs(2))?;
+        // The first statement opens the log's index, which needs a folder that can be written.
+        let trial = db.query_row("PRAGMA schema_version", [], |r| r.get::<_, i64>(0));
+        let closed = matches!(
+            trial.as_ref().err().and_then(rusqlite::Error::sqlite_error_code),
+            Some(ErrorCode::CannotOpen | ErrorCode::ReadOnly)
+        );
+        let log = std::fs::metadata(companion(path, "-wal")).map_or(0, |m| m.len());
+        if !closed || log > 0 {
+            trial?;
+            return Ok(db);
+        }
+    }
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.into());
+    let mut uri = String::from("file:");
+    for byte in whole.as_os_str().as_encoded_bytes() {
+        match byte {
+            b'/' | b'.' | b'-' | b'_' | b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' => {
+                uri.push(char::from(*byte));
+            }
+            other => uri.push_str(&format!("%{other:02x}")),
+        }
+    }
+    uri.push_str("?immutable=1");
+    Connection::open_with_flags(uri, plain | OpenFlags::SQLITE_OPEN_URI)
+}
+
+/// Whether the log beside a session is of another session, or of another time of this one.
+pub(super) fn log_is_foreign(path: &Path, known: &Acknowledgement) -> bool {
+    match (known.salts, log_salts(path)) {
+        ([0, 0], _) | (_, None) => false,
+        (had, Some(now)) => had != now && now[0].wrapping_sub(had[0]).wrapping_sub(1) >= RESTARTS,
+    }
+}
+
+/// The start mesh alone, for one who holds the session open for writing: no other handle of the
+/// file is opened, for closing it would give back SQLite's own locks.
+///
+/// # Errors
+/// Where it cannot be read.
+pub(super) fn read_start(path: &Path) -> rusqlite::Result<TriMesh> {
+    let db = connect(path, false)?;
+    let sql = "SELECT value FROM meta WHERE key = ?1";
+    let bytes: Vec<u8> = db.query_row(sql, [META_START], |r| r.get(0))?;
+    let start: TriMesh = postcard::from_bytes(&bytes)
+        .map_err(|e| rusqlite::Error::FromSqlConversionFailure(0, Type::Blob, Box::new(e)))?;
+    Ok(start)
+}
+
+/// One reading, without the history.
+pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
+    let name = path.display().to_string();
+    let io = |source| OpenError::Io { path: name.clone(), source };
+    std::fs::metadata(path).map_err(io)?;
+    // Before the input: what is acknowledged meanwhile may be missing below.
+    let known = acknowledgement::read(path).map_err(io)?;
+    let foreign = matches!(&known, Acknowledged::Known(a) if log_is_foreign(path, a));
+    let not = |e: rusqlite::Error| match e.sqlite_error_code() {
+        Some(ErrorCode::CannotOpen | ErrorCode::ReadOnly) => {
+            OpenError::ReadOnlyFolder { path: name.clone() }
+        }
+        Some(ErrorCode::PermissionDenied) => {
+            OpenError::Io { path: name.clone(), source: std::io::ErrorKind::PermissionDenied.into() }
+        }
+        Some(ErrorCode::NotADatabase) => OpenError::NotASession { path: name.clone() },
+        _ => OpenError::Damaged { path: name.clone(), what: "the database", source: e.into() },
+    };
+    let db = connect(path, foreign).map_err(not)?;
     let id: i32 = db.query_row("PRAGMA application_id", [], |r| r.get(0)).map_err(not)?;
     if id != APPLICATION_ID {
         return Err(OpenError::NotASession { path: name });
     }
-    let found: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0)).map_err(not)?;
-    // 0: its header never reached the disk, and what follows says what is missing.
-    if found != VERSION && found != 0 {
-        return Err(OpenError::OtherLayout { path: name, found });
-    }
+    let layout: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0)).map_err(not)?;
     let damaged = |what: &'static str, source: Box<dyn std::error::Error + Send + Sync>| {
         OpenError::Damaged { path: name.clone(), what, source }
+    };
+    let Some(counts) = field_counts(layout) else {
+        return Err(match layout {
+            // Its header never reached the disk.
+            0 => damaged("the database", "its layout is not named".into()),
+            found => OpenError::OtherLayout { path: name, found },
+        });
     };
     let meta = |key: &'static str| -> Result<Option<Vec<u8>>, OpenError> {
         db.query_row(
@@ -108,52 +229,139 @@ pub(super) fn read(path: &Path, strict: bool) -> Result<Opened, OpenError> {
         .optional()
         .map_err(|e| damaged(key, e.into()))
     };
-    let start_bytes =
-        meta(META_START)?.ok_or_else(|| damaged(META_START, "it is missing".into()))?;
-    let settings_bytes =
+    let start = meta(META_START)?.ok_or_else(|| damaged(META_START, "it is missing".into()))?;
+    let settings =
         meta(META_SETTINGS)?.ok_or_else(|| damaged(META_SETTINGS, "it is missing".into()))?;
-    if strict && let Some(sums) = meta(META_SUMS)? {
+    if let Some(sums) = meta(META_SUMS)? {
         let sums: (u32, u32) =
             postcard::from_bytes(&sums).map_err(|e| damaged(META_SUMS, e.into()))?;
-        for (what, bytes, sum) in
-            [(META_START, &start_bytes, sums.0), (META_SETTINGS, &settings_bytes, sums.1)]
+        for (what, bytes, sum) in [(META_START, &start, sums.0), (META_SETTINGS, &settings, sums.1)]
         {
             if crc32fast::hash(bytes) != sum {
                 return Err(damaged(what, "its checksum does not hold".into()));
             }
         }
     }
-    let start: TriMesh =
-        postcard::from_bytes(&start_bytes).map_err(|e| damaged(META_START, e.into()))?;
-    let count = start.positions.len();
-    if start.triangles.iter().flatten().any(|&v| v as usize >= count) {
+    let start: TriMesh = from_bytes(&start, counts).map_err(|e| damaged(META_START, e.into()))?;
+    if !indices_hold(&start) {
         return Err(damaged(META_START, "an index is out of range".into()));
     }
     let settings =
-        postcard::from_bytes(&settings_bytes).map_err(|e| damaged(META_SETTINGS, e.into()))?;
-    let (mut input, cause) = read_log(&db);
-    if cause.is_none()
-        && let Ok(Some(tail)) = meta(META_TAIL)
-        && let Ok(name) = tail.try_into().map(u64::from_le_bytes)
-    {
-        shared_memory_log::lengthen(&mut input, &shared_memory_log::read(name));
+        from_bytes(&settings, counts).map_err(|e| damaged(META_SETTINGS, e.into()))?;
+    let path = path.to_path_buf();
+    if layout == v3::LAYOUT {
+        let (mut input, cause) = v3::read_log(&db);
+        if cause.is_none()
+            && let Some(name) = meta(v3::META_TAIL)?.and_then(|t| t.try_into().ok())
+        {
+            v3::lengthen(&mut input, u64::from_le_bytes(name));
+        }
+        let kept = input.last().map_or(0, |t| t.tick);
+        let loss = cause.map(|cause| Loss { kept, last: last_named(&db, "log"), cause });
+        let replay_from = Some(older(&db, &name)?);
+        return Ok(Opened { path, layout, start, settings, input, replay_from, loss });
     }
-    let loss = cause.map(|cause| Loss {
-        kept: input.last().map_or(0, |t| t.tick),
-        last: last_named(&db),
-        cause,
-    });
-    Ok(Opened { path: path.into(), start, settings, input, loss })
+    let identity = meta(META_IDENTITY)?
+        .and_then(|v| v.try_into().ok())
+        .map(u64::from_le_bytes)
+        .ok_or_else(|| damaged(META_IDENTITY, "it is missing".into()))?;
+    let replay_from = meta(META_REPLAY_FROM)?
+        .map(|v| postcard::from_bytes(&v).map_err(|e| damaged(META_REPLAY_FROM, e.into())))
+        .transpose()?;
+    let mut found = read_rows(&db, identity);
+    // The log in memory of this very file.
+    let mut newest = 0;
+    if found.cause.is_none() {
+        let logs = FileIdentity::of(&path, identity).map(|f| logs_of(&f)).unwrap_or_default();
+        for log in logs {
+            let entries = read_log(&log);
+            newest = newest.max(entries.last().map_or(0, |e| e.last));
+            for entry in following(found.end, &entries) {
+                if !found.extend(&entry.data) {
+                    break;
+                }
+                found.end = (entry.last, super::format::chain(found.end.1, &entry.data));
+            }
+        }
+    }
+    let kept = found.end.0;
+    let (must, cause) = expected(&known, identity, found.end, newest, foreign);
+    let cause = found.cause.take().or(cause);
+    let last = must.max(last_named(&db, "input")).max(Some(newest)).max(Some(kept));
+    let loss = cause.map(|cause| Loss { kept, last, cause });
+    Ok(Opened { path, layout, start, settings, input: found.input, replay_from, loss })
+}
+
+/// Whether every triangle is of vertices that are there.
+pub(super) fn indices_hold(mesh: &TriMesh) -> bool {
+    let count = mesh.positions.len();
+    !mesh.triangles.iter().flatten().any(|&v| v as usize >= count)
+}
+
+/// The last tick that must be there, and what is wrong where the input does not reach it.
+fn expected(
+    known: &Acknowledged,
+    identity: u64,
+    end: (u64, u32),
+    newest: u64,
+    foreign: bool,
+) -> (Option<u64>, Option<String>) {
+    let (kept, chain) = end;
+    let log = "the write-ahead log is missing, damaged or cut";
+    match known {
+        Acknowledged::Known(a) if a.identity != identity => {
+            (None, Some("its parts are of two sessions".into()))
+        }
+        Acknowledged::Known(a) => {
+            let must = Some(a.tick.max(newest));
+            let cause = if foreign {
+                Some("the write-ahead log beside it is another session's, or of another time".into())
+            } else if a.tick > kept {
+                Some(format!("{log}: tick {} is acknowledged", a.tick))
+            } else if newest > kept {
+                Some(format!("{log}: tick {newest} was handed over"))
+            } else if a.tick == kept && a.chain != chain {
+                Some("the input is not the one that was acknowledged".into())
+            } else {
+                None
+            };
+            (must, cause)
+        }
+        Acknowledged::Damaged | Acknowledged::Missing => (
+            None,
+            Some("the acknowledgement cannot be read: whether ticks are missing is not known".into()),
+        ),
+    }
+}
+
+/// An older layout's session opens at its checkpoints.
+fn older(db: &Connection, name: &str) -> Result<ReplayFrom, OpenError> {
+    let layout = v3::LAYOUT;
+    let first: Option<i64> = db
+        .query_row("SELECT min(tick) FROM checkpoint", [], |r| r.get(0))
+        .optional()
+        .ok()
+        .flatten()
+        .flatten();
+    let Some(tick) = first else {
+        return Err(OpenError::OtherLayout { path: name.into(), found: layout });
+    };
+    Ok(ReplayFrom {
+        tick: tick as u64,
+        why: format!(
+            "it was begun by an older sculptd (layout {layout}), in which the same input makes other clay"
+        ),
+    })
 }
 
 /// The last tick that any readable row names.
-fn last_named(db: &Connection) -> Option<u64> {
+fn last_named(db: &Connection, table: &str) -> Option<u64> {
     let mut last = None;
     for order in ["ASC", "DESC"] {
         // Row by row and from both ends: a damaged page in the middle hides neither end.
         let mut scan = || -> rusqlite::Result<()> {
             let mut query =
-                db.prepare(&format!("SELECT last_tick FROM log ORDER BY id {order}"))?;
+                db.prepare(&format!("SELECT last_tick FROM {table} ORDER BY rowid {order}"))?;
             let mut rows = query.query([])?;
             while let Some(row) = rows.next()? {
                 if let Ok(tick) = row.get::<_, i64>(0) {
@@ -167,35 +375,67 @@ fn last_named(db: &Connection) -> Option<u64> {
     last
 }
 
-/// Every group up to the first that is missing, torn, or out of order, and what is wrong with that
-/// one.
-fn read_log(db: &Connection) -> (Vec<TickInput>, Option<String>) {
-    let mut input: Vec<TickInput> = Vec::new();
-    let mut read = || -> Result<Option<String>, rusqlite::Error> {
-        let mut query =
-            db.prepare("SELECT id, first_tick, last_tick, crc, data FROM log ORDER BY id")?;
-        let mut rows = query.query([])?;
-        let mut expected = 1i64;
-        while let Some(row) = rows.next()? {
-            let (id, first, last): (i64, i64, i64) = (row.get(0)?, row.get(1)?, row.get(2)?);
-            let (crc, data): (u32, Vec<u8>) = (row.get(3)?, row.get(4)?);
-            if id != expected {
-                return Ok(Some(format!("group {expected} is missing")));
-            }
-            expected += 1;
-            let broken = || Some(format!("the group of ticks {first} to {last} is damaged"));
-            if crc32fast::hash(&data) != crc {
-                return Ok(broken());
-            }
-            for tick in ticks(&data) {
-                match tick {
-                    Ok(tick) if input.last().is_none_or(|l| l.tick < tick.tick) => input.push(tick),
-                    _ => return Ok(broken()),
+/// Input that hangs together from the first row on.
+#[derive(Debug)]
+struct FoundInput {
+    input: Vec<TickInput>,
+    /// The last tick, and the chain there.
+    end: (u64, u32),
+    /// What is wrong with the row after it.
+    cause: Option<String>,
+}
+
+impl FoundInput {
+    fn extend(&mut self, data: &[u8]) -> bool {
+        for tick in ticks(data, &[]) {
+            match tick {
+                Ok(tick) if self.input.last().is_none_or(|l| l.tick < tick.tick) => {
+                    self.input.push(tick);
                 }
+                _ => return false,
             }
+        }
+        true
+    }
+}
+
+/// Every row up to the first that is missing, torn, or another session's.
+fn read_rows(db: &Connection, identity: u64) -> FoundInput {
+    let mut found = FoundInput { input: Vec::new(), end: (0, chain_start(identity)), cause: None };
+    let mut number = 0;
+    let mut read = || -> Result<Option<String>, rusqlite::Error> {
+        let mut query = db.prepare(
+            "SELECT number, first_tick, last_tick, crc, chain, data FROM input ORDER BY number",
+        )?;
+        let mut rows = query.query([])?;
+        while let Some(row) = rows.next()? {
+            let row = InputRow {
+                number: row.get::<_, i64>(0)? as u64,
+                first: row.get::<_, i64>(1)? as u64,
+                last: row.get::<_, i64>(2)? as u64,
+                crc: row.get(3)?,
+                chain: row.get(4)?,
+                data: row.get(5)?,
+            };
+            let (first, last) = (row.first, row.last);
+            if row.number != number + 1 {
+                return Ok(Some(format!("group {} is missing", number + 1)));
+            }
+            if !row.is_whole(identity) {
+                return Ok(Some(format!("the group of ticks {first} to {last} is damaged")));
+            }
+            if !row.follows((number, found.end.1)) || !found.extend(&row.data) {
+                return Ok(Some(format!(
+                    "the group of ticks {first} to {last} does not follow on the one before"
+                )));
+            }
+            number += 1;
+            found.end = (row.last, row.chain);
         }
         Ok(None)
     };
-    let cause = read().unwrap_or_else(|e| Some(format!("the log cannot be read to its end: {e}")));
-    (input, cause)
+    let cause = read();
+    found.cause =
+        cause.unwrap_or_else(|e| Some(format!("the input cannot be read to its end: {e}")));
+    found
 }

@@ -3,8 +3,18 @@
 //! A write to a file may wait for the disk, however little it waits for: a file system that brings
 //! its own journal to the disk holds up everybody for tenths of a second on a loaded machine. So
 //! every tick's input is first put into a file that lies in memory (`/dev/shm`), which is a copy
-//! and never a wait, and is let go once the session file has it. Whoever opens the session reads
-//! both. A power cut loses the tail; the session file alone is then what there is.
+//! and never a wait. It is let go once the session's main file has it, so that a damaged
+//! write-ahead log costs nothing after a kill. Whoever opens the session reads both. A power cut
+//! loses the memory; the session file alone is then what there is.
+//!
+//! **Name**: `sculptd-CREATION-DEVICE-INODE-PID.START.SERIAL-PART`, in hexadecimal: the session's
+//! creation number, the identity of its file, and the life of the process that writes it. A copy
+//! of a session has another inode, so opening it never takes the original's log.
+//!
+//! **Bytes**, little-endian: [`MAGIC`], the length of the session's path (4) and the path; then
+//! entries: first tick, last tick, the last tick before (8 each), the chain before (4, see
+//! [`super::format`]), bytes (4), CRC-32 of the creation number, all these and the bytes (4), the
+//! bytes. An entry follows on the file's input exactly where the chain says so.
 //!
 //! Where there is no such place, input waits for the session file alone.
 
@@ -13,32 +23,190 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
 
-use rusqlite::{Connection, OpenFlags};
-
-use super::format::{META_TAIL, TickInput, ticks};
+use super::format::chain;
 
 /// Where files lie in memory.
 const PLACE: &str = "/dev/shm";
+const MAGIC: [u8; 8] = *b"sculptd4";
 /// A part of this size is left for the other one, once that is let go.
-const PART: u64 = 256 << 10;
+const PART_BYTES: u64 = 256 << 10;
+/// Beyond so many bytes a part is let go when the write-ahead log has it, whether or not the main
+/// file does.
+const PLENTY: u64 = 8 << 20;
 /// The disk takes nothing: so much is kept at most.
 const MOST: u64 = 64 << 20;
-/// First tick, last tick, the last tick of the entry before, bytes, checksum of all these and the
-/// bytes.
-const HEAD: usize = 3 * 8 + 4 + 4;
+const HEAD: usize = 3 * 8 + 3 * 4;
+/// A log whose session is not where it was is kept this long.
+const KEPT: Duration = Duration::from_secs(24 * 3600);
+
+/// What a session file is, whatever it is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileIdentity {
+    /// Given once, when the session is created; copies share it.
+    pub creation: u64,
+    pub device: u64,
+    pub inode: u64,
+}
+
+impl FileIdentity {
+    /// Of a session with this creation number.
+    ///
+    /// # Errors
+    /// Where the file cannot be looked at.
+    pub fn of(path: &Path, creation: u64) -> std::io::Result<FileIdentity> {
+        let about = std::fs::metadata(path)?;
+        #[cfg(unix)]
+        let (device, inode) = {
+            use std::os::unix::fs::MetadataExt;
+            (about.dev(), about.ino())
+        };
+        #[cfg(not(unix))]
+        let (device, inode) = {
+            drop(about);
+            (0, u64::from(crc32fast::hash(path.as_os_str().as_encoded_bytes())))
+        };
+        Ok(FileIdentity { creation, device, inode })
+    }
+}
+
+/// A number that no other session has.
+pub fn new_creation_number() -> u64 {
+    use std::hash::{BuildHasher, Hasher};
+    let mut seed = std::hash::RandomState::new().build_hasher();
+    seed.write_u32(std::process::id());
+    seed.finish()
+}
+
+/// The name of a session's log in memory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogName {
+    pub file: FileIdentity,
+    pid: u32,
+    /// When the process was started, in the system's own count; 0 where that is not known.
+    start: u64,
+    serial: u64,
+}
+
+/// When a process was started; `None` where there is none of that number.
+fn start_of(pid: u32) -> Option<u64> {
+    let text = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // The name of the program stands in brackets and may hold anything.
+    let rest = text.rsplit_once(')')?.1;
+    rest.split_ascii_whitespace().nth(19)?.parse().ok()
+}
+
+impl LogName {
+    fn new(file: FileIdentity) -> LogName {
+        static SERIAL: AtomicU64 = AtomicU64::new(0);
+        let pid = std::process::id();
+        let start = start_of(pid).unwrap_or(0);
+        LogName { file, pid, start, serial: SERIAL.fetch_add(1, Relaxed) }
+    }
+
+    fn path(&self, part: usize) -> PathBuf {
+        let (f, pid, start, serial) = (&self.file, self.pid, self.start, self.serial);
+        let (creation, device, inode) = (f.creation, f.device, f.inode);
+        Path::new(PLACE).join(format!(
+            "sculptd-{creation:016x}-{device:x}-{inode:x}-{pid:x}.{start:x}.{serial:x}-{part}"
+        ))
+    }
+
+    fn parse(name: &str) -> Option<LogName> {
+        let mut parts = name.strip_prefix("sculptd-")?.split('-');
+        let mut hex = || u64::from_str_radix(parts.next()?, 16).ok();
+        let file = FileIdentity { creation: hex()?, device: hex()?, inode: hex()? };
+        let mut life = parts.next()?.split('.').map(|n| u64::from_str_radix(n, 16).ok());
+        let mut next = || life.next().flatten();
+        let (pid, start, serial) = (u32::try_from(next()?).ok()?, next()?, next()?);
+        parts.next().map(|_| LogName { file, pid, start, serial })
+    }
+
+    /// Whether the process that writes it still runs.
+    pub fn owner_lives(&self) -> bool {
+        start_of(self.pid).is_some_and(|start| start == self.start)
+    }
+
+    /// Whether this process wrote it.
+    pub fn is_own(&self) -> bool {
+        self.pid == std::process::id() && self.owner_lives()
+    }
+}
+
+/// All logs in memory for which `wanted` holds.
+fn find(wanted: impl Fn(&LogName) -> bool) -> Vec<LogName> {
+    let Ok(folder) = std::fs::read_dir(PLACE) else { return Vec::new() };
+    let mut all: Vec<LogName> = Vec::new();
+    for name in folder.flatten().filter_map(|e| LogName::parse(&e.file_name().to_string_lossy())) {
+        if wanted(&name) && !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all
+}
+
+/// The logs of one file.
+pub fn logs_of(file: &FileIdentity) -> Vec<LogName> {
+    find(|n| n.file == *file)
+}
+
+/// The logs of a session and of all copies of it.
+pub fn logs_of_session(creation: u64) -> Vec<LogName> {
+    find(|n| n.file.creation == creation)
+}
+
+/// Removes logs whose process ended and whose session file is gone or was replaced: nobody will
+/// ask for them. Of what was only moved they are kept for a day.
+pub fn prune() {
+    for name in find(|n| !n.owner_lives()) {
+        let part = name.path(0);
+        let session = File::open(&part).ok().and_then(|f| session_path(&mut f.take(1 << 16)));
+        let there = session
+            .and_then(|s| FileIdentity::of(&s, name.file.creation).ok())
+            .is_some_and(|now| now == name.file);
+        let age = std::fs::metadata(&part).and_then(|m| m.modified()).ok();
+        let old = age.and_then(|t| t.elapsed().ok()).is_some_and(|age| age > KEPT);
+        if !there && old {
+            remove(&name);
+        }
+    }
+}
+
+fn session_path(from: &mut dyn Read) -> Option<PathBuf> {
+    let mut head = [0; MAGIC.len() + 4];
+    from.read_exact(&mut head).ok()?;
+    let length = u32_at(&head, MAGIC.len()) as usize;
+    if head[..MAGIC.len()] != MAGIC || length > 1 << 15 {
+        return None;
+    }
+    let mut bytes = vec![0; length];
+    from.read_exact(&mut bytes).ok()?;
+    String::from_utf8(bytes).ok().map(PathBuf::from)
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> u64 {
+    bytes[at..at + 8].iter().rev().fold(0, |n, x| n << 8 | u64::from(*x))
+}
+
+fn u32_at(bytes: &[u8], at: usize) -> u32 {
+    bytes[at..at + 4].iter().rev().fold(0, |n, x| n << 8 | u32::from(*x))
+}
 
 /// One entry as it is read back.
-#[derive(Debug, Clone)]
-pub struct Entry {
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogEntry {
+    pub first: u64,
     pub last: u64,
     /// The last tick that was handed over before it.
     pub after: u64,
+    /// The chain before its bytes.
+    pub chain: u32,
     pub data: Vec<u8>,
 }
 
 #[derive(Debug)]
-struct Part {
+struct LogPart {
     file: File,
     bytes: u64,
     last: u64,
@@ -47,65 +215,88 @@ struct Part {
 /// The writing end: two files, taken in turns.
 #[derive(Debug)]
 pub struct SharedMemoryLog {
-    name: u64,
-    parts: [Part; 2],
+    name: LogName,
+    head: Vec<u8>,
+    parts: [LogPart; 2],
     now: usize,
     after: u64,
-    /// The last tick that the session file has.
+    chain: u32,
+    /// The last tick that the write-ahead log has.
     pub committed: Arc<AtomicU64>,
+    /// The last tick that the main file has.
+    pub taken_over: Arc<AtomicU64>,
 }
 
-fn path(name: u64, part: usize) -> PathBuf {
-    Path::new(PLACE).join(format!("sculptd-{name:016x}-{part}"))
-}
-
-/// A name that no other session has.
-pub fn new_name() -> u64 {
-    use std::hash::{BuildHasher, Hasher};
-    let mut seed = std::hash::RandomState::new().build_hasher();
-    seed.write_u32(std::process::id());
-    seed.finish()
-}
-
-fn sum(head: &[u8], data: &[u8]) -> u32 {
+fn sum(creation: u64, head: &[u8], data: &[u8]) -> u32 {
     let mut crc = crc32fast::Hasher::new();
+    crc.update(&creation.to_le_bytes());
     crc.update(head);
     crc.update(data);
     crc.finalize()
 }
 
 impl SharedMemoryLog {
-    /// `after`: the last tick of the session so far. `None` where nothing can lie in memory.
-    pub fn create(name: u64, after: u64) -> Option<SharedMemoryLog> {
+    /// `after`: the last tick of the session so far, and the chain there. `None` where nothing can
+    /// lie in memory.
+    pub fn create(file: FileIdentity, session: &Path, after: (u64, u32)) -> Option<Self> {
+        let name = LogName::new(file);
+        let whole = std::path::absolute(session).unwrap_or_else(|_| session.into());
+        let text = whole.to_string_lossy();
+        let mut head = MAGIC.to_vec();
+        head.extend_from_slice(&u32::try_from(text.len()).ok()?.to_le_bytes());
+        head.extend_from_slice(text.as_bytes());
         let part = |n: usize| {
             let mut options = OpenOptions::new();
             options.write(true).create_new(true);
             #[cfg(unix)]
             std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-            Some(Part { file: options.open(path(name, n)).ok()?, bytes: 0, last: 0 })
+            let mut file = options.open(name.path(n)).ok()?;
+            file.write_all(&head).ok()?;
+            Some(LogPart { file, bytes: 0, last: 0 })
         };
         let made = part(0).zip(part(1));
         if made.is_none() {
-            remove(name);
+            remove(&name);
         }
         let (a, b) = made?;
-        Some(SharedMemoryLog { name, parts: [a, b], now: 0, after, committed: Arc::default() })
+        let (after, chain) = after;
+        let (committed, taken_over) = (Arc::default(), Arc::default());
+        Some(SharedMemoryLog {
+            name,
+            head,
+            parts: [a, b],
+            now: 0,
+            after,
+            chain,
+            committed,
+            taken_over,
+        })
+    }
+
+    /// Whether a part can be begun again.
+    fn may_go(&self, part: usize) -> bool {
+        let part = &self.parts[part];
+        part.last <= self.taken_over.load(Relaxed)
+            || part.bytes > PLENTY && part.last <= self.committed.load(Relaxed)
     }
 
     /// Puts the input of some ticks. What does not fit is for the session file alone.
     pub fn put(&mut self, first: u64, last: u64, data: &[u8]) {
-        let committed = self.committed.load(Relaxed);
         let other = 1 - self.now;
-        if self.parts[self.now].bytes > PART && self.parts[other].last <= committed {
+        if self.parts[self.now].bytes > PART_BYTES && self.may_go(other) {
             self.now = other;
-            self.parts[other].bytes = 0;
-            if self.parts[other].file.set_len(0).is_err()
-                || self.parts[other].file.seek(SeekFrom::Start(0)).is_err()
+            let part = &mut self.parts[other];
+            part.bytes = 0;
+            if part.file.set_len(0).is_err()
+                || part.file.seek(SeekFrom::Start(0)).is_err()
+                || part.file.write_all(&self.head).is_err()
             {
                 return;
             }
         }
         let after = std::mem::replace(&mut self.after, last);
+        let before = self.chain;
+        self.chain = chain(before, data);
         let part = &mut self.parts[self.now];
         let Ok(length) = u32::try_from(data.len()) else { return };
         if part.bytes + u64::from(length) > MOST {
@@ -115,8 +306,9 @@ impl SharedMemoryLog {
         entry.extend_from_slice(&first.to_le_bytes());
         entry.extend_from_slice(&last.to_le_bytes());
         entry.extend_from_slice(&after.to_le_bytes());
+        entry.extend_from_slice(&before.to_le_bytes());
         entry.extend_from_slice(&length.to_le_bytes());
-        let crc = sum(&entry, data);
+        let crc = sum(self.name.file.creation, &entry, data);
         entry.extend_from_slice(&crc.to_le_bytes());
         entry.extend_from_slice(data);
         // In one call: a kill finds all of it or nothing.
@@ -126,111 +318,103 @@ impl SharedMemoryLog {
         }
     }
 
-    pub fn name(&self) -> u64 {
-        self.name
+    pub fn name(&self) -> &LogName {
+        &self.name
     }
 }
 
 /// Every whole entry, by tick.
-pub fn read(name: u64) -> Vec<Entry> {
+pub fn read(name: &LogName) -> Vec<LogEntry> {
     let mut all = Vec::new();
     for part in 0..2 {
-        let mut bytes = Vec::new();
-        let file = File::open(path(name, part));
-        if file.is_ok_and(|f| f.take(2 * MOST).read_to_end(&mut bytes).is_ok()) {
-            entries(&bytes, &mut all);
+        let Ok(file) = File::open(name.path(part)) else { continue };
+        let (mut file, mut bytes) = (file.take(2 * MOST), Vec::new());
+        if session_path(&mut file).is_some() && file.read_to_end(&mut bytes).is_ok() {
+            entries(name.file.creation, &bytes, &mut all);
         }
     }
     all.sort_by_key(|e| e.last);
     all
 }
 
-fn entries(mut bytes: &[u8], all: &mut Vec<Entry>) {
-    let u64_at =
-        |b: &[u8], at: usize| b[at..at + 8].iter().rev().fold(0u64, |n, x| n << 8 | u64::from(*x));
-    let u32_at =
-        |b: &[u8], at: usize| b[at..at + 4].iter().rev().fold(0u32, |n, x| n << 8 | u32::from(*x));
+fn entries(creation: u64, mut bytes: &[u8], all: &mut Vec<LogEntry>) {
     while bytes.len() >= HEAD {
         let (head, rest) = bytes.split_at(HEAD);
-        let length = u32_at(head, 24) as usize;
+        let length = u32_at(head, 28) as usize;
         let Some(data) = rest.get(..length) else { return };
-        if sum(&head[..28], data) != u32_at(head, 28) {
+        if sum(creation, &head[..32], data) != u32_at(head, 32) {
             return;
         }
-        all.push(Entry { last: u64_at(head, 8), after: u64_at(head, 16), data: data.to_vec() });
+        let (first, last, after) = (u64_at(head, 0), u64_at(head, 8), u64_at(head, 16));
+        let chain = u32_at(head, 24);
+        all.push(LogEntry { first, last, after, chain, data: data.to_vec() });
         bytes = &rest[length..];
     }
 }
 
-/// Adds what follows on the last tick of `input`; an entry that would leave a hole ends it.
-pub fn lengthen(input: &mut Vec<TickInput>, tail: &[Entry]) -> u64 {
-    let mut added = 0;
-    for entry in tail {
-        let now = input.last().map_or(0, |t| t.tick);
-        if entry.last <= now {
-            continue;
-        }
-        // Ticks without input are in no row: what matters is what had been handed over before.
-        if entry.after > now {
+/// The entries that follow, one after the other, on input that ends with this tick and chain.
+pub fn following(end: (u64, u32), log: &[LogEntry]) -> Vec<&LogEntry> {
+    let (mut tick, mut now) = end;
+    let mut found = Vec::new();
+    for entry in log.iter().filter(|e| e.last > end.0) {
+        if entry.after != tick || entry.chain != now {
             break;
         }
-        for tick in ticks(&entry.data) {
-            let Ok(tick) = tick else { return added };
-            if tick.tick > input.last().map_or(0, |t| t.tick) {
-                input.push(tick);
-                added += 1;
-            }
-        }
+        (tick, now) = (entry.last, chain(now, &entry.data));
+        found.push(entry);
     }
-    added
-}
-
-/// The name of a session's tail, if it was left one.
-pub fn of(session: &Path) -> Option<u64> {
-    let db = Connection::open_with_flags(session, OpenFlags::SQLITE_OPEN_READ_ONLY).ok()?;
-    let value: Vec<u8> =
-        db.query_row("SELECT value FROM meta WHERE key = ?1", [META_TAIL], |r| r.get(0)).ok()?;
-    value.try_into().ok().map(u64::from_le_bytes)
+    found
 }
 
 /// Lets it go.
-pub fn remove(name: u64) {
+pub fn remove(name: &LogName) {
     for part in 0..2 {
-        let _ = std::fs::remove_file(path(name, part));
+        let _ = std::fs::remove_file(name.path(part));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::format::append;
+    use super::super::format::{append, chain_start};
     use super::*;
 
     #[test]
     fn what_was_put_is_read_back_in_order_and_a_hole_ends_it() {
-        let name = new_name();
-        let Some(mut tail) = SharedMemoryLog::create(name, 5) else { return };
-        let put = |tail: &mut SharedMemoryLog, tick: u64| {
+        let creation = new_creation_number();
+        let file = FileIdentity { creation, device: 1, inode: 2 };
+        let start = chain_start(creation);
+        let Some(mut log) = SharedMemoryLog::create(file, Path::new("/nowhere"), (5, start)) else {
+            return;
+        };
+        assert_eq!(LogName::parse(&log.name.path(0).file_name().expect("a name").to_string_lossy()),
+            Some(log.name.clone()));
+        assert!(log.name.is_own());
+        let mut chains = vec![start; 6];
+        for tick in 6..20_000 {
             let mut data = Vec::new();
             append(&mut data, tick, &[], &[sculptd_engine::command::Command::Undo]);
-            tail.put(tick, tick, &data);
-        };
-        for tick in 6..20_000 {
-            put(&mut tail, tick);
+            log.put(tick, tick, &data);
+            chains.push(chain(chains[tick as usize - 1], &data));
             // The session file is always a hundred ticks behind.
-            tail.committed.store(tick.saturating_sub(100), Relaxed);
+            log.taken_over.store(tick.saturating_sub(100), Relaxed);
         }
-        let all = read(name);
+        let all = read(&log.name);
         assert!(all.len() >= 100 && all.windows(2).all(|w| w[0].last < w[1].last));
-        let had = |tick| vec![TickInput { tick, samples: vec![], commands: vec![] }];
-        let mut input = had(19_950);
-        assert_eq!(lengthen(&mut input, &all), 49);
-        assert_eq!(input.last().expect("some").tick, 19_999);
-        // Older than what was let go: nothing follows on it.
-        let mut input = had(3);
-        assert_eq!(lengthen(&mut input, &all), 0);
-        let bytes = std::fs::metadata(path(name, 0)).expect("there").len();
-        assert!(bytes < 4 * PART, "{bytes} bytes are kept");
-        remove(tail.name());
-        assert!(read(name).is_empty());
+        let last = |found: Vec<&LogEntry>| found.last().map(|e| e.last);
+        assert_eq!(following((19_950, chains[19_950]), &all).len(), 49);
+        assert_eq!(last(following((19_950, chains[19_950]), &all)), Some(19_999));
+        // Other input up to the same tick: nothing follows on it.
+        assert_eq!(last(following((19_950, chains[19_950] ^ 1), &all)), None);
+        // Older than what was let go: nothing follows on it either.
+        assert_eq!(last(following((5, start), &all)), None);
+        let bytes = std::fs::metadata(log.name.path(0)).expect("there").len();
+        assert!(bytes < 4 * PART_BYTES, "{bytes} bytes are kept");
+        assert_eq!(logs_of(&file), vec![log.name.clone()]);
+        assert_eq!(logs_of(&FileIdentity { inode: 3, ..file }), vec![], "a copy has none");
+        // Its owner lives: it stays.
+        prune();
+        assert!(!read(&log.name).is_empty());
+        remove(&log.name);
+        assert!(read(&log.name).is_empty());
     }
 }

@@ -12,14 +12,16 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crossbeam_channel as cc;
-use rusqlite::{Connection, OptionalExtension};
+use rusqlite::Connection;
 
-use super::format::{
-    META_SETTINGS, META_START, META_SUMS, META_TAIL, Settings, TABLES, TickInput, append,
-};
+use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
+use super::GROUP_MS;
+use super::create::{SessionDraft, is_half_made};
+use super::format::{Settings, append};
 use super::history::{Handle, keeper::Keeper};
+use super::input_end::{InputEnd, begin_log, upgrade};
+use super::shared_memory_log::LogName;
 use super::syncer::Syncer;
-use super::{APPLICATION_ID, GROUP_MS, VERSION};
 use crate::live::{Journal, raise_priority_below};
 use crate::session::shared_memory_log;
 use crate::session::shared_memory_log::SharedMemoryLog;
@@ -58,7 +60,7 @@ pub type Fault = Arc<Mutex<Option<String>>>;
 /// The tick thread's end.
 #[derive(Debug)]
 pub struct SessionWriter {
-    full: cc::Sender<Message>,
+    full: cc::Sender<InputMessage>,
     empty: cc::Receiver<Vec<u8>>,
     /// Ticks whose input will never be in the file. After the first of them nothing more is handed
     /// over: a log with a hole cannot be replayed beyond it.
@@ -121,67 +123,60 @@ impl Health {
 }
 
 /// Encoded input of the ticks from the first number to the second.
-enum Message {
+enum InputMessage {
     Ticks(u64, u64, Vec<u8>),
 }
 
-/// Makes a new session file. The mesh is written before this returns.
+/// Makes a new session file. It is on the disk, whole, before this returns; a file of that name
+/// which is empty or half-made is taken over.
+///
+/// # Errors
+/// [`CreateError`]
 pub fn create(
     path: &Path,
     start: &TriMesh,
     settings: &Settings,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
-    let name = || path.display().to_string();
-    let store = |source| CreateError::Store { path: name(), source };
-    // Exclusive: a second daemon on the same name must not come second in a race.
-    std::fs::OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| {
-        match source.kind() {
-            std::io::ErrorKind::AlreadyExists => CreateError::Exists { path: name() },
-            _ => CreateError::Io { path: name(), source },
-        }
-    })?;
-    let lock = lock(path)?;
-    let db = Connection::open(path).map_err(store)?;
-    tune(&db).map_err(store)?;
-    db.pragma_update(None, "application_id", APPLICATION_ID).map_err(store)?;
-    db.pragma_update(None, "user_version", VERSION).map_err(store)?;
-    let blob = |value: Result<Vec<u8>, postcard::Error>| {
-        value.map_err(|e| store(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
-    };
-    let mesh = blob(postcard::to_stdvec(start))?;
-    let settings = blob(postcard::to_stdvec(settings))?;
-    let sums = blob(postcard::to_stdvec(&(crc32fast::hash(&mesh), crc32fast::hash(&settings))))?;
-    let all = || -> rusqlite::Result<()> {
-        db.execute_batch("BEGIN")?;
-        db.execute_batch(TABLES)?;
-        let mut put = db.prepare("INSERT INTO meta (key, value) VALUES (?1, ?2)")?;
-        put.execute((META_START, &mesh))?;
-        put.execute((META_SETTINGS, &settings))?;
-        put.execute((META_SUMS, &sums))?;
-        db.execute_batch("COMMIT")
-    };
-    all().map_err(store)?;
-    start_thread(db, lock, path)
+    let over = path.exists();
+    if over && !is_half_made(path) {
+        return Err(CreateError::Exists { path: path.display().to_string() });
+    }
+    SessionDraft::begin(path, start, settings)?.publish(path, over)?;
+    resume(path)
 }
 
 /// Keeps a second daemon from writing the same session. Given back when the file is closed, also by
 /// a kill.
-fn lock(path: &Path) -> Result<File, CreateError> {
+fn lock(path: &Path) -> Result<Arc<File>, CreateError> {
     let name = || path.display().to_string();
-    let file = File::open(path).map_err(|source| CreateError::Io { path: name(), source })?;
+    let file = File::options()
+        .read(true)
+        .write(true)
+        .open(path)
+        .map_err(|source| CreateError::Io { path: name(), source })?;
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(CreateError::Busy { path: name() }),
         // A file system without locks: as before there were any.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Arc::new(file)),
     }
 }
 
-/// Goes on writing a session that was opened.
+/// Goes on writing a session that was opened. One of an older layout is brought to this one.
+///
+/// # Errors
+/// [`CreateError`]
 pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError> {
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
+    let io = |source| CreateError::Io { path: path.display().to_string(), source };
     let lock = lock(path)?;
-    let db = Connection::open(path).map_err(store)?;
+    // Before SQLite begins a log: the salts of that one are not known yet.
+    if let Some((mut page, known)) = AcknowledgementPage::find(lock.clone()).map_err(io)? {
+        page.write(&Acknowledgement { salts: [0, 0], ..known }).map_err(io)?;
+        page.sync().map_err(io)?;
+    }
+    let mut db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
+    upgrade(&mut db).map_err(store)?;
     start_thread(db, lock, path)
 }
 
@@ -197,7 +192,7 @@ fn tune(db: &Connection) -> rusqlite::Result<()> {
 
 fn start_thread(
     db: Connection,
-    lock: File,
+    lock: Arc<File>,
     path: &Path,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
     let (full, inbox) = cc::bounded(BUFFERS);
@@ -207,12 +202,25 @@ fn start_thread(
     }
     let health = Health::default();
     let sql = |source| CreateError::Store { path: path.display().to_string(), source };
-    let (log_end, tail) = begin_tail(&db).map_err(sql)?;
-    let committed = tail.as_ref().map(|t| t.committed.clone()).unwrap_or_default();
-    committed.store(log_end, Relaxed);
-    let tail_name = tail.as_ref().map(SharedMemoryLog::name);
-    let syncer = Syncer::start(path, health.written.clone())
-        .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
+    let io = |source| CreateError::Io { path: path.display().to_string(), source };
+    let (end, tail) = begin_log(&db, path).map_err(sql)?;
+    let (committed, taken_over) =
+        tail.as_ref().map(|t| (t.committed.clone(), t.taken_over.clone())).unwrap_or_default();
+    committed.store(end.tick, Relaxed);
+    let tail_name = tail.as_ref().map(|t| t.name().clone());
+    let found = AcknowledgementPage::find(lock.clone()).map_err(io)?;
+    let Some((mut page, _)) = found else {
+        return Err(io(std::io::Error::other("the acknowledgement cannot be read")));
+    };
+    let first = Acknowledgement {
+        identity: end.identity,
+        tick: end.tick,
+        chain: end.chain,
+        salts: [0, 0],
+    };
+    page.write(&first).map_err(io)?;
+    let syncer =
+        Syncer::start(path, health.written.clone(), taken_over, page, first).map_err(io)?;
     // From here on the syncer does it, and no commit waits for a disk.
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     db.pragma_update(None, "synchronous", "off").map_err(store)?;
@@ -222,10 +230,11 @@ fn start_thread(
         .name("sculptd-tail".into())
         .spawn(move || copy_on(tail, &inbox, &onward))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
-    let mut writing = Writing {
+    let mut writing = JournalThread {
         db,
         tail: tail_name,
         committed,
+        end,
         syncer: Some(syncer),
         _lock: lock,
         recycle,
@@ -284,7 +293,7 @@ impl SessionWriter {
                 append(&mut buffer, tick, samples, commands);
             }
             // As many buffers as places: one in hand is a place free.
-            let _ = self.full.try_send(Message::Ticks(first, tick, buffer));
+            let _ = self.full.try_send(InputMessage::Ticks(first, tick, buffer));
             return;
         }
         if samples.is_empty() && commands.is_empty() {
@@ -308,64 +317,26 @@ impl Drop for SessionWriter {
     fn drop(&mut self) {
         if !self.carry.is_empty() {
             let carry = std::mem::take(&mut self.carry);
-            let _ = self.full.send(Message::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
+            let _ = self.full.send(InputMessage::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
         }
     }
 }
 
-struct Group {
+struct InputGroup {
     first: u64,
     last: u64,
     data: Vec<u8>,
 }
 
-/// Gives the session a tail of a new name; what the old one still holds is written first. Also the
-/// last tick of the log.
-fn begin_tail(db: &Connection) -> rusqlite::Result<(u64, Option<SharedMemoryLog>)> {
-    let old: Option<Vec<u8>> = db
-        .query_row("SELECT value FROM meta WHERE key = ?1", [META_TAIL], |r| r.get(0))
-        .optional()?;
-    let last: Option<i64> = db.query_row("SELECT max(last_tick) FROM log", [], |r| r.get(0))?;
-    let mut last = last.map_or(0, |l| l as u64);
-    let old = old.and_then(|o| o.try_into().ok()).map(u64::from_le_bytes);
-    if let Some(name) = old {
-        let mut input = vec![TickInput { tick: last, samples: Vec::new(), commands: Vec::new() }];
-        shared_memory_log::lengthen(&mut input, &shared_memory_log::read(name));
-        let mut data = Vec::new();
-        for t in &input[1..] {
-            append(&mut data, t.tick, &t.samples, &t.commands);
-        }
-        if let [_, first, ..] = input.as_slice() {
-            let end = input.last().map_or(last, |t| t.tick);
-            let row = (first.tick as i64, end as i64, crc32fast::hash(&data), &data);
-            db.execute(
-                "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
-                row,
-            )?;
-            last = end;
-        }
-    }
-    let name = shared_memory_log::new_name();
-    let made = SharedMemoryLog::create(name, last);
-    db.execute(
-        "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)",
-        (META_TAIL, name.to_le_bytes().as_slice()),
-    )?;
-    if let Some(old) = old {
-        shared_memory_log::remove(old);
-    }
-    Ok((last, made))
-}
-
 /// Copies what comes into the tail and hands it on to whoever writes it.
 fn copy_on(
     mut tail: Option<SharedMemoryLog>,
-    inbox: &cc::Receiver<Message>,
-    onward: &cc::Sender<Message>,
+    inbox: &cc::Receiver<InputMessage>,
+    onward: &cc::Sender<InputMessage>,
 ) {
     raise_priority_below();
     for message in inbox {
-        let Message::Ticks(first, last, data) = &message;
+        let InputMessage::Ticks(first, last, data) = &message;
         if let Some(tail) = &mut tail {
             tail.put(*first, *last, data);
         }
@@ -375,29 +346,31 @@ fn copy_on(
     }
 }
 
-struct Writing {
+struct JournalThread {
     db: Connection,
-    /// The tail's name, to remove it once the file has everything.
-    tail: Option<u64>,
+    /// The shared-memory log's name, to remove it once the file has everything.
+    tail: Option<LogName>,
     /// The last tick in the file: the tail may let go of what came before.
     committed: Arc<AtomicU64>,
+    /// Where the file's input ends.
+    end: InputEnd,
     /// Taken at the end.
     syncer: Option<Syncer>,
     /// After `db`: closing another handle of the file first would give back SQLite's own locks.
-    _lock: File,
+    _lock: Arc<File>,
     recycle: cc::Sender<Vec<u8>>,
     health: Health,
     /// Closed groups that are not on the disk yet, oldest first.
-    groups: Vec<Group>,
+    groups: Vec<InputGroup>,
     /// Input was given up: what comes after it would make a log with a hole.
     closed: bool,
     clock: Clock,
 }
 
-impl Writing {
-    fn run(&mut self, inbox: &cc::Receiver<Message>) {
+impl JournalThread {
+    fn run(&mut self, inbox: &cc::Receiver<InputMessage>) {
         raise_priority_below();
-        let mut open: Option<Group> = None;
+        let mut open: Option<InputGroup> = None;
         let mut due_us = u64::MAX;
         loop {
             let now = self.clock.now_us();
@@ -411,13 +384,13 @@ impl Writing {
             let message = inbox.recv_timeout(patience);
             self.health.turns.fetch_add(1, Relaxed);
             let ended = matches!(message, Err(cc::RecvTimeoutError::Disconnected));
-            if let Ok(Message::Ticks(first, last, bytes)) = message {
+            if let Ok(InputMessage::Ticks(first, last, bytes)) = message {
                 if self.closed {
                     self.health.lost.fetch_add(1 + last - first, Relaxed);
                 } else {
                     let group = open.get_or_insert_with(|| {
                         due_us = self.clock.now_us() + GROUP_MS * 1000;
-                        Group { first, last, data: Vec::new() }
+                        InputGroup { first, last, data: Vec::new() }
                     });
                     group.data.extend_from_slice(&bytes);
                     group.last = last;
@@ -442,7 +415,10 @@ impl Writing {
         // Closing takes the rest of the log over, and syncs as it should.
         let _ = self.db.pragma_update(None, "synchronous", "full");
         let why = self.syncer.take().and_then(Syncer::finish);
-        if let Some(name) = self.tail.filter(|_| self.groups.is_empty() && !self.closed) {
+        if let Some(name) = &self.tail
+            && self.groups.is_empty()
+            && !self.closed
+        {
             shared_memory_log::remove(name);
         }
         let Some(why) = why else { return };
@@ -460,7 +436,7 @@ impl Writing {
                 if let Some(last) = last {
                     self.committed.fetch_max(last, Relaxed);
                     if let Some(syncer) = &self.syncer {
-                        syncer.committed(last);
+                        syncer.committed(last, self.end.chain);
                     }
                 }
                 let unsynced = self.syncer.as_ref().and_then(Syncer::trouble);
@@ -496,15 +472,12 @@ impl Writing {
 
     fn write(&mut self) -> rusqlite::Result<Option<u64>> {
         let all = self.db.transaction()?;
-        {
-            let mut put = all.prepare_cached(
-                "INSERT INTO log (first_tick, last_tick, crc, data) VALUES (?1, ?2, ?3, ?4)",
-            )?;
-            for g in &self.groups {
-                put.execute((g.first as i64, g.last as i64, crc32fast::hash(&g.data), &g.data))?;
-            }
+        let mut end = self.end;
+        for g in &self.groups {
+            end.put(&all, g.first, g.last, &g.data)?;
         }
         all.commit()?;
+        self.end = end;
         Ok(self.groups.last().map(|g| g.last))
     }
 }

@@ -14,6 +14,7 @@ use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::Jump;
 use crate::hand::{HandTools, HeldObject, Similarity};
+use crate::old_layout::{FieldCounts, from_bytes};
 use crate::payload::Payload;
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
@@ -79,6 +80,9 @@ pub struct Saved {
     pub levels: Option<Arc<Levels>>,
     /// Steps that could be taken back and done again then; a world made of this has none.
     pub steps: (u32, u32),
+    /// Of each struct in `core`, the number of fields that it had when it was written; empty: as
+    /// many as today. See [`crate::old_layout`].
+    pub field_counts: &'static FieldCounts,
 }
 
 /// The bytes are not those of a state.
@@ -207,6 +211,7 @@ impl World {
             picture: self.scratch.picture.clone(),
             levels: self.mesh.levels().cloned(),
             steps: (self.undo_steps() as u32, self.redo_steps() as u32),
+            field_counts: &[],
         })
     }
 
@@ -220,7 +225,7 @@ impl World {
         workers: Workers,
         options: WorldOptions,
     ) -> Result<World, BadState> {
-        let core: Core = postcard::from_bytes(&saved.core).map_err(|_| BadState)?;
+        let core: Core = from_bytes(&saved.core, saved.field_counts).map_err(|_| BadState)?;
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }

@@ -1,37 +1,54 @@
-//! Both surfaces cut at each other, and each piece in its place: from this every result is chosen.
+//! Both surfaces cut at each other and each piece classified: every result is a selection of these
+//! pieces.
 
 use glam::DVec3;
 
 use super::Operation;
 use super::common::{Common, common};
 use super::curve::chains;
-use super::emit::Origin;
-use super::merge::{self, Polygon};
-use super::pieces::{self, Piece, Shape};
-use super::points::Points;
+use super::emit::FaceOrigin;
+use super::merge::{self, ResultPolygon};
+use super::pieces::{self, FacePiece, PieceShape};
+use super::points::PointSet;
 use crate::PolyMesh;
-use crate::boolean::classify::{Fates, place};
+use crate::boolean::classify::{Classification, classify};
 use crate::boolean::intersect;
-use crate::boolean::intersect::Meeting;
+use crate::boolean::intersect::Intersections;
 use crate::job::{Cancelled, Job};
+
+/// What a face of a result is of the operand's face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FaceState {
+    /// The face as it came.
+    Whole,
+    /// The whole face, or a triangle of it, seen from behind.
+    Turned,
+    /// A part of it, or the whole with more corners.
+    Cut,
+}
 
 /// How often a surface goes around a point, where the operand at hand is only a part of it.
 pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
 
+/// Both operands over common points, each face cut where the other surface crosses it, and each
+/// piece classified.
 #[derive(Debug)]
 pub struct Arrangement {
-    pub points: Points,
+    /// Where every corner is.
+    pub points: PointSet,
     /// The operands, corners over the common points.
     pub meshes: [PolyMesh; 2],
     triangles: [Vec<[u32; 3]>; 2],
     starts: [Vec<u32>; 2],
-    /// Of the faces that something cuts, or may.
-    pieces: [Vec<Piece>; 2],
-    /// Of all other faces.
-    fates: [Fates; 2],
-    meeting: Meeting,
+    /// Pieces of the faces that the other operand cuts or may cut.
+    pieces: [Vec<FacePiece>; 2],
+    /// Classification of all other faces.
+    classification: [Classification; 2],
+    meeting: Intersections,
     /// Corners below this are the operands' own: those of A, then those of B.
     pub own: usize,
+    /// Why the parts of the surfaces are not where their samples say, if so.
+    pub doubt: Option<String>,
     eps: f64,
     floor: f64,
 }
@@ -52,10 +69,10 @@ impl Arrangement {
         let own = points.at.len();
         job.progress(0.2);
         let meeting =
-            intersect::meet([&triangles[0], &triangles[1]], pairs, &mut points, eps, job)?;
-        lap("meet");
+            intersect::intersect([&triangles[0], &triangles[1]], pairs, &mut points, eps, job)?;
+        lap("intersect");
         job.progress(0.5);
-        let mut pieces: [Vec<Piece>; 2] = [Vec::new(), Vec::new()];
+        let mut pieces: [Vec<FacePiece>; 2] = [Vec::new(), Vec::new()];
         for s in 0..2 {
             let flat = |f: usize| merge::is_flat(&meshes[s], f, &points.at, 4.0 * floor);
             let cut = pieces::cut(
@@ -71,9 +88,9 @@ impl Arrangement {
             pieces[s] = cut?;
         }
         lap("cut");
-        let fates =
-            place(&meshes, &triangles, bounds, &mut pieces, &meeting, &points, around, job)?;
-        lap("place");
+        let (classification, doubt) =
+            classify(&meshes, &triangles, bounds, &mut pieces, &meeting, &points, around, job)?;
+        lap("classify");
         job.progress(0.8);
         Ok(Arrangement {
             points,
@@ -81,22 +98,23 @@ impl Arrangement {
             triangles,
             starts,
             pieces,
-            fates,
+            classification,
             meeting,
             own,
+            doubt,
             eps,
             floor,
         })
     }
 
-    /// Calls `take(origin, corners, whole)` for each face of a result; `whole`: an operand's face
-    /// as it came. A cancelled job leaves faces out.
+    /// Calls `take(origin, corners, state)` for each face of a result. A cancelled job leaves faces
+    /// out.
     pub fn faces(
         &self,
         operation: Operation,
         keep_contact: bool,
         job: &Job,
-        mut take: impl FnMut(Origin, &[u32], bool),
+        mut take: impl FnMut(FaceOrigin, &[u32], FaceState),
     ) {
         let takes = |s: usize, place| operation.takes(s, place, keep_contact);
         let flat = |s: usize, f: u32| {
@@ -105,12 +123,17 @@ impl Arrangement {
         let mut used = vec![false; self.own];
         let mut back = Vec::new();
         let mut give = |origin, corners: &[u32], turned: bool, whole: bool| {
+            let state = match (whole, turned) {
+                (false, _) => FaceState::Cut,
+                (true, true) => FaceState::Turned,
+                (true, false) => FaceState::Whole,
+            };
             if turned {
                 back.clear();
                 back.extend(corners.iter().rev());
-                take(origin, &back, false);
+                take(origin, &back, state);
             } else {
-                take(origin, corners, whole);
+                take(origin, corners, state);
             }
         };
         for s in 0..2 {
@@ -119,36 +142,36 @@ impl Arrangement {
                 if face % 65_536 == 0 && job.cancelled() {
                     return;
                 }
-                let mut whole = self.fates[s].of(face);
+                let mut whole = self.classification[s].of(face);
                 while let Some(p) = pieces.next_if(|p| p.face == face) {
-                    whole = matches!(p.shape, Shape::Whole).then_some(p.place);
+                    whole = matches!(p.shape, PieceShape::Whole).then_some(p.place);
                 }
                 let Some(turned) = whole.and_then(|place| takes(s, place)) else { continue };
                 let corners = self.meshes[s].face(face as usize);
                 corners.iter().for_each(|&v| used[v as usize] = true);
-                let origin = Origin { operand: s as u8, face };
+                let origin = FaceOrigin { operand: s as u8, face };
                 // A bent face seen from behind may come in other triangles: then these are what is
                 // turned.
                 if turned && corners.len() > 3 && !flat(s, face) {
                     let (first, last) =
                         (self.starts[s][face as usize], self.starts[s][face as usize + 1]);
                     for t in &self.triangles[s][first as usize..last as usize] {
-                        give(origin, t, true, false);
+                        give(origin, t, true, true);
                     }
                 } else {
                     give(origin, corners, turned, true);
                 }
             }
         }
-        let mut cut: Vec<Polygon> = Vec::new();
+        let mut cut: Vec<ResultPolygon> = Vec::new();
         let mut turns = Vec::new();
         for s in 0..2 {
-            let cells: Vec<&Piece> =
-                self.pieces[s].iter().filter(|p| !matches!(p.shape, Shape::Whole)).collect();
-            // Cells of one face with one fate are one again.
+            let cells: Vec<&FacePiece> =
+                self.pieces[s].iter().filter(|p| !matches!(p.shape, PieceShape::Whole)).collect();
+            // Cells of one face with one classification are joined again.
             for group in cells.chunk_by(|p, q| p.face == q.face) {
                 for side in [false, true] {
-                    let own: Vec<&Piece> =
+                    let own: Vec<&FacePiece> =
                         group.iter().copied().filter(|p| takes(s, p.place) == Some(side)).collect();
                     if let Some(first) = own.first() {
                         let made = merge::polygons(
@@ -167,7 +190,7 @@ impl Arrangement {
         let kept = |v: u32| used.get(v as usize).copied().unwrap_or(false);
         merge::straighten(&mut cut, &self.meshes, kept, &self.points.at, self.eps);
         for (p, turned) in cut.iter().zip(turns) {
-            give(Origin { operand: p.side, face: p.face }, &p.corners, turned, false);
+            give(FaceOrigin { operand: p.side, face: p.face }, &p.corners, turned, false);
         }
     }
 

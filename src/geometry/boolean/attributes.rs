@@ -3,16 +3,16 @@
 
 use glam::DVec3;
 
-use super::Solid;
-use super::emit::Origin;
+use super::BooleanSolid;
+use super::emit::FaceOrigin;
 use crate::{PolyMesh, triangulate};
 
 /// Gives a result its colours and groups where an operand has some. Vertices of an operand without
 /// colours are white; B's groups are counted on from A's, so that no two become one.
-pub fn carry(mesh: &mut PolyMesh, origins: &[Origin], operands: [&PolyMesh; 2]) {
+pub fn carry(mesh: &mut PolyMesh, origins: &[FaceOrigin], operands: [&PolyMesh; 2]) {
     if operands.iter().any(|m| m.groups.is_some()) {
         let first = operands[0].groups.as_ref().map_or(1, |g| g.iter().max().map_or(0, |m| m + 1));
-        let group = |o: &Origin| {
+        let group = |o: &FaceOrigin| {
             let own = operands[o.operand as usize].groups.as_ref();
             let own = own.and_then(|g| g.get(o.face as usize)).copied().unwrap_or(0);
             if o.operand == 0 { own } else { first + own }
@@ -40,7 +40,7 @@ pub fn carry(mesh: &mut PolyMesh, origins: &[Origin], operands: [&PolyMesh; 2]) 
 
 /// A number for each vertex of a result from one for each vertex of A, such as a mask: mixed by
 /// place within the face that it came from; 0 where it came from B alone.
-pub fn mixed(solid: &Solid, a: &PolyMesh, values: &[f32]) -> Vec<f32> {
+pub fn mixed(solid: &BooleanSolid, a: &PolyMesh, values: &[f32]) -> Vec<f32> {
     let mut out: Vec<Option<f32>> = vec![None; solid.mesh.positions.len()];
     for (f, o) in solid.origins.iter().enumerate().filter(|(_, o)| o.operand == 0) {
         for &v in solid.mesh.face(f) {
@@ -102,7 +102,7 @@ fn shares(mesh: &PolyMesh, face: usize, place: DVec3) -> [(u32, f64); 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Operation, Options, compute};
+    use super::super::{BooleanOptions, Operation, compute};
     use super::*;
     use crate::job::Job;
     use crate::shapes::cuboid;
@@ -117,7 +117,7 @@ mod tests {
         let mut b = cuboid(DVec3::splat(1.0), DVec3::splat(3.0));
         b.groups = Some(vec![2; b.face_count()]);
         let (solids, _) =
-            compute([&a, &b], &Operation::ALL, &Options::default(), &Job::default(), || 0.0)
+            compute([&a, &b], &Operation::ALL, &BooleanOptions::default(), &Job::default(), || 0.0)
                 .expect("a result");
         for s in &solids {
             let (colours, groups) =

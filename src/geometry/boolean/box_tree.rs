@@ -1,4 +1,5 @@
-//! A tree of boxes over triangles: which pairs may meet, which triangles a line may cross.
+//! A tree of boxes over triangles: which pairs may meet, which triangles a line may cross. In double
+//! precision, unlike [`crate::bvh`], whose head says why both are there.
 
 use glam::DVec3;
 
@@ -7,32 +8,39 @@ use crate::job::{Cancelled, Job};
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy)]
 pub struct Span {
+    /// The least coordinates.
     pub lo: DVec3,
+    /// The largest coordinates.
     pub hi: DVec3,
 }
 
 impl Span {
+    /// The box of nothing.
     pub const EMPTY: Span = Span { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
 
+    /// The least box around the points.
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Span {
         points.into_iter().fold(Span::EMPTY, |s, p| Span { lo: s.lo.min(p), hi: s.hi.max(p) })
     }
 
+    /// The least box around both.
     pub fn join(self, o: Span) -> Span {
         Span { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
     }
 
+    /// Whether the boxes have a point in common.
     pub fn meets(&self, o: &Span) -> bool {
         self.lo.cmple(o.hi).all() && o.lo.cmple(self.hi).all()
     }
 
+    /// The box, larger by a length on every side.
     pub fn grown(self, by: f64) -> Span {
         Span { lo: self.lo - by, hi: self.hi + by }
     }
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct SpanNode {
     span: Span,
     /// Inner: index of the second child (the first follows its parent). Leaf: first item.
     at: u32,
@@ -42,8 +50,8 @@ struct Node {
 
 /// Median splits along the longest side; four items a leaf.
 #[derive(Debug, Clone, Default)]
-pub struct Tree {
-    nodes: Vec<Node>,
+pub struct SpanTree {
+    nodes: Vec<SpanNode>,
     items: Vec<u32>,
 }
 
@@ -51,20 +59,21 @@ const LEAF: usize = 4;
 /// Below this many items a branch is built on the same thread.
 const FORK: usize = 8192;
 
-impl Tree {
-    pub fn build(spans: &[Span], job: &Job) -> Result<Tree, Cancelled> {
+impl SpanTree {
+    /// Builds the tree over one box an item.
+    pub fn build(spans: &[Span], job: &Job) -> Result<SpanTree, Cancelled> {
         let mut items: Vec<(u32, DVec3)> =
             spans.iter().enumerate().map(|(i, s)| (i as u32, s.lo + s.hi)).collect();
         let nodes = if items.is_empty() { Vec::new() } else { branch(&mut items, 0, spans, job) };
         job.check()?;
-        Ok(Tree { nodes, items: items.into_iter().map(|(i, _)| i).collect() })
+        Ok(SpanTree { nodes, items: items.into_iter().map(|(i, _)| i).collect() })
     }
 
     /// Calls `f(item of self, item of other)` for all pairs whose boxes, grown by `slack`, meet.
     pub fn pairs(
         &self,
         own: &[Span],
-        other: &Tree,
+        other: &SpanTree,
         others: &[Span],
         slack: f64,
         job: &Job,
@@ -95,7 +104,7 @@ impl Tree {
                 }
                 continue;
             }
-            let size = |n: &Node| (n.span.hi - n.span.lo).element_sum();
+            let size = |n: &SpanNode| (n.span.hi - n.span.lo).element_sum();
             if b.count > 0 || (a.count == 0 && size(&a) >= size(&b)) {
                 stack.extend([(i + 1, j), (a.at, j)]);
             } else {
@@ -103,6 +112,39 @@ impl Tree {
             }
         }
         Ok(())
+    }
+
+    /// Calls `f` for items whose leaf's box meets `span`.
+    pub fn each_meets(&self, span: &Span, mut f: impl FnMut(u32)) {
+        let mut stack = if self.nodes.is_empty() { vec![] } else { vec![0u32] };
+        while let Some(i) = stack.pop() {
+            let n = self.nodes[i as usize];
+            if !n.span.meets(span) {
+                continue;
+            }
+            if n.count == 0 {
+                stack.extend([i + 1, n.at]);
+            } else {
+                self.items[n.at as usize..(n.at + n.count) as usize].iter().for_each(|&x| f(x));
+            }
+        }
+    }
+
+    /// Whether `f` holds for an item whose leaf's box meets `span`.
+    pub fn any_meets(&self, span: &Span, f: impl Fn(u32) -> bool) -> bool {
+        let mut stack = if self.nodes.is_empty() { vec![] } else { vec![0u32] };
+        while let Some(i) = stack.pop() {
+            let n = self.nodes[i as usize];
+            if !n.span.meets(span) {
+                continue;
+            }
+            if n.count == 0 {
+                stack.extend([i + 1, n.at]);
+            } else if self.items[n.at as usize..(n.at + n.count) as usize].iter().any(|&x| f(x)) {
+                return true;
+            }
+        }
+        false
     }
 
     /// Calls `f` for items whose leaf's box the segment from `o` to `p` may cross; stops when it
@@ -132,10 +174,10 @@ impl Tree {
 
 /// Nodes of a branch, indices from `base` on of the whole tree's items, child indices relative to
 /// the branch's root. A cancelled job leaves branches out.
-fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> Vec<Node> {
+fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> Vec<SpanNode> {
     let span = items.iter().fold(Span::EMPTY, |s, i| s.join(spans[i.0 as usize]));
     if items.len() <= LEAF || (items.len() > FORK && job.cancelled()) {
-        return vec![Node { span, at: first, count: items.len() as u32 }];
+        return vec![SpanNode { span, at: first, count: items.len() as u32 }];
     }
     let c = Span::of(items.iter().map(|i| i.1));
     let d = c.hi - c.lo;
@@ -157,9 +199,10 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> 
     };
     let mut out = Vec::with_capacity(1 + l.len() + r.len());
     let (one, two) = (1, 1 + l.len() as u32);
-    out.push(Node { span, at: two, count: 0 });
-    let shifted =
-        |by: u32| move |n: Node| Node { at: if n.count == 0 { n.at + by } else { n.at }, ..n };
+    out.push(SpanNode { span, at: two, count: 0 });
+    let shifted = |by: u32| {
+        move |n: SpanNode| SpanNode { at: if n.count == 0 { n.at + by } else { n.at }, ..n }
+    };
     out.extend(l.into_iter().map(shifted(one)));
     out.extend(r.into_iter().map(shifted(two)));
     out

@@ -1,11 +1,11 @@
-//! Which triangles of two surfaces may meet. Most of a surface is nowhere near the other: a coarse
-//! grid over the box that both are in says so at a few operations a triangle, and only what is left
-//! gets a tree.
+//! Which triangles of two surfaces may intersect. Most of a surface is far from the other: a coarse
+//! grid over the common box rejects it at a few operations a triangle, and only the rest gets a
+//! tree.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::boolean::box_tree::{Span, Tree};
+use crate::boolean::box_tree::{Span, SpanTree};
 use crate::job::{Cancelled, Job};
 
 /// Cells a side: one row is one word.
@@ -15,18 +15,22 @@ const FEW: usize = 2048;
 
 /// Triangles over places of their own.
 #[derive(Debug, Clone, Copy)]
-pub struct Surface<'a> {
+pub struct SurfaceView<'a> {
+    /// Corners of each triangle, counter-clockwise.
     pub triangles: &'a [[u32; 3]],
+    /// Where the corners are.
     pub at: &'a [DVec3],
     /// Taken off each corner before it is looked up.
     pub base: u32,
 }
 
-impl Surface<'_> {
+impl SurfaceView<'_> {
+    /// Where the corners of a triangle are.
     pub fn corners(&self, t: u32) -> [DVec3; 3] {
         self.triangles[t as usize].map(|v| self.at[(v - self.base) as usize])
     }
 
+    /// The box around a triangle.
     pub fn span(&self, t: u32) -> Span {
         let [a, b, c] = self.corners(t);
         Span { lo: a.min(b).min(c), hi: a.max(b).max(c) }
@@ -35,7 +39,7 @@ impl Surface<'_> {
 
 /// Pairs of one triangle of each whose boxes, grown by `slack`, meet: ascending.
 pub fn pairs(
-    surfaces: [Surface<'_>; 2],
+    surfaces: [SurfaceView<'_>; 2],
     bounds: [Span; 2],
     slack: f64,
     job: &Job,
@@ -45,7 +49,7 @@ pub fn pairs(
     if !both.lo.cmple(both.hi).all() {
         return Ok(Vec::new());
     }
-    let grid = Grid::over(both, slack);
+    let grid = CellGrid::over(both, slack);
     let all = |s: usize| 0..surfaces[s].triangles.len() as u32;
     let (first, marked) = grid.sift(&surfaces[0], all(0).into_par_iter(), None, job);
     job.check()?;
@@ -59,7 +63,7 @@ pub fn pairs(
     job.check()?;
     let side = |s: usize, left: &[u32]| {
         let spans: Vec<Span> = left.iter().map(|&t| surfaces[s].span(t)).collect();
-        Tree::build(&spans, job).map(|tree| (spans, tree))
+        SpanTree::build(&spans, job).map(|tree| (spans, tree))
     };
     let (a, b) = rayon::join(|| side(0, &first), || side(1, &second));
     let ((own, tree), (others, other)) = (a?, b?);
@@ -72,7 +76,7 @@ pub fn pairs(
 }
 
 /// A grid over the box in which both surfaces are.
-struct Grid {
+struct CellGrid {
     both: Span,
     slack: f64,
     scale: DVec3,
@@ -92,11 +96,11 @@ impl Marked {
     }
 }
 
-impl Grid {
-    fn over(both: Span, slack: f64) -> Grid {
+impl CellGrid {
+    fn over(both: Span, slack: f64) -> CellGrid {
         let size = both.hi - both.lo;
         let scale = size.to_array().map(|d| if d > 0.0 { CELLS as f64 / d } else { 0.0 });
-        Grid { both, slack, scale: scale.into() }
+        CellGrid { both, slack, scale: scale.into() }
     }
 
     /// First and last cell of a box on each axis; rounding is monotone, so boxes that meet have a
@@ -112,7 +116,7 @@ impl Grid {
     /// the cells they are in. A cancelled job leaves some out.
     fn sift(
         &self,
-        surface: &Surface<'_>,
+        surface: &SurfaceView<'_>,
         list: impl IndexedParallelIterator<Item = u32>,
         by: Option<&Marked>,
         job: &Job,
@@ -165,8 +169,8 @@ mod tests {
             let moved: Vec<DVec3> = b.positions.iter().map(|p| *p + shift).collect();
             let (ta, tb) = (a.triangles().0, b.triangles().0);
             let surfaces = [
-                Surface { triangles: &ta, at: &a.positions, base: 0 },
-                Surface { triangles: &tb, at: &moved, base: 0 },
+                SurfaceView { triangles: &ta, at: &a.positions, base: 0 },
+                SurfaceView { triangles: &tb, at: &moved, base: 0 },
             ];
             let got = pairs(surfaces, surfaces.map(|s| Span::of(s.at.iter().copied())), 1e-6, &job)
                 .expect("runs");

@@ -1,33 +1,36 @@
-//! Where each part of a surface lies as seen from the other solid: faces in contact by their
-//! borders, all else by one winding number for each part that the cut leaves connected.
+//! Where each part of a surface lies relative to the other solid. Faces in contact are found by
+//! equal borders; every other connected part between cuts is classified by one winding number, and
+//! then checked by the winding numbers of samples on it.
 
 use glam::DVec3;
 use rayon::prelude::*;
 use robust::orient3d;
 
+use crate::disjoint_sets::DisjointSets;
 use super::arrange::Around;
-use super::pieces::{Piece, Place, triangles as parts_of};
-use super::points::{Map, Points, Sets};
+use super::pieces::{FacePiece, Placement, triangles as parts_of};
+use super::points::{Map, PointSet};
 use crate::PolyMesh;
-use crate::boolean::box_tree::{Span, Tree};
-use crate::boolean::broad_phase::Surface;
-use crate::boolean::intersect::{Meeting, c3};
+use crate::boolean::box_tree::{Span, SpanTree};
+use crate::boolean::broad_phase::SurfaceView;
+use crate::boolean::intersect::{Intersections, c3};
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;
 
-/// Places of the faces that nothing cuts, each that of the connected part that it is in.
+/// Placements of the faces that nothing cuts: each has that of the connected part that it is in.
 #[derive(Debug, Default)]
-pub struct Fates {
+pub struct Classification {
     /// Part of each face; `NONE` for faces that are in pieces.
     part: Vec<u32>,
-    places: Vec<Place>,
+    placements: Vec<Placement>,
 }
 
 const NONE: u32 = u32::MAX;
 
-impl Fates {
-    pub fn of(&self, face: u32) -> Option<Place> {
-        self.places.get(self.part[face as usize] as usize).copied()
+impl Classification {
+    /// Where a face lies; None for a face that is in pieces.
+    pub fn of(&self, face: u32) -> Option<Placement> {
+        self.placements.get(self.part[face as usize] as usize).copied()
     }
 }
 
@@ -50,16 +53,16 @@ fn key(loops: &[&[u32]], reverse: bool) -> Vec<u32> {
 }
 
 /// Decides the place of every piece, and of the faces that are in none.
-pub fn place(
+pub fn classify(
     meshes: &[PolyMesh; 2],
     triangles: &[Vec<[u32; 3]>; 2],
     bounds: [Span; 2],
-    pieces: &mut [Vec<Piece>; 2],
-    m: &Meeting,
-    points: &Points,
+    pieces: &mut [Vec<FacePiece>; 2],
+    m: &Intersections,
+    points: &PointSet,
     around: Option<Around<'_>>,
     job: &Job,
-) -> Result<[Fates; 2], Cancelled> {
+) -> Result<([Classification; 2], Option<String>), Cancelled> {
     let mut contact: Map<Vec<u32>, usize> = Map::default();
     let shared = |p: u32| m.shared[p as usize];
     let touches = |loops: &[&[u32]]| loops.iter().all(|l| l.iter().all(|&v| shared(v)));
@@ -76,7 +79,7 @@ pub fn place(
         if !touches(&loops) {
             continue;
         }
-        for (reverse, place) in [(false, Place::Same), (true, Place::Against)] {
+        for (reverse, place) in [(false, Placement::Same), (true, Placement::Against)] {
             if let Some(&j) = contact.get(&key(&loops, reverse)) {
                 pieces[1][i].place = place;
                 pieces[0][j].place = place;
@@ -88,24 +91,20 @@ pub fn place(
     }
     job.check()?;
     let [first, second] = pieces;
-    let one = |s: usize, pieces: &mut [Piece]| {
-        let other = Other {
-            surface: Surface { triangles: &triangles[1 - s], at: &points.at, base: 0 },
-            // Corners on its surface may be beyond its box by the tolerance.
-            bounds: bounds[1 - s].grown(4.0 * points.tolerance()),
-            around: around.filter(|_| s == 1),
-            asked: 0,
-            tree: None,
-        };
+    let one = |s: usize, pieces: &mut [FacePiece]| {
+        let surface = SurfaceView { triangles: &triangles[1 - s], at: &points.at, base: 0 };
+        let mut other = WindingOracle::new(surface, bounds[1 - s], points.tolerance());
+        other.around = around.filter(|_| s == 1);
         one_side(&meshes[s], pieces, &settled[s], m, &points.at, other, job)
     };
     let (a, b) = rayon::join(|| one(0, first), || one(1, second));
-    Ok([a?, b?])
+    let ((a, first), (b, second)) = (a?, b?);
+    Ok(([a, b], first.or(second)))
 }
 
 /// What is known of a connected part.
 #[derive(Clone, Copy)]
-struct Part {
+struct ConnectedPart {
     /// Beyond the other's box: no more is asked.
     beyond: bool,
     /// The largest triangle so far, and a place in it.
@@ -115,16 +114,16 @@ struct Part {
 
 fn one_side(
     mesh: &PolyMesh,
-    pieces: &mut [Piece],
+    pieces: &mut [FacePiece],
     settled: &[bool],
-    m: &Meeting,
+    m: &Intersections,
     at: &[DVec3],
-    mut other: Other<'_>,
+    mut other: WindingOracle<'_>,
     job: &Job,
-) -> Result<Fates, Cancelled> {
+) -> Result<(Classification, Option<String>), Cancelled> {
     let shared = |v: u32| m.shared[v as usize];
     let base = at.len() as u32;
-    let mut sets = Sets::new(at.len() + pieces.len());
+    let mut sets = DisjointSets::new(at.len() + pieces.len());
     let mut part = vec![0; mesh.face_count()];
     pieces.iter().for_each(|p| part[p.face as usize] = NONE);
     for (f, corners) in mesh.faces().enumerate() {
@@ -159,12 +158,12 @@ fn one_side(
     }
     // Number the parts, and find in each the place from which to ask.
     let mut numbers = vec![NONE; at.len() + pieces.len()];
-    let mut parts: Vec<Part> = Vec::new();
-    let mut number = |root: u32, parts: &mut Vec<Part>| {
+    let mut parts: Vec<ConnectedPart> = Vec::new();
+    let mut number = |root: u32, parts: &mut Vec<ConnectedPart>| {
         let n = &mut numbers[root as usize];
         if *n == NONE {
             *n = parts.len() as u32;
-            parts.push(Part { beyond: false, size: -1.0, spot: DVec3::ZERO });
+            parts.push(ConnectedPart { beyond: false, size: -1.0, spot: DVec3::ZERO });
         }
         *n
     };
@@ -183,35 +182,79 @@ fn one_side(
         of_piece[i] = number(sets.root(base + i as u32), &mut parts);
         other.look(&mut parts[of_piece[i] as usize], &p.loops(|f| mesh.face(f as usize)), at);
     }
-    let mut places = Vec::with_capacity(parts.len());
+    let mut placements = Vec::with_capacity(parts.len());
     for p in &parts {
         let inside = !p.beyond && other.winding(p.spot, job)? > 0;
-        places.push(if inside { Place::Inside } else { Place::Outside });
+        placements.push(if inside { Placement::Inside } else { Placement::Outside });
     }
-    for (p, n) in pieces.iter_mut().zip(of_piece) {
+    for (p, &n) in pieces.iter_mut().zip(&of_piece) {
         if n != NONE {
-            p.place = places[n as usize];
+            p.place = placements[n as usize];
         }
     }
-    Ok(Fates { part, places })
+    // Faces and pieces that were not settled by contact, as their loops.
+    let asked = |n: u32| n != NONE && !parts[n as usize].beyond;
+    let near: Vec<usize> = (0..pieces.len()).filter(|&i| asked(of_piece[i])).collect();
+    let far: Vec<usize> = if parts.iter().all(|p| p.beyond) {
+        Vec::new()
+    } else {
+        (0..part.len()).filter(|&f| asked(part[f])).collect()
+    };
+    let count = other.samples(mesh.face_count(), pieces.len());
+    let spread = |n: usize| n.div_ceil(count).max(1);
+    let samples = near.iter().step_by(spread(near.len())).map(|&i| {
+        let loops = pieces[i].loops(|f| mesh.face(f as usize));
+        (of_piece[i], probe(&loops, at))
+    });
+    let samples = samples.chain(
+        far.iter().step_by(spread(far.len())).map(|&f| (part[f], probe(&[mesh.face(f)], at))),
+    );
+    let mut doubt = None;
+    for (n, (_, place)) in samples {
+        let said = placements[n as usize] == Placement::Inside;
+        match other.clear_winding(place, job)? {
+            Some(winding) if (winding > 0) != said => {
+                doubt = Some(format!(
+                    "a sample at ({:.6}, {:.6}, {:.6}) is not where its part of the surface is",
+                    place.x, place.y, place.z
+                ));
+                break;
+            }
+            _ => {}
+        }
+    }
+    Ok((Classification { part, placements }, doubt))
 }
 
-/// The solid that is asked.
-struct Other<'a> {
-    surface: Surface<'a>,
+/// A solid that is asked how often it goes around a point.
+pub(super) struct WindingOracle<'a> {
+    surface: SurfaceView<'a>,
     bounds: Span,
     /// The whole of it, where the surface is a part only.
     around: Option<Around<'a>>,
+    /// The tolerance: nearer to the surface than four of it, nothing is inside or outside.
+    eps: f64,
     asked: usize,
     /// Once so many ask that it is worth it.
-    tree: Option<Tree>,
+    tree: Option<SpanTree>,
 }
 
 /// Winding numbers by looking at all triangles; for more a tree is made.
-const WITHOUT_TREE: usize = 12;
+const WITHOUT_TREE: usize = 40;
+/// Samples by which the parts of a surface are checked: where few of its faces are near the other
+/// surface, and where shells nearly coincide.
+const FEW_SAMPLES: usize = 12;
+const MANY_SAMPLES: usize = 1500;
 
-impl Other<'_> {
-    fn look(&self, part: &mut Part, loops: &[&[u32]], at: &[DVec3]) {
+impl<'a> WindingOracle<'a> {
+    /// A closed surface within `bounds`; `eps` is the tolerance of its corners.
+    pub(super) fn new(surface: SurfaceView<'a>, bounds: Span, eps: f64) -> Self {
+        // Corners on the surface may be beyond its box by the tolerance.
+        let bounds = bounds.grown(4.0 * eps);
+        WindingOracle { surface, bounds, around: None, eps, asked: 0, tree: None }
+    }
+
+    fn look(&self, part: &mut ConnectedPart, loops: &[&[u32]], at: &[DVec3]) {
         if part.beyond {
             return;
         }
@@ -229,6 +272,39 @@ impl Other<'_> {
         }
     }
 
+    /// How many pieces, and how many faces, of a surface are asked again on their own.
+    fn samples(&self, faces: usize, pieces: usize) -> usize {
+        if self.around.is_some() {
+            // A patch of a live surface: its parts are small and its border is checked.
+            4
+        } else if pieces * 4 > faces && pieces > 64 {
+            MANY_SAMPLES
+        } else if self.surface.triangles.len() > 100_000 {
+            FEW_SAMPLES / 3
+        } else {
+            FEW_SAMPLES
+        }
+    }
+
+    /// As [`WindingOracle::winding`], but None for a point so near to the surface that the
+    /// tolerance decides where it is.
+    pub(super) fn clear_winding(&mut self, o: DVec3, job: &Job) -> Result<Option<i32>, Cancelled> {
+        let winding = self.winding(o, job)?;
+        let slack = 4.0 * self.eps;
+        let near = |t: u32| distance_squared(self.surface.corners(t), o) <= slack * slack;
+        let span = Span { lo: o - slack, hi: o + slack };
+        let close = match &self.tree {
+            Some(tree) => tree.any_meets(&span, near),
+            None => {
+                let all = 0..self.surface.triangles.len() as u32;
+                all.into_par_iter()
+                    .with_min_len(1 << 13)
+                    .any(|t| self.surface.span(t).meets(&span) && near(t))
+            }
+        };
+        Ok((!close).then_some(winding))
+    }
+
     /// How often the surface goes around a point.
     fn winding(&mut self, o: DVec3, job: &Job) -> Result<i32, Cancelled> {
         job.check()?;
@@ -243,7 +319,7 @@ impl Other<'_> {
             let count = self.surface.triangles.len() as u32;
             let spans: Vec<Span> =
                 (0..count).into_par_iter().map(|t| self.surface.span(t)).collect();
-            self.tree = Some(Tree::build(&spans, job)?);
+            self.tree = Some(SpanTree::build(&spans, job)?);
         }
         let reach = (self.bounds.hi - self.bounds.lo).length() * 2.0;
         Ok(crossings(o, reach, |p, visit| match &self.tree {
@@ -265,14 +341,30 @@ impl Other<'_> {
     }
 }
 
-/// A place in a triangle that nobody draws an edge through: an edge of the other surface may lie in
-/// this one.
+/// Square of the distance of a point from a triangle (Ericson, Real-Time Collision Detection,
+/// 2005, 5.1.5).
+fn distance_squared([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let on_edge = |x: DVec3, y: DVec3| {
+        let d = y - x;
+        let t = ((p - x).dot(d) / d.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (x + d * t).distance_squared(p)
+    };
+    let n = (b - a).cross(c - a);
+    let within = |x: DVec3, y: DVec3| (y - x).cross(p - x).dot(n) >= 0.0;
+    if n != DVec3::ZERO && within(a, b) && within(b, c) && within(c, a) {
+        let d = (p - a).dot(n);
+        return d * d / n.length_squared();
+    }
+    on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a))
+}
+
+/// A place in a triangle with weights that are unlikely to be on an edge of the other surface.
 fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
 }
 
 /// A point inside the piece and how much room there is.
-fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
+pub(super) fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
     let l = loops[0];
     if l.len() == 3 && loops.len() == 1 {
         let [a, b, c] = [l[0], l[1], l[2]].map(|i| at[i as usize]);

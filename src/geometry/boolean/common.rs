@@ -4,26 +4,31 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::points::Points;
+use super::points::PointSet;
 use crate::boolean::box_tree::Span;
 use crate::boolean::broad_phase;
-use crate::boolean::broad_phase::Surface;
+use crate::boolean::broad_phase::SurfaceView;
 use crate::job::{Cancelled, Job};
 use crate::{PolyMesh, triangulate};
 
-/// The operands, ready to meet.
+/// Both operands over common points.
 pub struct Common {
-    pub points: Points,
+    /// All points of both.
+    pub points: PointSet,
     /// Corners over the points.
     pub meshes: [PolyMesh; 2],
+    /// Triangles of each operand.
     pub triangles: [Vec<[u32; 3]>; 2],
     /// First triangle of each face, and the number of all.
     pub starts: [Vec<u32>; 2],
+    /// The box around each operand.
     pub bounds: [Span; 2],
     /// Triangles whose boxes are within the tolerance of each other, ascending.
     pub pairs: Vec<(u32, u32)>,
 }
 
+/// Puts places of the operands that are within `eps` of each other on one point, where the surfaces
+/// are near each other. `lap` is called as each phase ends.
 pub fn common(
     operands: [&PolyMesh; 2],
     eps: f64,
@@ -38,11 +43,12 @@ pub fn common(
         || split(operands[1], &operands[1].positions, job),
     );
     let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
-    let surface = |s: usize, triangles| Surface { triangles, at: &operands[s].positions, base: 0 };
+    let surface =
+        |s: usize, triangles| SurfaceView { triangles, at: &operands[s].positions, base: 0 };
     let mut pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
-    lap("near");
+    lap("broad_phase");
     let mut points =
-        Points::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
+        PointSet::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
     let mut names: Vec<u32> = (0..points.at.len() as u32).collect();
     let corners = |t: &[[u32; 3]], of: &dyn Fn(&(u32, u32)) -> u32| -> Vec<u32> {
         let mut near: Vec<u32> = pairs.iter().flat_map(|p| t[of(p) as usize]).collect();
@@ -83,7 +89,7 @@ pub fn common(
         };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
     if again {
-        let surface = |triangles| Surface { triangles, at: &points.at, base: 0 };
+        let surface = |triangles| SurfaceView { triangles, at: &points.at, base: 0 };
         pairs = broad_phase::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
     }
     lap("weld");

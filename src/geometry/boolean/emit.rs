@@ -5,23 +5,26 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::fans;
-use super::points::Sets;
+use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;
 
 /// Which face of which operand a face of the result is, or is a part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Origin {
+pub struct FaceOrigin {
     /// 0 for A, 1 for B.
     pub operand: u8,
+    /// The operand's face.
     pub face: u32,
 }
 
 /// Facts of a result.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Facts {
+pub struct BooleanFacts {
+    /// In cubic units; 0 of an empty result.
     pub volume: f64,
+    /// In square units.
     pub area: f64,
     /// Connected shells.
     pub components: usize,
@@ -32,7 +35,7 @@ pub struct Facts {
 }
 
 /// Makes the chosen faces, whose corners index `at`, a mesh of its own, and says what it is.
-pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Cancelled> {
+pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<BooleanFacts, Cancelled> {
     let closed = match fans::degrees(mesh, at.len(), job)? {
         Some(degrees) => {
             job.check()?;
@@ -42,8 +45,15 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Can
         None => separate(mesh, at, job)?,
     };
     job.check()?;
+    let mut facts = facts(mesh, job)?;
+    (facts.closed, facts.manifold) = (closed, closed);
+    Ok(facts)
+}
+
+/// Volume, area and shells of a closed manifold.
+pub fn facts(mesh: &PolyMesh, job: &Job) -> Result<BooleanFacts, Cancelled> {
     let count = || {
-        let mut shells = Sets::new(mesh.positions.len());
+        let mut shells = DisjointSets::new(mesh.positions.len());
         for (i, f) in mesh.faces().enumerate() {
             // What a cancelled job counts is thrown away.
             if i % 65_536 == 0 && job.cancelled() {
@@ -55,7 +65,7 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<Facts, Can
     };
     let (components, (volume, area)) = rayon::join(count, || measure(mesh));
     job.check()?;
-    Ok(Facts { volume, area, components, closed, manifold: closed })
+    Ok(BooleanFacts { volume, area, components, closed: true, manifold: true })
 }
 
 /// Drops the points without a corner.
@@ -104,7 +114,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
     job.check()?;
     let mut closed = true;
     let mut several: Vec<(u32, u32)> = Vec::new();
-    let mut sets = Sets::new(n);
+    let mut sets = DisjointSets::new(n);
     let mut i = 0;
     while i < n {
         let mut j = i + 1;
@@ -232,6 +242,9 @@ pub fn measure(mesh: &PolyMesh) -> (f64, f64) {
         .positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    if mesh.positions.is_empty() {
+        return (0.0, 0.0);
+    }
     let centre = (lo + hi) * 0.5;
     let part = |t: &[u32]| {
         t.chunks_exact(3).fold((0.0, 0.0), |(v, s), t| {

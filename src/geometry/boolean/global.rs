@@ -1,6 +1,6 @@
-//! The other route: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always
+//! The fallback: the crate `manifold-rust`, whose symbolic perturbation (Smith 2009) always
 //! gives a closed manifold. It knows no tolerance and leaves sheets where faces only nearly touch,
-//! so it is asked only where the first route found no consistent answer. Its *Exact* engine alone
+//! so it is used only where the arrangement gives no consistent answer. Its *Exact* engine alone
 //! keeps what is not cut; its status is read, for it drops bad operands silently, and a panic
 //! within it (an index out of its arrays, on operands that cross themselves) is an error like any
 //! other. A result of no faces is a value.
@@ -18,14 +18,14 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGL64, OpType, WindingRule};
 
 use super::Operation;
-use super::emit::{Facts, Origin, finish, separate};
+use super::emit::{BooleanFacts, FaceOrigin, finish, separate};
 use super::merge::{is_flat, joined_rings};
 use super::points::Map;
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 
 /// A result: its mesh, the origin of each face, its facts.
-pub type Made = (PolyMesh, Vec<Origin>, Facts);
+pub type Made = (PolyMesh, Vec<FaceOrigin>, BooleanFacts);
 
 /// What the crate gives, or in words why it gave nothing. What it was given is not used again after
 /// a panic.
@@ -82,24 +82,24 @@ fn aside<T: Send + 'static>(
 }
 
 /// Both operands as the crate holds them.
-pub struct Engine {
-    held: Arc<Held>,
+pub struct GlobalEngine {
+    held: Arc<HeldOperands>,
 }
 
-struct Held {
+struct HeldOperands {
     operands: [Manifold; 2],
     ids: [u32; 2],
     meshes: [PolyMesh; 2],
     eps: f64,
 }
 
-impl Engine {
+impl GlobalEngine {
     /// Takes closed operands; the inner error says why the crate refuses one.
     pub fn new(
         operands: [&PolyMesh; 2],
         eps: f64,
         job: &Job,
-    ) -> Result<Result<Engine, String>, Cancelled> {
+    ) -> Result<Result<GlobalEngine, String>, Cancelled> {
         let meshes = operands.map(PolyMesh::clone);
         let made = aside(job, move |_, job| {
             let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
@@ -108,12 +108,18 @@ impl Engine {
                 sound(Manifold::from_mesh_gl64(&given))
             };
             let operands = [one(0)?, one(1)?];
-            Ok(Held { operands, ids, meshes, eps })
+            Ok(HeldOperands { operands, ids, meshes, eps })
         })?;
-        Ok(made.map(|held| Engine { held: Arc::new(held) }))
+        Ok(made.map(|held| GlobalEngine { held: Arc::new(held) }))
     }
 
-    pub fn run(&self, operation: Operation, job: &Job) -> Result<Result<Made, String>, Cancelled> {
+    /// One of the four results, in triangles or in as few polygons as join.
+    pub fn run(
+        &self,
+        operation: Operation,
+        triangles: bool,
+        job: &Job,
+    ) -> Result<Result<Made, String>, Cancelled> {
         let held = self.held.clone();
         aside(job, move |token, job| {
             let [a, b] = &held.operands;
@@ -126,14 +132,14 @@ impl Engine {
             let engine = BooleanEngine::Exact;
             let out =
                 sound(first.boolean_with_engine_and_token(second, kind, engine, Some(token)))?;
-            held.polygons(&out.get_mesh_gl64(-1), job).map_err(|e| e.to_string())
+            held.polygons(&out.get_mesh_gl64(-1), triangles, job).map_err(|e| e.to_string())
         })
     }
 }
 
-impl Held {
+impl HeldOperands {
     /// Triangles of one input face as that face again, or in as few polygons as join.
-    fn polygons(&self, gl: &MeshGL64, job: &Job) -> Result<Made, Cancelled> {
+    fn polygons(&self, gl: &MeshGL64, triangles: bool, job: &Job) -> Result<Made, Cancelled> {
         let at = points(gl);
         let mut names: Vec<u32> = (0..at.len() as u32).collect();
         for (&from, &to) in gl.merge_from_vert.iter().zip(&gl.merge_to_vert) {
@@ -152,12 +158,13 @@ impl Held {
         let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
         for ((operand, face, _), rings) in groups {
             let source = &self.meshes[operand as usize];
-            let flat =
-                rings.len() > 1 && is_flat(source, face as usize, &source.positions, self.eps);
+            let flat = !triangles
+                && rings.len() > 1
+                && is_flat(source, face as usize, &source.positions, self.eps);
             let rings = if flat { joined_rings(rings, &at) } else { rings };
             for r in rings {
                 mesh.push_face(&r);
-                origins.push(Origin { operand, face });
+                origins.push(FaceOrigin { operand, face });
             }
         }
         let facts = finish(&mut mesh, &at, job)?;
@@ -253,9 +260,12 @@ mod tests {
         let job = Job::default();
         let cube = crate::shapes::cuboid(DVec3::ZERO, DVec3::ONE);
         let far = crate::shapes::cuboid(DVec3::splat(5.0), DVec3::splat(6.0));
-        let engine = Engine::new([&cube, &far], 1e-9, &job).expect("not cancelled").expect("taken");
-        let (mesh, _, facts) =
-            engine.run(Operation::Intersection, &job).expect("not cancelled").expect("a result");
+        let engine =
+            GlobalEngine::new([&cube, &far], 1e-9, &job).expect("not cancelled").expect("taken");
+        let (mesh, _, facts) = engine
+            .run(Operation::Intersection, false, &job)
+            .expect("not cancelled")
+            .expect("a result");
         assert_eq!((mesh.face_count(), facts.volume, facts.components), (0, 0.0, 0));
     }
 }

@@ -1,35 +1,41 @@
-//! Where two surfaces meet: points of one on vertices, edges and faces of the other, each found
-//! once and known by all triangles around it; then the segments that cut each triangle.
+//! Where two surfaces intersect: points of one on vertices, edges and faces of the other, each
+//! computed once and shared by all triangles around it; then the segments that cut each triangle.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
-use super::points::{Map, Points};
+use super::points::{Map, PointSet};
 use crate::job::{Cancelled, Job};
 
-/// What happened to one triangle.
+/// What the other surface does to one triangle.
 #[derive(Debug, Default, Clone)]
-pub struct Marks {
+pub struct TriangleMarks {
+    /// Points within it.
     pub inner: Vec<u32>,
+    /// Cuts through it, between points of its border or within it.
     pub segments: Vec<(u32, u32)>,
     /// It lies, within the tolerance, on a face of the other side.
     pub flat: bool,
 }
 
+/// An edge of a triangle and what lies on it.
 #[derive(Debug)]
-pub struct Edge {
+pub struct CutEdge {
+    /// The lesser point first.
     pub ends: [u32; 2],
     /// From `ends[0]` to `ends[1]`, once sorted.
     pub inner: Vec<u32>,
 }
 
-/// All that the two sides share.
+/// Everything that the two surfaces have in common.
 #[derive(Debug, Default)]
-pub struct Meeting {
+pub struct Intersections {
+    /// Numbers of the edges, by their ends.
     pub edge_ids: Map<(u32, u32), u32>,
-    pub edges: Vec<Edge>,
+    /// Every edge of a triangle that may be crossed.
+    pub edges: Vec<CutEdge>,
     /// Triangle to its marks, a side each.
-    pub marks: [Map<u32, Marks>; 2],
+    pub marks: [Map<u32, TriangleMarks>; 2],
     /// Pieces of the curve in which the surfaces meet, lesser end first: between two points that
     /// both have, and nothing between.
     pub curve: Map<(u32, u32), ()>,
@@ -37,26 +43,27 @@ pub struct Meeting {
     pub shared: Vec<bool>,
 }
 
+/// A point as `robust` takes it.
 pub fn c3(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }
 
 struct Finder<'a> {
-    points: &'a mut Points,
+    points: &'a mut PointSet,
     eps: f64,
-    m: Meeting,
+    m: Intersections,
     crossings: Map<(u32, u32), Option<u32>>,
     piercings: Map<(u32, u32, u32), Option<u32>>,
 }
 
-/// Where the triangles of the pairs (ascending) meet.
-pub fn meet(
+/// Intersects the triangles of the pairs (ascending).
+pub fn intersect(
     triangles: [&[[u32; 3]]; 2],
     mut pairs: Vec<(u32, u32)>,
-    points: &mut Points,
+    points: &mut PointSet,
     eps: f64,
     job: &Job,
-) -> Result<Meeting, Cancelled> {
+) -> Result<Intersections, Cancelled> {
     let [a, b] = triangles;
     pairs.retain(|&(i, j)| {
         let (s, t) = (a[i as usize], b[j as usize]);
@@ -66,7 +73,7 @@ pub fn meet(
     let mut f = Finder {
         points,
         eps,
-        m: Meeting::default(),
+        m: Intersections::default(),
         crossings: Map::default(),
         piercings: Map::default(),
     };
@@ -109,7 +116,7 @@ impl Finder<'_> {
         let next = self.m.edges.len() as u32;
         let id = *self.m.edge_ids.entry(key).or_insert(next);
         if id == next {
-            self.m.edges.push(Edge { ends: [key.0, key.1], inner: Vec::new() });
+            self.m.edges.push(CutEdge { ends: [key.0, key.1], inner: Vec::new() });
         }
         id
     }
@@ -118,14 +125,14 @@ impl Finder<'_> {
         self.points.at[i as usize]
     }
 
-    fn on_edge(&self, p: u32, e: u32) -> bool {
+    fn on_edge(&mut self, p: u32, e: u32) -> bool {
         let [a, b] = self.m.edges[e as usize].ends;
         if p == a || p == b {
             return false;
         }
         let (o, d, x) = (self.p(a), self.p(b) - self.p(a), self.p(p));
         let t = (x - o).dot(d) / d.length_squared();
-        t > 0.0 && t < 1.0 && (o + d * t).distance_squared(x) <= self.eps * self.eps
+        t > 0.0 && t < 1.0 && self.points.contact.compared((o + d * t).distance(x), self.eps)
     }
 
     fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2]) {
@@ -203,12 +210,16 @@ impl Finder<'_> {
             return None;
         }
         let gap = w.dot(n);
-        if gap * gap > self.eps * self.eps * nn {
+        let distance = gap.abs() / nn.sqrt();
+        if distance > 4.0 * self.eps {
             return None;
         }
         let s = w.cross(v).dot(n) / nn;
         let t = w.cross(u).dot(n) / nn;
         if !(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) {
+            return None;
+        }
+        if !self.points.contact.compared(distance, self.eps) {
             return None;
         }
         let p = self.points.point((o + u * s + q + v * t) * 0.5);
@@ -249,16 +260,18 @@ impl Finder<'_> {
         }
     }
 
-    fn in_face(&self, p: u32, t: [u32; 3]) -> bool {
+    fn in_face(&mut self, p: u32, t: [u32; 3]) -> bool {
         let [a, b, c] = t.map(|i| self.p(i));
         let (n, x) = ((b - a).cross(c - a), self.p(p));
-        let d = (x - a).dot(n);
-        d * d <= self.eps * self.eps * n.length_squared()
+        let distance = (x - a).dot(n).abs() / n.length().max(f64::MIN_POSITIVE);
+        distance <= 4.0 * self.eps
             && [(a, b), (b, c), (c, a)].iter().all(|&(i, j)| (j - i).cross(x - i).dot(n) > 0.0)
+            && self.points.contact.compared(distance, self.eps)
     }
 }
 
-impl Meeting {
+impl Intersections {
+    /// The number of an edge, whichever way it runs.
     pub fn edge_of(&self, a: u32, b: u32) -> Option<u32> {
         self.edge_ids.get(&(a.min(b), a.max(b))).copied()
     }

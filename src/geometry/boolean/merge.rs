@@ -1,48 +1,57 @@
-//! Cells of one face with one fate, joined again into as few simple polygons as can be had by
-//! dropping borders between two.
+//! Cells of one face with the same classification, joined into as few simple polygons as dropping
+//! the borders between two gives.
 
 use glam::DVec3;
 
-use super::pieces::{Piece, Shape, triangles};
+use super::pieces::{FacePiece, PieceShape, triangles};
 use super::points::Map;
 use crate::PolyMesh;
 use crate::triangulate::area_vector;
 
 /// A polygon of the result over the common points.
 #[derive(Debug, Clone)]
-pub struct Polygon {
+pub struct ResultPolygon {
+    /// The operand that it comes from, 0 or 1.
     pub side: u8,
+    /// The operand's face.
     pub face: u32,
+    /// Counter-clockwise, over the common points.
     pub corners: Vec<u32>,
 }
 
 /// Polygons of all pieces in cells of one face and place. `flat` says that the face is a plane, so
 /// that cells may be joined.
-pub fn polygons(side: u8, face: u32, group: &[&Piece], flat: bool, at: &[DVec3]) -> Vec<Polygon> {
+pub fn polygons(
+    side: u8,
+    face: u32,
+    group: &[&FacePiece],
+    flat: bool,
+    at: &[DVec3],
+) -> Vec<ResultPolygon> {
     let mut rings: Vec<Vec<u32>> = Vec::new();
     for p in group {
         match &p.shape {
-            Shape::Cell(c) if !c.holes.is_empty() => {
+            PieceShape::PlanarCell(c) if !c.holes.is_empty() => {
                 let loops: Vec<&[u32]> =
                     std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect();
                 let n: DVec3 = loops.iter().map(|l| area_vector(at, l)).sum();
                 rings.extend(triangles(&loops, n, at).into_iter().map(|t| t.to_vec()));
             }
             // A border that touches itself at a point is no simple polygon.
-            Shape::Cell(c) if repeats(&c.outer) => {
+            PieceShape::PlanarCell(c) if repeats(&c.outer) => {
                 rings.extend(
                     triangles(&[&c.outer], DVec3::ZERO, at).into_iter().map(|t| t.to_vec()),
                 );
             }
-            Shape::Cell(c) => rings.push(c.outer.clone()),
-            Shape::Border(b) => rings.push(b.clone()),
-            Shape::Whole => {}
+            PieceShape::PlanarCell(c) => rings.push(c.outer.clone()),
+            PieceShape::Border(b) => rings.push(b.clone()),
+            PieceShape::Whole => {}
         }
     }
     if flat && rings.len() > 1 {
         rings = joined_rings(rings, at);
     }
-    rings.into_iter().map(|corners| Polygon { side, face, corners }).collect()
+    rings.into_iter().map(|corners| ResultPolygon { side, face, corners }).collect()
 }
 
 fn repeats(ring: &[u32]) -> bool {
@@ -53,6 +62,11 @@ fn repeats(ring: &[u32]) -> bool {
 
 /// Joins polygons that share one chain of edges and touch nowhere else, until none do.
 pub fn joined_rings(rings: Vec<Vec<u32>>, at: &[DVec3]) -> Vec<Vec<u32>> {
+    joined_rings_where(rings, |r| !spiked(r, at))
+}
+
+/// As [`joined_rings`], where `accept` takes the polygon that two become.
+pub fn joined_rings_where(rings: Vec<Vec<u32>>, accept: impl Fn(&[u32]) -> bool) -> Vec<Vec<u32>> {
     let mut rings: Vec<Option<Vec<u32>>> = rings.into_iter().map(Some).collect();
     let mut owner: Map<(u32, u32), usize> = Map::default();
     let edges = |r: &[u32]| (0..r.len()).map(|i| (r[i], r[(i + 1) % r.len()])).collect::<Vec<_>>();
@@ -70,7 +84,7 @@ pub fn joined_rings(rings: Vec<Vec<u32>>, at: &[DVec3]) -> Vec<Vec<u32>> {
             if j == i {
                 return None;
             }
-            joined(&own, rings[j].as_ref()?).filter(|r| !spiked(r, at)).map(|r| (j, r))
+            joined(&own, rings[j].as_ref()?).filter(|r| accept(r)).map(|r| (j, r))
         });
         match joined {
             Some((j, r)) => {
@@ -132,7 +146,7 @@ pub fn is_flat(mesh: &PolyMesh, f: usize, at: &[DVec3], eps: f64) -> bool {
 /// Drops corners that only subdivide a straight edge between two polygons, unless an input face has
 /// them there.
 pub fn straighten(
-    polygons: &mut [Polygon],
+    polygons: &mut [ResultPolygon],
     meshes: &[PolyMesh; 2],
     kept: impl Fn(u32) -> bool,
     at: &[DVec3],

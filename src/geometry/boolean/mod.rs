@@ -1,21 +1,34 @@
 //! Booleans of polygon meshes: union, intersection and both differences from one arrangement.
 //!
-//! The way: both surfaces are brought over common points (places within the tolerance are one
-//! point), so that faces that a person means to be coplanar *are*, by the identity of their points;
-//! then each point where an edge of one meets an edge or a face of the other is found once (signs
-//! decided exactly, Shewchuk 1997) and known to every triangle around it; each crossed triangle is
-//! cut into the cells of its plane graph; the parts of each surface between cuts are placed by one
-//! winding number each; contact is found by equal borders. Cells of one face with one fate are
-//! joined again, so that a face that is not crossed comes out as it went in. Every result is
-//! checked before it is given: closed, and volumes that add up.
+//! The steps, one file each:
 //!
-//! Not promised: operands that cross themselves (asked for by [`Error`]); features smaller than the
-//! tolerance.
+//! 1. `precision`: the tolerance, from what the coordinates of the operands can resolve.
+//! 2. `common`: places within the tolerance become one point, so that faces that are meant to be
+//!    coplanar share points.
+//! 3. `intersect`: each point where an edge of one operand crosses an edge or a face of the other
+//!    is computed once and shared by every triangle around it. Signs are exact (Shewchuk 1997).
+//! 4. `pieces`, `planar`: each crossed triangle is cut into the cells of its plane graph.
+//! 5. `classify`: each connected part of a surface between cuts is inside or outside by one winding
+//!    number; faces in contact have equal borders. Samples on the parts are classified again, each
+//!    by a winding number of its own.
+//! 6. `merge`, `simplify`, `emit`: cells of one face are joined, planes are triangulated again, and
+//!    the result is made a closed manifold.
+//!
+//! Every result is checked before it is returned: closed, samples that agree with the winding
+//! number of the other operand, and volumes that add up (union and intersection give A and B, difference
+//! and intersection give A). Where a check fails, other tolerances are tried, then the exact engine
+//! of the crate `manifold-rust` (`global`); where that fails too, the answer is an error. Where the
+//! answer depends on the tolerance, [`BooleanReport`] says so.
+//!
+//! Not promised: a meaning for operands that cross themselves ([`solve`] makes them solids);
+//! features smaller than the tolerance.
 
+/// Both surfaces cut at each other, and the result of each operation from that.
 pub mod arrange;
 mod attributes;
-mod box_tree;
+pub(crate) mod box_tree;
 mod broad_phase;
+/// Inside or outside, for each part of a surface.
 pub mod classify;
 mod common;
 mod curve;
@@ -27,32 +40,60 @@ mod merge;
 mod parts;
 mod pieces;
 mod planar;
+/// Points with an identity, and a hash map with a fixed order of hashing.
 pub mod points;
+mod precision;
+mod simplify;
+mod solve;
+mod verify;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use arrange::Arrangement;
+use arrange::{Arrangement, FaceState};
 pub use attributes::mixed;
 use box_tree::Span;
-pub use emit::{Facts, Origin};
+pub use emit::{BooleanFacts, FaceOrigin};
 pub use parts::{shells, split};
-use pieces::Place;
+use pieces::Placement;
+pub use points::Contact;
+pub use precision::{DefaultTolerance, Precision, Resolution, default_tolerance, resolution};
+pub use solve::solve;
 
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 
+/// One of the four Boolean operations on two solids A and B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Operation {
+    /// A or B.
     Union,
+    /// A and B.
     Intersection,
+    /// A minus B.
     Difference,
     /// B minus A.
     ReverseDifference,
 }
 
+impl ResultFaces {
+    /// Whether all faces of a result are triangles.
+    fn triangles(self, operands: [&PolyMesh; 2]) -> bool {
+        let all = |m: &PolyMesh| {
+            m.corners.len() == 3 * m.face_count()
+                && m.face_starts.par_windows(2).all(|w| w[1] - w[0] == 3)
+        };
+        match self {
+            ResultFaces::Triangles => true,
+            ResultFaces::AsOperands => operands.into_iter().all(all),
+            _ => false,
+        }
+    }
+}
+
 impl Operation {
+    /// All four, in the order of their results.
     pub const ALL: [Operation; 4] = [
         Operation::Union,
         Operation::Intersection,
@@ -60,6 +101,7 @@ impl Operation {
         Operation::ReverseDifference,
     ];
 
+    /// The operation's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Operation::Union => "union",
@@ -70,9 +112,9 @@ impl Operation {
     }
 
     /// Whether a piece of an operand (0 or 1) is in the result, and whether it is turned.
-    fn takes(self, operand: usize, place: Place, contact: bool) -> Option<bool> {
+    fn takes(self, operand: usize, place: Placement, contact: bool) -> Option<bool> {
         use Operation::*;
-        use Place::*;
+        use Placement::*;
         match (self, operand, place) {
             (Union, _, Outside) | (Union, 0, Same) => Some(false),
             (Intersection, _, Inside) | (Intersection, 0, Same) => Some(false),
@@ -86,44 +128,95 @@ impl Operation {
     }
 }
 
+/// What the faces of a result are where a face of an operand was cut. A face that nothing cuts
+/// stays as it came, unless triangles are asked for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum ResultFaces {
+    /// Triangles where both operands are triangles, else polygons of any shape.
+    #[default]
+    AsOperands,
+    /// Triangles throughout.
+    Triangles,
+    /// Convex polygons.
+    ConvexPolygons,
+    /// As few polygons as can be had, concave ones among them.
+    Polygons,
+}
+
+/// What [`compute`] is asked for besides the operations.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Options {
-    /// Length under which contact is contact. `None`: from the operands' own rounding, about 4e-12
-    /// of the largest coordinate. 0: only what rounding of computed points needs.
+pub struct BooleanOptions {
+    /// Length within which places are one, in the operands' unit. `None`: what the operands'
+    /// coordinates can resolve ([`default_tolerance`]). 0: only what rounding of computed points
+    /// needs.
     pub tolerance: Option<f64>,
+    /// What the faces of the results are.
+    pub faces: ResultFaces,
     /// Faces in which the solids only touch belong to the intersection too, both sides of them.
     pub keep_contact: bool,
 }
 
 /// One of the four results.
 #[derive(Debug, Clone)]
-pub struct Solid {
+pub struct BooleanSolid {
+    /// Which of the four.
     pub operation: Operation,
+    /// The result; an empty solid has no faces.
     pub mesh: PolyMesh,
     /// One a face.
-    pub origins: Vec<Origin>,
-    pub facts: Facts,
+    pub origins: Vec<FaceOrigin>,
+    /// Volume, area and topology of `mesh`.
+    pub facts: BooleanFacts,
 }
 
+/// Why there is no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Error {
+pub enum BooleanError {
+    /// An operand has edges without a partner.
     #[error("{operand} is open: {edges} edges lack a partner; mend it first")]
-    Open { operand: &'static str, edges: usize },
+    Open {
+        /// Which operand.
+        operand: &'static str,
+        /// Edges that lack a partner.
+        edges: usize,
+    },
+    /// An operand has a negative volume.
     #[error("{operand} is inside out: its volume is {volume}")]
-    InsideOut { operand: &'static str, volume: f64 },
+    InsideOut {
+        /// Which operand.
+        operand: &'static str,
+        /// Its volume.
+        volume: f64,
+    },
+    /// A coordinate is infinite or not a number.
     #[error("{operand} has a coordinate that is not finite")]
-    NotFinite { operand: &'static str },
+    NotFinite {
+        /// Which operand, or the plane of a split.
+        operand: &'static str,
+    },
+    /// No way led to a result that passes all checks; the text says what failed first.
     #[error("no consistent result: {0}. Do the operands cross themselves?")]
     Inconsistent(String),
+    /// The job was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 /// What was done besides the results.
 #[derive(Debug, Clone, Default)]
-pub struct Report {
-    /// The tolerance that was used.
+pub struct BooleanReport {
+    /// The tolerance that was used, in the operands' unit.
     pub tolerance: f64,
+    /// What the operands' coordinates resolve; the coarser of the two.
+    pub precision: Option<Precision>,
+    /// Distances that the tolerance decided.
+    pub contact: Contact,
+    /// Whether places that the precision of doubles tells apart were taken as one, or nearly were:
+    /// with another tolerance the answer may be another.
+    pub depends_on_tolerance: bool,
+    /// How far a volume may be from that of the operands as they are, in cubic units.
+    pub volume_bound: f64,
+    /// What the caller should read, one sentence each.
     pub warnings: Vec<String>,
     /// The cut: places where both surfaces are, as polylines that end where the curve ends or
     /// branches. A closed one names its first place again at its end. Of the global engine: none.
@@ -132,6 +225,7 @@ pub struct Report {
     pub phases: Vec<(&'static str, f64)>,
 }
 
+/// What the operands are called in errors.
 pub const NAMES: [&str; 2] = ["A", "B"];
 
 /// The asked operations on A and B, from one arrangement. `now` gives seconds (any origin), for the
@@ -139,11 +233,11 @@ pub const NAMES: [&str; 2] = ["A", "B"];
 pub fn compute(
     operands: [&PolyMesh; 2],
     operations: &[Operation],
-    options: &Options,
+    options: &BooleanOptions,
     job: &Job,
     now: impl Fn() -> f64,
-) -> Result<(Vec<Solid>, Report), Error> {
-    let mut report = Report::default();
+) -> Result<(Vec<BooleanSolid>, BooleanReport), BooleanError> {
+    let mut report = BooleanReport::default();
     let start = now();
     job.check()?;
     let (a, b) =
@@ -152,8 +246,9 @@ pub fn compute(
     report.phases.push(("check", now() - start));
     let reach = operands.iter().map(|m| reach(&m.positions)).fold(0.0, f64::max);
     let floor = reach * 2f64.powi(-49);
-    let wanted =
-        options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
+    let default = default_tolerance(operands);
+    report.precision = Some(default.precision);
+    let wanted = options.tolerance.unwrap_or(default.tolerance).max(floor).max(f64::MIN_POSITIVE);
     let mut why = String::new();
     // Where the first tolerance falls between what is and is not in contact, another does not.
     for factor in [1.0, 0.125, 16.0, 1.0 / 64.0] {
@@ -161,6 +256,25 @@ pub fn compute(
         match attempt(operands, volumes, operations, options, eps, floor, job, &now, &mut report)? {
             Ok(solids) => {
                 report.tolerance = eps;
+                let contact = report.contact;
+                report.depends_on_tolerance =
+                    contact.farthest > 8.0 * floor || contact.near_misses > 0;
+                if contact.farthest > 8.0 * floor {
+                    report.warnings.push(format!(
+                        "{} places up to {:.1e} apart were taken as in contact (tolerance {eps:.1e}, \
+                         coordinates in {}); a smaller tolerance may give another result",
+                        contact.places,
+                        contact.farthest,
+                        default.precision.name()
+                    ));
+                }
+                if contact.near_misses > 0 {
+                    report.warnings.push(format!(
+                        "{} places are apart by one to four times the tolerance of {eps:.1e}; a \
+                         larger tolerance may give another result",
+                        contact.near_misses
+                    ));
+                }
                 if factor != 1.0 {
                     report
                         .warnings
@@ -178,8 +292,11 @@ pub fn compute(
     report
         .warnings
         .push(format!("no consistent result within the tolerance ({why}): global engine taken"));
-    report.tolerance = wanted;
-    let solids = globally(operands, volumes, operations, wanted, job, &now, &mut report)?;
+    // The global engine takes the coordinates as they are.
+    report.tolerance = floor;
+    report.depends_on_tolerance = true;
+    report.contact = Contact::default();
+    let solids = globally(operands, volumes, operations, options, floor, job, &now, &mut report)?;
     Ok((solids, report))
 }
 
@@ -194,51 +311,63 @@ fn globally(
     operands: [&PolyMesh; 2],
     volumes: [f64; 2],
     operations: &[Operation],
+    options: &BooleanOptions,
     eps: f64,
     job: &Job,
     now: &impl Fn() -> f64,
-    report: &mut Report,
-) -> Result<Vec<Solid>, Error> {
+    report: &mut BooleanReport,
+) -> Result<Vec<BooleanSolid>, BooleanError> {
     let start = now();
-    let engine = global::Engine::new(operands, eps, job)?.map_err(Error::Inconsistent)?;
+    let engine =
+        global::GlobalEngine::new(operands, eps, job)?.map_err(BooleanError::Inconsistent)?;
     let mut solids = Vec::new();
-    for &operation in operations {
+    // Union and intersection too where they were not asked for: the volumes are to add up.
+    let needed = |o: &Operation| {
+        operations.contains(o) || matches!(o, Operation::Union | Operation::Intersection)
+    };
+    for operation in Operation::ALL.into_iter().filter(needed) {
+        let triangles = options.faces.triangles(operands);
         let (mut mesh, origins, facts) =
-            engine.run(operation, job)?.map_err(Error::Inconsistent)?;
-        attributes::carry(&mut mesh, &origins, operands);
+            engine.run(operation, triangles, job)?.map_err(BooleanError::Inconsistent)?;
         if !facts.closed {
-            return Err(Error::Inconsistent(format!("the {} is not closed", operation.name())));
+            return Err(BooleanError::Inconsistent(format!(
+                "the {} is not closed",
+                operation.name()
+            )));
         }
-        solids.push(Solid { operation, mesh, origins, facts });
+        attributes::carry(&mut mesh, &origins, operands);
+        solids.push(BooleanSolid { operation, mesh, origins, facts });
     }
     report.phases.push(("global", now() - start));
-    match doubt(&solids, volumes, 8.0 * eps, &operands[0].positions) {
-        Some(why) => Err(Error::Inconsistent(why)),
-        None => Ok(solids),
+    let start = now();
+    let wrong = match doubt(&solids, volumes, 8.0 * eps, &operands[0].positions, report) {
+        None => verify::results(operands, &solids, eps, job)?,
+        why => why,
+    };
+    report.phases.push(("verify", now() - start));
+    if let Some(why) = wrong {
+        return Err(BooleanError::Inconsistent(why));
     }
-}
-
-/// A surface that crosses itself as the solid of all places that it goes around: for operands that
-/// [`compute`] refuses.
-pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Error> {
-    global::solve(mesh, job)?.map_err(Error::Inconsistent)
+    let asked = |o: &Operation| solids.iter().position(|s| s.operation == *o);
+    let order: Vec<usize> = operations.iter().filter_map(asked).collect();
+    Ok(order.into_iter().map(|i| solids[i].clone()).collect())
 }
 
 /// Closed, oriented outwards, finite: the volume, or what is wrong.
-pub fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, Error> {
+pub fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, BooleanError> {
     if !mesh.positions.par_iter().all(|p| p.is_finite()) {
-        return Err(Error::NotFinite { operand });
+        return Err(BooleanError::NotFinite { operand });
     }
     job.check()?;
     if !balanced(mesh) {
         let edges = open_edges(mesh);
         if edges > 0 {
-            return Err(Error::Open { operand, edges });
+            return Err(BooleanError::Open { operand, edges });
         }
     }
     job.check()?;
     let (volume, _) = emit::measure(mesh);
-    if volume < 0.0 { Err(Error::InsideOut { operand, volume }) } else { Ok(volume) }
+    if volume < 0.0 { Err(BooleanError::InsideOut { operand, volume }) } else { Ok(volume) }
 }
 
 /// Whether the edges, each as a number of 128 bits with its direction as its sign, add up to
@@ -293,13 +422,13 @@ fn attempt(
     operands: [&PolyMesh; 2],
     volumes: [f64; 2],
     operations: &[Operation],
-    options: &Options,
+    options: &BooleanOptions,
     eps: f64,
     floor: f64,
     job: &Job,
     now: &impl Fn() -> f64,
-    report: &mut Report,
-) -> Result<Result<Vec<Solid>, String>, Error> {
+    report: &mut BooleanReport,
+) -> Result<Result<Vec<BooleanSolid>, String>, BooleanError> {
     let mut clock = now();
     let mut lap = |name| {
         let t = now();
@@ -307,6 +436,9 @@ fn attempt(
         clock = t;
     };
     let a = Arrangement::new(operands, eps, floor, None, job, &mut lap)?;
+    if let Some(why) = &a.doubt {
+        return Ok(Err(why.clone()));
+    }
     let mut solids = Vec::new();
     for &operation in operations {
         job.check()?;
@@ -314,31 +446,62 @@ fn attempt(
         let (mut mesh, mut origins) = (PolyMesh::new(), Vec::with_capacity(faces));
         mesh.face_starts.reserve(faces);
         mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
-        a.faces(operation, options.keep_contact, job, |origin, corners, _| {
-            mesh.push_face(corners);
-            origins.push(origin);
+        let mut cut: Vec<simplify::CutFace> = Vec::new();
+        let triangles = options.faces.triangles(operands);
+        a.faces(operation, options.keep_contact, job, |origin, corners, state| {
+            match options.faces {
+                _ if state != FaceState::Cut && (!triangles || corners.len() == 3) => {
+                    mesh.push_face(corners);
+                    origins.push(origin);
+                }
+                ResultFaces::ConvexPolygons => {
+                    for ring in simplify::convex(corners, &a.points.at) {
+                        mesh.push_face(&ring);
+                        origins.push(origin);
+                    }
+                }
+                _ if triangles => cut.push(simplify::CutFace { origin, corners: corners.to_vec() }),
+                _ => {
+                    mesh.push_face(corners);
+                    origins.push(origin);
+                }
+            }
         });
+        job.check()?;
+        let flat = 4.0 * floor.max(a.points.contact.farthest);
+        let group = |o| simplify::group_of(operands, o);
+        for (origin, t) in simplify::retriangulated(cut, a.own, &a.points.at, flat, group) {
+            mesh.push_face(&t);
+            origins.push(origin);
+        }
         job.check()?;
         let facts = emit::finish(&mut mesh, &a.points.at, job)?;
         if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }
         attributes::carry(&mut mesh, &origins, operands);
-        solids.push(Solid { operation, mesh, origins, facts });
+        solids.push(BooleanSolid { operation, mesh, origins, facts });
     }
     lap("emit");
-    // Places may have moved by a tolerance that was asked for, but only by rounding where none was.
-    let slack = if options.tolerance.is_some() { 8.0 * eps } else { floor };
-    if let Some(why) = doubt(&solids, volumes, slack, &a.points.at) {
+    // Surfaces moved by rounding, and by as much as places in contact were apart.
+    let slack = floor.max(8.0 * a.points.contact.farthest);
+    if let Some(why) = doubt(&solids, volumes, slack, &a.points.at, report) {
         return Ok(Err(why));
     }
+    report.contact = a.points.contact;
     report.cut = a.curve();
     job.progress(1.0);
     Ok(Ok(solids))
 }
 
 /// What the volumes say against the results; `eps`: how far a surface may have moved.
-fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<String> {
+fn doubt(
+    solids: &[BooleanSolid],
+    [a, b]: [f64; 2],
+    eps: f64,
+    at: &[DVec3],
+    report: &mut BooleanReport,
+) -> Option<String> {
     let of = |o| solids.iter().find(|s| s.operation == o).map(|s| s.facts.volume);
     let area: f64 = solids.iter().map(|s| s.facts.area).sum();
     let size = at
@@ -346,6 +509,7 @@ fn doubt(solids: &[Solid], [a, b]: [f64; 2], eps: f64, at: &[DVec3]) -> Option<S
         .map(|c| Span::of(c.iter().copied()))
         .reduce(|| Span::EMPTY, Span::join);
     let slack = (a + b) * 5e-13 + area * eps + (size.hi - size.lo).length().powi(3) * 1e-16;
+    report.volume_bound = slack;
     let (u, i) = (of(Operation::Union), of(Operation::Intersection));
     let (d, r) = (of(Operation::Difference), of(Operation::ReverseDifference));
     let sums = [

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::points::Sets;
-use super::{Error, Operation, Options, Report, Solid, compute};
+use super::{BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, compute};
+use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::boolean::box_tree::Span;
 use crate::job::Job;
@@ -13,16 +13,16 @@ use crate::job::Job;
 /// by `now`, as in [`compute`].
 ///
 /// # Errors
-/// As [`compute`]; [`Error::NotFinite`] for a normal without a direction.
+/// As [`compute`]; [`BooleanError::NotFinite`] for a normal without a direction.
 pub fn split(
     mesh: &PolyMesh,
     normal: DVec3,
     offset: f64,
-    options: &Options,
+    options: &BooleanOptions,
     job: &Job,
     now: impl Fn() -> f64,
-) -> Result<([Solid; 2], Report), Error> {
-    let plane = Error::NotFinite { operand: "the plane" };
+) -> Result<([BooleanSolid; 2], BooleanReport), BooleanError> {
+    let plane = BooleanError::NotFinite { operand: "the plane" };
     let length = normal.length();
     if !(length > 0.0 && length.is_finite() && offset.is_finite()) {
         return Err(plane);
@@ -30,7 +30,7 @@ pub fn split(
     let below = block(mesh, normal / length, offset / length);
     let operations = [Operation::Difference, Operation::Intersection];
     let (solids, report) = compute([mesh, &below], &operations, options, job, now)?;
-    let solids = <[Solid; 2]>::try_from(solids).map_err(|_| plane)?;
+    let solids = <[BooleanSolid; 2]>::try_from(solids).map_err(|_| plane)?;
     Ok((solids, report))
 }
 
@@ -54,7 +54,7 @@ fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
 /// Each connected shell as a mesh of its own, in the order of their first faces, colours and groups
 /// with it.
 pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
-    let mut sets = Sets::new(mesh.positions.len());
+    let mut sets = DisjointSets::new(mesh.positions.len());
     for f in mesh.faces() {
         f.windows(2).for_each(|w| sets.join(w[0], w[1]));
     }
@@ -105,7 +105,7 @@ mod tests {
         let n = DVec3::new(0.3, -0.5, 0.8);
         for offset in [-0.4, 0.0, 0.25] {
             let ([above, below], report) =
-                split(&ball, n, offset, &Options::default(), &Job::default(), || 0.0)
+                split(&ball, n, offset, &BooleanOptions::default(), &Job::default(), || 0.0)
                     .expect("two parts");
             assert!((above.facts.volume + below.facts.volume - whole).abs() < 1e-12 * whole);
             assert!(above.facts.volume > 0.0 && below.facts.volume > 0.0);
@@ -116,11 +116,12 @@ mod tests {
             assert_eq!(report.cut[0].first(), report.cut[0].last());
             assert_eq!(above.origins.iter().filter(|o| o.operand == 1).count(), 1);
         }
-        let far = split(&ball, DVec3::Z, 9.0, &Options::default(), &Job::default(), || 0.0);
+        let far = split(&ball, DVec3::Z, 9.0, &BooleanOptions::default(), &Job::default(), || 0.0);
         let ([above, below], _) = far.expect("two parts");
         assert_eq!((above.mesh.face_count(), below.mesh.face_count()), (0, ball.face_count()));
         assert!(
-            split(&ball, DVec3::ZERO, 0.0, &Options::default(), &Job::default(), || 0.0).is_err()
+            split(&ball, DVec3::ZERO, 0.0, &BooleanOptions::default(), &Job::default(), || 0.0)
+                .is_err()
         );
     }
 

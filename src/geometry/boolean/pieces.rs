@@ -3,14 +3,14 @@
 
 use glam::DVec3;
 
-use super::planar::{Cell, cells, flatten};
+use super::planar::{PlanarCell, cells, flatten};
 use crate::PolyMesh;
-use crate::boolean::intersect::Meeting;
+use crate::boolean::intersect::Intersections;
 use crate::job::{Cancelled, Job};
 
 /// Where a piece lies as seen from the other operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Place {
+pub enum Placement {
     Inside,
     Outside,
     /// On its surface, facing the same way.
@@ -19,29 +19,34 @@ pub enum Place {
     Against,
 }
 
+/// A part of a face that lies on one side of the other operand as a whole.
 #[derive(Debug, Clone)]
-pub struct Piece {
+pub struct FacePiece {
+    /// The operand's face.
     pub face: u32,
-    pub shape: Shape,
-    pub place: Place,
+    /// Which part of the face it is.
+    pub shape: PieceShape,
+    /// Where it lies.
+    pub place: Placement,
 }
 
+/// Which part of a face a piece is.
 #[derive(Debug, Clone)]
-pub enum Shape {
+pub enum PieceShape {
     /// The face as it came.
     Whole,
     /// The face, with more corners on its border.
     Border(Vec<u32>),
-    Cell(Cell),
+    PlanarCell(PlanarCell),
 }
 
-impl Piece {
+impl FacePiece {
     /// All loops, whichever the shape.
     pub fn loops<'a>(&'a self, face: impl FnOnce(u32) -> &'a [u32]) -> Vec<&'a [u32]> {
         match &self.shape {
-            Shape::Whole => vec![face(self.face)],
-            Shape::Border(b) => vec![b],
-            Shape::Cell(c) => {
+            PieceShape::Whole => vec![face(self.face)],
+            PieceShape::Border(b) => vec![b],
+            PieceShape::PlanarCell(c) => {
                 std::iter::once(&c.outer).chain(&c.holes).map(Vec::as_slice).collect()
             }
         }
@@ -56,11 +61,11 @@ pub fn cut(
     side: usize,
     triangles: &[[u32; 3]],
     starts: &[u32],
-    m: &Meeting,
+    m: &Intersections,
     points: &[DVec3],
     flat: impl Fn(usize) -> bool,
     job: &Job,
-) -> Result<Vec<Piece>, Cancelled> {
+) -> Result<Vec<FacePiece>, Cancelled> {
     let mut out = Vec::new();
     let marks = &m.marks[side];
     let mut near: Vec<u32> =
@@ -71,7 +76,8 @@ pub fn cut(
         if n % 1024 == 0 {
             job.check()?;
         }
-        let mut push = |shape| out.push(Piece { face: f as u32, shape, place: Place::Outside });
+        let mut push =
+            |shape| out.push(FacePiece { face: f as u32, shape, place: Placement::Outside });
         let range = starts[f]..starts[f + 1];
         let own = &triangles[range.start as usize..range.end as usize];
         let split =
@@ -80,11 +86,11 @@ pub fn cut(
         if !split {
             let border = ring(mesh.face(f), m);
             if border.len() == mesh.face(f).len() {
-                push(Shape::Whole);
+                push(PieceShape::Whole);
                 continue;
             }
             if flat(f) {
-                push(Shape::Border(border));
+                push(PieceShape::Border(border));
                 continue;
             }
         }
@@ -94,13 +100,13 @@ pub fn cut(
             let none = Vec::new();
             let segments = marks.get(&t).map_or(&none, |k| &k.segments);
             if segments.is_empty() {
-                push(Shape::Cell(Cell { outer: ring, holes: Vec::new() }));
+                push(PieceShape::PlanarCell(PlanarCell { outer: ring, holes: Vec::new() }));
                 continue;
             }
             let [a, b, c] = tri.map(|i| points[i as usize]);
             let flat = flatten((b - a).cross(c - a));
             for cell in cells(&ring, segments, |i| flat(points[i as usize])) {
-                push(Shape::Cell(cell));
+                push(PieceShape::PlanarCell(cell));
             }
         }
     }
@@ -108,7 +114,7 @@ pub fn cut(
 }
 
 /// Whether the cut runs along a diagonal by which the face came in triangles.
-fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Meeting) -> bool {
+fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Intersections) -> bool {
     let side = |a: u32, b: u32| {
         (0..corners.len()).any(|i| {
             let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
@@ -128,7 +134,7 @@ fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Meeting) -> bool 
 }
 
 /// A loop with the points that the meeting found on its edges.
-fn ring(corners: &[u32], m: &Meeting) -> Vec<u32> {
+fn ring(corners: &[u32], m: &Intersections) -> Vec<u32> {
     let mut out = Vec::with_capacity(corners.len() + 2);
     for (i, &a) in corners.iter().enumerate() {
         let b = corners[(i + 1) % corners.len()];

@@ -6,12 +6,15 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-use super::points::{Map, Sets};
+use crate::disjoint_sets::DisjointSets;
+use super::points::Map;
 
 /// A cell: counter-clockwise border, clockwise holes.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Cell {
+pub struct PlanarCell {
+    /// The border, counter-clockwise.
     pub outer: Vec<u32>,
+    /// Clockwise.
     pub holes: Vec<Vec<u32>>,
 }
 
@@ -38,7 +41,11 @@ pub fn flatten(n: DVec3) -> impl Fn(DVec3) -> Coord<f64> + Copy {
 
 /// Cells of the polygon `ring` (counter-clockwise) cut by `segments`; both over global points
 /// placed by `at`. Segments that separate nothing are left out.
-pub fn cells(ring: &[u32], segments: &[(u32, u32)], at: impl Fn(u32) -> Coord<f64>) -> Vec<Cell> {
+pub fn cells(
+    ring: &[u32],
+    segments: &[(u32, u32)],
+    at: impl Fn(u32) -> Coord<f64>,
+) -> Vec<PlanarCell> {
     let mut ids: Map<u32, usize> = Map::default();
     let mut names: Vec<u32> = Vec::new();
     let mut id = |v: u32| {
@@ -129,7 +136,7 @@ fn assemble(
     spots: &[Coord<f64>],
     names: &[u32],
     border: usize,
-) -> Vec<Cell> {
+) -> Vec<PlanarCell> {
     let tail = |h: usize| if h % 2 == 0 { edges[h / 2].0 } else { edges[h / 2].1 };
     let area = |l: &[usize]| {
         let o = spots[tail(l[0])];
@@ -140,7 +147,7 @@ fn assemble(
     };
     let outside = of[1];
     // Connected parts, so that a hole is looked for only in other parts.
-    let mut parts = Sets::new(spots.len());
+    let mut parts = DisjointSets::new(spots.len());
     for (e, &(a, b)) in edges.iter().enumerate() {
         if of[2 * e] != usize::MAX {
             parts.join(a as u32, b as u32);
@@ -148,7 +155,7 @@ fn assemble(
     }
     let main = parts.root(edges[0].0 as u32);
     let name = |l: &[usize]| l.iter().map(|&h| names[tail(h)]).collect::<Vec<u32>>();
-    let mut out: Vec<(Cell, f64, usize, u32)> = Vec::new();
+    let mut out: Vec<(PlanarCell, f64, usize, u32)> = Vec::new();
     let mut holes = Vec::new();
     for (i, l) in loops.iter().enumerate() {
         if i == outside {
@@ -157,7 +164,7 @@ fn assemble(
         let a = area(l);
         let part = parts.root(tail(l[0]) as u32);
         if a > 0.0 || part == main {
-            out.push((Cell { outer: name(l), holes: Vec::new() }, a, i, part));
+            out.push((PlanarCell { outer: name(l), holes: Vec::new() }, a, i, part));
         } else {
             holes.push((l, part));
         }

@@ -36,21 +36,27 @@ impl Hasher for Mix {
     }
 }
 
+/// A hash map with a fixed hash.
 pub type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mix>>;
 
 /// All points, and a grid of those that may be met again.
 #[derive(Debug, Default)]
-pub struct Points {
+pub struct PointSet {
+    /// Where each point is.
     pub at: Vec<DVec3>,
+    /// What was decided by the tolerance so far.
+    pub contact: Contact,
     eps: f64,
     cells: Map<[i64; 3], Vec<u32>>,
 }
 
-impl Points {
-    pub fn new(at: Vec<DVec3>, eps: f64) -> Points {
-        Points { at, eps, cells: Map::default() }
+impl PointSet {
+    /// Points with a tolerance; none of them is listed yet.
+    pub fn new(at: Vec<DVec3>, eps: f64) -> PointSet {
+        PointSet { at, contact: Contact::default(), eps, cells: Map::default() }
     }
 
+    /// Length within which two places are one point.
     pub fn tolerance(&self) -> f64 {
         self.eps
     }
@@ -82,10 +88,16 @@ impl Points {
     /// Lists an existing point, or says which listed one it is.
     pub fn list(&mut self, i: u32) -> u32 {
         let p = self.at[i as usize];
-        self.near(p).unwrap_or_else(|| {
-            self.cells.entry(self.cell(p)).or_default().push(i);
-            i
-        })
+        match self.near(p) {
+            Some(known) => {
+                self.contact.within(self.at[known as usize].distance(p));
+                known
+            }
+            None => {
+                self.cells.entry(self.cell(p)).or_default().push(i);
+                i
+            }
+        }
     }
 
     /// The point at a place, made where there is none.
@@ -99,26 +111,32 @@ impl Points {
     }
 }
 
-/// Disjoint sets.
-#[derive(Debug)]
-pub struct Sets(Vec<u32>);
+/// Distances that the tolerance decided: what was taken as contact, and what nearly was.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Places of one operand that were put on a place, an edge or a face of the other, or of its
+    /// own.
+    pub places: usize,
+    /// The largest distance over which that was done.
+    pub farthest: f64,
+    /// Places that are not in contact but within four times the tolerance.
+    pub near_misses: usize,
+}
 
-impl Sets {
-    pub fn new(n: usize) -> Sets {
-        Sets((0..n as u32).collect())
+impl Contact {
+    /// Notes a place in contact over a distance.
+    pub fn within(&mut self, distance: f64) {
+        self.places += 1;
+        self.farthest = self.farthest.max(distance);
     }
 
-    pub fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
+    /// Notes a distance that was held against the tolerance: in contact, nearly, or neither.
+    pub fn compared(&mut self, distance: f64, eps: f64) -> bool {
+        if distance <= eps {
+            self.within(distance);
+        } else if distance <= 4.0 * eps {
+            self.near_misses += 1;
         }
-        i
-    }
-
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
+        distance <= eps
     }
 }

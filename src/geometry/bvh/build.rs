@@ -6,8 +6,8 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use super::collapse::Plan;
-use super::{Bvh8, LEAF, NO_TRIANGLE, Node, Pack};
+use super::collapse::CollapsePlan;
+use super::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode};
 use crate::TriMesh;
 use crate::job::{Cancelled, Job};
 
@@ -52,12 +52,12 @@ pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
     job.check()?;
     ReinsertionOptimizer::default().run(&mut binary, REINSERTION, Some(vec![1.0, 0.5, 0.25]));
     job.check()?;
-    let plan = Plan::new(&binary);
+    let plan = CollapsePlan::new(&binary);
     job.check()?;
 
     let (lo, hi) = bounds;
     let pad = Vec3::splat(lo.abs().max(hi.abs()).max_element() * PAD);
-    let mut maker = Maker {
+    let mut maker = Bvh8Builder {
         binary: &binary,
         plan: &plan,
         used: &used,
@@ -78,9 +78,9 @@ fn maker_stack(depth: usize) -> usize {
     depth * 7 + 8
 }
 
-struct Maker<'a, C> {
+struct Bvh8Builder<'a, C> {
     binary: &'a Bvh2,
-    plan: &'a Plan<'a>,
+    plan: &'a CollapsePlan<'a>,
     used: &'a [u32],
     pad: Vec3,
     corners: C,
@@ -88,7 +88,7 @@ struct Maker<'a, C> {
     depth: usize,
 }
 
-impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
+impl<C: Fn(u32) -> Option<[Vec3; 3]>> Bvh8Builder<'_, C> {
     fn root(&mut self) {
         // (binary node, wide node to fill, depth); a work list, for the binary tree may be deeper
         // than the thread's stack.
@@ -136,8 +136,8 @@ impl<C: Fn(u32) -> Option<[Vec3; 3]>> Maker<'_, C> {
     }
 }
 
-fn empty() -> Node {
+fn empty() -> WideNode {
     let mut planes = [[f32::INFINITY; 8]; 6];
     planes[3..].fill([f32::NEG_INFINITY; 8]);
-    Node { planes, child: [0; 8] }
+    WideNode { planes, child: [0; 8] }
 }

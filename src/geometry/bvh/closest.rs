@@ -14,22 +14,29 @@ use crate::simd::wide::{self, Wide, WideWork};
 /// 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feature {
+    /// The interior.
     Face,
+    /// An edge without its ends, by its first corner, 0 to 2.
     Edge(u8),
+    /// A corner, 0 to 2.
     Vertex(u8),
 }
 
 /// The nearest point of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nearest {
+pub struct NearestPoint {
+    /// The square of the distance, in the square of the mesh's unit.
     pub distance_squared: f64,
+    /// The point of the mesh.
     pub point: DVec3,
     /// Index into the mesh's `triangles`.
     pub triangle: u32,
+    /// Which part of the triangle holds the point.
     pub feature: Feature,
 }
 
-impl Nearest {
+impl NearestPoint {
+    /// The distance, in the mesh's unit.
     pub fn distance(&self) -> f64 {
         self.distance_squared.sqrt()
     }
@@ -115,15 +122,15 @@ impl Bvh8 {
     /// infinity allowed), the mesh is empty, or `p` or the mesh reach beyond [`REACH`]. A good
     /// bound makes the search faster, never different.
     #[inline]
-    pub fn nearest(&self, p: DVec3, within: f64) -> Option<Nearest> {
+    pub fn nearest(&self, p: DVec3, within: f64) -> Option<NearestPoint> {
         if self.out_of_range(p) {
             return None;
         }
-        wide::dispatch(self.scalar, Search { tree: self, p, within })
+        wide::dispatch(self.scalar, NearestSearch { tree: self, p, within })
     }
 }
 
-struct Search<'a> {
+struct NearestSearch<'a> {
     tree: &'a Bvh8,
     p: DVec3,
     within: f64,
@@ -135,16 +142,17 @@ const INLINE: usize = 128;
 /// Largest coordinate of a mesh or a point that distances are asked of.
 pub const REACH: f64 = 1e15;
 
-impl WideWork for Search<'_> {
-    type Out = Option<Nearest>;
+impl WideWork for NearestSearch<'_> {
+    type Output = Option<NearestPoint>;
 
     #[inline(always)]
-    fn run<W: Wide>(self, wide: W) -> Option<Nearest> {
-        let Search { tree, p: exact, within } = self;
+    fn run<W: Wide>(self, wide: W) -> Option<NearestPoint> {
+        let NearestSearch { tree, p: exact, within } = self;
         let p = exact.as_vec3().to_array();
         // What rounding the point itself may cost.
         let moved = p[0].abs().max(p[1].abs()).max(p[2].abs()) * 1.2e-7;
-        let mut exactly = Exact { tree, p: exact, moved, limit: within * within, best: None };
+        let mut exactly =
+            ExactDecision { tree, p: exact, moved, limit: within * within, best: None };
         let mut radius = exactly.radius();
         let mut bound = square(radius);
         let mut maybe = [(0.0f32, 0u32); MAYBE];
@@ -228,15 +236,15 @@ fn square(radius: f32) -> f32 {
 }
 
 /// The double-precision side of a search.
-struct Exact<'a> {
+struct ExactDecision<'a> {
     tree: &'a Bvh8,
     p: DVec3,
     moved: f32,
     limit: f64,
-    best: Option<Nearest>,
+    best: Option<NearestPoint>,
 }
 
-impl Exact<'_> {
+impl ExactDecision<'_> {
     /// The best distance so far, rounded up to what single precision may find in its place.
     #[inline(always)]
     fn radius(&self) -> f32 {
@@ -261,7 +269,8 @@ impl Exact<'_> {
                 Some(b) => d < self.limit || (d == self.limit && id < b.triangle),
             };
             if better {
-                self.best = Some(Nearest { distance_squared: d, point, triangle: id, feature });
+                self.best =
+                    Some(NearestPoint { distance_squared: d, point, triangle: id, feature });
                 self.limit = d;
             }
         }

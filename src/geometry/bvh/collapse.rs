@@ -15,7 +15,7 @@ const LEAF_MAX: u32 = 4;
 
 /// What is best done with a binary node.
 #[derive(Debug, Clone, Copy, Default)]
-struct Choice {
+struct CollapseChoice {
     /// The least cost with at most 1 to 7 roots.
     cost: [f32; WIDTH - 1],
     /// With at most 2 to 8 roots: how many of them are the left child's; 0: one root fewer is no
@@ -27,15 +27,16 @@ struct Choice {
 }
 
 /// The plan for each binary node.
-pub(super) struct Plan<'a> {
+pub(super) struct CollapsePlan<'a> {
     binary: &'a Bvh2,
-    choices: Vec<Choice>,
+    choices: Vec<CollapseChoice>,
 }
 
-impl<'a> Plan<'a> {
-    pub fn new(binary: &'a Bvh2) -> Plan<'a> {
+impl<'a> CollapsePlan<'a> {
+    pub fn new(binary: &'a Bvh2) -> CollapsePlan<'a> {
         let nodes = &binary.nodes;
-        let mut plan = Plan { binary, choices: vec![Choice::default(); nodes.len()] };
+        let mut plan =
+            CollapsePlan { binary, choices: vec![CollapseChoice::default(); nodes.len()] };
         // Parents before children, then backwards.
         let mut order = Vec::with_capacity(nodes.len());
         order.push(0u32);
@@ -53,21 +54,31 @@ impl<'a> Plan<'a> {
         plan
     }
 
-    fn choose(&self, n: usize) -> Choice {
+    fn choose(&self, n: usize) -> CollapseChoice {
         let node = &self.binary.nodes[n];
         let area = node.aabb().half_area();
         // A leaf costs what a node costs; with half or three times as much the trees are as fast.
         let as_leaf = area;
         if node.is_leaf() {
-            return Choice { cost: [as_leaf; 7], left: [0; 7], count: node.prim_count, leaf: true };
+            return CollapseChoice {
+                cost: [as_leaf; 7],
+                left: [0; 7],
+                count: node.prim_count,
+                leaf: true,
+            };
         }
         let (l, r) = (
             &self.choices[node.first_index as usize],
             &self.choices[node.first_index as usize + 1],
         );
-        let mut out = Choice { count: l.count + r.count, ..Choice::default() };
+        let mut out = CollapseChoice { count: l.count + r.count, ..CollapseChoice::default() };
         if out.count <= LEAF_MAX {
-            return Choice { cost: [as_leaf; 7], left: [0; 7], count: out.count, leaf: true };
+            return CollapseChoice {
+                cost: [as_leaf; 7],
+                left: [0; 7],
+                count: out.count,
+                leaf: true,
+            };
         }
         // With exactly 2 to 8 roots.
         let mut spread = [f32::INFINITY; WIDTH - 1];

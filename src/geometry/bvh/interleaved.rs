@@ -3,12 +3,9 @@
 //! not depend on each other, so a few take turns, one node or leaf each: while one's next node is
 //! on its way from memory, the others work.
 
-use super::traverse::{StackEntry, fetch, nearest_of, open};
+use super::traverse::{LANES, StackEntry, fetch, nearest_of, open};
 use super::{Bvh8, LEAF, Ray, TreeHit};
 use crate::simd::wide::{Prepared, Wide, WideWork};
-
-/// Rays that take turns.
-pub(super) const LANES: usize = 4;
 
 /// The nearest hits of many rays.
 pub(super) struct Interleaved<'a, A> {
@@ -24,7 +21,7 @@ pub(super) struct Interleaved<'a, A> {
 
 /// One ray under way.
 #[derive(Clone, Copy)]
-struct Lane {
+struct RayLane {
     ready: Prepared,
     t_max: f32,
     best: Option<TreeHit>,
@@ -36,17 +33,17 @@ struct Lane {
     top: usize,
 }
 
-impl Lane {
+impl RayLane {
     #[inline(always)]
-    fn start(rays: &[Ray], ray: usize, floor: usize) -> Lane {
+    fn start(rays: &[Ray], ray: usize, floor: usize) -> RayLane {
         let Ray { origin, dir, t_min, t_max } = rays[ray];
         let ready = Prepared::new(origin.to_array(), dir.to_array(), t_min);
-        Lane { ready, t_max, best: None, ray, at: 0, floor, top: floor }
+        RayLane { ready, t_max, best: None, ray, at: 0, floor, top: floor }
     }
 }
 
 impl<A: Fn(usize, u32) -> bool> WideWork for Interleaved<'_, A> {
-    type Out = ();
+    type Output = ();
 
     #[inline(always)]
     fn run<W: Wide>(self, w: W) {
@@ -55,8 +52,8 @@ impl<A: Fn(usize, u32) -> bool> WideWork for Interleaved<'_, A> {
         if tree.nodes.is_empty() || rays.is_empty() {
             return;
         }
-        let mut lanes: [Lane; LANES] =
-            std::array::from_fn(|i| Lane::start(rays, i.min(rays.len() - 1), i * tree.stack));
+        let mut lanes: [RayLane; LANES] =
+            std::array::from_fn(|i| RayLane::start(rays, i.min(rays.len() - 1), i * tree.stack));
         let mut near = [0.0f32; 8];
         let mut next = LANES;
         if rays.len() >= LANES {
@@ -68,7 +65,7 @@ impl<A: Fn(usize, u32) -> bool> WideWork for Interleaved<'_, A> {
                         if next == rays.len() {
                             break 'turns;
                         }
-                        *lane = Lane::start(rays, next, lane.floor);
+                        *lane = RayLane::start(rays, next, lane.floor);
                         next += 1;
                     }
                 }
@@ -87,7 +84,7 @@ impl<A: Fn(usize, u32) -> bool> WideWork for Interleaved<'_, A> {
 fn step<W: Wide>(
     w: W,
     tree: &Bvh8,
-    lane: &mut Lane,
+    lane: &mut RayLane,
     stack: &mut [StackEntry],
     near: &mut [f32; 8],
     accept: &impl Fn(usize, u32) -> bool,

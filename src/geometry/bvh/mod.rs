@@ -6,9 +6,20 @@
 //! better than single precision gives them, about 1e-6 of the larger of the mesh's extent and the
 //! ray's distance from it.
 //!
-//! Built as a binary tree by locally ordered clustering (Meister and Bittner 2018, crate `obvhs`),
-//! improved by a short reinsertion (Meister and Bittner 2017), then collapsed into wide nodes at
-//! the least expected cost.
+//! Built as a binary tree by parallel locally-ordered clustering (PLOC: Meister and Bittner,
+//! "Parallel locally-ordered clustering for bounding volume hierarchy construction", 2018, crate
+//! `obvhs`), improved by a short reinsertion ("Parallel reinsertion for bounding volume hierarchy
+//! optimization", 2018, the same authors), then collapsed into wide nodes at the least expected cost
+//! (`collapse.rs`). Rays are tested as Woop, Benthin and Wald do ([`crate::simd::wide`]).
+//!
+//! The workspace has three trees of boxes, each for what the others cannot do:
+//!
+//! - [`Bvh8`], here: single precision, static, the fastest for millions of rays and nearest points.
+//!   Its build looks for the best tree, which is worth it for many queries only.
+//! - `boolean::box_tree`: double precision and no padding, so that a pair of boxes that do not meet
+//!   proves that two triangles do not; two trees are descended together.
+//! - `boxtree` of the clay crate: no pointers and a fixed shape, so that a dab refits the few leaves
+//!   that it touched, and a copy of a page is a copy of bytes.
 
 mod build;
 mod closest;
@@ -23,18 +34,22 @@ use crate::TriMesh;
 use crate::job::{Cancelled, Job};
 use crate::simd::wide;
 pub use refit::Parents;
-pub use traverse::Stack;
+pub use traverse::TraversalStack;
 
-pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Node, Pack};
-pub use closest::{Feature, Nearest, REACH, nearest_on_triangle};
+pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Pack, WideNode};
+pub use closest::{Feature, NearestPoint, REACH, nearest_on_triangle};
 
 /// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <=
 /// t_max` count.
 #[derive(Debug, Clone, Copy)]
 pub struct Ray {
+    /// Where `t` is 0.
     pub origin: Vec3,
+    /// The direction; not zero.
     pub dir: Vec3,
+    /// The least `t` that counts; may be negative.
     pub t_min: f32,
+    /// The largest `t` that counts; infinity for an unbounded ray.
     pub t_max: f32,
 }
 
@@ -49,10 +64,13 @@ impl Ray {
 /// corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TreeHit {
+    /// In lengths of the ray's `dir`.
     pub t: f32,
     /// Index into the mesh's `triangles`.
     pub triangle: u32,
+    /// The weight of corner `b`, 0 to 1.
     pub u: f32,
+    /// The weight of corner `c`, 0 to 1.
     pub v: f32,
 }
 
@@ -60,7 +78,7 @@ pub struct TreeHit {
 /// reference to the mesh.
 #[derive(Debug, Clone)]
 pub struct Bvh8 {
-    nodes: Vec<Node>,
+    nodes: Vec<WideNode>,
     packs: Vec<Pack>,
     bounds: (Vec3, Vec3),
     /// Entries that a traversal can have waiting at once.
@@ -100,7 +118,7 @@ impl Bvh8 {
 
     /// The wide nodes. Node 0 is the root; children come after their parent. The boxes are padded
     /// by about 1e-6 of the extent.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[WideNode] {
         &self.nodes
     }
 
@@ -122,19 +140,19 @@ impl Bvh8 {
 
     /// The nearest hit on a triangle that `accept` takes.
     pub fn closest_hit(&self, ray: Ray, accept: impl Fn(u32) -> bool) -> Option<TreeHit> {
-        self.closest_hit_with(&mut Stack::new(), ray, accept)
+        self.closest_hit_with(&mut TraversalStack::new(), ray, accept)
     }
 
     /// The same for many rays: `stack` is reused, which saves about a tenth of a short ray's time.
     #[inline]
     pub fn closest_hit_with(
         &self,
-        stack: &mut Stack,
+        stack: &mut TraversalStack,
         ray: Ray,
         accept: impl Fn(u32) -> bool,
     ) -> Option<TreeHit> {
         let stack = stack.slots(self);
-        wide::dispatch(self.scalar, traverse::Closest { tree: self, ray: &ray, accept, stack })
+        wide::dispatch(self.scalar, traverse::ClosestHit { tree: self, ray: &ray, accept, stack })
     }
 
     /// The nearest hit of each ray on a triangle that `accept` takes (it is told the ray's index);
@@ -143,7 +161,7 @@ impl Bvh8 {
     #[inline]
     pub fn closest_hits(
         &self,
-        stack: &mut Stack,
+        stack: &mut TraversalStack,
         rays: &[Ray],
         accept: impl Fn(usize, u32) -> bool,
         hits: &mut Vec<Option<TreeHit>>,
@@ -175,9 +193,9 @@ impl Bvh8 {
     /// Every hit, each triangle once, in no order; `visit` returns whether to go on.
     #[inline]
     pub fn each_hit(&self, ray: Ray, visit: impl FnMut(TreeHit) -> bool) {
-        let mut stack = Stack::new();
+        let mut stack = TraversalStack::new();
         let stack = stack.slots(self);
-        wide::dispatch(self.scalar, traverse::Each { tree: self, ray: &ray, visit, stack });
+        wide::dispatch(self.scalar, traverse::EachHit { tree: self, ray: &ray, visit, stack });
     }
 
     /// Every hit, nearest first; equal distances by triangle.

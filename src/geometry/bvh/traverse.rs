@@ -1,7 +1,10 @@
 //! The walk down the tree, written once and compiled for each processor.
 
-use super::{Bvh8, LEAF, Node, Pack, Ray, TreeHit};
+use super::{Bvh8, LEAF, Pack, Ray, TreeHit, WideNode};
 use crate::simd::wide::{Prepared, Wide, WideWork};
+
+/// Rays that take turns in an interleaved traversal ([`super::interleaved`]).
+pub(super) const LANES: usize = 4;
 
 /// A subtree still to visit: in the upper half where the ray enters it, in the lower half its
 /// place. As whole numbers two of them are put in order without a branch that the processor would
@@ -29,16 +32,17 @@ impl StackEntry {
 
 /// The subtrees still to visit; kept between rays so that it is made once.
 #[derive(Debug, Clone, Default)]
-pub struct Stack(Vec<StackEntry>);
+pub struct TraversalStack(Vec<StackEntry>);
 
-impl Stack {
+impl TraversalStack {
+    /// An empty stack; the first ray makes it as large as its tree needs.
     pub fn new() -> Self {
-        Stack::default()
+        TraversalStack::default()
     }
 
     #[inline(always)]
     pub(super) fn slots(&mut self, tree: &Bvh8) -> &mut [StackEntry] {
-        let need = tree.stack * crate::bvh::interleaved::LANES;
+        let need = tree.stack * LANES;
         if self.0.len() < need {
             self.0.resize(need, StackEntry(0));
         }
@@ -98,7 +102,7 @@ fn walk<W: Wide>(
 pub(super) fn open<W: Wide>(
     w: W,
     tree: &Bvh8,
-    node: &Node,
+    node: &WideNode,
     mut mask: u32,
     near: &[f32; 8],
     slots: &mut [StackEntry],
@@ -172,15 +176,15 @@ pub(super) fn nearest_of<W: Wide>(
     t_max
 }
 
-pub(super) struct Closest<'a, A> {
+pub(super) struct ClosestHit<'a, A> {
     pub tree: &'a Bvh8,
     pub ray: &'a Ray,
     pub accept: A,
     pub stack: &'a mut [StackEntry],
 }
 
-impl<A: Fn(u32) -> bool> WideWork for Closest<'_, A> {
-    type Out = Option<TreeHit>;
+impl<A: Fn(u32) -> bool> WideWork for ClosestHit<'_, A> {
+    type Output = Option<TreeHit>;
 
     #[inline(always)]
     fn run<W: Wide>(self, w: W) -> Option<TreeHit> {
@@ -215,7 +219,7 @@ pub(super) struct OneByOne<'a, A> {
 }
 
 impl<A: Fn(usize, u32) -> bool> WideWork for OneByOne<'_, A> {
-    type Out = ();
+    type Output = ();
 
     #[inline(always)]
     fn run<W: Wide>(self, w: W) {
@@ -225,15 +229,15 @@ impl<A: Fn(usize, u32) -> bool> WideWork for OneByOne<'_, A> {
     }
 }
 
-pub(super) struct Each<'a, V> {
+pub(super) struct EachHit<'a, V> {
     pub tree: &'a Bvh8,
     pub ray: &'a Ray,
     pub visit: V,
     pub stack: &'a mut [StackEntry],
 }
 
-impl<V: FnMut(TreeHit) -> bool> WideWork for Each<'_, V> {
-    type Out = ();
+impl<V: FnMut(TreeHit) -> bool> WideWork for EachHit<'_, V> {
+    type Output = ();
 
     #[inline(always)]
     fn run<W: Wide>(mut self, w: W) {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::winding::Winding;
 use crate::TriMesh;
-use crate::bvh::{Bvh8, Nearest};
+use crate::bvh::{Bvh8, NearestPoint};
 use crate::job::{Cancelled, Job};
 pub use topology::Topology;
 
@@ -32,9 +32,11 @@ pub enum Sign {
 
 /// A mesh made ready for questions of distance.
 #[derive(Debug, Clone)]
-pub struct Solid {
+pub struct DistanceSolid {
+    /// The tree over the triangles.
     pub tree: Bvh8,
     winding: Winding,
+    /// Which triangles meet at an edge, and the pseudonormals.
     pub topology: Topology,
     sign: Sign,
 }
@@ -42,24 +44,25 @@ pub struct Solid {
 /// Points that one task works through.
 const CHUNK: usize = 256;
 
-impl Solid {
-    /// About 0.4 us a triangle. The sign is the winding number's; [`Solid::with_sign`] changes
+impl DistanceSolid {
+    /// About 0.4 us a triangle. The sign is the winding number's; [`DistanceSolid::with_sign`] changes
     /// that.
-    pub fn build(mesh: &TriMesh, job: &Job) -> Result<Solid, Cancelled> {
+    pub fn build(mesh: &TriMesh, job: &Job) -> Result<DistanceSolid, Cancelled> {
         let (tree, topology) = rayon::join(|| Bvh8::build(mesh, job), || Topology::build(mesh));
         let tree = tree?;
         job.check()?;
         let winding = Winding::build(&tree);
-        Ok(Solid { tree, winding, topology, sign: Sign::default() })
+        Ok(DistanceSolid { tree, winding, topology, sign: Sign::default() })
     }
 
     /// [`Sign::Pseudonormal`] is refused, and the winding number kept, on meshes that are not
     /// closed.
-    pub fn with_sign(mut self, sign: Sign) -> Solid {
+    pub fn with_sign(mut self, sign: Sign) -> DistanceSolid {
         self.sign = if self.topology.closed { sign } else { Sign::Winding };
         self
     }
 
+    /// How inside is told from outside.
     pub fn sign(&self) -> Sign {
         self.sign
     }
@@ -70,7 +73,7 @@ impl Solid {
     }
 
     /// Whether `p` is inside. `nearest` is the mesh's nearest point, where the caller has it.
-    pub fn inside(&self, p: DVec3, nearest: Option<&Nearest>) -> bool {
+    pub fn inside(&self, p: DVec3, nearest: Option<&NearestPoint>) -> bool {
         if self.sign == Sign::Pseudonormal
             && let Some(n) = nearest.copied().or_else(|| self.tree.nearest(p, f64::INFINITY))
             && let Some(normal) = self.topology.pseudonormal(&n)
@@ -96,13 +99,17 @@ impl Solid {
         }
     }
 
-    /// [`Solid::signed_distance`] of each point, on all threads.
+    /// [`DistanceSolid::signed_distance`] of each point, on all threads.
     pub fn signed_distances(&self, points: &[DVec3], job: &Job) -> Result<Vec<f64>, Cancelled> {
         self.batch(points, f64::INFINITY, job, |p| self.signed_distance(p))
     }
 
     /// The nearest point to each, on all threads; `None` as in [`Bvh8::nearest`].
-    pub fn nearest(&self, points: &[DVec3], job: &Job) -> Result<Vec<Option<Nearest>>, Cancelled> {
+    pub fn nearest(
+        &self,
+        points: &[DVec3],
+        job: &Job,
+    ) -> Result<Vec<Option<NearestPoint>>, Cancelled> {
         self.batch(points, None, job, |p| self.tree.nearest(p, f64::INFINITY))
     }
 

@@ -3,7 +3,8 @@
 use glam::{DVec3, Vec3};
 
 use crate::TriMesh;
-use crate::bvh::{Feature, Nearest};
+use crate::bvh::{Feature, NearestPoint};
+use crate::weld::weld_positions;
 
 /// Marks an edge with no partner, or with too many.
 pub const NO_PARTNER: u32 = u32::MAX;
@@ -11,7 +12,7 @@ pub const NO_PARTNER: u32 = u32::MAX;
 /// The surface with vertices at the same place taken as one.
 #[derive(Debug, Clone)]
 pub struct Topology {
-    /// The welded vertices' places, in order of x, y, z.
+    /// The welded vertices' positions, in the order of their first appearance in the mesh.
     pub positions: Vec<Vec3>,
     /// Welded corners of each triangle of the mesh; triangles with a bad index have `[u32::MAX;
     /// 3]`.
@@ -29,14 +30,17 @@ pub struct Topology {
 }
 
 impl Topology {
+    /// Welds the corners of `mesh` and finds partners and normals, in time linear in its size but
+    /// for the sorting of edges around a vertex.
     pub fn build(mesh: &TriMesh) -> Topology {
-        let (weld, positions) = weld(&mesh.positions);
+        let (weld, positions) = weld_positions(&mesh.positions);
         let triangles: Vec<[u32; 3]> = mesh
             .triangles
             .iter()
             .map(|t| {
                 let w = t.map(|v| weld.get(v as usize).copied().unwrap_or(u32::MAX));
-                if w.contains(&u32::MAX) { [u32::MAX; 3] } else { w }
+                let usable = |&v: &u32| positions.get(v as usize).is_some_and(|p| p.is_finite());
+                if w.iter().all(usable) { w } else { [u32::MAX; 3] }
             })
             .collect();
         let mut face_normals = vec![DVec3::ZERO; triangles.len()];
@@ -64,7 +68,7 @@ impl Topology {
 
     /// The normal that tells the sides of the surface apart at a nearest point; `None` where the
     /// mesh does not say.
-    pub fn pseudonormal(&self, at: &Nearest) -> Option<DVec3> {
+    pub fn pseudonormal(&self, at: &NearestPoint) -> Option<DVec3> {
         let t = at.triangle as usize;
         let tri = self.triangles[t];
         let normal = match at.feature {
@@ -90,33 +94,6 @@ impl Topology {
         };
         (normal != DVec3::ZERO).then_some(normal)
     }
-}
-
-/// Vertices at exactly the same place become one; the welded index of each, and the places.
-fn weld(positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
-    // -0 is 0.
-    let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut order: Vec<([u32; 3], u32)> =
-        positions.iter().enumerate().map(|(i, &p)| (key(p), i as u32)).collect();
-    radsort(&mut order);
-    let mut out = vec![u32::MAX; positions.len()];
-    let mut places: Vec<Vec3> = Vec::with_capacity(positions.len());
-    let mut last = None;
-    for (k, i) in order {
-        if last != Some(k) {
-            places.push(positions[i as usize]);
-            last = Some(k);
-        }
-        if positions[i as usize].is_finite() {
-            out[i as usize] = places.len() as u32 - 1;
-        }
-    }
-    (out, places)
-}
-
-fn radsort(order: &mut [([u32; 3], u32)]) {
-    use rayon::prelude::*;
-    order.par_sort_unstable();
 }
 
 /// The partner of each half-edge: of two triangles that pass an edge opposite ways. And whether all

@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Grid;
-use crate::distance::Solid;
+use super::DistanceGrid;
+use crate::distance::DistanceSolid;
 use crate::job::{Cancelled, Job};
 
 /// Samples along a block's side.
@@ -19,13 +19,13 @@ const BLOCK: usize = 8;
 
 /// What a parent knows of one solid at its middle.
 #[derive(Clone, Copy)]
-struct Known {
+struct KnownDistance {
     at: DVec3,
     signed: f64,
 }
 
-struct Sampler<'a, const N: usize, F> {
-    solids: [&'a Solid; N],
+struct BandSampler<'a, const N: usize, F> {
+    solids: [&'a DistanceSolid; N],
     combine: &'a F,
     origin: DVec3,
     spacing: f64,
@@ -34,13 +34,13 @@ struct Sampler<'a, const N: usize, F> {
     closed: bool,
 }
 
-impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
+impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> BandSampler<'_, N, F> {
     fn place(&self, i: f64, j: f64, k: f64) -> DVec3 {
         self.origin + DVec3::new(i, j, k) * self.spacing
     }
 
     /// Each solid's signed distance at `p`, from what is known nearby.
-    fn signed(&self, p: DVec3, near: &[[Known; N]]) -> [Known; N] {
+    fn signed(&self, p: DVec3, near: &[[KnownDistance; N]]) -> [KnownDistance; N] {
         std::array::from_fn(|s| {
             let solid = self.solids[s];
             let mut within = f64::INFINITY;
@@ -57,7 +57,7 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
                 Some(n) => n[s].signed < 0.0,
                 None => solid.inside(p, found.as_ref()),
             };
-            Known { at: p, signed: if inside { -d } else { d } }
+            KnownDistance { at: p, signed: if inside { -d } else { d } }
         })
     }
 
@@ -68,7 +68,7 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
         k0: usize,
         from: [usize; 3],
         side: usize,
-        near: &[[Known; N]],
+        near: &[[KnownDistance; N]],
     ) {
         let [nx, ny, _] = self.size;
         let to: [usize; 3] = std::array::from_fn(|a| (from[a] + side).min(self.size[a]));
@@ -136,20 +136,20 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Sampler<'_, N, F> {
     }
 }
 
-impl Grid {
+impl DistanceGrid {
     /// Samples `combine` of the solids' signed distances near where it is zero. `combine` must
     /// change by no more than its arguments do: minima, maxima, negation and adding a constant are
     /// such. The outermost samples are always outside.
     pub fn band<const N: usize>(
-        solids: [&Solid; N],
+        solids: [&DistanceSolid; N],
         combine: impl Fn([f64; N]) -> f64 + Sync,
-        layout: Grid,
+        layout: DistanceGrid,
         job: &Job,
-    ) -> Result<Grid, Cancelled> {
+    ) -> Result<DistanceGrid, Cancelled> {
         let mut grid = layout;
         let [nx, ny, nz] = grid.size;
         grid.values = vec![0.0; nx * ny * nz];
-        let sampler = Sampler {
+        let sampler = BandSampler {
             solids,
             combine: &combine,
             origin: grid.origin,
@@ -163,7 +163,7 @@ impl Grid {
             let k0 = s * BLOCK;
             for j in (0..ny).step_by(BLOCK) {
                 job.check()?;
-                let mut last: Vec<[Known; N]> = Vec::new();
+                let mut last: Vec<[KnownDistance; N]> = Vec::new();
                 for i in (0..nx).step_by(BLOCK) {
                     let p = sampler.place(i as f64 + 3.5, j as f64 + 3.5, k0 as f64 + 3.5);
                     let known = sampler.signed(p, &last);

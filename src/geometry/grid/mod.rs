@@ -6,13 +6,14 @@ mod npy;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::distance::Solid;
+use super::distance::DistanceSolid;
 use crate::job::{Cancelled, Job};
 pub use npy::NpyError;
 
 /// Samples at `origin + spacing * (i, j, k)`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct DistanceGrid {
+    /// The place of sample (0, 0, 0), in the mesh's unit.
     pub origin: DVec3,
     /// The mesh's unit.
     pub spacing: f64,
@@ -25,10 +26,10 @@ pub struct Grid {
 /// Most samples of one grid: 8 GiB.
 pub const MAX_SAMPLES: usize = 1 << 31;
 
-impl Grid {
+impl DistanceGrid {
     /// Where the samples of a grid of `side` samples along the longest side lie: the box of the
     /// mesh, `margin` samples wider on every side. `side` is at least 2 + 2 * `margin`.
-    pub fn layout((lo, hi): (DVec3, DVec3), side: usize, margin: usize) -> Grid {
+    pub fn layout((lo, hi): (DVec3, DVec3), side: usize, margin: usize) -> DistanceGrid {
         let side = side.max(2 + 2 * margin);
         let extent = (hi - lo).max(DVec3::ZERO);
         let longest = extent.max_element();
@@ -40,13 +41,17 @@ impl Grid {
         });
         let span = DVec3::from_array(size.map(|n| (n - 1) as f64)) * spacing;
         let centre = if lo.is_finite() && hi.is_finite() { (lo + hi) * 0.5 } else { DVec3::ZERO };
-        Grid { origin: centre - span * 0.5, spacing, size, values: Vec::new() }
+        DistanceGrid { origin: centre - span * 0.5, spacing, size, values: Vec::new() }
     }
 
     /// Every sample exact, on all threads. The sign is asked for only where the distances do not
     /// settle it: two samples further from the surface, together, than from each other are on the
     /// same side of a closed one.
-    pub fn sample(solid: &Solid, layout: Grid, job: &Job) -> Result<Grid, Cancelled> {
+    pub fn sample(
+        solid: &DistanceSolid,
+        layout: DistanceGrid,
+        job: &Job,
+    ) -> Result<DistanceGrid, Cancelled> {
         let mut grid = layout;
         let [nx, ny, nz] = grid.size;
         grid.values = vec![0.0; nx * ny * nz];
@@ -94,6 +99,7 @@ impl Grid {
         self.origin + DVec3::from_array(self.size.map(|n| (n - 1) as f64)) * self.spacing
     }
 
+    /// The sample at `(i, j, k)`. Panics out of range.
     pub fn value(&self, i: usize, j: usize, k: usize) -> f32 {
         self.values[(k * self.size[1] + j) * self.size[0] + i]
     }

@@ -8,21 +8,33 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Grid, MAX_SAMPLES};
+use super::{DistanceGrid, MAX_SAMPLES};
 
 const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
 
 /// Why a file is no grid.
 #[derive(Debug, thiserror::Error)]
 pub enum NpyError {
+    /// The file could not be read.
     #[error("{path}: {source}")]
-    Io { path: String, source: io::Error },
+    Io {
+        /// The file.
+        path: String,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The file is no grid of this kind.
     #[error("{path}: expected {expected}")]
-    Format { path: String, expected: &'static str },
+    Format {
+        /// The file.
+        path: String,
+        /// What was expected.
+        expected: &'static str,
+    },
 }
 
-impl Grid {
-    /// Writes the grid; [`Grid::read_npy`] gives it back bit by bit.
+impl DistanceGrid {
+    /// Writes the grid; [`DistanceGrid::read_npy`] gives it back bit by bit.
     pub fn write_npy(&self, out: &mut dyn Write) -> io::Result<()> {
         let [x, y, z] = self.size;
         let o = self.origin;
@@ -44,8 +56,8 @@ impl Grid {
         Ok(())
     }
 
-    /// Reads what [`Grid::write_npy`] wrote.
-    pub fn read_npy(path: &Path) -> Result<Grid, NpyError> {
+    /// Reads what [`DistanceGrid::write_npy`] wrote.
+    pub fn read_npy(path: &Path) -> Result<DistanceGrid, NpyError> {
         let name = path.display().to_string();
         let bytes =
             std::fs::read(path).map_err(|source| NpyError::Io { path: name.clone(), source })?;
@@ -53,7 +65,7 @@ impl Grid {
     }
 }
 
-fn parse(bytes: &[u8]) -> Result<Grid, &'static str> {
+fn parse(bytes: &[u8]) -> Result<DistanceGrid, &'static str> {
     let rest = bytes.strip_prefix(MAGIC).ok_or("a NumPy file of version 1.0")?;
     let (length, rest) = rest.split_first_chunk::<2>().ok_or("a header")?;
     let (header, data) =
@@ -86,7 +98,7 @@ fn parse(bytes: &[u8]) -> Result<Grid, &'static str> {
     }
     let values =
         data.chunks_exact(4).map(|c| f32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
-    Ok(Grid { origin: DVec3::new(ox, oy, oz), spacing, size: [x, y, z], values })
+    Ok(DistanceGrid { origin: DVec3::new(ox, oy, oz), spacing, size: [x, y, z], values })
 }
 
 #[cfg(test)]
@@ -96,7 +108,7 @@ mod tests {
     #[test]
     fn a_grid_survives_the_file_and_noise_does_not_pass() {
         let values: Vec<f32> = (0..24).map(|i| (i as f32).sin()).collect();
-        let grid = Grid {
+        let grid = DistanceGrid {
             origin: DVec3::new(0.1, -2.5e-7, 3e9),
             spacing: 1.0 / 3.0,
             size: [4, 3, 2],

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Removes the temporary file unless it was renamed.
-struct Temporary {
+struct TemporaryFile {
     path: PathBuf,
     keep: bool,
 }
 
-impl Drop for Temporary {
+impl Drop for TemporaryFile {
     fn drop(&mut self) {
         if !self.keep {
             let _ = std::fs::remove_file(&self.path);
@@ -67,14 +67,14 @@ fn create(
     folder: &Path,
     name: &std::ffi::OsStr,
     count: &AtomicU32,
-) -> io::Result<(Temporary, File)> {
+) -> io::Result<(TemporaryFile, File)> {
     for _ in 0..100 {
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);
         hidden.push(format!(".{}-{}.part", std::process::id(), count.fetch_add(1, Relaxed)));
         let path = folder.join(hidden);
         match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => return Ok((Temporary { path, keep: false }, file)),
+            Ok(file) => return Ok((TemporaryFile { path, keep: false }, file)),
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
             Err(e) => return Err(e),
         }

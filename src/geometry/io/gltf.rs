@@ -15,37 +15,37 @@ use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
-use super::problem::{At, Problem, Stop, excerpt};
-use super::stl::weld;
+use super::problem::{FilePlace, FileProblem, ParseError, excerpt};
 use super::text::refuse;
 use crate::job::Job;
+use crate::weld::weld_keys;
 use crate::{PolyMesh, repair};
 
 /// Corners that instances may add up to: a small file can name one mesh a million times.
 pub(super) const MAX_INSTANCED: usize = 200_000_000;
 
-fn bad(at: At, expected: impl Into<String>, found: impl Into<String>) -> Stop {
-    Problem::new(at, expected.into(), found.into()).into()
+fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
+    FileProblem::new(at, expected.into(), found.into()).into()
 }
 
 /// A GLB container's two chunks.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Stop> {
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> {
     let word =
         |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let (Some(version), Some(length)) = (word(4), word(8)) else {
         return Err(bad(
-            At::Byte(bytes.len() as u64),
+            FilePlace::Byte(bytes.len() as u64),
             "a GLB header of 12 bytes",
             "the end of the file",
         ));
     };
     if version != 2 {
-        return Err(bad(At::Byte(4), "version 2", version.to_string()));
+        return Err(bad(FilePlace::Byte(4), "version 2", version.to_string()));
     }
     if length as usize > bytes.len() {
         let found = format!("the end of the file after {} bytes", bytes.len());
         return Err(bad(
-            At::Byte(bytes.len() as u64),
+            FilePlace::Byte(bytes.len() as u64),
             format!("{length} bytes as the header states"),
             found,
         ));
@@ -55,7 +55,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Stop> {
         let (Some(size), Some(kind)) = (word(at), word(at + 4)) else { break };
         let Some(body) = bytes.get(at + 8..at + 8 + size as usize) else {
             return Err(bad(
-                At::Byte(at as u64),
+                FilePlace::Byte(at as u64),
                 format!("a chunk of {size} bytes"),
                 "the end of the file",
             ));
@@ -67,7 +67,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Stop> {
         }
         at += 8 + size as usize;
     }
-    let json = json.ok_or_else(|| bad(At::Byte(12), "a chunk of JSON", "none"))?;
+    let json = json.ok_or_else(|| bad(FilePlace::Byte(12), "a chunk of JSON", "none"))?;
     Ok((json, binary))
 }
 
@@ -76,21 +76,21 @@ pub(super) fn parse(
     name: &Path,
     warnings: &mut Vec<String>,
     job: &Job,
-) -> Result<PolyMesh, Stop> {
+) -> Result<PolyMesh, ParseError> {
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
     let root: Root = serde_json::from_slice(json)
-        .map_err(|e| bad(At::Line(e.line() as u64), "glTF 2.0 as JSON", format!("{e}")))?;
+        .map_err(|e| bad(FilePlace::Line(e.line() as u64), "glTF 2.0 as JSON", format!("{e}")))?;
     for needed in &root.extensions_required {
         if needed.contains("compression") || needed.contains("meshopt") {
             return Err(bad(
-                At::File,
+                FilePlace::File,
                 "geometry that is not compressed",
                 format!("the extension {needed}"),
             ));
         }
         warnings.push(format!("the extension {needed} is not looked at"));
     }
-    let mut file = File {
+    let mut file = GltfFile {
         root: &root,
         buffers: Vec::new(),
         mesh: PolyMesh::new(),
@@ -104,14 +104,14 @@ pub(super) fn parse(
         let bytes = match &buffer.uri {
             None if n == 0 => binary
                 .map(|b| b.to_vec())
-                .ok_or_else(|| bad(At::File, "a binary chunk for buffer 0", "none"))?,
-            None => return Err(bad(At::File, format!("a uri of buffer {n}"), "none")),
+                .ok_or_else(|| bad(FilePlace::File, "a binary chunk for buffer 0", "none"))?,
+            None => return Err(bad(FilePlace::File, format!("a uri of buffer {n}"), "none")),
             Some(uri) => fetch(uri, name, n)?,
         };
         if (bytes.len() as u64) < buffer.byte_length.0 {
             let found = format!("{} bytes", bytes.len());
             return Err(bad(
-                At::File,
+                FilePlace::File,
                 format!("{} bytes in buffer {n}", buffer.byte_length.0),
                 found,
             ));
@@ -128,13 +128,17 @@ pub(super) fn parse(
     while let Some((n, outer)) = todo.pop() {
         job.check()?;
         let Some(node) = root.nodes.get(n) else {
-            return Err(bad(At::File, format!("a node below {}", root.nodes.len()), n.to_string()));
+            return Err(bad(
+                FilePlace::File,
+                format!("a node below {}", root.nodes.len()),
+                n.to_string(),
+            ));
         };
         if std::mem::replace(&mut seen[n], true) {
             if scene.is_none() {
                 continue;
             }
-            return Err(bad(At::File, "a tree of nodes", format!("node {n} twice")));
+            return Err(bad(FilePlace::File, "a tree of nodes", format!("node {n} twice")));
         }
         let own = match node.matrix {
             Some(m) => DMat4::from_cols_array(&m.map(f64::from)),
@@ -157,7 +161,7 @@ pub(super) fn parse(
     }
     let mut mesh = file.mesh;
     if mesh.face_count() == 0 {
-        return Err(bad(At::File, "a node with triangles in the default scene", "none"));
+        return Err(bad(FilePlace::File, "a node with triangles in the default scene", "none"));
     }
     mesh.groups = (file.groups.windows(2).any(|w| w[0] != w[1])).then_some(file.groups);
     mesh.colours = file.coloured.then_some(file.colours);
@@ -165,16 +169,16 @@ pub(super) fn parse(
 }
 
 /// A buffer's bytes, inside the JSON or in a file in the same folder or below it, and nowhere else.
-fn fetch(uri: &str, name: &Path, n: usize) -> Result<Vec<u8>, Stop> {
+fn fetch(uri: &str, name: &Path, n: usize) -> Result<Vec<u8>, ParseError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let body = data.split_once(";base64,").map(|(_, b)| b);
         return body.and_then(base64).ok_or_else(|| {
-            bad(At::File, format!("base64 data in buffer {n}"), excerpt(uri.as_bytes()))
+            bad(FilePlace::File, format!("base64 data in buffer {n}"), excerpt(uri.as_bytes()))
         });
     }
     let refused = |why: &str| {
         bad(
-            At::File,
+            FilePlace::File,
             format!("the name of a file beside this one as buffer {n}"),
             format!("\"{uri}\" ({why})"),
         )
@@ -194,11 +198,7 @@ fn fetch(uri: &str, name: &Path, n: usize) -> Result<Vec<u8>, Stop> {
     if !path.starts_with(folder.canonicalize().map_err(told)?) {
         return Err(refused("it leads elsewhere"));
     }
-    let meta = std::fs::metadata(&path).map_err(told)?;
-    if !meta.is_file() || meta.len() > super::MAX_FILE {
-        return Err(refused("no plain file of a sane size"));
-    }
-    std::fs::read(&path).map_err(told)
+    super::read_regular(&path, super::MAX_FILE).map_err(told)
 }
 
 fn percent(uri: &str) -> Option<String> {
@@ -237,7 +237,7 @@ fn base64(text: &str) -> Option<Vec<u8>> {
     Some(out)
 }
 
-struct File<'a> {
+struct GltfFile<'a> {
     root: &'a Root,
     buffers: Vec<Vec<u8>>,
     mesh: PolyMesh,
@@ -247,12 +247,12 @@ struct File<'a> {
     left_out: usize,
 }
 
-impl File<'_> {
-    fn instance(&mut self, mesh: usize, place: DMat4, job: &Job) -> Result<(), Stop> {
+impl GltfFile<'_> {
+    fn instance(&mut self, mesh: usize, place: DMat4, job: &Job) -> Result<(), ParseError> {
         let root = self.root;
         let Some(source) = root.meshes.get(mesh) else {
             return Err(bad(
-                At::File,
+                FilePlace::File,
                 format!("a mesh below {}", root.meshes.len()),
                 mesh.to_string(),
             ));
@@ -269,7 +269,7 @@ impl File<'_> {
             };
             if self.mesh.corners.len() + corners.len() + triangles.len() > MAX_INSTANCED {
                 return Err(bad(
-                    At::File,
+                    FilePlace::File,
                     format!("at most {MAX_INSTANCED} corners in all instances"),
                     "more",
                 ));
@@ -284,11 +284,15 @@ impl File<'_> {
         for p in &points {
             let q = place.transform_point3(*p) + DVec3::ZERO;
             if let Some(found) = q.to_array().into_iter().find_map(refuse) {
-                return Err(bad(At::File, format!("finite coordinates in mesh {mesh}"), found));
+                return Err(bad(
+                    FilePlace::File,
+                    format!("finite coordinates in mesh {mesh}"),
+                    found,
+                ));
             }
             placed.push(q.to_array().map(f64::to_bits));
         }
-        let (unique, of) = weld(placed.len(), job, |i| placed[i])?;
+        let (unique, of) = weld_keys(placed.len(), job, |i| placed[i])?;
         let base = self.mesh.positions.len() as u32;
         self.mesh.positions.extend(unique.iter().map(|b| DVec3::from(b.map(f64::from_bits))));
         self.coloured |= colours.iter().any(|&c| c != [255; 4]);
@@ -321,7 +325,7 @@ impl File<'_> {
         what: &str,
         points: &mut Vec<DVec3>,
         colours: &mut Vec<[u8; 4]>,
-    ) -> Result<Option<Vec<u32>>, Stop> {
+    ) -> Result<Option<Vec<u32>>, ParseError> {
         let (Checked::Valid(mode), Some(at)) =
             (primitive.mode, primitive.attributes.get(&Checked::Valid(Semantic::Positions)))
         else {
@@ -331,7 +335,7 @@ impl File<'_> {
         let place = self.accessor(at.value(), &format!("positions of {what}"))?;
         if place.parts != 3 {
             return Err(bad(
-                At::File,
+                FilePlace::File,
                 format!("three coordinates in the positions of {what}"),
                 place.parts.to_string(),
             ));
@@ -369,7 +373,7 @@ impl File<'_> {
                     || list.parts != 1
                 {
                     return Err(bad(
-                        At::File,
+                        FilePlace::File,
                         format!("whole numbers as indices of {what}"),
                         "another type",
                     ));
@@ -378,7 +382,11 @@ impl File<'_> {
             }
         };
         if let Some(out) = order.iter().find(|&&i| i >= count) {
-            return Err(bad(At::File, format!("indices below {count} in {what}"), out.to_string()));
+            return Err(bad(
+                FilePlace::File,
+                format!("indices below {count} in {what}"),
+                out.to_string(),
+            ));
         }
         Ok(Some(match mode {
             Mode::Triangles => order[..order.len() - order.len() % 3].to_vec(),
@@ -399,9 +407,9 @@ impl File<'_> {
         }))
     }
 
-    fn accessor(&self, n: usize, what: &str) -> Result<Values<'_>, Stop> {
+    fn accessor(&self, n: usize, what: &str) -> Result<AccessorValues<'_>, ParseError> {
         let wrong = |expected: &str, found: String| {
-            bad(At::File, format!("{expected} for the {what}"), found)
+            bad(FilePlace::File, format!("{expected} for the {what}"), found)
         };
         let a = self.root.accessors.get(n).ok_or_else(|| {
             wrong("an accessor", format!("number {n} of {}", self.root.accessors.len()))
@@ -452,12 +460,12 @@ impl File<'_> {
                 format!("a count of {count} in {} bytes", bytes.len()),
             ));
         }
-        Ok(Values { bytes, stride, count, parts, kind: kind.0, size })
+        Ok(AccessorValues { bytes, stride, count, parts, kind: kind.0, size })
     }
 }
 
 /// The numbers of an accessor; all within `bytes`.
-struct Values<'a> {
+struct AccessorValues<'a> {
     bytes: &'a [u8],
     stride: usize,
     count: usize,
@@ -466,7 +474,7 @@ struct Values<'a> {
     size: usize,
 }
 
-impl Values<'_> {
+impl AccessorValues<'_> {
     fn get(&self, i: usize, part: usize) -> f64 {
         let b = &self.bytes[i * self.stride + part * self.size..][..self.size];
         match (self.kind, b) {

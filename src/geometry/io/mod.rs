@@ -7,11 +7,13 @@
 //! with its line or byte where the format has one, what was expected and what was found.
 
 pub mod beside;
+mod format;
 mod gltf;
 mod obj;
 mod off;
 mod ply;
 pub mod problem;
+mod regular;
 mod stl;
 mod text;
 mod threemf;
@@ -21,7 +23,9 @@ mod write_packed;
 use std::path::Path;
 
 pub use beside::write_beside;
-pub use problem::{At, Problem, ReadError, Stop, WriteError};
+pub use format::MeshFormat;
+pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
+pub use regular::read_regular;
 pub use write::{encode, writable_format, write_mesh};
 
 use super::PolyMesh;
@@ -31,79 +35,46 @@ use crate::job::Job;
 /// taken.
 pub const MAX_FILE: u64 = 16 << 30;
 
-/// What a file turned out to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    Obj,
-    StlBinary,
-    StlAscii,
-    PlyAscii,
-    PlyLittle,
-    PlyBig,
-    Off,
-    Gltf,
-    Glb,
-    ThreeMf,
-}
-
-impl Format {
-    /// As people call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Format::Obj => "OBJ",
-            Format::StlBinary => "STL (binary)",
-            Format::StlAscii => "STL (text)",
-            Format::PlyAscii => "PLY (text)",
-            Format::PlyLittle => "PLY (binary, little-endian)",
-            Format::PlyBig => "PLY (binary, big-endian)",
-            Format::Off => "OFF",
-            Format::Gltf => "glTF",
-            Format::Glb => "GLB",
-            Format::ThreeMf => "3MF",
-        }
-    }
-}
-
 /// A mesh from a file.
 #[derive(Debug, Clone)]
-pub struct Loaded {
+pub struct LoadedMesh {
+    /// The mesh, with the file's coordinates as they stand.
     pub mesh: PolyMesh,
-    pub format: Format,
+    /// What the file turned out to be.
+    pub format: MeshFormat,
     /// What was left out or guessed, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Reads the mesh at `path`. Every vertex is finite in single precision too, every face has at
-/// least three corners, every index is in range; nothing else is promised: it may be open, crossed
-/// or inside out ([`super::check::report`] tells).
-pub fn read_mesh(path: &Path, job: &Job) -> Result<Loaded, ReadError> {
-    let io = |source| ReadError::Io { path: path.into(), source };
-    let meta = std::fs::metadata(path).map_err(io)?;
-    if meta.is_dir() {
-        return Err(io(std::io::Error::new(
-            std::io::ErrorKind::IsADirectory,
-            "expected a mesh file, found a folder",
-        )));
-    }
-    if meta.len() > MAX_FILE {
-        let found =
-            format!("{} bytes; the file and its mesh must both fit into memory", meta.len());
-        let problem = Problem::new(At::File, format!("at most {MAX_FILE} bytes"), found);
-        return Err(ReadError::Format { path: path.into(), problem });
-    }
-    let bytes = std::fs::read(path).map_err(io)?;
+/// Reads the mesh at `path`, a regular file of at most [`MAX_FILE`] bytes. Every vertex is finite
+/// in single precision too, every face has at least three corners, every index is in range; nothing
+/// else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
+pub fn read_mesh(path: &Path, job: &Job) -> Result<LoadedMesh, ReadError> {
+    read_mesh_within(path, MAX_FILE, job)
+}
+
+/// As [`read_mesh`], of at most `limit` bytes.
+pub fn read_mesh_within(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh, ReadError> {
+    let bytes = read_regular(path, limit).map_err(|source| match source.kind() {
+        std::io::ErrorKind::FileTooLarge => {
+            let problem =
+                FileProblem::new(FilePlace::File, format!("at most {limit} bytes"), source.to_string());
+            ReadError::Format { path: path.into(), problem }
+        }
+        _ => ReadError::Io { path: path.into(), source },
+    })?;
     job.progress(0.1);
     parse(&bytes, path, job).map_err(|stop| match stop {
-        Stop::Problem(problem) => ReadError::Format { path: path.into(), problem },
-        Stop::Cancelled => ReadError::Cancelled { path: path.into() },
+        ParseError::Problem(problem) => ReadError::Format { path: path.into(), problem },
+        ParseError::Cancelled => ReadError::Cancelled { path: path.into() },
     })
 }
 
 /// The mesh in `bytes`; `name` gives the extension.
-pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
+pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseError> {
     let extension = extension(name);
     if bytes.is_empty() {
-        return Err(Problem::new(At::Byte(0), "a mesh", "an empty file").into());
+        return Err(FileProblem::new(FilePlace::Byte(0), "a mesh", "an empty file").into());
     }
     let mut warnings = Vec::new();
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -115,34 +86,36 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<Loaded, Stop> {
         ply::parse(bytes, &mut warnings, job)?
     } else if bytes.starts_with(b"glTF") || is("glb") {
         if !bytes.starts_with(b"glTF") {
-            return Err(Problem::new(At::Byte(0), "\"glTF\"", problem::excerpt(bytes)).into());
+            return Err(
+                FileProblem::new(FilePlace::Byte(0), "\"glTF\"", problem::excerpt(bytes)).into()
+            );
         }
-        (gltf::parse(bytes, name, &mut warnings, job)?, Format::Glb)
+        (gltf::parse(bytes, name, &mut warnings, job)?, MeshFormat::Glb)
     } else if text.trim_ascii_start().starts_with(b"{") || is("gltf") {
-        (gltf::parse(text, name, &mut warnings, job)?, Format::Gltf)
+        (gltf::parse(text, name, &mut warnings, job)?, MeshFormat::Gltf)
     } else if bytes.starts_with(b"PK\x03\x04") || is("3mf") {
-        (threemf::parse(bytes, job)?, Format::ThreeMf)
+        (threemf::parse(bytes, job)?, MeshFormat::ThreeMf)
     } else if off::header(text).is_some() || is("off") {
-        (off::parse(text, &mut warnings, job)?, Format::Off)
+        (off::parse(text, &mut warnings, job)?, MeshFormat::Off)
     } else if stl::binary_exact(bytes) {
-        (stl::parse_binary(bytes, &mut warnings, job)?, Format::StlBinary)
+        (stl::parse_binary(bytes, &mut warnings, job)?, MeshFormat::StlBinary)
     } else if stl::looks_ascii(text) {
-        (stl::parse_ascii(text, &mut warnings, job)?, Format::StlAscii)
+        (stl::parse_ascii(text, &mut warnings, job)?, MeshFormat::StlAscii)
     } else if is("stl") {
-        (stl::parse_binary(bytes, &mut warnings, job)?, Format::StlBinary)
+        (stl::parse_binary(bytes, &mut warnings, job)?, MeshFormat::StlBinary)
     } else if is("obj") || looks_obj(text) {
-        (obj::parse(text, &mut warnings, job)?, Format::Obj)
+        (obj::parse(text, &mut warnings, job)?, MeshFormat::Obj)
     } else {
         let found = problem::excerpt(bytes);
-        return Err(Problem::new(
-            At::Byte(0),
+        return Err(FileProblem::new(
+            FilePlace::Byte(0),
             "a mesh as OBJ, STL, PLY, OFF, glTF, GLB or 3MF",
             found,
         )
         .into());
     };
     job.progress(1.0);
-    Ok(Loaded { mesh, format, warnings })
+    Ok(LoadedMesh { mesh, format, warnings })
 }
 
 fn extension(name: &Path) -> String {
@@ -151,6 +124,6 @@ fn extension(name: &Path) -> String {
 
 /// OBJ has no mark of its own: its first words are looked at where the extension says nothing.
 fn looks_obj(text: &[u8]) -> bool {
-    let word = text::Cursor::new(&text[..text.len().min(1 << 16)]).word_anywhere(true);
+    let word = text::TextCursor::new(&text[..text.len().min(1 << 16)]).word_anywhere(true);
     matches!(word, Some(b"v" | b"o" | b"g" | b"mtllib" | b"usemtl" | b"vn" | b"vt"))
 }

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::problem::{At, Problem, Stop};
-use super::text::{Cursor, float, integer, line_of, pieces, refuse, unexpected};
+use super::problem::{FilePlace, FileProblem, ParseError};
+use super::text::{TextCursor, float, integer, line_of, pieces, refuse, unexpected};
 use crate::PolyMesh;
 use crate::job::Job;
 
@@ -22,7 +22,7 @@ const PIECE: usize = 1 << 20;
 /// What one piece of the file holds. Corners count from the whole file's first vertex if positive
 /// (from 1), else from the piece's own first vertex: `RELATIVE + n`.
 #[derive(Default)]
-struct Piece {
+struct ObjPiece {
     positions: Vec<DVec3>,
     colours: Vec<[u8; 4]>,
     corners: Vec<i64>,
@@ -35,16 +35,20 @@ struct Piece {
 
 const RELATIVE: i64 = i64::MIN / 2;
 
-pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
+pub(super) fn parse(
+    text: &[u8],
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, ParseError> {
     let spans = pieces(text, PIECE);
-    let parts: Vec<Result<Piece, Stop>> = spans
+    let parts: Vec<Result<ObjPiece, ParseError>> = spans
         .par_iter()
         .map(|&(start, end)| {
             job.check()?;
             piece(&text[start..end]).map_err(|e| place(text, start, e))
         })
         .collect();
-    let parts = parts.into_iter().collect::<Result<Vec<Piece>, Stop>>()?;
+    let parts = parts.into_iter().collect::<Result<Vec<ObjPiece>, ParseError>>()?;
     job.progress(0.7);
 
     let vertices: usize = parts.iter().map(|p| p.positions.len()).sum();
@@ -55,13 +59,16 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
         } else {
             super::problem::excerpt(text.trim_ascii_start())
         };
-        return Err(
-            Problem::new(At::File, "OBJ text with vertices (lines \"v x y z\")", found).into()
-        );
+        return Err(FileProblem::new(
+            FilePlace::File,
+            "OBJ text with vertices (lines \"v x y z\")",
+            found,
+        )
+        .into());
     }
     if vertices >= u32::MAX as usize || corners >= u32::MAX as usize {
-        return Err(Problem::new(
-            At::File,
+        return Err(FileProblem::new(
+            FilePlace::File,
             "fewer than 2^32 vertices and corners",
             format!("{vertices} and {corners}"),
         )
@@ -73,7 +80,7 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
     mesh.face_starts.reserve_exact(parts.iter().map(|p| p.lengths.len()).sum());
     let coloured = parts.iter().any(|p| !p.colours.is_empty());
     let mut colours = Vec::new();
-    let mut groups = Groups::default();
+    let mut groups = ObjGroups::default();
     let (mut short, mut free) = (0, 0);
     for (part, &(start, end)) in parts.iter().zip(&spans) {
         job.check()?;
@@ -120,10 +127,10 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
 }
 
 /// Moves a piece's problem to its line in the whole text.
-fn place(text: &[u8], start: usize, e: Problem) -> Stop {
+fn place(text: &[u8], start: usize, e: FileProblem) -> ParseError {
     let before = line_of(text, start) - 1;
     match e.at {
-        At::Line(n) => Problem { at: At::Line(n + before), ..e }.into(),
+        FilePlace::Line(n) => FileProblem { at: FilePlace::Line(n + before), ..e }.into(),
         _ => e.into(),
     }
 }
@@ -137,9 +144,9 @@ fn out_of_range(
     f: usize,
     index: i64,
     vertices: usize,
-) -> Problem {
+) -> FileProblem {
     let part = &text[start..end];
-    let mut cursor = Cursor::new(part);
+    let mut cursor = TextCursor::new(part);
     let mut count = 0;
     let mut line = start;
     while !cursor.ended() {
@@ -159,8 +166,8 @@ fn out_of_range(
         }
         skip_logical(&mut cursor);
     }
-    Problem::new(
-        At::Line(line_of(text, line)),
+    FileProblem::new(
+        FilePlace::Line(line_of(text, line)),
         format!("a vertex index from 1 to {vertices}"),
         format!("{index}"),
     )
@@ -168,7 +175,7 @@ fn out_of_range(
 
 /// The next word of the logical line: a backslash at the end continues it.
 #[inline]
-fn words_on<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
+fn words_on<'a>(cursor: &mut TextCursor<'a>) -> Option<&'a [u8]> {
     loop {
         match cursor.word() {
             Some(b"\\") if at_line_end(cursor) => cursor.skip_line(),
@@ -185,12 +192,12 @@ fn words_on<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
     }
 }
 
-fn at_line_end(cursor: &Cursor) -> bool {
+fn at_line_end(cursor: &TextCursor) -> bool {
     let rest = &cursor.text[cursor.at..];
     rest.is_empty() || rest.starts_with(b"\n") || rest.starts_with(b"\r\n")
 }
 
-fn skip_logical(cursor: &mut Cursor) {
+fn skip_logical(cursor: &mut TextCursor) {
     loop {
         let start = cursor.at;
         cursor.skip_line();
@@ -203,9 +210,9 @@ fn skip_logical(cursor: &mut Cursor) {
     }
 }
 
-fn piece(text: &[u8]) -> Result<Piece, Problem> {
-    let mut out = Piece::default();
-    let mut cursor = Cursor::new(text);
+fn piece(text: &[u8]) -> Result<ObjPiece, FileProblem> {
+    let mut out = ObjPiece::default();
+    let mut cursor = TextCursor::new(text);
     while !cursor.ended() {
         let line = cursor.at;
         let Some(keyword) = cursor.word() else {
@@ -234,7 +241,12 @@ fn piece(text: &[u8]) -> Result<Piece, Problem> {
 }
 
 #[inline]
-fn vertex(cursor: &mut Cursor, out: &mut Piece, text: &[u8], line: usize) -> Result<(), Problem> {
+fn vertex(
+    cursor: &mut TextCursor,
+    out: &mut ObjPiece,
+    text: &[u8],
+    line: usize,
+) -> Result<(), FileProblem> {
     let mut values = [0f64; 8];
     let mut n = 0;
     loop {
@@ -246,7 +258,11 @@ fn vertex(cursor: &mut Cursor, out: &mut Piece, text: &[u8], line: usize) -> Res
         if n < 3
             && let Some(found) = refuse(value)
         {
-            return Err(Problem::new(At::Line(line_of(text, line)), "a finite coordinate", found));
+            return Err(FileProblem::new(
+                FilePlace::Line(line_of(text, line)),
+                "a finite coordinate",
+                found,
+            ));
         }
         if n < 8 {
             values[n] = value;
@@ -280,7 +296,7 @@ fn vertex(cursor: &mut Cursor, out: &mut Piece, text: &[u8], line: usize) -> Res
 }
 
 #[inline]
-fn face(cursor: &mut Cursor, out: &mut Piece, text: &[u8]) -> Result<(), Problem> {
+fn face(cursor: &mut TextCursor, out: &mut ObjPiece, text: &[u8]) -> Result<(), FileProblem> {
     let first = out.corners.len();
     let own = out.positions.len() as i64;
     loop {
@@ -309,7 +325,7 @@ fn face(cursor: &mut Cursor, out: &mut Piece, text: &[u8]) -> Result<(), Problem
 /// Numbers groups in the order in which faces use them: one for each different set of object, group
 /// and material.
 #[derive(Default)]
-struct Groups {
+struct ObjGroups {
     now: [String; 3],
     id: Option<u32>,
     known: BTreeMap<[String; 3], u32>,
@@ -317,8 +333,8 @@ struct Groups {
     used: bool,
 }
 
-impl Groups {
-    fn take(&mut self, part: &Piece, first_face: usize) {
+impl ObjGroups {
+    fn take(&mut self, part: &ObjPiece, first_face: usize) {
         for (face, kind, name) in &part.names {
             self.used = true;
             self.fill(first_face + *face as usize);

@@ -3,30 +3,37 @@
 
 use glam::DVec3;
 
-use super::problem::{At, Problem, Stop, excerpt};
-use super::text::{Cursor, float, integer, line_of, refuse, unexpected};
+use super::problem::{FilePlace, FileProblem, ParseError, excerpt};
+use super::text::{TextCursor, float, integer, line_of, refuse, unexpected};
 use crate::PolyMesh;
 use crate::job::Job;
 
 /// The first word that is no comment, if it is an OFF header.
 pub(super) fn header(text: &[u8]) -> Option<&[u8]> {
     let word =
-        Cursor::new(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).word_anywhere(true)?;
+        TextCursor::new(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).word_anywhere(true)?;
     let flags = word.strip_suffix(b"OFF")?;
     let rest = flags.strip_prefix(b"ST").unwrap_or(flags);
     rest.iter().all(|b| b"CN4n".contains(b)).then_some(word)
 }
 
-pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Result<PolyMesh, Stop> {
-    let mut cursor = Cursor::new(text);
+pub(super) fn parse(
+    text: &[u8],
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, ParseError> {
+    let mut cursor = TextCursor::new(text);
     let Some(kind) = header(text) else {
-        return Err(Problem::new(At::Line(1), "\"OFF\"", excerpt(text)).into());
+        return Err(FileProblem::new(FilePlace::Line(1), "\"OFF\"", excerpt(text)).into());
     };
     let _ = cursor.word_anywhere(true);
     if kind.contains(&b'4') || kind.contains(&b'n') {
-        return Err(
-            Problem::new(At::Line(1), "three coordinates a vertex (OFF)", excerpt(kind)).into()
-        );
+        return Err(FileProblem::new(
+            FilePlace::Line(1),
+            "three coordinates a vertex (OFF)",
+            excerpt(kind),
+        )
+        .into());
     }
     let (textured, coloured, normals) =
         (kind.starts_with(b"ST"), kind.contains(&b'C'), kind.contains(&b'N'));
@@ -36,7 +43,7 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
         // The count of edges is often missing: it is looked for on the same line only.
         let word = if n == 2 { cursor.word() } else { cursor.word_anywhere(true) };
         if n == 0 && word == Some(b"BINARY") {
-            return Err(Problem::new(At::Line(1), "OFF text", "binary OFF").into());
+            return Err(FileProblem::new(FilePlace::Line(1), "OFF text", "binary OFF").into());
         }
         match word.and_then(integer) {
             Some(v) if v >= 0 => *slot = v as usize,
@@ -54,16 +61,16 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
     {
         let found =
             format!("counts of {vertices} vertices and {faces} faces in a file of {room} bytes");
-        return Err(Problem::new(
-            At::Line(line_of(text, cursor.at)),
+        return Err(FileProblem::new(
+            FilePlace::Line(line_of(text, cursor.at)),
             "as many vertices and faces as the file has room for",
             found,
         )
         .into());
     }
     if vertices == 0 {
-        return Err(Problem::new(
-            At::Line(line_of(text, cursor.at)),
+        return Err(FileProblem::new(
+            FilePlace::Line(line_of(text, cursor.at)),
             "at least one vertex",
             "a count of 0",
         )
@@ -89,8 +96,8 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
                 );
             };
             if let Some(found) = refuse(value) {
-                return Err(Problem::new(
-                    At::Line(line_of(text, line)),
+                return Err(FileProblem::new(
+                    FilePlace::Line(line_of(text, line)),
                     "a finite coordinate",
                     found,
                 )
@@ -125,8 +132,8 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
             match cursor.word().and_then(integer) {
                 Some(i) if i >= 0 && (i as usize) < vertices => mesh.corners.push(i as u32),
                 Some(i) => {
-                    let at = At::Line(line_of(text, line));
-                    return Err(Problem::new(
+                    let at = FilePlace::Line(line_of(text, line));
+                    return Err(FileProblem::new(
                         at,
                         format!("a vertex index from 0 to {}", vertices - 1),
                         i.to_string(),
@@ -141,8 +148,8 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
             }
         }
         if mesh.corners.len() >= u32::MAX as usize {
-            return Err(Problem::new(
-                At::Line(line_of(text, line)),
+            return Err(FileProblem::new(
+                FilePlace::Line(line_of(text, line)),
                 "fewer than 2^32 corners",
                 "more",
             )
@@ -164,7 +171,7 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>, job: &Job) -> Resul
 }
 
 /// Past blank lines and comments; where the row starts.
-fn start_of_row(cursor: &mut Cursor) -> usize {
+fn start_of_row(cursor: &mut TextCursor) -> usize {
     loop {
         let at = cursor.at;
         match cursor.word() {
@@ -180,7 +187,7 @@ fn start_of_row(cursor: &mut Cursor) -> usize {
 }
 
 /// Three or four numbers, bytes or 0 to 1: floats have a point in them.
-fn colour(cursor: &mut Cursor, after: usize) -> [u8; 4] {
+fn colour(cursor: &mut TextCursor, after: usize) -> [u8; 4] {
     let mut words = Vec::with_capacity(6);
     while words.len() < 6 {
         match cursor.word() {

@@ -7,10 +7,10 @@ use std::path::PathBuf;
 
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum At {
-    /// 1-based, of a text file.
+pub enum FilePlace {
+    /// A line of a text file, counted from 1.
     Line(u64),
-    /// 0-based offset, of a binary file.
+    /// An offset in a binary file, counted from 0.
     Byte(u64),
     /// The file as a whole.
     File,
@@ -18,71 +18,105 @@ pub enum At {
 
 /// Where a file is not what it claims, what the format wants there, and what there is.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Problem {
-    pub at: At,
+pub struct FileProblem {
+    /// The place.
+    pub at: FilePlace,
+    /// What the format wants there.
     pub expected: Cow<'static, str>,
+    /// What there is.
     pub found: Cow<'static, str>,
 }
 
-impl Problem {
+impl FileProblem {
     pub(crate) fn new(
-        at: At,
+        at: FilePlace,
         expected: impl Into<Cow<'static, str>>,
         found: impl Into<Cow<'static, str>>,
     ) -> Self {
-        Problem { at, expected: expected.into(), found: found.into() }
+        FileProblem { at, expected: expected.into(), found: found.into() }
     }
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for FileProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.at {
-            At::Line(n) => write!(f, "line {n}: ")?,
-            At::Byte(n) => write!(f, "byte {n}: ")?,
-            At::File => {}
+            FilePlace::Line(n) => write!(f, "line {n}: ")?,
+            FilePlace::Byte(n) => write!(f, "byte {n}: ")?,
+            FilePlace::File => {}
         }
         write!(f, "expected {}, found {}", self.expected, self.found)
     }
 }
 
-/// Why a parser stopped.
+/// Why [`super::parse`] stopped.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Stop {
-    Problem(Problem),
+pub enum ParseError {
+    /// The bytes are not what they claim.
+    Problem(FileProblem),
+    /// The job was cancelled.
     Cancelled,
 }
 
-impl From<Problem> for Stop {
-    fn from(p: Problem) -> Self {
-        Stop::Problem(p)
+impl From<FileProblem> for ParseError {
+    fn from(p: FileProblem) -> Self {
+        ParseError::Problem(p)
     }
 }
 
-impl From<crate::job::Cancelled> for Stop {
+impl From<crate::job::Cancelled> for ParseError {
     fn from(_: crate::job::Cancelled) -> Self {
-        Stop::Cancelled
+        ParseError::Cancelled
     }
 }
 
 /// Why [`super::read_mesh`] gave no mesh. Nothing was changed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
+    /// The file could not be opened or read.
     #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: io::Error },
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The file is not what it claims.
     #[error("{}: {problem}", path.display())]
-    Format { path: PathBuf, problem: Problem },
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// Where and what.
+        problem: FileProblem,
+    },
+    /// The job was cancelled.
     #[error("{}: cancelled", path.display())]
-    Cancelled { path: PathBuf },
+    Cancelled {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// Why [`super::write_mesh`] wrote nothing. A file that stood at the path still stands there,
 /// whole.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
+    /// The file could not be written.
     #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: io::Error },
-    #[error("{}: expected a name that ends in .obj, .stl, .ply, .off, .glb or .3mf", path.display())]
-    Extension { path: PathBuf },
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The extension names no format that can be written.
+    #[error(
+        "{}: expected a name that ends in .obj, .stl, .ply, .off, .glb or .3mf",
+        path.display()
+    )]
+    Extension {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// The first characters of what was found, printable and short.

@@ -8,10 +8,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::problem::{At, Problem, Stop, excerpt};
-use super::text::{Cursor, float, refuse, unexpected};
+use super::problem::{FilePlace, FileProblem, ParseError, excerpt};
+use super::text::{TextCursor, float, refuse, unexpected};
 use crate::PolyMesh;
 use crate::job::Job;
+use crate::weld::weld_keys;
 
 /// Bytes before the first triangle: 80 of header, 4 of count.
 const HEAD: usize = 84;
@@ -43,10 +44,10 @@ pub(super) fn parse_binary(
     bytes: &[u8],
     warnings: &mut Vec<String>,
     job: &Job,
-) -> Result<PolyMesh, Stop> {
+) -> Result<PolyMesh, ParseError> {
     let Some(count) = binary_count(bytes) else {
-        let problem = Problem::new(
-            At::Byte(bytes.len() as u64),
+        let problem = FileProblem::new(
+            FilePlace::Byte(bytes.len() as u64),
             "a binary STL header of 84 bytes",
             format!("the end of the file after {} bytes", bytes.len()),
         );
@@ -55,8 +56,8 @@ pub(super) fn parse_binary(
     let need = HEAD as u64 + count * RECORD as u64;
     if need > bytes.len() as u64 {
         let whole = (bytes.len() - HEAD) / RECORD;
-        let problem = Problem::new(
-            At::Byte(bytes.len() as u64),
+        let problem = FileProblem::new(
+            FilePlace::Byte(bytes.len() as u64),
             format!("{need} bytes for the {count} triangles that the header at byte 80 states"),
             format!(
                 "the end of the file after {whole} whole triangles (not text either: it starts with {})",
@@ -66,11 +67,13 @@ pub(super) fn parse_binary(
         return Err(problem.into());
     }
     if count == 0 {
-        return Err(Problem::new(At::Byte(80), "at least one triangle", "a count of 0").into());
+        return Err(
+            FileProblem::new(FilePlace::Byte(80), "at least one triangle", "a count of 0").into()
+        );
     }
     if count * 3 >= u32::MAX as u64 {
-        return Err(Problem::new(
-            At::Byte(80),
+        return Err(FileProblem::new(
+            FilePlace::Byte(80),
             "fewer than 2^32 corners",
             format!("{count} triangles"),
         )
@@ -109,14 +112,16 @@ pub(super) fn parse_binary(
         .min_by_key(|b| b.map_or(0, |(at, _)| at));
     match bad {
         None => {}
-        Some(None) => return Err(Stop::Cancelled),
+        Some(None) => return Err(ParseError::Cancelled),
         Some(Some((at, found))) => {
-            return Err(Problem::new(At::Byte(at as u64), "a finite coordinate", found).into());
+            return Err(
+                FileProblem::new(FilePlace::Byte(at as u64), "a finite coordinate", found).into()
+            );
         }
     }
     job.progress(0.3);
     let (positions, corners) =
-        weld(corners.len(), job, |i| corners[i].map(|b| if b == 1 << 31 { 0 } else { b }))?;
+        weld_keys(corners.len(), job, |i| corners[i].map(|b| if b == 1 << 31 { 0 } else { b }))?;
     let positions =
         positions.into_iter().map(|p| glam::Vec3::from(p.map(f32::from_bits)).as_dvec3()).collect();
     Ok(triangles(positions, corners))
@@ -126,8 +131,8 @@ pub(super) fn parse_ascii(
     text: &[u8],
     _warnings: &mut Vec<String>,
     job: &Job,
-) -> Result<PolyMesh, Stop> {
-    let mut cursor = Cursor::new(text);
+) -> Result<PolyMesh, ParseError> {
+    let mut cursor = TextCursor::new(text);
     let mut corners: Vec<[u64; 3]> = Vec::new();
     let mut in_facet = 0;
     let mut ended = false;
@@ -151,8 +156,8 @@ pub(super) fn parse_ascii(
                     return Err(unexpected(text, line, "\"vertex\" and three numbers").into());
                 };
                 if let Some(found) = refuse(value) {
-                    let problem = Problem::new(
-                        At::Line(super::text::line_of(text, line)),
+                    let problem = FileProblem::new(
+                        FilePlace::Line(super::text::line_of(text, line)),
                         "a finite coordinate",
                         found,
                     );
@@ -191,18 +196,18 @@ pub(super) fn parse_ascii(
         return Err(unexpected(text, text.len(), "\"endsolid\"").into());
     }
     if corners.is_empty() {
-        return Err(Problem::new(At::File, "at least one facet", "none").into());
+        return Err(FileProblem::new(FilePlace::File, "at least one facet", "none").into());
     }
     if corners.len() >= u32::MAX as usize {
-        return Err(Problem::new(
-            At::File,
+        return Err(FileProblem::new(
+            FilePlace::File,
             "fewer than 2^32 corners",
             format!("{}", corners.len()),
         )
         .into());
     }
     job.progress(0.7);
-    let (positions, corners) = weld(corners.len(), job, |i| corners[i])?;
+    let (positions, corners) = weld_keys(corners.len(), job, |i| corners[i])?;
     Ok(triangles(
         positions.into_iter().map(|p| DVec3::from(p.map(f64::from_bits))).collect(),
         corners,
@@ -212,78 +217,4 @@ pub(super) fn parse_ascii(
 fn triangles(positions: Vec<DVec3>, corners: Vec<u32>) -> PolyMesh {
     let face_starts = (0..=corners.len() as u32 / 3).map(|t| t * 3).collect();
     PolyMesh { positions, face_starts, corners, ..Default::default() }
-}
-
-/// Equal keys become one, numbered by first use. An open table of half load: one probe and a half a
-/// corner.
-pub(crate) fn weld<K: Copy + PartialEq + Bits>(
-    count: usize,
-    job: &Job,
-    key: impl Fn(usize) -> K,
-) -> Result<(Vec<K>, Vec<u32>), crate::job::Cancelled> {
-    // A closed surface has a sixth as many vertices as corners; the table grows where there are
-    // more.
-    let mut table = vec![u32::MAX; (count / 2).max(16).next_power_of_two()];
-    let mut unique: Vec<K> = Vec::with_capacity(count / 6 + 1);
-    let mut of = Vec::with_capacity(count);
-    for i in 0..count {
-        if i.is_multiple_of(1 << 18) {
-            job.check()?;
-        }
-        if unique.len() * 2 >= table.len() {
-            let size = table.len() * 2;
-            table = vec![u32::MAX; size];
-            for (n, k) in unique.iter().enumerate() {
-                let mut slot = k.hash() as usize & (size - 1);
-                while table[slot] != u32::MAX {
-                    slot = (slot + 1) & (size - 1);
-                }
-                table[slot] = n as u32;
-            }
-        }
-        let k = key(i);
-        let mask = table.len() - 1;
-        let mut slot = k.hash() as usize & mask;
-        loop {
-            let n = table[slot];
-            if n == u32::MAX {
-                table[slot] = unique.len() as u32;
-                of.push(unique.len() as u32);
-                unique.push(k);
-                break;
-            }
-            if unique[n as usize] == k {
-                of.push(n);
-                break;
-            }
-            slot = (slot + 1) & mask;
-        }
-    }
-    Ok((unique, of))
-}
-
-/// A key's hash, well mixed in its low bits.
-pub(crate) trait Bits {
-    fn hash(&self) -> u64;
-}
-
-fn mix(words: impl Iterator<Item = u64>) -> u64 {
-    let mut h = 0x9e37_79b9_7f4a_7c15u64;
-    for w in words {
-        h = (h ^ w).wrapping_mul(0xff51_afd7_ed55_8ccd);
-        h ^= h >> 32;
-    }
-    h
-}
-
-impl Bits for [u32; 3] {
-    fn hash(&self) -> u64 {
-        mix(self.iter().map(|&w| w as u64))
-    }
-}
-
-impl Bits for [u64; 3] {
-    fn hash(&self) -> u64 {
-        mix(self.iter().copied())
-    }
 }

@@ -1,6 +1,6 @@
 //! Numbers and lines of text formats, at the speed of the memory rather than of a general parser.
 
-use super::problem::{At, Problem, excerpt};
+use super::problem::{FilePlace, FileProblem, excerpt};
 
 const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
@@ -100,14 +100,14 @@ pub(super) fn refuse(value: f64) -> Option<&'static str> {
 
 /// The tokens of a piece of text, with the offset kept for messages.
 #[derive(Debug, Clone)]
-pub(super) struct Cursor<'a> {
+pub(super) struct TextCursor<'a> {
     pub text: &'a [u8],
     pub at: usize,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> TextCursor<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
-        Cursor { text, at: 0 }
+        TextCursor { text, at: 0 }
     }
 
     /// The next word on this line; `None` at the line's end, which is not passed.
@@ -169,10 +169,10 @@ pub(super) fn line_of(text: &[u8], at: usize) -> u64 {
 /// The problem that at `at` of `text` something else was expected; shows the line from there, or
 /// what `word` is.
 #[cold]
-pub(super) fn unexpected(text: &[u8], at: usize, expected: impl Into<String>) -> Problem {
+pub(super) fn unexpected(text: &[u8], at: usize, expected: impl Into<String>) -> FileProblem {
     let rest = text.get(at..).unwrap_or_default();
     let found = if rest.is_empty() { "the end of the file".to_string() } else { excerpt(rest) };
-    Problem::new(At::Line(line_of(text, at)), expected.into(), found)
+    FileProblem::new(FilePlace::Line(line_of(text, at)), expected.into(), found)
 }
 
 /// Pieces of about `size` bytes that end after a line's end; a line that ends in a backslash goes

@@ -13,50 +13,50 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::gltf::MAX_INSTANCED;
-use super::problem::{At, Problem, Stop};
+use super::problem::{FilePlace, FileProblem, ParseError};
 use super::text::{float, integer, refuse};
 use crate::job::Job;
 use crate::{PolyMesh, repair};
 
 /// Where a part's path and an object's number name an object.
-type Name = (String, i64);
+type PartName = (String, i64);
 
 #[derive(Default)]
-struct Object {
+struct ThreemfObject {
     mesh: PolyMesh,
-    components: Vec<(Name, DMat4)>,
+    components: Vec<(PartName, DMat4)>,
 }
 
 #[derive(Default)]
-struct Package {
-    objects: BTreeMap<Name, Object>,
-    build: Vec<(Name, DMat4)>,
+struct ThreemfPackage {
+    objects: BTreeMap<PartName, ThreemfObject>,
+    build: Vec<(PartName, DMat4)>,
     /// Millimetres in the root part's unit.
     unit: f64,
 }
 
-fn bad(at: At, expected: impl Into<String>, found: impl Into<String>) -> Stop {
-    Problem::new(at, expected.into(), found.into()).into()
+fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
+    FileProblem::new(at, expected.into(), found.into()).into()
 }
 
-pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, Stop> {
+pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, ParseError> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
-        bad(At::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
+        bad(FilePlace::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
     })?;
     // A choice, not a law of the format: what unpacks to more than this is taken for a trap.
     let mut room = bytes.len() as u64 * 100 + (16 << 20);
-    let mut part = |name: &str| -> Result<Vec<u8>, Stop> {
+    let mut part = |name: &str| -> Result<Vec<u8>, ParseError> {
         let entry = zip
             .by_name(name)
-            .map_err(|e| bad(At::File, format!("a part {name}"), e.to_string()))?;
+            .map_err(|e| bad(FilePlace::File, format!("a part {name}"), e.to_string()))?;
         let mut out = Vec::new();
         entry
             .take(room + 1)
             .read_to_end(&mut out)
-            .map_err(|e| bad(At::File, format!("the part {name} whole"), e.to_string()))?;
+            .map_err(|e| bad(FilePlace::File, format!("the part {name} whole"), e.to_string()))?;
         room = room.checked_sub(out.len() as u64).ok_or_else(|| {
             bad(
-                At::File,
+                FilePlace::File,
                 "parts of at most a hundred times the file's length",
                 format!("more in {name}"),
             )
@@ -67,7 +67,7 @@ pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, Stop> {
         .ok()
         .and_then(|rels| model_of(&rels))
         .unwrap_or_else(|| "3D/3dmodel.model".into());
-    let mut package = Package::default();
+    let mut package = ThreemfPackage::default();
     let text = part(&root)?;
     model(&text, &root, true, &mut package, job)?;
     job.progress(0.6);
@@ -88,7 +88,11 @@ pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, Stop> {
         let before = package.objects.len();
         model(&text, &path, false, &mut package, job)?;
         if package.objects.len() == before {
-            return Err(bad(At::File, format!("the objects named in {path}"), "none of them"));
+            return Err(bad(
+                FilePlace::File,
+                format!("the objects named in {path}"),
+                "none of them",
+            ));
         }
     }
     assemble(&package, job)
@@ -123,15 +127,15 @@ fn model(
     text: &[u8],
     path: &str,
     root: bool,
-    package: &mut Package,
+    package: &mut ThreemfPackage,
     job: &Job,
-) -> Result<(), Stop> {
+) -> Result<(), ParseError> {
     let text =
         std::str::from_utf8(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)).map_err(|e| {
-            bad(At::Byte(e.valid_up_to() as u64), format!("UTF-8 in {path}"), "other bytes")
+            bad(FilePlace::Byte(e.valid_up_to() as u64), format!("UTF-8 in {path}"), "other bytes")
         })?;
     let mut reader = Reader::from_str(text);
-    let mut now: Option<(i64, Object)> = None;
+    let mut now: Option<(i64, ThreemfObject)> = None;
     let mut count = 0u32;
     if root {
         package.unit = 1.0;
@@ -141,7 +145,7 @@ fn model(
         if count.is_multiple_of(1 << 14) {
             job.check()?;
         }
-        let at = At::Byte(reader.buffer_position());
+        let at = FilePlace::Byte(reader.buffer_position());
         let wrong =
             |expected: &str, found: String| bad(at, format!("{expected} (in {path})"), found);
         let event = reader.read_event().map_err(|e| wrong("well-formed XML", e.to_string()))?;
@@ -157,7 +161,7 @@ fn model(
             Event::Eof => break,
             _ => continue,
         };
-        let number = |name: &str| -> Result<f64, Stop> {
+        let number = |name: &str| -> Result<f64, ParseError> {
             let text = get(&e, name)
                 .ok_or_else(|| wrong(&format!("the attribute \"{name}\""), "none".into()))?;
             let value = float(text.as_bytes())
@@ -167,13 +171,13 @@ fn model(
                 Some(found) => Err(wrong("a finite number", found.into())),
             }
         };
-        let index = |name: &str| -> Result<i64, Stop> {
+        let index = |name: &str| -> Result<i64, ParseError> {
             let text = get(&e, name)
                 .ok_or_else(|| wrong(&format!("the attribute \"{name}\""), "none".into()))?;
             integer(text.as_bytes())
                 .ok_or_else(|| wrong(&format!("a whole number as \"{name}\""), text.clone()))
         };
-        let target = || -> Result<(Name, DMat4), Stop> {
+        let target = || -> Result<(PartName, DMat4), ParseError> {
             let place =
                 get(&e, "path").map_or(path.to_string(), |p| p.trim_start_matches('/').to_string());
             let transform = match get(&e, "transform") {
@@ -203,7 +207,7 @@ fn model(
             }
             "object" => {
                 let object =
-                    (index("id")?, Object { mesh: PolyMesh::new(), components: Vec::new() });
+                    (index("id")?, ThreemfObject { mesh: PolyMesh::new(), components: Vec::new() });
                 if empty {
                     package.objects.insert((path.to_string(), object.0), object.1);
                 } else {
@@ -254,10 +258,10 @@ fn transform(text: &str) -> Option<DMat4> {
 /// Objects may hold objects; deeper than this is a circle.
 const DEPTH: usize = 32;
 
-fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
+fn assemble(package: &ThreemfPackage, job: &Job) -> Result<PolyMesh, ParseError> {
     let mut out = PolyMesh::new();
     let mut groups = Vec::new();
-    let mut todo: Vec<(&Name, DMat4, usize, u32)> = package
+    let mut todo: Vec<(&PartName, DMat4, usize, u32)> = package
         .build
         .iter()
         .enumerate()
@@ -276,18 +280,22 @@ fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
         job.check()?;
         visits += 1;
         let Some(object) = package.objects.get(name) else {
-            return Err(bad(At::File, format!("an object {} in {}", name.1, name.0), "none"));
+            return Err(bad(
+                FilePlace::File,
+                format!("an object {} in {}", name.1, name.0),
+                "none",
+            ));
         };
         if depth > DEPTH || visits > 1_000_000 {
             return Err(bad(
-                At::File,
+                FilePlace::File,
                 "objects within objects, up to 32 deep",
                 "a circle or too many",
             ));
         }
         if out.corners.len() + object.mesh.corners.len() > MAX_INSTANCED {
             return Err(bad(
-                At::File,
+                FilePlace::File,
                 format!("at most {MAX_INSTANCED} corners in all objects"),
                 "more",
             ));
@@ -296,7 +304,7 @@ fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
         for p in &object.mesh.positions {
             let q = place.transform_point3(*p);
             if let Some(found) = q.to_array().into_iter().find_map(refuse) {
-                return Err(bad(At::File, "finite coordinates after the transforms", found));
+                return Err(bad(FilePlace::File, "finite coordinates after the transforms", found));
             }
             out.positions.push(q);
         }
@@ -310,7 +318,7 @@ fn assemble(package: &Package, job: &Job) -> Result<PolyMesh, Stop> {
         todo.extend(object.components.iter().rev().map(|(n, t)| (n, place * *t, depth + 1, group)));
     }
     if out.face_count() == 0 {
-        return Err(bad(At::File, "an object with triangles in the build list", "none"));
+        return Err(bad(FilePlace::File, "an object with triangles in the build list", "none"));
     }
     out.groups = groups.windows(2).any(|w| w[0] != w[1]).then_some(groups);
     Ok(out)

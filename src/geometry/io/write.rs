@@ -45,6 +45,10 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
 }
 
 fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    if mesh.positions.is_empty() {
+        // An empty solid is a file too, and a file of no bytes is none.
+        return out.write_all(b"# no vertices\n");
+    }
     let mut line = Vec::with_capacity(128);
     for (v, p) in mesh.positions.iter().enumerate() {
         line.clear();

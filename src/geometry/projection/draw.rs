@@ -5,9 +5,9 @@ use std::fmt::Write;
 use glam::DVec2;
 use image::{ImageError, Rgb, RgbImage};
 
-use super::Polygon;
+use super::PlaneRegion;
 
-fn frame(polygons: &[Polygon]) -> (DVec2, DVec2) {
+fn frame(polygons: &[PlaneRegion]) -> (DVec2, DVec2) {
     let (lo, hi) = polygons
         .iter()
         .flat_map(|p| &p.outer)
@@ -16,7 +16,7 @@ fn frame(polygons: &[Polygon]) -> (DVec2, DVec2) {
 }
 
 /// A drawing to scale, in millimetres, one path a polygon, holes by the even-odd rule.
-pub fn svg(polygons: &[Polygon]) -> String {
+pub fn svg(polygons: &[PlaneRegion]) -> String {
     let (lo, hi) = frame(polygons);
     let margin = (hi - lo).max_element() * 0.02;
     let (lo, size) = (lo - margin, hi - lo + 2.0 * margin);
@@ -42,7 +42,7 @@ pub fn svg(polygons: &[Polygon]) -> String {
 }
 
 /// A picture, the longer side `longest` pixels (16 to 16,384), as a PNG file's bytes.
-pub fn png(polygons: &[Polygon], longest: u32) -> Result<Vec<u8>, ImageError> {
+pub fn png(polygons: &[PlaneRegion], longest: u32) -> Result<Vec<u8>, ImageError> {
     let longest = longest.clamp(16, 16_384);
     let (lo, hi) = frame(polygons);
     let margin = (hi - lo).max_element() * 0.02;
@@ -54,7 +54,7 @@ pub fn png(polygons: &[Polygon], longest: u32) -> Result<Vec<u8>, ImageError> {
     for y in 0..h {
         let at = lo.y + size.y - (y as f64 + 0.5) * pixel;
         crossings.clear();
-        for edge in polygons.iter().flat_map(Polygon::rings).flat_map(|r| r.windows(2)) {
+        for edge in polygons.iter().flat_map(PlaneRegion::rings).flat_map(|r| r.windows(2)) {
             let (a, b) = (edge[0], edge[1]);
             if (a.y <= at) != (b.y <= at) {
                 crossings.push(a.x + (b.x - a.x) * ((at - a.y) / (b.y - a.y)));

@@ -3,7 +3,8 @@
 //! *Exact*: the silhouette edges resolved into polygons, right to about 4e-9 of the extent.
 //! *Sample*: random points of the plane, told inside from outside by rays; the area has the
 //! standard error of a binomial share, the outline is the points' alpha shape. *March*: the same
-//! with rays through a sampled distance instead of the mesh.
+//! with rays through a sampled distance; those that pass nearer to the surface than the samples are
+//! exact are decided by the mesh, so that the stated error is the points' alone.
 
 mod draw;
 
@@ -11,10 +12,10 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::alpha_shape::alpha_shape;
-use super::distance::Solid;
-use super::grid::Grid;
-use super::march::march;
-pub use super::silhouette::{Plane, Polygon, outline};
+use super::distance::DistanceSolid;
+use super::grid::DistanceGrid;
+use super::march::{MarchOutcome, march};
+pub use super::silhouette::{PlaneRegion, ProjectionPlane, outline};
 use crate::bvh::Ray;
 use crate::job::{Cancelled, Job};
 pub use draw::{png, svg};
@@ -24,43 +25,47 @@ const CHUNK: usize = 512;
 
 /// What is asked of each random point.
 #[derive(Debug, Clone, Copy)]
-pub enum By<'a> {
+pub enum PointTest<'a> {
     /// The mesh, by its tree.
     Rays,
     /// A sampled distance; a hit is nearer than the length.
-    Marching(&'a Grid, f64),
+    Marching(&'a DistanceGrid, f64),
 }
 
 /// Random points of the plane.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Samples {
+pub struct ProjectionSamples {
     /// The rectangle that they fill.
     pub lo: DVec2,
+    /// The upper corner of the rectangle.
     pub hi: DVec2,
+    /// Points whose line meets the solid.
     pub inside: Vec<DVec2>,
+    /// Points whose line misses it.
     pub outside: Vec<DVec2>,
+    /// The rectangle's area times the share of points inside.
     pub area: f64,
     /// One standard deviation of `area`.
     pub standard_error: f64,
-    /// The alpha that [`Samples::shape`] takes unless told: 2.5 times the points' mean spacing.
+    /// The alpha that [`ProjectionSamples::shape`] takes unless told: 2.5 times the points' mean spacing.
     pub alpha: f64,
 }
 
-impl Samples {
+impl ProjectionSamples {
     /// The alpha shape of the points inside: its polygons and area. Low by about its perimeter
     /// times half the spacing.
-    pub fn shape(&self, alpha: f64) -> (Vec<Polygon>, f64) {
+    pub fn shape(&self, alpha: f64) -> (Vec<PlaneRegion>, f64) {
         alpha_shape(&self.inside, alpha)
     }
 }
 
 /// The exact area of a shadow.
-pub fn area(polygons: &[Polygon]) -> f64 {
-    polygons.iter().map(Polygon::area).sum()
+pub fn area(polygons: &[PlaneRegion]) -> f64 {
+    polygons.iter().map(PlaneRegion::area).sum()
 }
 
 /// The rectangle of the plane that holds the shadow.
-pub fn rectangle(solid: &Solid, plane: &Plane) -> Option<(DVec2, DVec2)> {
+pub fn rectangle(solid: &DistanceSolid, plane: &ProjectionPlane) -> Option<(DVec2, DVec2)> {
     let mut used =
         solid.topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).filter(|p| p.is_finite());
     let first = used.next()?;
@@ -70,10 +75,10 @@ pub fn rectangle(solid: &Solid, plane: &Plane) -> Option<(DVec2, DVec2)> {
 /// Classifies each point of the plane: does the line through it along the plane's normal meet the
 /// solid?
 pub fn classify(
-    solid: &Solid,
-    plane: &Plane,
+    solid: &DistanceSolid,
+    plane: &ProjectionPlane,
     points: &[DVec2],
-    by: By,
+    by: PointTest,
     job: &Job,
 ) -> Result<Vec<bool>, Cancelled> {
     let (lo, hi) = solid.tree.bounds();
@@ -89,9 +94,15 @@ pub fn classify(
         job.check()?;
         for (o, &p) in out.iter_mut().zip(points) {
             let origin = plane.solid(p) + back;
+            let by_mesh =
+                || solid.tree.any_hit(Ray::new(origin.as_vec3(), dir.as_vec3()), |_| true);
             *o = match by {
-                By::Rays => solid.tree.any_hit(Ray::new(origin.as_vec3(), dir.as_vec3()), |_| true),
-                By::Marching(grid, epsilon) => march(grid, origin, dir, epsilon).is_some(),
+                PointTest::Rays => by_mesh(),
+                PointTest::Marching(grid, epsilon) => match march(grid, origin, dir, epsilon) {
+                    MarchOutcome::Hit(_) => true,
+                    MarchOutcome::Miss => false,
+                    MarchOutcome::Unsure => by_mesh(),
+                },
             };
         }
         Ok(())
@@ -102,13 +113,13 @@ pub fn classify(
 /// `count` random points of the rectangle around the shadow, told inside from outside. The same
 /// seed, the same points.
 pub fn sample(
-    solid: &Solid,
-    plane: &Plane,
+    solid: &DistanceSolid,
+    plane: &ProjectionPlane,
     count: usize,
     seed: u64,
-    by: By,
+    by: PointTest,
     job: &Job,
-) -> Result<Samples, Cancelled> {
+) -> Result<ProjectionSamples, Cancelled> {
     let (lo, hi) = rectangle(solid, plane).unwrap_or_default();
     let mut state = seed;
     let mut unit = || {
@@ -124,7 +135,7 @@ pub fn sample(
     let whole = (hi - lo).x * (hi - lo).y;
     let n = count.max(1) as f64;
     let share = inside.iter().filter(|&&i| i).count() as f64 / n;
-    let mut out = Samples {
+    let mut out = ProjectionSamples {
         lo,
         hi,
         inside: Vec::new(),
@@ -142,12 +153,17 @@ pub fn sample(
 
 /// The exact area of the shadow along each direction, on all threads; zero for a direction of no
 /// length.
-pub fn shadow_areas(solid: &Solid, directions: &[DVec3], job: &Job) -> Result<Vec<f64>, Cancelled> {
+pub fn shadow_areas(
+    solid: &DistanceSolid,
+    directions: &[DVec3],
+    job: &Job,
+) -> Result<Vec<f64>, Cancelled> {
     directions
         .par_iter()
         .map(|&d| {
             job.check()?;
-            Ok(Plane::along(d, 0.0).map_or(0.0, |plane| area(&outline(&solid.topology, &plane))))
+            Ok(ProjectionPlane::along(d, 0.0)
+                .map_or(0.0, |plane| area(&outline(&solid.topology, &plane))))
         })
         .collect()
 }

@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::grid::Grid;
+use crate::grid::DistanceGrid;
 use crate::job::{Cancelled, Job};
 
 /// An edge is not crossed.
@@ -35,7 +35,7 @@ fn ends(e: usize) -> (usize, usize) {
 
 /// For one pattern of inside corners: each edge's patch, and how many there are.
 #[derive(Clone, Copy)]
-struct Pattern {
+struct CellPattern {
     patch: [u8; 12],
     count: u8,
 }
@@ -57,7 +57,7 @@ fn arcs(axis: usize, side: usize, case: usize) -> [[usize; 2]; 2] {
     if near { [[0, 2], [1, 3]] } else { [[0, 3], [1, 2]] }
 }
 
-static PATTERNS: LazyLock<[Pattern; 256]> = LazyLock::new(|| {
+static PATTERNS: LazyLock<[CellPattern; 256]> = LazyLock::new(|| {
     std::array::from_fn(|case| {
         let crossed = |e: usize| {
             let (a, b) = ends(e);
@@ -81,7 +81,7 @@ static PATTERNS: LazyLock<[Pattern; 256]> = LazyLock::new(|| {
                 }
             }
         }
-        let mut out = Pattern { patch: [NONE; 12], count: 0 };
+        let mut out = CellPattern { patch: [NONE; 12], count: 0 };
         for e in (0..12).filter(|&e| crossed(e)) {
             if group[e] == e {
                 out.patch[e] = out.count;
@@ -96,19 +96,19 @@ static PATTERNS: LazyLock<[Pattern; 256]> = LazyLock::new(|| {
 
 /// A corner of a face being made.
 #[derive(Clone, Copy)]
-enum Corner {
+enum QuadCorner {
     Patch(u32),
     /// The middle of a doubled border: (lower cell, axis, arc) in one number.
     Middle(u64),
 }
 
-struct Cells<'a> {
-    grid: &'a Grid,
+struct CrossedCells<'a> {
+    grid: &'a DistanceGrid,
     cases: Vec<u8>,
     first: Vec<u32>,
 }
 
-impl Cells<'_> {
+impl CrossedCells<'_> {
     fn step(&self, axis: usize) -> usize {
         [1, self.grid.size[0], self.grid.size[0] * self.grid.size[1]][axis]
     }
@@ -126,7 +126,7 @@ impl Cells<'_> {
         self.grid.origin + p * self.grid.spacing
     }
 
-    fn pattern(&self, at: usize) -> &'static Pattern {
+    fn pattern(&self, at: usize) -> &'static CellPattern {
         &PATTERNS[self.cases[at] as usize]
     }
 
@@ -158,13 +158,13 @@ impl Cells<'_> {
 /// The zero surface. `place` puts a vertex, given the points where its patch's edges are crossed (3
 /// to 12).
 pub fn extract(
-    grid: &Grid,
+    grid: &DistanceGrid,
     place: impl Fn(&[DVec3]) -> DVec3 + Sync,
     job: &Job,
 ) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), Cancelled> {
     let [nx, ny, nz] = grid.size;
     let plane = nx * ny;
-    let mut cells = Cells { grid, cases: vec![0; plane * nz], first: vec![0; plane * nz] };
+    let mut cells = CrossedCells { grid, cases: vec![0; plane * nz], first: vec![0; plane * nz] };
     // Patterns, and in each plane the list of cells that are crossed.
     let active: Vec<Vec<u32>> = cells
         .cases
@@ -237,7 +237,7 @@ pub fn extract(
     let mut middles: Vec<u64> = odd
         .iter()
         .flatten()
-        .filter_map(|c| if let Corner::Middle(key) = c { Some(*key) } else { None })
+        .filter_map(|c| if let QuadCorner::Middle(key) = c { Some(*key) } else { None })
         .collect();
     middles.sort_unstable();
     middles.dedup();
@@ -248,11 +248,11 @@ pub fn extract(
         let ids: Vec<u32> = face
             .iter()
             .map(|c| match *c {
-                Corner::Patch(id) => id,
-                Corner::Middle(key) => (base + middles.partition_point(|&m| m < key)) as u32,
+                QuadCorner::Patch(id) => id,
+                QuadCorner::Middle(key) => (base + middles.partition_point(|&m| m < key)) as u32,
             })
             .collect();
-        let hub = face.iter().position(|c| matches!(c, Corner::Middle(_))).unwrap_or(0);
+        let hub = face.iter().position(|c| matches!(c, QuadCorner::Middle(_))).unwrap_or(0);
         let n = ids.len();
         for i in 1..n - 1 {
             triangles.push([ids[hub], ids[(hub + i) % n], ids[(hub + i + 1) % n]]);
@@ -263,7 +263,11 @@ pub fn extract(
 
 /// The faces of the edges that start at the lower corner of each listed cell; those with a middle
 /// apart.
-fn faces(cells: &Cells, list: &[u32], positions: &[Vec3]) -> (Vec<[u32; 3]>, Vec<Vec<Corner>>) {
+fn faces(
+    cells: &CrossedCells,
+    list: &[u32],
+    positions: &[Vec3],
+) -> (Vec<[u32; 3]>, Vec<Vec<QuadCorner>>) {
     let (mut triangles, mut odd) = (Vec::with_capacity(list.len() * 2), Vec::new());
     for &at in list {
         let at = at as usize;
@@ -292,8 +296,8 @@ fn faces(cells: &Cells, list: &[u32], positions: &[Vec3]) -> (Vec<[u32; 3]>, Vec
             if middles.iter().any(Option::is_some) {
                 let mut face = Vec::with_capacity(8);
                 for i in 0..4 {
-                    face.push(Corner::Patch(ids[i]));
-                    face.extend(middles[i].map(Corner::Middle));
+                    face.push(QuadCorner::Patch(ids[i]));
+                    face.extend(middles[i].map(QuadCorner::Middle));
                 }
                 if !outward {
                     face.reverse();

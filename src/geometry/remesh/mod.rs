@@ -1,20 +1,22 @@
-//! A new mesh from the field of an old one: even triangles, one closed surface, whatever the old
-//! one was.
+//! Voxel remeshing: a new mesh from the sampled distance to an old one, even triangles, one closed
+//! surface, whatever the old one was. The surface is extracted by dual marching cubes (Nielson 2004,
+//! see [`dual`]) and projected onto the old one; with sharp edges its vertices are placed as dual
+//! contouring does (Ju et al. 2002).
 
 pub mod dual;
 
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::distance::Solid;
-use super::grid::{Grid, MAX_SAMPLES};
+use super::distance::DistanceSolid;
+use super::grid::{DistanceGrid, MAX_SAMPLES};
 use crate::TriMesh;
 use crate::bvh::REACH;
 use crate::job::{Cancelled, Job};
 
 /// How fine the new mesh is, and whether edges stay sharp.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct RemeshSettings {
     /// Samples along the longest side of the box, 8 to 1024.
     pub side: usize,
     /// Vertices at the meeting point of the faces around (Ju et al., "Dual contouring of Hermite
@@ -22,19 +24,22 @@ pub struct Settings {
     pub sharp: bool,
 }
 
-impl Default for Settings {
+impl Default for RemeshSettings {
     fn default() -> Self {
-        Settings { side: 256, sharp: false }
+        RemeshSettings { side: 256, sharp: false }
     }
 }
 
 /// Why there is no new mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum RemeshError {
+    /// The job was cancelled.
     #[error("{0}")]
     Cancelled(#[from] Cancelled),
+    /// The mesh encloses nothing that the samples can see.
     #[error("expected a surface around some volume, found none")]
     Empty,
+    /// The resolution is out of range, or the grid would have more than [`MAX_SAMPLES`] samples.
     #[error("expected 8 to 1024 samples a side, found {0}")]
     Side(usize),
 }
@@ -43,7 +48,11 @@ pub enum RemeshError {
 pub(super) const MARGIN: usize = 3;
 
 /// The box of the solid, larger by `more` on each side, as a grid's layout.
-pub(super) fn layout(solid: &Solid, more: f64, side: usize) -> Result<Grid, RemeshError> {
+pub(super) fn layout(
+    solid: &DistanceSolid,
+    more: f64,
+    side: usize,
+) -> Result<DistanceGrid, RemeshError> {
     if !(8..=1024).contains(&side) {
         return Err(RemeshError::Side(side));
     }
@@ -54,7 +63,7 @@ pub(super) fn layout(solid: &Solid, more: f64, side: usize) -> Result<Grid, Reme
     if !(lo.abs().max(hi.abs()).max_element() as f64 + more < REACH) {
         return Err(RemeshError::Empty);
     }
-    let grid = Grid::layout((lo.as_dvec3() - more, hi.as_dvec3() + more), side, MARGIN);
+    let grid = DistanceGrid::layout((lo.as_dvec3() - more, hi.as_dvec3() + more), side, MARGIN);
     let [x, y, z] = grid.size;
     if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }
 }
@@ -64,11 +73,11 @@ pub(super) fn layout(solid: &Solid, more: f64, side: usize) -> Result<Grid, Reme
 /// was built from `mesh`.
 pub fn remesh(
     mesh: &TriMesh,
-    solid: &Solid,
-    settings: Settings,
+    solid: &DistanceSolid,
+    settings: RemeshSettings,
     job: &Job,
 ) -> Result<TriMesh, RemeshError> {
-    let grid = Grid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
+    let grid = DistanceGrid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
     let h = grid.spacing;
     let place = |points: &[DVec3]| {
         let middle = points.iter().sum::<DVec3>() / points.len() as f64;
@@ -86,7 +95,7 @@ pub fn remesh(
 
 /// The place on the old surface nearest to `p`, less a fiftieth of the way: two vertices that meet
 /// at a corner stay two.
-fn onto(solid: &Solid, p: DVec3, h: f64) -> DVec3 {
+fn onto(solid: &DistanceSolid, p: DVec3, h: f64) -> DVec3 {
     match solid.tree.nearest(p, h) {
         Some(n) => p + (n.point - p) * 0.98,
         None => p,
@@ -95,7 +104,7 @@ fn onto(solid: &Solid, p: DVec3, h: f64) -> DVec3 {
 
 /// Where the planes of the surface at `points` meet, as near to `middle` as they leave open; at
 /// most a spacing away.
-fn corner(solid: &Solid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
+fn corner(solid: &DistanceSolid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
     // A weak pull to the middle decides along a flat or an edge.
     let (mut a, mut b) = (DMat3::from_diagonal(DVec3::splat(0.01)), DVec3::ZERO);
     for &p in points {
@@ -110,7 +119,7 @@ fn corner(solid: &Solid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
 /// The old colours at new places.
 fn colours(
     mesh: &TriMesh,
-    solid: &Solid,
+    solid: &DistanceSolid,
     positions: &[Vec3],
     job: &Job,
 ) -> Result<Option<Vec<[u8; 4]>>, Cancelled> {

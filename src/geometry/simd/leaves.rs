@@ -29,10 +29,12 @@ impl Leaves {
         Some(Leaves { corners: corners.into(), ends: ends.into(), rows })
     }
 
+    /// The number of leaves.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
+    /// Whether there is no leaf.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
@@ -43,6 +45,7 @@ impl Leaves {
         &self.corners[from..self.ends[i] as usize]
     }
 
+    /// Memory held, bytes.
     pub fn bytes(&self) -> usize {
         (self.corners.len() + self.ends.len()) * 2
     }

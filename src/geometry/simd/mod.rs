@@ -7,4 +7,6 @@
 pub mod cotangents;
 pub mod leaves;
 pub mod rings;
+#[cfg(target_arch = "x86_64")]
+mod token;
 pub mod wide;

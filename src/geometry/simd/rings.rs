@@ -19,6 +19,7 @@ pub struct Hexes {
 }
 
 impl Hexes {
+    /// Rings of the vertices from 0 on.
     pub fn new(rings: Vec<[u16; 6]>) -> Self {
         let rows =
             rings.iter().flatten().max().map_or(0, |&most| most as usize + 1).max(rings.len());
@@ -31,10 +32,12 @@ impl Hexes {
         self.rings.len()
     }
 
+    /// Whether no vertex has its ring here.
     pub fn is_empty(&self) -> bool {
         self.rings.is_empty()
     }
 
+    /// The ring of vertex `v`; `None` past the last.
     #[inline(always)]
     pub fn get(&self, v: usize) -> Option<&[u16; 6]> {
         self.rings.get(v)
@@ -90,12 +93,15 @@ pub const LENGTHS: std::ops::Range<f32> = 1e-30..f32::INFINITY;
 /// Vertices whose normals are to be computed: `first..first + rows.len()`.
 #[derive(Debug)]
 pub struct Rows<'a> {
+    /// The first vertex.
     pub first: usize,
     /// As they were; the fourth lane is kept.
     pub old: &'a [Vec4],
+    /// Where the normals go, as many as `old`.
     pub rows: &'a mut [Vec4],
     /// Gets `mark` where a normal is not, to the bit, what it was.
     pub marks: &'a mut [u8],
+    /// What a mark is.
     pub mark: u8,
 }
 
@@ -104,7 +110,7 @@ pub struct Rows<'a> {
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(super) fn normals_avx2(
-    _: super::wide::Avx2,
+    _: super::token::Avx2,
     hexes: &Hexes,
     points: &[Vec4],
     to: &mut Rows<'_>,

@@ -19,6 +19,7 @@ use super::rings::{Hexes, Rows};
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub struct Pack {
+    /// The coordinates, in the mesh's unit.
     pub v: [[[f32; 4]; 3]; 3],
     /// The index of each triangle in the mesh that the tree was built from.
     pub id: [u32; 4],
@@ -30,7 +31,7 @@ pub const NO_TRIANGLE: u32 = u32::MAX;
 /// Eight boxes and what is in them.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct Node {
+pub struct WideNode {
     /// `planes[axis]` are the lower sides, `planes[3 + axis]` the upper ones. An unused child has
     /// +inf below and -inf above.
     pub planes: [[f32; 8]; 6],
@@ -38,7 +39,7 @@ pub struct Node {
     pub child: [u32; 8],
 }
 
-/// The bit of [`Node::child`] that tells a pack from a node.
+/// The bit of [`WideNode::child`] that tells a pack from a node.
 pub const LEAF: u32 = 1 << 31;
 
 /// A ray made ready for both tests. The fields are private because the tests trust the indices.
@@ -48,7 +49,7 @@ pub struct Prepared {
     inverse: [f32; 3],
     /// The same for the far sides, so much larger that rounding never loses a box.
     wider: [f32; 3],
-    /// Index into [`Node::planes`], below 6, of the side that the ray meets first, and last, per
+    /// Index into [`WideNode::planes`], below 6, of the side that the ray meets first, and last, per
     /// axis.
     near: [usize; 3],
     far: [usize; 3],
@@ -62,7 +63,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Index into [`Node::planes`], below 6, of the side that the ray meets first, per axis.
+    /// Index into [`WideNode::planes`], below 6, of the side that the ray meets first, per axis.
     #[inline(always)]
     pub fn near(&self) -> [usize; 3] {
         self.near
@@ -80,6 +81,8 @@ impl Prepared {
         self.inverse
     }
 
+    /// Prepares a ray from `origin` along `dir`, which is not zero; hits before `t_min` do not
+    /// count.
     #[inline(always)]
     pub fn new(origin: [f32; 3], dir: [f32; 3], t_min: f32) -> Self {
         let a = dir.map(f32::abs);
@@ -116,10 +119,13 @@ const WIDE: f32 = 0.1;
 /// A set of hits in a pack: which lanes, and where.
 #[derive(Debug, Clone, Copy)]
 pub struct PackHits {
+    /// Bit `i` is set where the ray meets triangle `i`.
     pub mask: u32,
+    /// In lengths of the ray's direction, for the lanes in `mask`.
     pub t: [f32; 4],
     /// Weights of the second and the third corner.
     pub u: [f32; 4],
+    /// The weight of the third corner.
     pub v: [f32; 4],
 }
 
@@ -127,12 +133,12 @@ pub struct PackHits {
 pub trait Wide: Copy {
     /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it
     /// enters each.
-    fn boxes(self, ray: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32;
+    fn boxes(self, ray: &Prepared, node: &WideNode, t_max: f32, near: &mut [f32; 8]) -> u32;
     /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included.
     fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
     /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which
     /// is finite: an unused box is infinitely far.
-    fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32;
+    fn near_boxes(self, p: [f32; 3], node: &WideNode, bound: f32, out: &mut [f32; 8]) -> u32;
     /// Bounds of the four triangles' distances from `p`: nowhere is a triangle nearer than `low`,
     /// and somewhere it is as near as `high`. `slack` is the rounding's share of the largest
     /// distance of a corner. A sliver of which single precision cannot tell gets 0 and infinity,
@@ -154,7 +160,7 @@ pub trait Wide: Copy {
 
 /// Plain Rust.
 #[derive(Debug, Clone, Copy)]
-pub struct Scalar;
+pub struct PortableLanes;
 
 #[inline(always)]
 fn max(a: f32, b: f32) -> f32 {
@@ -166,9 +172,9 @@ fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-impl Wide for Scalar {
+impl Wide for PortableLanes {
     #[inline(always)]
-    fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
+    fn boxes(self, r: &Prepared, node: &WideNode, t_max: f32, near: &mut [f32; 8]) -> u32 {
         let mut mask = 0;
         for i in 0..8 {
             let at = |plane: usize, axis: usize, inverse: [f32; 3]| {
@@ -212,7 +218,7 @@ impl Wide for Scalar {
     }
 
     #[inline(always)]
-    fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32 {
+    fn near_boxes(self, p: [f32; 3], node: &WideNode, bound: f32, out: &mut [f32; 8]) -> u32 {
         let mut mask = 0;
         for i in 0..8 {
             let d: [f32; 3] = std::array::from_fn(|a| {
@@ -270,22 +276,16 @@ impl Wide for Scalar {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use avx2::Avx2;
-
-#[cfg(target_arch = "x86_64")]
 mod avx2 {
     use super::super::rings::{self, Hexes, Rows};
-    use super::{Node, Pack, PackHits, Prepared, WIDE, Wide};
+    use super::super::token::Avx2;
+    use super::{Pack, PackHits, Prepared, WIDE, Wide, WideNode};
     use glam::Vec4;
     use std::arch::x86_64::*;
 
-    /// Proof that the processor has AVX2: made only after the check in [`super::dispatch`].
-    #[derive(Debug, Clone, Copy)]
-    pub(in crate::simd) struct Avx2(pub(super) ());
-
     impl Wide for Avx2 {
         #[inline(always)]
-        fn boxes(self, r: &Prepared, node: &Node, t_max: f32, near: &mut [f32; 8]) -> u32 {
+        fn boxes(self, r: &Prepared, node: &WideNode, t_max: f32, near: &mut [f32; 8]) -> u32 {
             // SAFETY: the token proves AVX2; `near` and `far` are below 6, as only `Prepared::new`
             // makes them; all loads and stores are within the arrays they take their address from.
             unsafe {
@@ -361,7 +361,7 @@ mod avx2 {
         }
 
         #[inline(always)]
-        fn near_boxes(self, p: [f32; 3], node: &Node, bound: f32, out: &mut [f32; 8]) -> u32 {
+        fn near_boxes(self, p: [f32; 3], node: &WideNode, bound: f32, out: &mut [f32; 8]) -> u32 {
             // SAFETY: the token proves AVX2; all loads and stores are within their arrays.
             unsafe {
                 let square = |a: usize| {
@@ -462,26 +462,28 @@ mod avx2 {
 /// Work that is written once and compiled for each kind of processor. `run` must be
 /// `#[inline(always)]`, or it is not compiled for AVX2.
 pub trait WideWork {
-    type Out;
-    fn run<W: Wide>(self, w: W) -> Self::Out;
+    /// What the work gives.
+    type Output;
+    /// Does the work with the tests of `w`.
+    fn run<W: Wide>(self, w: W) -> Self::Output;
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn with_avx2<J: WideWork>(work: J) -> J::Out {
-    work.run(Avx2(()))
+fn with_avx2<J: WideWork>(work: J) -> J::Output {
+    work.run(super::token::Avx2(()))
 }
 
 /// Runs `work` compiled for AVX2 where the processor has it (and `scalar` is not asked for), else
 /// in plain Rust.
 #[inline(always)]
-pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Out {
+pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Output {
     #[cfg(target_arch = "x86_64")]
     if !scalar && has_fast() {
         // SAFETY: the features were found on this processor.
         return unsafe { with_avx2(work) };
     }
-    work.run(Scalar)
+    work.run(PortableLanes)
 }
 
 /// AVX2 came together with BMI in every processor (Haswell, Excavator); both are checked all the

@@ -6,7 +6,7 @@
 //! surface point `q` lies inside it, take the ball through the site and `q`, tangent at the site:
 //! `r = |pq|^2 / (2 away . pq)`. Each ball lies inside the last, so no earlier constraint comes
 //! back. Left out: the site's own triangles, and triangles that turn from the site's normal by less
-//! than [`SAME_SIDE`]; a tessellated wall would otherwise dent every ball that rests on it.
+//! than `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests on it.
 
 use glam::Vec3;
 
@@ -26,7 +26,8 @@ const STEPS: usize = 40;
 
 /// The settled ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball {
+pub struct InscribedBall {
+    /// In the mesh's unit.
     pub diameter: f32,
     /// The two touches are nearer to each other than 140 degrees seen from the centre: the ball is
     /// held by a corner or an edge, not by the opposite side of a wall.
@@ -35,7 +36,7 @@ pub struct Ball {
 
 impl Caster<'_> {
     /// The inscribed ball at a site. `None` where no wall is ahead and so nothing bounds it.
-    pub fn ball(&self, site: &Site<'_>) -> Option<Ball> {
+    pub fn ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
         let mut touch = None;
         let mut r = match self.hit(site, -site.away) {
             Some(hit) => {
@@ -54,9 +55,9 @@ impl Caster<'_> {
             let limit = r * (1.0 - SETTLED);
             let accept = |t: u32| {
                 self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE
-                    && !site.own.contains(&t)
+                    && !site.owns(t)
             };
-            let query = Nearest { tree: self.tree, centre, limit, accept };
+            let query = BallSearch { tree: self.tree, centre, limit, accept };
             let Some(q) = wide::dispatch(self.tree.scalar(), query) else { break };
             let to = site.point.as_dvec3() - q.as_dvec3();
             let along = site.away.as_dvec3().dot(to);
@@ -74,20 +75,22 @@ impl Caster<'_> {
         let q = touch?;
         let centre = site.point - site.away * r;
         let cos = (q - centre).normalize_or_zero().dot(site.away);
-        Some(Ball { diameter: 2.0 * r, in_corner: cos > CORNER })
+        // On an open mesh nothing else bounds the ball.
+        let diameter = (2.0 * r).min(self.longest(site));
+        Some(InscribedBall { diameter, in_corner: cos > CORNER })
     }
 }
 
 /// The nearest surface point within `limit` of `centre` on a triangle that `accept` takes.
-struct Nearest<'a, A> {
+struct BallSearch<'a, A> {
     tree: &'a Bvh8,
     centre: Vec3,
     limit: f32,
     accept: A,
 }
 
-impl<A: Fn(u32) -> bool> WideWork for Nearest<'_, A> {
-    type Out = Option<Vec3>;
+impl<A: Fn(u32) -> bool> WideWork for BallSearch<'_, A> {
+    type Output = Option<Vec3>;
 
     #[inline(always)]
     fn run<W: Wide>(self, _: W) -> Option<Vec3> {

@@ -1,18 +1,19 @@
 //! A part checked against limits: what the command line prints, the report shows and a batch
 //! collects.
 
-use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::preset::Preset;
 use super::refine::refine;
-use super::summary::Summary;
+use super::summary::ThicknessSummary;
 use super::warnings::warnings;
-use super::worst::Spot;
-use super::{Method, Refused, Settings, Surface, Thickness, measure};
+use super::worst::ThinRegion;
+use super::{
+    Thickness, ThicknessError, ThicknessMethod, ThicknessSettings, WeldedSurface, measure,
+};
 use crate::job::Job;
 use crate::measure::measures;
-use crate::{PolyMesh, TriMesh};
+use crate::{CentredMesh, TriMesh};
 
 /// Worst spots that are told.
 pub const SPOTS: usize = 10;
@@ -20,69 +21,42 @@ pub const SPOTS: usize = 10;
 /// Places to measure at that a coarse part is given.
 const PLACES: usize = 20_000;
 
-/// A file's mesh about its own centre in single precision, scaled to millimetres.
-#[derive(Debug, Clone)]
-pub struct Part {
-    pub mesh: TriMesh,
-    /// Vertices and triangles in the file.
-    pub counts: [usize; 2],
-    /// Added to the mesh's coordinates, gives the file's, scaled.
-    pub centre: DVec3,
-}
-
-impl Part {
-    /// `scale` is millimetres per unit of the file. A part far from the origin loses no precision
-    /// here.
-    pub fn new(poly: &PolyMesh, scale: f64) -> Part {
-        let (lo, hi) = poly
-            .positions
-            .iter()
-            .filter(|p| p.is_finite())
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
-        let centre = if lo.x <= hi.x { (lo + hi) * 0.5 } else { DVec3::ZERO };
-        let (mut mesh, _) = poly.triangulate();
-        mesh.positions = poly.positions.iter().map(|&p| ((p - centre) * scale).as_vec3()).collect();
-        let counts = [mesh.positions.len(), mesh.triangles.len()];
-        Part { mesh, counts, centre: centre * scale }
-    }
-
-    /// Puts places to measure on walls that have none. `spacing` is the longest edge that stays,
-    /// millimetres; without it, a part of which more than half of the vertices lie on sharp edges
-    /// gets about [`PLACES`] of them, other parts none.
-    pub fn refine(&mut self, spacing: Option<f32>, crease: f32) {
-        let spacing = spacing.or_else(|| {
-            if self.mesh.triangles.len() > PLACES {
-                return None;
-            }
-            let s = Surface::new(&self.mesh, crease.to_radians());
-            let sharp = s.sharp.iter().filter(|&&s| s).count();
-            let area = measures(&self.mesh).area as f32;
-            (sharp * 2 > s.sharp.len()).then(|| (area * 2.0 / PLACES as f32).sqrt())
-        });
-        if let Some(spacing) = spacing.filter(|s| *s > 0.0 && s.is_finite()) {
-            self.mesh = refine(&self.mesh, spacing);
+/// Puts places to measure on walls that have none. `spacing` is the longest edge that stays,
+/// millimetres; without it, a part of which more than half of the vertices lie on sharp edges (by
+/// `crease`, degrees) gets about 20,000 of them, other parts none.
+pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) {
+    let spacing = spacing.or_else(|| {
+        if mesh.triangles.len() > PLACES {
+            return None;
         }
-    }
-
-    fn place(&self, p: [f32; 3]) -> [f64; 3] {
-        (Vec3::from(p).as_dvec3() + self.centre).to_array()
+        let s = WeldedSurface::new(mesh, crease.to_radians());
+        let sharp = s.sharp.iter().filter(|&&s| s).count();
+        let area = measures(mesh).area as f32;
+        (sharp * 2 > s.sharp.len()).then(|| (area * 2.0 / PLACES as f32).sqrt())
+    });
+    if let Some(spacing) = spacing.filter(|s| *s > 0.0 && s.is_finite()) {
+        *mesh = refine(mesh, spacing);
     }
 }
 
 /// Limits, millimetres. A value fails when it is strictly below, or strictly above.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Limits {
+pub struct ThicknessLimits {
+    /// Thinner than this asks for a second look.
     pub warn_below: Option<f32>,
+    /// Thinner than this fails.
     pub fail_below: Option<f32>,
+    /// Thicker than this fails.
     pub fail_above: Option<f32>,
+    /// A larger ratio between neighbouring walls asks for a second look.
     pub neighbour_ratio: Option<f32>,
     /// Regions smaller than this, square millimetres, are not defects.
     pub minimum_area: f64,
 }
 
-impl From<&Preset> for Limits {
+impl From<&Preset> for ThicknessLimits {
     fn from(p: &Preset) -> Self {
-        Limits {
+        ThicknessLimits {
             warn_below: Some(p.warn_below),
             fail_below: Some(p.fail_below),
             fail_above: p.fail_above,
@@ -92,78 +66,108 @@ impl From<&Preset> for Limits {
     }
 }
 
+/// What the limits say of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// No limit was given, or nothing could be measured.
     Unjudged,
+    /// Every value is within the limits.
     Pass,
+    /// A value asks for a second look.
     Warn,
+    /// A value fails.
     Fail,
 }
 
 /// The share of the area on the wrong side of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Beyond {
+pub struct AreaBeyond {
+    /// The limit, millimetres.
     pub limit: f32,
+    /// Of the area that has values, 0 to 100.
     pub area_percent: f64,
 }
 
 /// A spot in the file's own coordinates (in millimetres).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WorstSpot {
+    /// Of its thinnest vertex.
     pub position: [f64; 3],
+    /// At its thinnest vertex, millimetres.
     pub thickness: f32,
+    /// Square millimetres.
     pub area: f64,
+    /// Welded vertices in the region.
     pub vertices: u32,
 }
 
 /// The answer of `sculptd thickness --json`.
 #[derive(Debug, Clone, Serialize)]
-pub struct Answer {
+pub struct ThicknessAnswer {
+    /// The name of the file as it was given.
     pub file: String,
-    pub method: Method,
+    /// How thickness was defined.
+    pub method: ThicknessMethod,
+    /// Rays a place; 1 for the sphere.
     pub rays: usize,
-    pub settings: Settings,
-    pub limits: Limits,
+    /// All settings.
+    pub settings: ThicknessSettings,
+    /// The limits that the part was held against.
+    pub limits: ThicknessLimits,
+    /// What they say.
     pub verdict: Verdict,
+    /// The statistics; their fields stand beside these in JSON.
     #[serde(flatten)]
-    pub summary: Summary,
-    pub below: Option<Beyond>,
-    pub above: Option<Beyond>,
+    pub summary: ThicknessSummary,
+    /// The area below the failing limit, or the warning one.
+    pub below: Option<AreaBeyond>,
+    /// The area above the upper limit.
+    pub above: Option<AreaBeyond>,
     /// Vertices whose value differs from a neighbour's by more than the limit's ratio.
     pub uneven: Option<u64>,
+    /// At most [`SPOTS`] regions, the thinnest first.
     pub worst: Vec<WorstSpot>,
+    /// Vertices in the file.
     pub vertices: usize,
+    /// Triangles in the file, its polygons cut.
     pub triangles: usize,
     /// Vertices that were measured: more than the file has, where a coarse part was refined.
     pub places: usize,
+    /// Cubic millimetres.
     pub volume: f64,
+    /// Square millimetres.
     pub area: f64,
+    /// Extents along x, y and z, millimetres.
     pub dimensions: [f64; 3],
+    /// What the measuring took.
     pub seconds: f64,
+    /// Rays over seconds.
     pub rays_per_second: f64,
+    /// One sentence for each thing that is wrong with the mesh.
     pub warnings: Vec<String>,
 }
 
 /// An answer with what it was made from.
 #[derive(Debug, Clone)]
-pub struct Checked {
-    pub answer: Answer,
+pub struct CheckedPart {
+    /// What is told.
+    pub answer: ThicknessAnswer,
+    /// The values at every vertex.
     pub thickness: Thickness,
     /// In the part's coordinates, in the order of `answer.worst`.
-    pub spots: Vec<Spot>,
+    pub spots: Vec<ThinRegion>,
 }
 
 /// Measures `part` and judges it. `seconds` reads a clock that the caller started.
 pub fn check(
     file: &str,
-    part: &Part,
-    settings: &Settings,
-    limits: Limits,
+    part: &CentredMesh,
+    settings: &ThicknessSettings,
+    limits: ThicknessLimits,
     job: &Job,
     seconds: impl Fn() -> f64,
-) -> Result<Checked, Refused> {
+) -> Result<CheckedPart, ThicknessError> {
     let began = seconds();
     let thickness = measure(&part.mesh, settings, job)?;
     let took = seconds() - began;
@@ -178,7 +182,7 @@ pub fn check(
     });
     let beyond = |limit: f32, above: bool| {
         let (out, all) = thickness.area_beyond(limit, above);
-        Beyond { limit, area_percent: if all > 0.0 { 100.0 * out / all } else { 0.0 } }
+        AreaBeyond { limit, area_percent: if all > 0.0 { 100.0 * out / all } else { 0.0 } }
     };
     let uneven = limits.neighbour_ratio.map(|r| {
         let ratios = thickness.neighbour_ratio(1.0);
@@ -206,16 +210,16 @@ pub fn check(
         Verdict::Unjudged
     };
     let size = sizes.dimensions.iter().copied().fold(0.0f64, f64::max) as f32;
-    let place = |s: &Spot| WorstSpot {
-        position: part.place(s.position),
+    let place = |s: &ThinRegion| WorstSpot {
+        position: part.to_file(s.position.into()).to_array(),
         thickness: s.thickness,
         area: s.area,
         vertices: s.vertices,
     };
-    let answer = Answer {
+    let answer = ThicknessAnswer {
         file: file.into(),
         method: settings.method,
-        rays: if settings.method == Method::Ray { settings.rays } else { 1 },
+        rays: if settings.method == ThicknessMethod::Ray { settings.rays } else { 1 },
         settings: *settings,
         limits,
         verdict,
@@ -234,5 +238,5 @@ pub fn check(
         warnings: warnings(&thickness.surface.faults, &summary, size),
         summary,
     };
-    Ok(Checked { answer, thickness, spots })
+    Ok(CheckedPart { answer, thickness, spots })
 }

@@ -11,6 +11,9 @@ pub enum Outliers {
     Keep,
     /// Out: farther from the median than this share (0.1 to 0.9) of the range of the values.
     Range(f32),
+    /// Out: below the first or above the second share of the way from the least value to the
+    /// largest; `Within(0.1, 0.9)` keeps from 10 to 90 % of the cone's range. 0 to 1, rising.
+    Within(f32, f32),
     /// Out: farther from the mean than one standard deviation.
     SigmaMean,
     /// Out: farther from the median than one standard deviation.
@@ -21,6 +24,7 @@ pub enum Outliers {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
+    /// Every ray counts the same.
     Plain,
     /// The inverse of the ray's angle to the axis (Shapira, Shamir, Cohen-Or 2008); the axis itself
     /// counts as one degree.
@@ -31,7 +35,9 @@ pub enum Weights {
 /// spiral).
 #[derive(Debug, Clone)]
 pub struct Cone {
+    /// Of unit length, the axis first.
     pub dirs: Vec<Vec3>,
+    /// What each ray counts in the mean, one a direction.
     pub weights: Vec<f32>,
 }
 
@@ -72,6 +78,7 @@ pub fn frame(n: Vec3) -> (Vec3, Vec3) {
 /// What a cone's values come to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Folded {
+    /// The weighted mean of the kept values.
     pub value: f32,
     /// Standard error of the mean of the kept values; 0 of a single one.
     pub error: f32,
@@ -92,6 +99,10 @@ pub fn fold(values: &mut [(f32, f32)], outliers: Outliers) -> Option<Folded> {
         (v.iter().map(|v| (v.0 as f64 - m).powi(2)).sum::<f64>() / v.len() as f64).sqrt()
     };
     let (centre, reach) = match outliers {
+        Outliers::Within(low, high) => {
+            let (least, range) = (values[0].0, values[n - 1].0 - values[0].0);
+            (least + range * (low + high) * 0.5, range * (high - low) * 0.5)
+        }
         Outliers::Keep => (median, f32::INFINITY),
         Outliers::Range(share) => (median, (values[n - 1].0 - values[0].0) * share),
         Outliers::SigmaMean => (mean(values) as f32, deviation(values) as f32),
@@ -145,6 +156,11 @@ mod tests {
             (by(Outliers::Range(0.9)) - 1.15).abs() < 1e-5
                 || (by(Outliers::Range(0.9)) - 2.72).abs() < 1e-5
         );
+        // From 1.8 to 8.2 of the range from 1 to 9 lies nothing: the median stays.
+        assert_eq!(by(Outliers::Within(0.1, 0.9)), 1.2);
+        let mut even = [1.0f32, 2.0, 3.0, 4.0, 6.0].map(|v| (v, 1.0));
+        let kept = fold(&mut even, Outliers::Within(0.1, 0.9)).map(|f| f.value);
+        assert_eq!(kept, Some(3.0));
         assert!((by(Outliers::SigmaMean) - 1.15).abs() < 1e-5);
         assert!((by(Outliers::SigmaMedian) - 1.15).abs() < 1e-5);
         assert_eq!(fold(&mut [], Outliers::Keep), None);

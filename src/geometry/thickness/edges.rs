@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::ray::{Caster, Site};
-use super::{EdgePolicy, Method, Reason, Settings, Surface, Value};
+use super::{EdgePolicy, Reason, SiteValue, ThicknessMethod, ThicknessSettings, WeldedSurface};
 
 /// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along
 /// the mesh is longer.
@@ -13,9 +13,9 @@ const REACH: f32 = 1.5;
 /// Applies the policy to the values marked [`Reason::Edge`].
 pub(super) fn apply(
     caster: &Caster<'_>,
-    surface: &Surface,
-    settings: &Settings,
-    values: &mut [Value],
+    surface: &WeldedSurface,
+    settings: &ThicknessSettings,
+    values: &mut [SiteValue],
 ) {
     mark(surface, values);
     let marked: Vec<usize> =
@@ -23,15 +23,15 @@ pub(super) fn apply(
     match settings.edges {
         EdgePolicy::Raw => {}
         EdgePolicy::Neutral => {
-            marked.iter().for_each(|&v| values[v] = Value::missing(Reason::Edge))
+            marked.iter().for_each(|&v| values[v] = SiteValue::missing(Reason::Edge))
         }
-        EdgePolicy::Sphere if settings.method == Method::Sphere => {}
+        EdgePolicy::Sphere if settings.method == ThicknessMethod::Sphere => {}
         EdgePolicy::Sphere => {
             for v in marked {
                 let away = surface.normals[v] * caster.sign;
                 let site = Site { point: surface.positions[v], away, own: surface.around(v) };
                 if let Some(ball) = caster.ball(&site) {
-                    values[v] = Value {
+                    values[v] = SiteValue {
                         value: ball.diameter,
                         error: 0.0,
                         reason: Reason::Edge,
@@ -55,7 +55,7 @@ pub(super) fn apply(
 /// Marks what tells of an edge and not of a wall: the opposite side is turned by more than 40
 /// degrees, and a sharp vertex is as near (along the mesh's edges) as the edge of such a wedge must
 /// be, within 1.5 times the value.
-fn mark(surface: &Surface, values: &mut [Value]) {
+fn mark(surface: &WeldedSurface, values: &mut [SiteValue]) {
     if !values.iter().any(|v| v.turned && v.reason == Reason::Measured) {
         return;
     }
@@ -95,7 +95,7 @@ fn mark(surface: &Surface, values: &mut [Value]) {
 
 /// Each marked vertex takes the median of its neighbours that are measured or took theirs in an
 /// earlier round.
-fn spread(surface: &Surface, values: &mut [Value], marked: &mut Vec<usize>) {
+fn spread(surface: &WeldedSurface, values: &mut [SiteValue], marked: &mut Vec<usize>) {
     let mut known: Vec<bool> = values.iter().map(|v| v.reason == Reason::Measured).collect();
     let (mut beside, mut near) = (Vec::new(), Vec::new());
     while !marked.is_empty() {
@@ -119,7 +119,7 @@ fn spread(surface: &Surface, values: &mut [Value], marked: &mut Vec<usize>) {
             return;
         }
         for (v, value, error) in found {
-            values[v] = Value { value, error, ..values[v] };
+            values[v] = SiteValue { value, error, ..values[v] };
             known[v] = true;
         }
     }
@@ -127,7 +127,7 @@ fn spread(surface: &Surface, values: &mut [Value], marked: &mut Vec<usize>) {
 
 /// The smallest of the walls under the faces around `v`, each measured along its own normal from a
 /// point one per cent of the way into the face.
-fn under_faces(caster: &Caster<'_>, surface: &Surface, v: usize) -> Option<Value> {
+fn under_faces(caster: &Caster<'_>, surface: &WeldedSurface, v: usize) -> Option<SiteValue> {
     let mut least = f32::INFINITY;
     for &t in surface.around(v) {
         let [a, b, c] = surface.corners(t as usize)?;
@@ -140,7 +140,7 @@ fn under_faces(caster: &Caster<'_>, surface: &Surface, v: usize) -> Option<Value
         let found = caster.hit(&site, -site.away).map(|h| h.t);
         least = least.min(found.unwrap_or(f32::INFINITY));
     }
-    least.is_finite().then_some(Value {
+    least.is_finite().then_some(SiteValue {
         value: least,
         error: 0.0,
         reason: Reason::Edge,

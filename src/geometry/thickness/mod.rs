@@ -35,21 +35,23 @@ use crate::bvh::Bvh8;
 use crate::job::{Cancelled, Job};
 pub use cone::{Cone, Outliers, Weights};
 pub use ray::Correction;
-use ray::{Caster, Scratch, Site};
-pub use surface::{Faults, Surface};
+use ray::{Caster, ConeScratch, Site};
+pub use surface::{MeshFaults, WeldedSurface};
 
 /// How thickness is defined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Method {
+pub enum ThicknessMethod {
+    /// A cone of rays into the wall, see [`ray`].
     Ray,
+    /// The largest inscribed sphere, see [`ball`].
     Sphere,
 }
 
 /// What is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Side {
+pub enum MeasuredSide {
     /// The wall behind the surface.
     Wall,
     /// The gap in front of it (clearance).
@@ -93,34 +95,44 @@ pub enum Reason {
 /// Where values are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum At {
+pub enum MeasuredPlaces {
+    /// At each welded vertex.
     Vertices,
     /// At each triangle's centroid, too.
     VerticesAndFaces,
 }
 
+/// What is measured, where and how. The default is what `sculptd thickness` does: 25 rays in a cone
+/// of 60 degrees, corrected by the chord.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Settings {
-    pub method: Method,
-    pub side: Side,
-    /// 1 to 1000.
+pub struct ThicknessSettings {
+    /// How thickness is defined.
+    pub method: ThicknessMethod,
+    /// What is measured: walls or gaps.
+    pub side: MeasuredSide,
+    /// Rays in a cone, 1 to 1000.
     pub rays: usize,
     /// The cone's full angle, degrees, 0 to 120.
     pub opening: f32,
+    /// What a ray's length is corrected by.
     pub correction: Correction,
+    /// Which rays of a cone do not count.
     pub outliers: Outliers,
+    /// What a ray counts in the cone's mean.
     pub weights: Weights,
+    /// What a vertex on a sharp edge says.
     pub edges: EdgePolicy,
     /// An edge that turns by more than this, degrees, is sharp.
     pub crease: f32,
-    pub at: At,
+    /// Where values are wanted.
+    pub at: MeasuredPlaces,
 }
 
-impl Default for Settings {
+impl Default for ThicknessSettings {
     fn default() -> Self {
-        Settings {
-            method: Method::Ray,
-            side: Side::Wall,
+        ThicknessSettings {
+            method: ThicknessMethod::Ray,
+            side: MeasuredSide::Wall,
             rays: 25,
             opening: 60.0,
             correction: Correction::Chord,
@@ -128,23 +140,32 @@ impl Default for Settings {
             weights: Weights::Plain,
             edges: EdgePolicy::Extrapolate,
             crease: 40.0,
-            at: At::Vertices,
+            at: MeasuredPlaces::Vertices,
         }
     }
 }
 
 /// Settings that mean nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Refused {
+pub enum ThicknessError {
+    /// A setting is out of range.
     #[error("{what} is {got}: it must be {expected}")]
-    Setting { what: &'static str, got: f32, expected: &'static str },
+    Setting {
+        /// The setting.
+        what: &'static str,
+        /// Its value.
+        got: f32,
+        /// The range.
+        expected: &'static str,
+    },
+    /// The job was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-impl Settings {
-    fn check(&self) -> Result<(), Refused> {
-        let say = |what, got, expected| Err(Refused::Setting { what, got, expected });
+impl ThicknessSettings {
+    fn check(&self) -> Result<(), ThicknessError> {
+        let say = |what, got, expected| Err(ThicknessError::Setting { what, got, expected });
         if !(1..=1000).contains(&self.rays) {
             return say("the number of rays", self.rays as f32, "from 1 to 1000");
         }
@@ -155,6 +176,9 @@ impl Settings {
             return say("the crease angle", self.crease, "from 0 to 180 degrees");
         }
         match self.outliers {
+            Outliers::Within(low, high) if !(0.0 <= low && low < high && high <= 1.0) => {
+                say("the outliers' range", low, "two shares from 0 to 1, the lower first")
+            }
             Outliers::Range(share) if !(0.1..=0.9).contains(&share) => {
                 say("the outliers' share of the range", share, "from 0.1 to 0.9")
             }
@@ -167,18 +191,26 @@ impl Settings {
 /// why.
 #[derive(Debug, Clone)]
 pub struct Thickness {
-    pub settings: Settings,
+    /// What was asked for.
+    pub settings: ThicknessSettings,
     /// One a vertex of the mesh.
     pub values: Vec<f32>,
+    /// Why each value is what it is, one a vertex of the mesh.
     pub reasons: Vec<Reason>,
     /// One a vertex: the standard error of a cone's mean; 0 for a single ray and for the sphere.
     pub errors: Vec<f32>,
-    /// One a triangle, with [`At::VerticesAndFaces`].
+    /// One a triangle, with [`MeasuredPlaces::VerticesAndFaces`].
     pub face_values: Vec<f32>,
+    /// Why each of `face_values` is what it is.
     pub face_reasons: Vec<Reason>,
+    /// One a triangle, for statistics by area, which must not depend on how the part is meshed: the
+    /// mean of the corners that were measured themselves; where all lie on sharp edges, the value at
+    /// the centroid. NaN without a value.
+    pub area_values: Vec<f32>,
     /// Rays and ball queries asked for.
     pub queries: u64,
-    pub surface: Surface,
+    /// The welded mesh that was measured.
+    pub surface: WeldedSurface,
     /// The largest coordinate error of single precision here, in the mesh's unit.
     pub rounding: f32,
 }
@@ -187,7 +219,7 @@ pub struct Thickness {
 const CHUNK: usize = 512;
 
 #[derive(Debug, Clone, Copy)]
-struct Value {
+struct SiteValue {
     value: f32,
     error: f32,
     reason: Reason,
@@ -196,29 +228,35 @@ struct Value {
     turned: bool,
 }
 
-impl Value {
+impl SiteValue {
     const fn missing(reason: Reason) -> Self {
-        Value { value: f32::NAN, error: 0.0, reason, turned: false }
+        SiteValue { value: f32::NAN, error: 0.0, reason, turned: false }
     }
 }
 
 /// Measures a whole mesh on the current rayon pool.
-pub fn measure(mesh: &TriMesh, settings: &Settings, job: &Job) -> Result<Thickness, Refused> {
+pub fn measure(
+    mesh: &TriMesh,
+    settings: &ThicknessSettings,
+    job: &Job,
+) -> Result<Thickness, ThicknessError> {
     settings.check()?;
-    let (tree, surface) =
-        rayon::join(|| Bvh8::build(mesh, job), || Surface::new(mesh, settings.crease.to_radians()));
+    let (tree, surface) = rayon::join(
+        || Bvh8::build(mesh, job),
+        || WeldedSurface::new(mesh, settings.crease.to_radians()),
+    );
     measure_prepared(Cow::Owned(surface), &tree?, settings, job)
 }
 
 /// The same with the tree and the surface at hand, for several measures of one mesh.
 pub fn measure_prepared(
-    surface: Cow<'_, Surface>,
+    surface: Cow<'_, WeldedSurface>,
     tree: &Bvh8,
-    settings: &Settings,
+    settings: &ThicknessSettings,
     job: &Job,
-) -> Result<Thickness, Refused> {
+) -> Result<Thickness, ThicknessError> {
     settings.check()?;
-    let chord = settings.method == Method::Ray
+    let chord = settings.method == ThicknessMethod::Ray
         && settings.correction == Correction::Chord
         && settings.rays > 1;
     let corner_normals =
@@ -229,7 +267,7 @@ pub fn measure_prepared(
         tree,
         face_normals: &surface.face_normals,
         corner_normals: &corner_normals,
-        sign: if settings.side == Side::Wall { inside_out } else { -inside_out },
+        sign: if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out },
         cone: &cone,
         outliers: settings.outliers,
         // A single ray is the axis: exact along it whatever the correction, and needs no smooth
@@ -238,14 +276,14 @@ pub fn measure_prepared(
     };
     let order = spatial_order(&surface, tree);
     job.progress(0.2);
-    let at_vertex = |v: usize, scratch: &mut Scratch| -> Value {
+    let at_vertex = |v: usize, scratch: &mut ConeScratch| -> SiteValue {
         let own = surface.around(v);
         if own.is_empty() {
-            return Value::missing(Reason::NoFace);
+            return SiteValue::missing(Reason::NoFace);
         }
         let n = surface.normals[v];
         if n == Vec3::ZERO {
-            return Value::missing(Reason::NoNormal);
+            return SiteValue::missing(Reason::NoNormal);
         }
         let site = Site { point: surface.positions[v], away: n * caster.sign, own };
         one(&caster, &site, settings, surface.sharp[v], scratch)
@@ -253,17 +291,37 @@ pub fn measure_prepared(
     let mut welded = scattered(&order, surface.positions.len(), job, (0.2, 0.8), at_vertex)?;
     edges::apply(&caster, &surface, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
-    if settings.at == At::VerticesAndFaces {
-        let at_face = |t: usize, scratch: &mut Scratch| -> Value {
-            let Some([a, b, c]) = surface.corners(t) else { return Value::missing(Reason::NoFace) };
-            let own = [t as u32];
-            let site = Site {
-                point: (a + b + c) / 3.0,
-                away: surface.face_normals[t] * caster.sign,
-                own: &own,
-            };
-            one(&caster, &site, settings, false, scratch)
+    let at_face = |t: usize, scratch: &mut ConeScratch| -> SiteValue {
+        let Some([a, b, c]) = surface.corners(t) else {
+            return SiteValue::missing(Reason::NoFace);
         };
+        let own = [t as u32];
+        let site = Site {
+            point: (a + b + c) / 3.0,
+            away: surface.face_normals[t] * caster.sign,
+            own: &own,
+        };
+        one(&caster, &site, settings, false, scratch)
+    };
+    // (value, whether the triangle's centroid is to be measured)
+    let by_corners = |t: usize| -> (f32, bool) {
+        if surface.triangles[t][0] == surface::DROPPED {
+            return (f32::NAN, false);
+        }
+        let corners = surface.triangles[t].map(|v| welded[v as usize]);
+        let measured = corners.iter().filter(|v| v.reason == Reason::Measured);
+        let (sum, n) = measured.fold((0.0f32, 0.0f32), |(s, n), v| (s + v.value, n + 1.0));
+        let edges = corners.iter().any(|v| v.reason == Reason::Edge);
+        if n > 0.0 { (sum / n, false) } else { (f32::NAN, edges) }
+    };
+    let (mut area_values, alone): (Vec<f32>, Vec<bool>) =
+        (0..surface.triangles.len()).map(by_corners).unzip();
+    let alone: Vec<u32> = (0..alone.len() as u32).filter(|&t| alone[t as usize]).collect();
+    let centroids = scattered(&alone, area_values.len(), job, (0.8, 0.8), at_face)?;
+    for &t in &alone {
+        area_values[t as usize] = centroids[t as usize].value;
+    }
+    if settings.at == MeasuredPlaces::VerticesAndFaces {
         let order: Vec<u32> = tree
             .packs()
             .iter()
@@ -274,11 +332,12 @@ pub fn measure_prepared(
         face_values = faces.iter().map(|v| v.value).collect();
         face_reasons = faces.iter().map(|v| v.reason).collect();
     }
-    let per_site = if settings.method == Method::Ray { settings.rays } else { 1 };
-    let queries = (order.len() + face_values.len()) as u64 * per_site as u64;
+    let per_site = if settings.method == ThicknessMethod::Ray { settings.rays } else { 1 };
+    let queries = (order.len() + alone.len() + face_values.len()) as u64 * per_site as u64;
     let (lo, hi) = tree.bounds();
     let rounding = if tree.is_empty() { 0.0 } else { lo.abs().max(hi.abs()).max_element() * 1e-6 };
-    let of = |f: fn(&Value) -> f32| surface.weld.iter().map(|&v| f(&welded[v as usize])).collect();
+    let of =
+        |f: fn(&SiteValue) -> f32| surface.weld.iter().map(|&v| f(&welded[v as usize])).collect();
     let values = of(|v| v.value);
     let errors = of(|v| v.error);
     let reasons = surface.weld.iter().map(|&v| welded[v as usize].reason).collect();
@@ -290,6 +349,7 @@ pub fn measure_prepared(
         errors,
         face_values,
         face_reasons,
+        area_values,
         queries,
         surface: surface.into_owned(),
         rounding,
@@ -300,28 +360,33 @@ pub fn measure_prepared(
 fn one(
     caster: &Caster<'_>,
     site: &Site<'_>,
-    settings: &Settings,
+    settings: &ThicknessSettings,
     sharp: bool,
-    scratch: &mut Scratch,
-) -> Value {
+    scratch: &mut ConeScratch,
+) -> SiteValue {
     let marked = |edge| if edge { Reason::Edge } else { Reason::Measured };
     let by_rays = match settings.method {
-        Method::Ray => caster.measure(site, scratch),
-        Method::Sphere => None,
+        ThicknessMethod::Ray => caster.measure(site, scratch),
+        ThicknessMethod::Sphere => None,
     };
     // Where every ray of the cone leaves the solid (a needle's tip), the ball still has a size.
     let found = by_rays
-        .map(|(f, turned)| Value { value: f.value, error: f.error, reason: marked(sharp), turned })
+        .map(|(f, turned)| SiteValue {
+            value: f.value,
+            error: f.error,
+            reason: marked(sharp),
+            turned,
+        })
         .or_else(|| {
             let b = caster.ball(site)?;
-            Some(Value {
+            Some(SiteValue {
                 value: b.diameter,
                 error: 0.0,
                 reason: marked(sharp),
                 turned: b.in_corner,
             })
         });
-    found.unwrap_or(Value::missing(Reason::NothingAhead))
+    found.unwrap_or(SiteValue::missing(Reason::NothingAhead))
 }
 
 /// `value` at each index of `order`, in parallel over spatially coherent chunks; the others have no
@@ -331,15 +396,15 @@ fn scattered(
     count: usize,
     job: &Job,
     (from, to): (f32, f32),
-    value: impl Fn(usize, &mut Scratch) -> Value + Sync,
-) -> Result<Vec<Value>, Cancelled> {
+    value: impl Fn(usize, &mut ConeScratch) -> SiteValue + Sync,
+) -> Result<Vec<SiteValue>, Cancelled> {
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let found: Vec<Value> = order
+    let found: Vec<SiteValue> = order
         .par_chunks(CHUNK)
         .map(|chunk| {
             job.check()?;
-            let mut scratch = Scratch::default();
-            let values: Vec<Value> =
+            let mut scratch = ConeScratch::default();
+            let values: Vec<SiteValue> =
                 chunk.iter().map(|&i| value(i as usize, &mut scratch)).collect();
             let n = done.fetch_add(chunk.len(), std::sync::atomic::Ordering::Relaxed);
             job.progress(from + (to - from) * n as f32 / order.len() as f32);
@@ -347,7 +412,7 @@ fn scattered(
         })
         .collect::<Result<Vec<_>, Cancelled>>()?
         .concat();
-    let mut out = vec![Value::missing(Reason::NoFace); count];
+    let mut out = vec![SiteValue::missing(Reason::NoFace); count];
     for (&i, v) in order.iter().zip(found) {
         out[i as usize] = v;
     }
@@ -356,7 +421,7 @@ fn scattered(
 
 /// Welded vertices in the order of the tree's leaves: neighbours in space are neighbours in time,
 /// and the caches stay warm.
-fn spatial_order(surface: &Surface, tree: &Bvh8) -> Vec<u32> {
+fn spatial_order(surface: &WeldedSurface, tree: &Bvh8) -> Vec<u32> {
     let mut seen = vec![false; surface.positions.len()];
     let mut order = Vec::with_capacity(seen.len());
     for &t in tree.packs().iter().flat_map(|p| &p.id) {

@@ -1,13 +1,28 @@
-//! Limits by process and material, from `config/thickness/*.toml`; each file names its source.
+//! Limits by process and material, as TOML; each preset names its source. Which presets exist is
+//! the caller's to decide: this module embeds none.
 
 use serde::{Deserialize, Serialize};
 
-/// Limits, millimetres.
+/// Limits of wall thickness, millimetres.
+///
+/// ```
+/// use sculptd_geometry::thickness::preset::Preset;
+///
+/// let text = r#"
+///     name = "cast"
+///     title = "Investment casting"
+///     warn_below = 2.0
+///     fail_below = 1.5
+///     source = "the foundry's design guide, 2024, page 12"
+/// "#;
+/// assert_eq!(Preset::read("cast.toml", text).expect("valid").fail_below, 1.5);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
     /// What the command line calls it.
     pub name: String,
+    /// What people call it.
     pub title: String,
     /// Thinner than this asks for a second look.
     pub warn_below: f32,
@@ -19,37 +34,38 @@ pub struct Preset {
     /// Largest sensible ratio between neighbouring walls, where the process has one.
     #[serde(default)]
     pub neighbour_ratio: Option<f32>,
+    /// Where the numbers are from.
     pub source: String,
 }
 
-const EMBEDDED: [(&str, &str); 8] = [
-    ("fdm.toml", include_str!("../../../config/thickness/fdm.toml")),
-    ("sla.toml", include_str!("../../../config/thickness/sla.toml")),
-    ("sls.toml", include_str!("../../../config/thickness/sls.toml")),
-    ("abs.toml", include_str!("../../../config/thickness/abs.toml")),
-    ("pc.toml", include_str!("../../../config/thickness/pc.toml")),
-    ("pp.toml", include_str!("../../../config/thickness/pp.toml")),
-    ("pa.toml", include_str!("../../../config/thickness/pa.toml")),
-    ("pom.toml", include_str!("../../../config/thickness/pom.toml")),
-];
-
 /// A preset that means nothing.
 #[derive(Debug, thiserror::Error)]
-pub enum BadPreset {
-    #[error("{file}: {text}")]
-    Toml { file: String, text: String },
-    #[error("{file}: {what}")]
-    Limits { file: String, what: &'static str },
-    #[error("no preset is called \"{name}\"; there are {known}")]
-    Unknown { name: String, known: String },
+pub enum PresetError {
+    /// The text is not TOML, or a field is missing, unknown or of another type.
+    #[error("{name}: {text}")]
+    Toml {
+        /// The name that the preset was read under.
+        name: String,
+        /// The parser's words, with the line.
+        text: String,
+    },
+    /// The limits contradict each other.
+    #[error("{name}: {expected}")]
+    Limits {
+        /// The name that the preset was read under.
+        name: String,
+        /// The rule that is broken.
+        expected: &'static str,
+    },
 }
 
 impl Preset {
-    /// From the text of a preset file; `file` is for the error.
-    pub fn parse(file: &str, text: &str) -> Result<Preset, BadPreset> {
+    /// Reads a preset from its text; `name` (the file's, as a rule) is for the error. Expects
+    /// `0 < fail_below <= warn_below < fail_above` and `neighbour_ratio > 1`, all finite.
+    pub fn read(name: &str, text: &str) -> Result<Preset, PresetError> {
         let p: Preset = toml::from_str(text)
-            .map_err(|e| BadPreset::Toml { file: file.into(), text: e.to_string() })?;
-        let bad = |what| Err(BadPreset::Limits { file: file.into(), what });
+            .map_err(|e| PresetError::Toml { name: name.into(), text: e.to_string() })?;
+        let bad = |expected| Err(PresetError::Limits { name: name.into(), expected });
         if !(p.fail_below > 0.0 && p.fail_below <= p.warn_below && p.warn_below.is_finite()) {
             return bad("expected 0 < fail_below <= warn_below");
         }
@@ -61,35 +77,25 @@ impl Preset {
         }
         Ok(p)
     }
-
-    /// The presets that the program carries.
-    pub fn embedded() -> Result<Vec<Preset>, BadPreset> {
-        EMBEDDED.iter().map(|(file, text)| Preset::parse(file, text)).collect()
-    }
-
-    /// The embedded preset of this name.
-    pub fn named(name: &str) -> Result<Preset, BadPreset> {
-        let all = Preset::embedded()?;
-        let known = all.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
-        all.into_iter()
-            .find(|p| p.name == name)
-            .ok_or(BadPreset::Unknown { name: name.into(), known })
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Preset;
+    use super::*;
 
     #[test]
-    fn every_embedded_preset_is_sane_and_named_once() {
-        let all = Preset::embedded().expect("valid");
-        let mut names: Vec<_> = all.iter().map(|p| p.name.clone()).collect();
-        names.sort();
-        names.dedup();
-        assert_eq!(names.len(), all.len());
-        assert!(all.iter().all(|p| p.source.len() > 10));
-        assert!(Preset::named("bronze").is_err());
-        assert!(Preset::parse("x", "name = 1").is_err());
+    fn limits_that_contradict_each_other_are_refused() {
+        let text = |fail: f32, warn: f32| {
+            format!(
+                "name = \"x\"\ntitle = \"X\"\nwarn_below = {warn:?}\nfail_below = {fail:?}\n\
+                 source = \"a test\"\n"
+            )
+        };
+        assert!(Preset::read("x", &text(1.0, 2.0)).is_ok());
+        assert!(matches!(
+            Preset::read("x", &text(2.0, 1.0)),
+            Err(PresetError::Limits { expected: "expected 0 < fail_below <= warn_below", .. })
+        ));
+        assert!(matches!(Preset::read("x", "name = 1"), Err(PresetError::Toml { .. })));
     }
 }

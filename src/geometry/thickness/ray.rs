@@ -19,7 +19,7 @@
 use glam::Vec3;
 
 use super::cone::{Cone, Folded, Outliers, fold, frame};
-use crate::bvh::{Bvh8, Ray, Stack, TreeHit};
+use crate::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 
 /// What a ray's length is corrected by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -36,24 +36,39 @@ pub enum Correction {
 /// A point from which thickness is measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Site<'a> {
+    /// Where thickness is measured.
     pub point: Vec3,
     /// Away from what is measured, of unit length.
     pub away: Vec3,
     /// Triangles that the point lies on.
+    /// Rising.
     pub own: &'a [u32],
+}
+
+impl Site<'_> {
+    /// Whether the site lies on triangle `t`. Thousands of triangles may share a vertex.
+    #[inline(always)]
+    pub(super) fn owns(&self, t: u32) -> bool {
+        if self.own.len() <= 16 { self.own.contains(&t) } else { self.own.binary_search(&t).is_ok() }
+    }
 }
 
 /// What stays the same from site to site.
 #[derive(Debug)]
 pub struct Caster<'a> {
+    /// The tree over the measured mesh.
     pub tree: &'a Bvh8,
+    /// One a triangle, of unit length; zero where a triangle is left out.
     pub face_normals: &'a [Vec3],
     /// For [`Correction::Chord`]: smooth normals of each triangle's corners.
     pub corner_normals: &'a [[Vec3; 3]],
     /// 1 where normals point out of the measured side (a wall of a right mesh), -1 where into it.
     pub sign: f32,
+    /// The directions of the rays.
     pub cone: &'a Cone,
+    /// Which rays do not count.
     pub outliers: Outliers,
+    /// What a ray's length is corrected by.
     pub correction: Correction,
 }
 
@@ -63,11 +78,11 @@ const SAME_WALL: f32 = 0.5;
 
 /// What a thread reuses from site to site.
 #[derive(Debug, Default)]
-pub struct Scratch {
+pub struct ConeScratch {
     values: Vec<(f32, f32)>,
     rays: Vec<Ray>,
     hits: Vec<Option<TreeHit>>,
-    stack: Stack,
+    stack: TraversalStack,
 }
 
 /// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
@@ -81,14 +96,21 @@ impl Caster<'_> {
     }
 
     fn faces(&self, site: &Site<'_>, t: u32) -> bool {
-        self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.own.contains(&t)
+        self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.owns(t)
+    }
+
+    /// How far the box of the mesh reaches along the site's axis: no wall is thicker.
+    pub(super) fn longest(&self, site: &Site<'_>) -> f32 {
+        let (lo, hi) = self.tree.bounds();
+        (hi - lo).dot(site.away.abs()) * 1.000_01
     }
 
     /// The cone's value, and whether the wall that the axis ray meets is turned by more than
-    /// [`TURNED`] from the site's; `scratch` is reused between calls.
-    pub fn measure(&self, site: &Site<'_>, scratch: &mut Scratch) -> Option<(Folded, bool)> {
-        let Scratch { values: scratch, rays, hits, stack } = scratch;
+    /// 40 degrees from the site's; `scratch` is reused between calls.
+    pub fn measure(&self, site: &Site<'_>, scratch: &mut ConeScratch) -> Option<(Folded, bool)> {
+        let ConeScratch { values: scratch, rays, hits, stack } = scratch;
         scratch.clear();
+        let longest = self.longest(site);
         let mut turned = false;
         let (x, y) = frame(site.away);
         let mut first = None::<Vec3>;
@@ -130,7 +152,8 @@ impl Caster<'_> {
                         scratch.push((hit.t, weight));
                     } else if along > 0.1 {
                         let depth = -(dir * hit.t).dot(both) / along;
-                        if depth > 0.0 {
+                        // A wall that bends towards the axis sends the chord's depth beyond the part.
+                        if depth > 0.0 && depth <= longest {
                             scratch.push((depth, weight));
                         }
                     }

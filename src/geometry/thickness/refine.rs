@@ -1,4 +1,6 @@
 //! More places to measure at: a machine part has vertices on its edges only, and none on its walls.
+//! Triangles are bisected across their longest edge (Rivara, "Algorithms for refining triangular
+//! grids suitable for adaptive and multigrid techniques", 1984).
 
 use std::collections::BTreeMap;
 
@@ -11,10 +13,17 @@ const MOST: usize = 2_000_000;
 /// left as they are.
 const SLIVER: f32 = 0.1;
 
+/// A triangle lower than this share of the spacing is a sliver, and so is one lower than
+/// [`ROUNDINGS`] roundings of the largest coordinate. No edge of a sliver is cut: the middle of an
+/// edge is rounded to single precision, which would fold the halves of a sliver over each other, and
+/// a fold is measured as a wall of no thickness.
+const LOW: f32 = 0.01;
+const ROUNDINGS: f32 = 64.0;
+
 /// The same surface with every triangle that is longer than `spacing` halved across its longest
-/// edge, until none is (slivers excepted, see [`SLIVER`]) or [`MOST`] is reached. The mesh's own
-/// vertices keep their indices; both triangles of an edge are cut at the same point, so a closed
-/// mesh stays closed.
+/// edge that may be cut, until none is (slivers excepted, see `SLIVER` and `LOW`) or two million are
+/// reached. The mesh's own vertices keep their indices; both triangles of an edge are cut at the
+/// same point, so a closed mesh stays closed.
 pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
     let mut out = TriMesh { colours: None, ..mesh.clone() };
     let usable = |t: &[u32; 3]| {
@@ -23,7 +32,10 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
     if !(spacing > 0.0 && out.triangles.iter().all(usable)) {
         return out;
     }
+    let reach = mesh.positions.iter().fold(0.0f32, |r, p| r.max(p.abs().max_element()));
+    let least = (LOW * spacing).max(ROUNDINGS * f32::EPSILON * reach);
     loop {
+        let slivers = edges_of_slivers(&out, least);
         let mut cut: BTreeMap<(u32, u32), u32> = BTreeMap::new();
         let mut next = Vec::with_capacity(out.triangles.len());
         for t in &out.triangles {
@@ -33,7 +45,10 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
                 let (a, b) = (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]));
                 (out.positions[a as usize].distance_squared(out.positions[b as usize]), a, b)
             };
-            let longest = (0..3).map(length).fold((0.0, 0, 0), |m, e| if e > m { e } else { m });
+            let longest = (0..3)
+                .map(length)
+                .filter(|&(_, a, b)| slivers.binary_search(&(a, b)).is_err())
+                .fold((0.0, 0, 0), |m, e| if e > m { e } else { m });
             let [a, b, c] = t.map(|v| out.positions[v as usize]);
             let wide = (b - a).cross(c - a).length() * 0.5 > spacing * spacing * SLIVER;
             if longest.0 > spacing * spacing && wide {
@@ -56,6 +71,24 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
         out.positions.extend(middles);
         out.triangles = next;
     }
+}
+
+/// The edges, lower vertex first, of triangles whose least height is below `least`; sorted.
+fn edges_of_slivers(mesh: &TriMesh, least: f32) -> Vec<(u32, u32)> {
+    let mut edges = Vec::new();
+    for (i, t) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = mesh.corners(i);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        if (b - a).cross(c - a).length() < least * longest {
+            edges.extend((0..3).map(|k| {
+                let (u, v) = (t[k], t[(k + 1) % 3]);
+                (u.min(v), u.max(v))
+            }));
+        }
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// The triangles of one whose edges ab, bc, ca may have a middle.
@@ -88,7 +121,7 @@ mod tests {
         let fine = refine(&mesh, 0.5);
         let (a, b) = (measures(&mesh), measures(&fine));
         assert!((a.volume / b.volume - 1.0).abs() < 1e-6 && (a.area / b.area - 1.0).abs() < 1e-6);
-        let s = super::super::Surface::new(&fine, 0.7);
+        let s = super::super::WeldedSurface::new(&fine, 0.7);
         assert_eq!(
             (s.faults.boundary_edges, s.faults.crowded_edges, s.faults.inverted_edges),
             (0, 0, 0)
@@ -102,5 +135,33 @@ mod tests {
             );
         }
         assert_eq!(fine.positions[..4], mesh.positions[..]);
+    }
+
+    #[test]
+    fn slivers_are_not_bred() {
+        // A rod along a slanted line, whose long sides are fans of slivers: one end's corners are
+        // joined to a hundred points within a tenth of a millimetre at the other end.
+        let (along, up) = (Vec3::new(0.6, 0.7, 0.387).normalize(), Vec3::new(0.1, -0.4, 0.9));
+        let side = along.cross(up).normalize();
+        let at = |x: f32, y: f32, z: f32| along * x + side * y + side.cross(along) * z;
+        let mut positions = vec![at(0.0, 0.0, 0.0), at(0.0, 2.0, 0.0), at(0.0, 1.0, 2.0)];
+        positions.extend((0..=100).map(|i| at(8000.0, i as f32 * 1e-3, 0.0)));
+        positions.extend([at(8000.0, 2.0, 0.0), at(8000.0, 1.0, 2.0)]);
+        let (far, top) = (103, 104);
+        let mut triangles: Vec<[u32; 3]> = (3..103).map(|i| [0, i + 1, i]).collect();
+        triangles.extend([[0, far, 103 - 1], [0, 1, far], [1, top, far], [1, 2, top]]);
+        triangles.extend([[2, 3, top], [2, 0, 3], [0, 2, 1]]);
+        triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        let mesh = TriMesh { positions, triangles, colours: None };
+        let fine = refine(&mesh, 2.0);
+        assert!(fine.triangles.len() < 40_000, "{}", fine.triangles.len());
+        for t in 0..fine.triangles.len() {
+            let [a, b, c] = fine.corners(t);
+            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            let height = (b - a).cross(c - a).length() / longest;
+            // The mesh's own slivers stay; no other is made.
+            assert!(height > 0.01 || longest > 7000.0, "{height} of {longest}");
+        }
+        assert!(fine.triangles.len() > 1000, "the wide sides are cut");
     }
 }

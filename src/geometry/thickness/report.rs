@@ -6,16 +6,18 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::check::{Answer, Checked, Part, Verdict};
+use super::check::{CheckedPart, ThicknessAnswer, Verdict};
 use super::colour::{NONE, colour};
-use super::{Correction, Method};
+use super::{Correction, ThicknessMethod};
+use crate::CentredMesh;
 use crate::picture::{Camera, Picture, draw};
 
 /// What the page cannot know by itself.
 #[derive(Debug, Clone, Copy)]
-pub struct Origin<'a> {
+pub struct ReportOrigin<'a> {
     /// FNV-1a, 64 bits, of the file's bytes.
     pub hash: u64,
+    /// The file's length.
     pub bytes: u64,
     /// The program's name and version.
     pub program: &'a str,
@@ -30,9 +32,9 @@ pub fn fnv(bytes: &[u8]) -> u64 {
 
 /// The whole page.
 pub fn html(
-    part: &Part,
-    checked: &Checked,
-    origin: Origin<'_>,
+    part: &CentredMesh,
+    checked: &CheckedPart,
+    origin: ReportOrigin<'_>,
 ) -> Result<String, image::ImageError> {
     let a = &checked.answer;
     let scale = checked.thickness.scale();
@@ -81,11 +83,11 @@ details{margin:.5rem 0}@media print{main{padding:0;max-width:none}h2{break-after
 details>summary{display:none}.verdict{print-color-adjust:exact}}";
 
 /// The page is for others: where the file lies on this machine is not theirs.
-fn name_of(a: &Answer) -> Cow<'_, str> {
+fn name_of(a: &ThicknessAnswer) -> Cow<'_, str> {
     Path::new(&a.file).file_name().map_or(a.file.as_str().into(), |n| n.to_string_lossy())
 }
 
-fn verdict(out: &mut String, a: &Answer) {
+fn verdict(out: &mut String, a: &ThicknessAnswer) {
     let (class, word) = match a.verdict {
         Verdict::Pass => ("pass", "Pass"),
         Verdict::Warn => ("warn", "Warning"),
@@ -161,14 +163,14 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
     );
 }
 
-fn statistics(out: &mut String, a: &Answer) {
+fn statistics(out: &mut String, a: &ThicknessAnswer) {
     let s = &a.summary;
     let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4} mm"));
     let [x, y, z] = a.dimensions;
     let rows = [
         ("Minimum", n(s.min)),
-        ("Median", n(s.median)),
-        ("Mean", n(s.mean)),
+        ("Median by area", n(s.median)),
+        ("Mean by area", n(s.mean)),
         ("Maximum", n(s.max)),
         ("Places with a value", format!("{:.2} % of {}", s.valid * 100.0, a.places)),
         ("Error bound (95 % of the places)", format!("{:.4} mm", s.error_bound)),
@@ -184,17 +186,18 @@ fn statistics(out: &mut String, a: &Answer) {
     out.push_str("</tbody></table>");
 }
 
-fn histogram(out: &mut String, a: &Answer) {
+fn histogram(out: &mut String, a: &ThicknessAnswer) {
     let counts = &a.summary.histogram;
-    let most = counts.iter().copied().max().unwrap_or(0).max(1);
+    let most = counts.iter().copied().fold(0.0f64, f64::max);
+    let most = if most > 0.0 { most } else { 1.0 };
     let max = a.summary.max.unwrap_or(0.0);
     let _ = write!(
         out,
-        "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 230\" aria-label=\"Histogram of thickness from 0 \
+        "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 230\" aria-label=\"Area by thickness from 0 \
          to {max:.3} millimetres in 100 classes; the same numbers are in the table below\">"
     );
     for (i, &c) in counts.iter().enumerate() {
-        let h = 190.0 * c as f64 / most as f64;
+        let h = 190.0 * c / most;
         let fill = if i == 0 { hex(NONE) } else { "#5b4a3f".into() };
         let _ = write!(
             out,
@@ -222,23 +225,23 @@ fn histogram(out: &mut String, a: &Answer) {
     );
     out.push_str(
         "<details><summary>The same as a table (classes that are not empty)</summary><table><thead><tr>\
-                  <th scope=col>Class<th scope=col class=n>Places</thead><tbody>",
+                  <th scope=col>Class<th scope=col class=n>Area, mm²</thead><tbody>",
     );
-    for (i, &c) in counts.iter().enumerate().filter(|(_, c)| **c > 0) {
+    for (i, &c) in counts.iter().enumerate().filter(|(_, c)| **c > 0.0) {
         let class = if i == 0 {
             "no value".into()
         } else {
             format!("{:.3} to {:.3} mm", max * (i - 1) as f32 / 100.0, max * i as f32 / 100.0)
         };
-        let _ = write!(out, "<tr><th scope=row>{class}<td class=n>{c}");
+        let _ = write!(out, "<tr><th scope=row>{class}<td class=n>{c:.3}");
     }
     out.push_str("</tbody></table></details>");
 }
 
 fn worst(
     out: &mut String,
-    part: &Part,
-    checked: &Checked,
+    part: &CentredMesh,
+    checked: &CheckedPart,
     colours: &[[u8; 3]],
 ) -> Result<(), image::ImageError> {
     out.push_str("<h2>Worst spots</h2>");
@@ -279,14 +282,14 @@ fn worst(
     Ok(())
 }
 
-fn method(out: &mut String, a: &Answer, origin: Origin<'_>) {
+fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     let s = &a.settings;
     let how = match s.method {
-        Method::Sphere => "Thickness is the diameter of the largest sphere that lies in the wall and touches the surface at the \
+        ThicknessMethod::Sphere => "Thickness is the diameter of the largest sphere that lies in the wall and touches the surface at the \
                            place; in a convex edge it goes to zero, so places held by an edge follow the edge policy."
             .to_string(),
-        Method::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, opposite the surface's normal.".into(),
-        Method::Ray => {
+        ThicknessMethod::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, opposite the surface's normal.".into(),
+        ThicknessMethod::Ray => {
             let corrected = match s.correction {
                 Correction::None => "The rays' own lengths are averaged, which is up to 32 % too much at 120 degrees.",
                 Correction::Angle => "Each length is corrected by the angle between the ray and the hit face.",

@@ -3,38 +3,49 @@
 
 use glam::Vec3;
 
-use super::{Correction, Method, Reason, Thickness};
+use super::{Correction, Reason, Thickness, ThicknessMethod};
 
-/// Classes of the histogram: the first counts missing values, the other hundred run from 0 to the
-/// maximum.
+/// Classes of the histogram: the first is the area without a value, the other hundred run from 0 to
+/// the maximum.
 pub const CLASSES: usize = 101;
 
+/// The statistics of a map of thickness. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, serde::Serialize)]
-pub struct Summary {
+pub struct ThicknessSummary {
     /// Over the vertices with a value; `null` where none has one.
     pub min: Option<f32>,
+    /// The largest value.
     pub max: Option<f32>,
+    /// The mean over the area, see [`Thickness::area_values`].
     pub mean: Option<f32>,
+    /// Half of the area is thinner.
     pub median: Option<f32>,
     /// Share of the vertices that belong to a face and have a value, 0 to 1.
     pub valid: f32,
-    pub histogram: Vec<u64>,
+    /// The area in each of [`CLASSES`] classes, in the square of the unit.
+    pub histogram: Vec<f64>,
     /// Where the smallest value is.
     pub thinnest: Option<[f32; 3]>,
+    /// Where the largest value is.
     pub thickest: Option<[f32; 3]>,
     /// Vertices without a value, by the reason.
-    pub missing: Missing,
+    pub missing: MissingCounts,
     /// Vertices on sharp edges, whose value follows the edge policy.
     pub edge_vertices: u64,
-    /// See [`error_bound`].
+    /// See [`Thickness::error_bound`].
     pub error_bound: f32,
 }
 
+/// Vertices without a value, counted by the reason; see [`Reason`].
 #[derive(Debug, Clone, Copy, Default, serde::Serialize)]
-pub struct Missing {
+pub struct MissingCounts {
+    /// No wall lies ahead.
     pub nothing_ahead: u64,
+    /// The faces around the vertex cancel each other.
     pub no_normal: u64,
+    /// The vertex belongs to no face of any area.
     pub no_face: u64,
+    /// The vertex lies on a sharp edge, and the policy is [`super::EdgePolicy::Neutral`].
     pub edge: u64,
 }
 
@@ -52,8 +63,10 @@ impl Thickness {
         })
     }
 
-    pub fn summary(&self) -> Summary {
-        let mut missing = Missing::default();
+    /// The statistics. Least and most are over the welded vertices; mean, median and histogram are
+    /// weighted by area, so that a finer mesh of the same part says the same.
+    pub fn summary(&self) -> ThicknessSummary {
+        let mut missing = MissingCounts::default();
         let mut edge_vertices = 0;
         let mut known: Vec<(f32, Vec3)> = Vec::with_capacity(self.values.len());
         for (value, reason, at) in self.each() {
@@ -70,27 +83,21 @@ impl Thickness {
             }
         }
         known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mean, median) = self.by_area();
         let n = known.len();
         let absent = missing.nothing_ahead + missing.no_normal + missing.edge;
         let max = known.last().map(|v| v.0);
-        let mut histogram = vec![0u64; CLASSES];
-        histogram[0] = absent;
-        for &(v, _) in &known {
-            let share = v / max.filter(|&m| m > 0.0).unwrap_or(1.0);
-            histogram[1 + ((share * 100.0) as usize).min(99)] += 1;
+        let mut histogram = vec![0.0f64; CLASSES];
+        for (value, area) in self.areas() {
+            let share = value / max.filter(|&m| m > 0.0).unwrap_or(1.0);
+            let class = if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 };
+            histogram[class] += area;
         }
-        Summary {
+        ThicknessSummary {
             min: known.first().map(|v| v.0),
             max,
-            mean: (n > 0)
-                .then(|| (known.iter().map(|v| v.0 as f64).sum::<f64>() / n as f64) as f32),
-            median: (n > 0).then(|| {
-                if n % 2 == 1 {
-                    known[n / 2].0
-                } else {
-                    (known[n / 2 - 1].0 + known[n / 2].0) * 0.5
-                }
-            }),
+            mean,
+            median,
             valid: n as f32 / (n as f32 + absent as f32).max(1.0),
             histogram,
             thinnest: known.first().map(|v| v.1.to_array()),
@@ -99,6 +106,30 @@ impl Thickness {
             edge_vertices,
             error_bound: self.error_bound(),
         }
+    }
+
+    /// The value and the area of each triangle.
+    fn areas(&self) -> impl Iterator<Item = (f32, f64)> + '_ {
+        self.area_values.iter().enumerate().filter_map(|(t, &value)| {
+            self.surface.corners(t).map(|corners| (value, triangle_area(corners)))
+        })
+    }
+
+    /// Mean and median over the area that has values; `None` where none has.
+    fn by_area(&self) -> (Option<f32>, Option<f32>) {
+        let mut known: Vec<(f32, f64)> = self.areas().filter(|v| v.0.is_finite()).collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let all: f64 = known.iter().map(|v| v.1).sum();
+        if !(all > 0.0) {
+            return (None, None);
+        }
+        let sum: f64 = known.iter().map(|&(v, area)| v as f64 * area).sum();
+        let mut below = 0.0;
+        let median = known.iter().find(|v| {
+            below += v.1;
+            below >= all * 0.5
+        });
+        (Some((sum / all) as f32), median.or(known.last()).map(|v| v.0))
     }
 
     /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three
@@ -117,8 +148,8 @@ impl Thickness {
         } else {
             1.0
         };
-        let biased =
-            self.settings.method == Method::Ray && self.settings.correction == Correction::None;
+        let biased = self.settings.method == ThicknessMethod::Ray
+            && self.settings.correction == Correction::None;
         let mut bounds: Vec<f32> = Vec::with_capacity(self.values.len());
         for (i, &w) in s.weld.iter().enumerate() {
             let (value, v) = (self.values[i], w as usize);
@@ -233,7 +264,46 @@ fn negative_share(mut v: [f32; 3]) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
+    use super::super::refine::refine;
+    use super::super::{EdgePolicy, ThicknessSettings, measure};
     use super::negative_share;
+    use crate::job::Job;
+    use crate::shapes::{cone, cuboid};
+
+    #[test]
+    fn statistics_do_not_depend_on_the_meshing() {
+        let half = DVec3::new(50.0, 50.0, 1.5);
+        let slab = cuboid(-half, half).triangulate().0;
+        // Two faces of 100 by 100, 3 thick; four rims of 100 by 3, 100 thick.
+        let mean = (20_000.0 * 3.0 + 1_200.0 * 100.0) / 21_200.0;
+        for mesh in [slab.clone(), refine(&slab, 12.0), refine(&slab, 5.0)] {
+            let s = measure(&mesh, &ThicknessSettings::default(), &Job::default())
+                .expect("measured")
+                .summary();
+            assert!((s.median.expect("walls") - 3.0).abs() < 1e-3, "{:?}", s.median);
+            assert!((s.mean.expect("walls") / mean - 1.0).abs() < 0.01, "{:?}", s.mean);
+            assert!((s.histogram.iter().sum::<f64>() - 21_200.0).abs() < 1.0);
+        }
+    }
+
+    #[test]
+    fn no_wall_is_thicker_than_the_part() {
+        let mesh = cone(30.0, 50.0, 48).triangulate().0;
+        let settings = ThicknessSettings {
+            rays: 100,
+            opening: 120.0,
+            edges: EdgePolicy::Raw,
+            ..Default::default()
+        };
+        let t = measure(&mesh, &settings, &Job::default()).expect("measured");
+        let (lo, hi) = mesh.bounds();
+        for (&value, normal) in t.values.iter().zip(&t.surface.normals) {
+            let most = (hi - lo).dot(normal.abs()) * 1.001;
+            assert!(value.is_nan() || value <= most, "{value} in {most}");
+        }
+    }
 
     #[test]
     fn the_share_below_is_exact() {

@@ -4,6 +4,8 @@
 use glam::Vec3;
 
 use crate::TriMesh;
+use crate::disjoint_sets::DisjointSets;
+use crate::weld::weld_positions;
 
 /// Marks a triangle that is left out: degenerate, a duplicate, or with an index or a coordinate
 /// that means nothing.
@@ -12,9 +14,10 @@ pub const DROPPED: u32 = u32::MAX;
 /// A welded view of a mesh. Triangle indices are the mesh's own; vertex indices are of the welded
 /// vertices.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub struct WeldedSurface {
     /// Welded vertex of each of the mesh's vertices.
     pub weld: Vec<u32>,
+    /// The welded vertices, in the order of their first appearance.
     pub positions: Vec<Vec3>,
     /// Welded corners of each triangle; `[DROPPED; 3]` where it is left out.
     pub triangles: Vec<[u32; 3]>,
@@ -25,18 +28,24 @@ pub struct Surface {
     pub normals: Vec<Vec3>,
     /// The triangles around vertex `v` are `around[starts[v]..starts[v + 1]]`.
     pub starts: Vec<u32>,
+    /// Triangles, vertex by vertex, see `starts`.
     pub around: Vec<u32>,
     /// An edge at this vertex turns by more than the crease angle.
     pub sharp: Vec<bool>,
-    pub faults: Faults,
+    /// What is wrong with the mesh.
+    pub faults: MeshFaults,
 }
 
 /// What is wrong with a mesh, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Faults {
+pub struct MeshFaults {
+    /// Triangles with an index out of range or a coordinate that is not finite.
     pub broken: usize,
+    /// Triangles without area.
     pub degenerate: usize,
+    /// Triangles with the same three corners as an earlier one.
     pub duplicate: usize,
+    /// Vertices at the position of an earlier one.
     pub welded: usize,
     /// Edges of one face only.
     pub boundary_edges: usize,
@@ -44,18 +53,19 @@ pub struct Faults {
     pub crowded_edges: usize,
     /// Edges of two faces that run along them the same way: one of the two is inverted.
     pub inverted_edges: usize,
+    /// Sets of triangles that hang together by their edges.
     pub shells: usize,
     /// The enclosed volume is negative: the whole mesh is inside out.
     pub inside_out: bool,
 }
 
-impl Surface {
+impl WeldedSurface {
     /// `crease` is in radians.
-    pub fn new(mesh: &TriMesh, crease: f32) -> Surface {
-        let mut faults = Faults::default();
-        let (weld, positions) = weld(&mesh.positions);
+    pub fn new(mesh: &TriMesh, crease: f32) -> WeldedSurface {
+        let mut faults = MeshFaults::default();
+        let (weld, positions) = weld_positions(&mesh.positions);
         faults.welded = mesh.positions.len() - positions.len();
-        let mut s = Surface {
+        let mut s = WeldedSurface {
             weld,
             positions,
             triangles: Vec::with_capacity(mesh.triangles.len()),
@@ -67,6 +77,8 @@ impl Surface {
             faults,
         };
         let mut volume = 0.0f64;
+        // Triangles without area but with three vertices: no wall, but part of the closed surface.
+        let mut flat = Vec::new();
         for t in &mesh.triangles {
             let welded = t.map(|v| s.weld.get(v as usize).copied().unwrap_or(DROPPED));
             let mut keep = welded;
@@ -83,6 +95,10 @@ impl Surface {
                 if normal == Vec3::ZERO {
                     s.faults.degenerate += 1;
                     keep = [DROPPED; 3];
+                    let [a, b, c] = welded;
+                    if a != b && b != c && c != a {
+                        flat.push(welded);
+                    }
                 }
                 volume += a.dot(b.cross(c));
             }
@@ -93,14 +109,19 @@ impl Surface {
         s.drop_duplicates();
         s.find_normals();
         s.edges(crease);
+        if !flat.is_empty() {
+            s.count_edges_with(&flat);
+        }
         s.faults.inside_out = volume < 0.0 && s.faults.boundary_edges == 0;
         s
     }
 
+    /// The kept triangles at welded vertex `v`.
     pub fn around(&self, v: usize) -> &[u32] {
         &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
+    /// The positions of triangle `t`; `None` where it is left out.
     pub fn corners(&self, t: usize) -> Option<[Vec3; 3]> {
         let corners = self.triangles[t];
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
@@ -128,25 +149,46 @@ impl Surface {
         (self.starts, self.around) = (starts, around);
     }
 
+    /// Counts the edges' faults again, with the triangles without area: where one closes the gap
+    /// between a long edge and two short ones, the surface is closed, though nothing is measured
+    /// there.
+    fn count_edges_with(&mut self, flat: &[[u32; 3]]) {
+        let kept = self.triangles.iter().filter(|t| t[0] != DROPPED);
+        let mut half_edges: Vec<(u32, u32, bool)> = kept
+            .chain(flat)
+            .flat_map(|t| {
+                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (a.min(b), a.max(b), a < b))
+            })
+            .collect();
+        half_edges.sort_unstable();
+        let faults = &mut self.faults;
+        (faults.boundary_edges, faults.crowded_edges, faults.inverted_edges) = (0, 0, 0);
+        for edge in half_edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            match edge {
+                [_] => faults.boundary_edges += 1,
+                [a, b] => faults.inverted_edges += (a.2 == b.2) as usize,
+                _ => faults.crowded_edges += 1,
+            }
+        }
+    }
+
     /// Of triangles with the same three corners the first stays.
     fn drop_duplicates(&mut self) {
         let mut found = Vec::new();
+        let mut fan: Vec<([u32; 3], u32)> = Vec::new();
         for v in 0..self.positions.len() {
-            let around = self.around(v);
-            for (i, &t) in around.iter().enumerate() {
-                let mut mine = self.triangles[t as usize];
-                mine.sort_unstable();
+            fan.clear();
+            fan.extend(self.around(v).iter().filter_map(|&t| {
+                let mut corners = self.triangles[t as usize];
+                corners.sort_unstable();
                 // Seen from its lowest corner only, so each pair is met once.
-                if mine[0] as usize != v {
-                    continue;
-                }
-                let twin = around[..i].iter().any(|&u| {
-                    let mut other = self.triangles[u as usize];
-                    other.sort_unstable();
-                    other == mine
-                });
-                if twin {
-                    found.push(t as usize);
+                (corners[0] as usize == v).then_some((corners, t))
+            }));
+            // Sorted, not compared each with each: thousands of triangles may share a vertex.
+            fan.sort_unstable();
+            for pair in fan.windows(2) {
+                if pair[0].0 == pair[1].0 {
+                    found.push(pair[1].1 as usize);
                 }
             }
         }
@@ -176,7 +218,7 @@ impl Surface {
     fn edges(&mut self, crease: f32) {
         let turn = crease.cos();
         let mut sharp = vec![false; self.positions.len()];
-        let mut shells = Shells::new(self.positions.len());
+        let mut shells = DisjointSets::new(self.positions.len());
         // The edges at `v` that lead to a higher vertex: (other end, triangle, this triangle runs v
         // -> other).
         let mut out: Vec<(u32, u32, bool)> = Vec::new();
@@ -273,57 +315,43 @@ pub fn corner_angle(p: [Vec3; 3], c: usize) -> f32 {
     e.cross(f).length().atan2(e.dot(f))
 }
 
-/// Vertices at bit-equal positions become one (-0 counts as 0), numbered by first appearance.
-fn weld(positions: &[Vec3]) -> (Vec<u32>, Vec<Vec3>) {
-    let size = (positions.len() * 2).next_power_of_two().max(2);
-    let shift = 64 - size.trailing_zeros();
-    let mut table = vec![u32::MAX; size];
-    let mut unique: Vec<Vec3> = Vec::with_capacity(positions.len());
-    let map = positions
-        .iter()
-        .map(|&p| {
-            let p = p + 0.0;
-            let key = p.to_array().map(f32::to_bits);
-            let bits = key.map(u64::from);
-            let mix = (bits[0] | bits[1] << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-                ^ bits[2].rotate_left(17);
-            let mut slot = (mix.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> shift) as usize;
-            loop {
-                let at = table[slot];
-                if at == u32::MAX {
-                    table[slot] = unique.len() as u32;
-                    unique.push(p);
-                    return unique.len() as u32 - 1;
-                }
-                if unique[at as usize].to_array().map(f32::to_bits) == key {
-                    return at;
-                }
-                slot = (slot + 1) & (size - 1);
-            }
-        })
-        .collect();
-    (map, unique)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Union-find over the vertices.
-struct Shells(Vec<u32>);
-
-impl Shells {
-    fn new(n: usize) -> Self {
-        Shells((0..n as u32).collect())
+    #[test]
+    fn a_triangle_without_area_keeps_the_surface_closed() {
+        // A tetrahedron, one edge of which has a vertex in its middle on one side only: a flat
+        // triangle closes the gap.
+        let positions = vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0, Vec3::X];
+        let mut triangles = vec![[0, 2, 4], [4, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [0, 4, 1]];
+        let faults = |triangles: &[[u32; 3]]| {
+            let mesh = TriMesh {
+                positions: positions.clone(),
+                triangles: triangles.to_vec(),
+                colours: None,
+            };
+            WeldedSurface::new(&mesh, 0.7).faults
+        };
+        let with = faults(&triangles);
+        assert_eq!((with.degenerate, with.boundary_edges, with.inverted_edges), (1, 0, 0));
+        triangles.pop();
+        assert_eq!(faults(&triangles).boundary_edges, 3);
     }
 
-    fn root(&mut self, mut v: u32) -> u32 {
-        while self.0[v as usize] != v {
-            self.0[v as usize] = self.0[self.0[v as usize] as usize];
-            v = self.0[v as usize];
-        }
-        v
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        // The lower index is the root, so the result does not depend on the order.
-        self.0[a.max(b) as usize] = a.min(b);
+    #[test]
+    fn copies_at_a_crowded_vertex_are_found() {
+        let n = 3000u32;
+        let mut positions = vec![Vec3::Z];
+        positions.extend((0..n).map(|i| {
+            let (s, c) = (i as f32 * std::f32::consts::TAU / n as f32).sin_cos();
+            Vec3::new(c, s, 0.0) * 100.0
+        }));
+        let mut triangles: Vec<[u32; 3]> = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
+        triangles.extend([[2, 0, 1], [7, 8, 0]]);
+        let mesh = TriMesh { positions, triangles, colours: None };
+        let s = WeldedSurface::new(&mesh, 0.7);
+        assert_eq!(s.faults.duplicate, 2);
+        assert_eq!(s.triangles[n as usize..], [[DROPPED; 3]; 2]);
     }
 }

@@ -1,11 +1,11 @@
 //! What is wrong with a mesh, and what that means for its thickness.
 
-use super::Faults;
-use super::summary::Summary;
+use super::MeshFaults;
+use super::summary::ThicknessSummary;
 
 /// One sentence for each fault: what was found, and what it means for the result. `size` is the
 /// largest dimension, in the unit that the values are in, millimetres as a rule.
-pub fn warnings(faults: &Faults, summary: &Summary, size: f32) -> Vec<String> {
+pub fn warnings(faults: &MeshFaults, summary: &ThicknessSummary, size: f32) -> Vec<String> {
     let mut out = Vec::new();
     let mut say = |n: usize, text: &dyn Fn(usize) -> String| {
         if n > 0 {

@@ -5,7 +5,7 @@ use super::summary::triangle_area;
 
 /// A connected region below the limit.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Spot {
+pub struct ThinRegion {
     /// Of its thinnest vertex.
     pub position: [f32; 3],
     /// The outward normal there.
@@ -14,13 +14,14 @@ pub struct Spot {
     pub thickness: f32,
     /// A third of each triangle for each of its corners in the region.
     pub area: f64,
+    /// Welded vertices in the region.
     pub vertices: u32,
 }
 
 impl Thickness {
     /// At most `count` regions of values strictly below `limit` and of at least `minimum_area`, the
     /// thinnest first.
-    pub fn worst(&self, limit: f32, minimum_area: f64, count: usize) -> Vec<Spot> {
+    pub fn worst(&self, limit: f32, minimum_area: f64, count: usize) -> Vec<ThinRegion> {
         let (s, values) = (&self.surface, self.welded_values());
         let mut area = vec![0.0f64; s.positions.len()];
         for t in 0..s.triangles.len() {
@@ -54,7 +55,7 @@ impl Thickness {
                 }
             }
             if sum >= minimum_area {
-                spots.push(Spot {
+                spots.push(ThinRegion {
                     position: s.positions[thinnest].to_array(),
                     normal: (s.normals[thinnest] * if s.faults.inside_out { -1.0 } else { 1.0 })
                         .to_array(),

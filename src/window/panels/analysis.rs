@@ -38,6 +38,7 @@ impl Thickness {
 #[derive(Debug)]
 pub struct Walls {
     pub found: Option<Box<Thickness>>,
+    /// The limits by process that the window was started with.
     pub presets: Vec<Preset>,
     /// Index into `presets`; `None`: the person's own limit.
     pub preset: Option<usize>,
@@ -46,12 +47,7 @@ pub struct Walls {
 
 impl Default for Walls {
     fn default() -> Self {
-        Walls {
-            found: None,
-            presets: Preset::embedded().unwrap_or_default(),
-            preset: None,
-            limit: 1.0,
-        }
+        Walls { found: None, presets: Vec::new(), preset: None, limit: 1.0 }
     }
 }
 

@@ -66,7 +66,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
             for kind in kinds {
                 let response = picture(ui, kind, brush.kind == kind);
-                if response.on_hover_text(view.presets.get(kind).about()).clicked() && brush.kind != kind {
+                if response.on_hover_text(view.presets.get(kind).about()).clicked()
+                    && brush.kind != kind
+                {
                     brush = view.presets.switched(&brush, kind);
                 }
             }

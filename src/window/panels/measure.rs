@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::action::Action;
 use super::{UiRequest, UiState, View, theme};
 use crate::viewer::look::Map;
-use sculptd_geometry::projection::Polygon;
+use sculptd_geometry::projection::PlaneRegion;
 
 /// What was measured of one state of the work; lengths in the mesh's unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Measured {
     /// What was looked along, and the shadow that way.
     pub direction: DVec3,
     pub shadow: f64,
-    pub outline: Vec<Polygon>,
+    pub outline: Vec<PlaneRegion>,
 }
 
 /// What distances are to.
@@ -174,10 +174,10 @@ fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
         let d = (*p - (lo + hi) * 0.5) * scale;
         pos2(inner.center().x + d.x as f32, inner.center().y - d.y as f32)
     };
-    let all: usize = m.outline.iter().flat_map(Polygon::rings).map(Vec::len).sum();
+    let all: usize = m.outline.iter().flat_map(PlaneRegion::rings).map(Vec::len).sum();
     let step = all.div_ceil(CORNERS).max(1);
     let stroke = Stroke::new(1.5, theme::accent(ui));
-    for ring in m.outline.iter().flat_map(Polygon::rings) {
+    for ring in m.outline.iter().flat_map(PlaneRegion::rings) {
         let mut line: Vec<_> = ring.iter().step_by(step).map(at).collect();
         line.extend(ring.last().map(at));
         painter.add(egui::Shape::line(line, stroke));

@@ -11,10 +11,10 @@ use super::work::Done;
 use crate::panels::measure::{Distances, Measured};
 use sculptd_clay::Snapshot;
 use sculptd_engine::hand::{HeldObject, Similarity};
-use sculptd_geometry::distance::{Solid, Topology};
+use sculptd_geometry::distance::{DistanceSolid, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{measures, projected_area};
-use sculptd_geometry::projection::{Plane, area, outline};
+use sculptd_geometry::projection::{ProjectionPlane, area, outline};
 
 /// What distances are measured to.
 #[derive(Debug, Clone)]
@@ -53,7 +53,7 @@ const BATCH: usize = 64;
 /// The distance map as far as it is known.
 #[derive(Debug, Default)]
 pub struct Field {
-    to: Option<(Reference, Solid)>,
+    to: Option<(Reference, DistanceSolid)>,
     place: Option<Similarity>,
     mesh: Option<Snapshot>,
     /// One a page; `None`: not known.
@@ -80,7 +80,7 @@ impl Field {
                 Reference::Before(before) => Arc::new(before.to_tri()),
                 Reference::HeldObject(thing) => thing.plain.clone(),
             };
-            let solid = Solid::build(&plain, job)?;
+            let solid = DistanceSolid::build(&plain, job)?;
             self.to = Some((to.clone(), solid));
         }
         let place = to.place();
@@ -150,7 +150,7 @@ pub fn measure(mesh: &Snapshot, direction: DVec3, job: &Job) -> Result<Measured,
     for (out, axis) in projected.iter_mut().zip([Vec3::X, Vec3::Y, Vec3::Z]) {
         *out = projected_area(&plain, axis, job)?;
     }
-    let outline = match Plane::along(direction, 0.0) {
+    let outline = match ProjectionPlane::along(direction, 0.0) {
         Some(plane) => outline(&Topology::build(&plain), &plane),
         None => Vec::new(),
     };

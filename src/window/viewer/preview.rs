@@ -11,7 +11,7 @@ use sculptd_daemon::boolean_jobs;
 use sculptd_engine::hand::{HeldObject, MenuItem, Similarity};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
-use sculptd_geometry::boolean::{Operation, Options};
+use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
 
 /// What is asked for.
@@ -91,12 +91,12 @@ impl Gather {
 /// Computes it; `None` where the choice joins nothing.
 ///
 /// # Errors
-/// As a join: an open thing, or a work that cannot be cut. [`boolean::Error::Cancelled`] when a
+/// As a join: an open thing, or a work that cannot be cut. [`boolean::BooleanError::Cancelled`] when a
 /// newer one is wanted.
-pub fn compute(wanted: &Wanted, job: &Job) -> Result<Option<Preview>, boolean::Error> {
+pub fn compute(wanted: &Wanted, job: &Job) -> Result<Option<Preview>, boolean::BooleanError> {
     let Some(operation) = boolean_jobs::operation(wanted.choice) else { return Ok(None) };
     let tool = wanted.thing.placed().to_poly();
-    let options = Options::default();
+    let options = BooleanOptions::default();
     if let Some(cut) =
         sculptd_clay::local_boolean::local(&wanted.mesh, &tool, operation, &options, job)?
     {
@@ -142,10 +142,10 @@ fn whole(
     tool: &PolyMesh,
     operation: Operation,
     job: &Job,
-) -> Result<Preview, boolean::Error> {
+) -> Result<Preview, boolean::BooleanError> {
     let work = wanted.mesh.to_tri().to_poly();
     let (solids, _) =
-        boolean::compute([&work, tool], &[operation], &Options::default(), job, || 0.0)?;
+        boolean::compute([&work, tool], &[operation], &BooleanOptions::default(), job, || 0.0)?;
     let mut out = Gather::default();
     for solid in &solids {
         let (plain, faces) = solid.mesh.triangulate();

@@ -33,6 +33,7 @@ use sculptd_devices::{Clock, DeviceId};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::{MenuItem, Similarity};
+use sculptd_geometry::thickness::preset::Preset;
 
 /// Everything that joins the window to the daemon.
 pub struct Wiring {
@@ -54,6 +55,8 @@ pub struct Wiring {
     /// On the clock, when the ghosts have ended; 0 without ghosts.
     pub ghosts_until_us: u64,
     pub full_screen: bool,
+    /// Limits of wall thickness by process and material, for the panel of walls.
+    pub presets: Vec<Preset>,
     /// The screen of an installation, in the place of the panels.
     pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
 }
@@ -278,11 +281,12 @@ impl WindowState {
             config.format = *srgb;
         }
         surface.configure(&gpu.device, &config);
-        let (remembered, desk) = match wiring.kiosk {
+        let (remembered, mut desk) = match wiring.kiosk {
             None => Remembered::load(),
             // Nothing of yesterday's visitors.
             Some(_) => Remembered::nothing(),
         };
+        desk.walls.presets.clone_from(&wiring.presets);
         let samples = gpu.samples(desk.prefs.smooth_edges);
         let renderer = Renderer::new(&gpu, config.format, samples);
         let context = egui::Context::default();

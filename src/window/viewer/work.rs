@@ -27,7 +27,7 @@ use sculptd_engine::payload::Payload;
 use sculptd_geometry::io::{write_beside, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
-use sculptd_geometry::projection::Polygon;
+use sculptd_geometry::projection::PlaneRegion;
 
 /// What slow work says when it is done.
 #[derive(Debug)]
@@ -143,12 +143,7 @@ impl Work {
 
     /// Joins the thing in the hands with the work; the result takes the work's place, and undo
     /// brings the work back.
-    pub fn join(
-        &self,
-        choice: MenuItem,
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn join(&self, choice: MenuItem, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
             let (text, wrong) =
@@ -190,12 +185,7 @@ impl Work {
     }
 
     /// The work one level finer or coarser.
-    pub fn level(
-        &self,
-        finer: bool,
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
             Ok((vec![command], format!("Level {} of {of}", at + 1)))
@@ -203,7 +193,7 @@ impl Work {
     }
 
     /// Writes the shadow's outline.
-    pub fn outline(&self, path: PathBuf, outline: &[Polygon]) {
+    pub fn outline(&self, path: PathBuf, outline: &[PlaneRegion]) {
         let (say, drawing) = (self.say.clone(), projection::svg(outline));
         thread("sculptd-outline", move || {
             let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {

@@ -33,7 +33,7 @@ fn ball(radius: f64, at: DVec3) -> PolyMesh {
     out
 }
 
-fn sound(world: &World) -> check::Report {
+fn sound(world: &World) -> check::MeshReport {
     world.mesh().verify_invariants().expect("sound pages");
     let facts = check::report(&world.mesh().to_tri().to_poly(), false, &Job::default())
         .expect("not cancelled");

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use sculptd_clay::Clay;
 use sculptd_clay::local_boolean::local;
 use sculptd_devices::Clock;
-use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, shapes};
 
@@ -16,7 +16,7 @@ fn placed(mesh: &PolyMesh, scale: f64, turn: DMat3, shift: DVec3) -> PolyMesh {
     out
 }
 
-fn facts(mesh: &PolyMesh) -> check::Report {
+fn facts(mesh: &PolyMesh) -> check::MeshReport {
     check::report(mesh, false, &Job::default()).expect("not cancelled")
 }
 
@@ -37,10 +37,10 @@ fn a_tool_out_of_clay_and_onto_it_as_the_long_way_has_it() {
         let what = if n % 2 == 0 { Operation::Difference } else { Operation::Union };
         let before = clay.snapshot();
         let plain = before.to_tri().to_poly();
-        let long = compute([&plain, &tool], &[what], &Options::default(), &job, || 0.0)
+        let long = compute([&plain, &tool], &[what], &BooleanOptions::default(), &job, || 0.0)
             .expect("a result")
             .0;
-        let cut = local(&before, &tool, what, &Options::default(), &job).expect("a result");
+        let cut = local(&before, &tool, what, &BooleanOptions::default(), &job).expect("a result");
         let Some(cut) = cut.filter(|c| c.can_be_made(&before)) else {
             // Nothing was given, so nothing wrong was: the long way it is.
             println!("{n}: not done locally");
@@ -91,7 +91,7 @@ fn what_is_far_from_the_tool_is_shared_and_costs_nothing() {
             let tool = placed(&tool, radius, turn, turn * DVec3::new(0.8, 0.6, 0.02));
             let work = clay.snapshot();
             let start = clock.now_us();
-            let cut = local(&work, &tool, Operation::Difference, &Options::default(), &job)
+            let cut = local(&work, &tool, Operation::Difference, &BooleanOptions::default(), &job)
                 .expect("a result");
             clay.begin_step();
             let done = clay.graft(&cut.expect("done locally")).expect("made");

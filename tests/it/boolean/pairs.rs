@@ -3,7 +3,7 @@
 use std::process::{Command, Output};
 
 use glam::{DMat3, DVec3};
-use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, repair, shapes};
@@ -25,7 +25,7 @@ fn turn() -> DMat3 {
 /// and genus of each.
 fn sound(name: &str, a: &PolyMesh, b: &PolyMesh) -> Vec<(usize, Option<i64>)> {
     let job = Job::default();
-    let (made, report) = compute([a, b], &Operation::ALL, &Options::default(), &job, || 0.0)
+    let (made, report) = compute([a, b], &Operation::ALL, &BooleanOptions::default(), &job, || 0.0)
         .unwrap_or_else(|e| panic!("{name}: {e}"));
     assert!(report.warnings.is_empty(), "{name}: {:?}", report.warnings);
     assert!(
@@ -168,7 +168,7 @@ fn the_command_says_what_it_made_and_what_is_wrong() {
     assert_eq!((&cut["closed"], cut["length"].as_f64()), (&true.into(), Some(6.0)));
     assert_eq!(cut["points"].as_array().map(Vec::len), Some(7));
     assert!(
-        said["phases"]["meet"].is_number()
+        said["phases"]["intersect"].is_number()
             && said["warnings"].as_array().is_some_and(Vec::is_empty)
     );
 

@@ -2,7 +2,7 @@
 //! polyhedra against exact arithmetic, long sequences on one mesh.
 
 use glam::{DMat3, DQuat, DVec3};
-use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, shapes};
@@ -58,7 +58,7 @@ fn solids(most: usize) -> Vec<(String, PolyMesh)> {
             }
             let facts = check::report(&mesh, true, &job).ok()?;
             let sound = facts.closed && facts.volume? > 0.0 && facts.self_intersections == Some(0);
-            let (lo, hi) = (DVec3::from(facts.bounds.min), DVec3::from(facts.bounds.max));
+            let (lo, hi) = (facts.bounds.min, facts.bounds.max);
             let size = (hi - lo).max_element();
             mesh.positions.iter_mut().for_each(|p| *p = (*p - (lo + hi) * 0.5) / size);
             sound.then(|| (f.file_stem().unwrap_or_default().to_string_lossy().into_owned(), mesh))
@@ -84,7 +84,7 @@ impl Tally {
     fn pair(&mut self, name: &str, a: &PolyMesh, b: &PolyMesh) {
         let job = Job::default();
         let (made, report) =
-            match compute([a, b], &Operation::ALL, &Options::default(), &job, || 0.0) {
+            match compute([a, b], &Operation::ALL, &BooleanOptions::default(), &job, || 0.0) {
                 Ok(x) => x,
                 Err(e) => return self.faults.push(format!("{name}: {e}")),
             };
@@ -190,7 +190,7 @@ fn small_integer_polyhedra() {
         let (made, report) = match compute(
             [&ma, &mb],
             &Operation::ALL,
-            &Options::default(),
+            &BooleanOptions::default(),
             &Job::default(),
             || 0.0,
         ) {
@@ -230,7 +230,8 @@ fn a_long_sequence_on_one_mesh() {
         let tool = placed(&tool, dice.turn(), on);
         // Carve, add, carve, so that it neither vanishes nor fills.
         let what = if n % 2 == 0 { Operation::Difference } else { Operation::Union };
-        match compute([&clay, &tool], &[what], &Options::default(), &Job::default(), || 0.0) {
+        match compute([&clay, &tool], &[what], &BooleanOptions::default(), &Job::default(), || 0.0)
+        {
             Ok((mut made, _)) => {
                 let m = made.remove(0);
                 let facts = check::report(&m.mesh, false, &Job::default()).expect("not cancelled");

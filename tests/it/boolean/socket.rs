@@ -3,13 +3,12 @@
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 use glam::DVec3;
 use sculptd_clay::Clay;
 use sculptd_daemon::config::{Config, LoopConfig};
-use sculptd_daemon::control::server::{Host, Server};
+use sculptd_daemon::control::{Host, Server};
 use sculptd_daemon::live::Live;
 use sculptd_daemon::startup;
 use sculptd_devices::{Clock, queue};
@@ -39,16 +38,8 @@ fn asked_watched_and_ended_over_the_socket() {
     let world = startup::world(mesh, &config);
     let live =
         Live::start(world, receiver, clock.clone(), LoopConfig::default(), 64, None).expect("runs");
-    let host = Host {
-        commands: live.commands.clone(),
-        published: live.published.clone(),
-        presets: sculptd::presets().clone(),
-        thickness: Arc::default(),
-        joining: Arc::default(),
-        journal: None,
-        history: None,
-        stop: Arc::default(),
-    };
+    let presets = sculptd::presets().clone();
+    let host = Host::new(live.commands.clone(), live.published.clone(), presets);
     let dir = tempfile::tempdir().expect("a folder");
     let socket = dir.path().join("s.sock");
     let server = Server::start(&socket, host).expect("listens");

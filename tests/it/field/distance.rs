@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::bvh::nearest_on_triangle;
-use sculptd_geometry::distance::{Sign, Solid};
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::distance::{DistanceSolid, Sign};
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes::{cuboid, icosphere, torus};
 use sculptd_geometry::winding::solid_angle;
@@ -58,7 +58,7 @@ fn distances_and_signs_equal_an_exhaustive_search() {
     all.push(("torus".into(), torus(1.0, 0.3, 24, 12).triangulate().0));
     let (mut worst, mut checked, mut closed) = (0.0f64, 0, 0);
     for (name, mesh) in &all {
-        let solid = Solid::build(mesh, &job).unwrap();
+        let solid = DistanceSolid::build(mesh, &job).unwrap();
         closed += solid.topology.closed as usize;
         let by_normal = solid.clone().with_sign(Sign::Pseudonormal);
         let (lo, hi) = bounds(mesh);
@@ -123,7 +123,8 @@ fn distances_and_signs_equal_an_exhaustive_search() {
 #[test]
 fn a_box_is_exact() {
     let half = DVec3::new(1.0, 2.0, 3.0);
-    let solid = Solid::build(&cuboid(-half, half).triangulate().0, &Job::default()).unwrap();
+    let solid =
+        DistanceSolid::build(&cuboid(-half, half).triangulate().0, &Job::default()).unwrap();
     let mut r = Random(7);
     for _ in 0..3000 {
         let p = r.within(half * -2.0, half * 2.0);
@@ -145,7 +146,7 @@ fn a_box_is_exact() {
     }
     let mut huge = icosphere(1.0, 2);
     huge.positions.iter_mut().for_each(|p| *p = p.signum() * f32::MAX);
-    let solid = Solid::build(&huge, &Job::default()).unwrap();
+    let solid = DistanceSolid::build(&huge, &Job::default()).unwrap();
     assert!(solid.tree.nearest(DVec3::ZERO, f64::INFINITY).is_none());
 }
 
@@ -153,8 +154,9 @@ fn a_box_is_exact() {
 fn grids_hold_the_same_distances_and_survive_the_file() {
     let job = Job::default();
     let mesh = torus(1.0, 0.3, 40, 20).triangulate().0;
-    let solid = Solid::build(&mesh, &job).unwrap();
-    let grid = Grid::sample(&solid, Grid::layout(bounds(&mesh), 30, 2), &job).unwrap();
+    let solid = DistanceSolid::build(&mesh, &job).unwrap();
+    let grid =
+        DistanceGrid::sample(&solid, DistanceGrid::layout(bounds(&mesh), 30, 2), &job).unwrap();
     for k in 0..grid.size[2] {
         for j in 0..grid.size[1] {
             for i in 0..grid.size[0] {
@@ -172,7 +174,9 @@ fn grids_hold_the_same_distances_and_survive_the_file() {
     let file = tempfile::tempdir().unwrap().path().join("grid.npy");
     std::fs::create_dir_all(file.parent().unwrap()).unwrap();
     sculptd_geometry::io::write_beside(&file, |w| grid.write_npy(w)).unwrap();
-    assert_eq!(Grid::read_npy(&file).unwrap(), grid);
+    assert_eq!(DistanceGrid::read_npy(&file).unwrap(), grid);
     job.cancel();
-    assert!(Grid::sample(&solid, Grid::layout(bounds(&mesh), 30, 2), &job).is_err());
+    assert!(
+        DistanceGrid::sample(&solid, DistanceGrid::layout(bounds(&mesh), 30, 2), &job).is_err()
+    );
 }

@@ -4,25 +4,25 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, Vec3};
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::distance::Solid;
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::distance::DistanceSolid;
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::march::default_epsilon;
 use sculptd_geometry::measure::projected_area;
 use sculptd_geometry::projection::{
-    By, Plane, area, classify, outline, png, rectangle, sample, shadow_areas, spread_directions,
-    svg,
+    PointTest, ProjectionPlane, area, classify, outline, png, rectangle, sample, shadow_areas,
+    spread_directions, svg,
 };
 use sculptd_geometry::shapes::{cuboid, cylinder, icosphere, torus};
 
 use super::{Random, bounds, long, meshes};
 
-fn solid(mesh: &TriMesh) -> Solid {
-    Solid::build(mesh, &Job::default()).unwrap()
+fn solid(mesh: &TriMesh) -> DistanceSolid {
+    DistanceSolid::build(mesh, &Job::default()).unwrap()
 }
 
-fn shadow(solid: &Solid, d: DVec3) -> f64 {
-    area(&outline(&solid.topology, &Plane::along(d, 0.3).unwrap()))
+fn shadow(solid: &DistanceSolid, d: DVec3) -> f64 {
+    area(&outline(&solid.topology, &ProjectionPlane::along(d, 0.3).unwrap()))
 }
 
 #[test]
@@ -37,12 +37,12 @@ fn known_shadows_with_holes_and_disjoint_parts() {
     );
 
     let ring = solid(&torus(2.0, 0.5, 100, 50).triangulate().0);
-    let down = outline(&ring.topology, &Plane::along(DVec3::NEG_Z, 0.0).unwrap());
+    let down = outline(&ring.topology, &ProjectionPlane::along(DVec3::NEG_Z, 0.0).unwrap());
     assert_eq!((down.len(), down[0].holes.len()), (1, 1));
     let n = 100.0;
     let polygon = n / 2.0 * (2.0 * PI / n).sin();
     assert!((area(&down) - polygon * (2.5f64.powi(2) - 1.5f64.powi(2))).abs() < 1e-6);
-    let side = outline(&ring.topology, &Plane::along(DVec3::X, 0.0).unwrap());
+    let side = outline(&ring.topology, &ProjectionPlane::along(DVec3::X, 0.0).unwrap());
     assert_eq!((side.len(), side[0].holes.len()), (1, 0));
     assert!(svg(&down).contains("evenodd"));
     let picture = image::load_from_memory(&png(&down, 200).unwrap()).unwrap().to_rgb8();
@@ -54,10 +54,10 @@ fn known_shadows_with_holes_and_disjoint_parts() {
     two.positions.extend(other.positions.iter().map(|p| *p + Vec3::X * 3.0));
     two.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + base)));
     let two = solid(&two);
-    let apart = outline(&two.topology, &Plane::along(DVec3::Y, 0.0).unwrap());
+    let apart = outline(&two.topology, &ProjectionPlane::along(DVec3::Y, 0.0).unwrap());
     assert_eq!(apart.len(), 2);
     assert!((shadow(&two, DVec3::X) - area(&apart) / 2.0).abs() < 0.05);
-    assert_eq!(outline(&two.topology, &Plane::along(DVec3::X, 0.0).unwrap()).len(), 1);
+    assert_eq!(outline(&two.topology, &ProjectionPlane::along(DVec3::X, 0.0).unwrap()).len(), 1);
 }
 
 #[test]
@@ -65,11 +65,12 @@ fn the_three_methods_agree() {
     let job = Job::default();
     let mesh = torus(2.0, 0.5, 80, 40).triangulate().0;
     let solid = solid(&mesh);
-    let grid = Grid::sample(&solid, Grid::layout(bounds(&mesh), 96, 1), &job).unwrap();
+    let grid =
+        DistanceGrid::sample(&solid, DistanceGrid::layout(bounds(&mesh), 96, 1), &job).unwrap();
     for d in [DVec3::NEG_Z, DVec3::new(0.3, 0.5, -1.0)] {
-        let plane = Plane::along(d, 0.0).unwrap();
+        let plane = ProjectionPlane::along(d, 0.0).unwrap();
         let exact = area(&outline(&solid.topology, &plane));
-        for by in [By::Rays, By::Marching(&grid, default_epsilon(&grid))] {
+        for by in [PointTest::Rays, PointTest::Marching(&grid, default_epsilon(&grid))] {
             let s = sample(&solid, &plane, 25_000, 5, by, &job).unwrap();
             assert!(
                 (s.area - exact).abs() < 4.0 * s.standard_error,
@@ -89,15 +90,16 @@ fn marching_agrees_with_rays_but_next_to_the_outline() {
     let job = Job::default();
     let mesh = torus(2.0, 0.5, 80, 40).triangulate().0;
     let solid = solid(&mesh);
-    let grid = Grid::sample(&solid, Grid::layout(bounds(&mesh), 128, 1), &job).unwrap();
-    let plane = Plane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
+    let grid =
+        DistanceGrid::sample(&solid, DistanceGrid::layout(bounds(&mesh), 128, 1), &job).unwrap();
+    let plane = ProjectionPlane::along(DVec3::new(0.3, 0.5, -1.0), 0.0).unwrap();
     let (lo, hi) = rectangle(&solid, &plane).unwrap();
     let mut r = Random(3);
     let points: Vec<DVec2> =
         (0..50_000).map(|_| lo + (hi - lo) * DVec2::new(r.unit(), r.unit())).collect();
-    let by_ray = classify(&solid, &plane, &points, By::Rays, &job).unwrap();
+    let by_ray = classify(&solid, &plane, &points, PointTest::Rays, &job).unwrap();
     let by_step =
-        classify(&solid, &plane, &points, By::Marching(&grid, default_epsilon(&grid)), &job)
+        classify(&solid, &plane, &points, PointTest::Marching(&grid, default_epsilon(&grid)), &job)
             .unwrap();
     let outline = outline(&solid.topology, &plane);
     let mut differ = 0;

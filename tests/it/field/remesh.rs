@@ -4,24 +4,24 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::distance::Solid;
-use sculptd_geometry::grid::Grid;
+use sculptd_geometry::distance::DistanceSolid;
+use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::measure::measures;
 use sculptd_geometry::offset::{hollow, offset, smooth_union};
 use sculptd_geometry::remesh::dual::extract;
-use sculptd_geometry::remesh::{RemeshError, Settings, remesh};
+use sculptd_geometry::remesh::{RemeshError, RemeshSettings, remesh};
 use sculptd_geometry::self_intersection::pairs;
 use sculptd_geometry::shapes::{cuboid, icosphere, torus};
 
 use super::{Random, bounds, long, manifold, meshes};
 
-fn solid(mesh: &TriMesh) -> Solid {
-    Solid::build(mesh, &Job::default()).unwrap()
+fn solid(mesh: &TriMesh) -> DistanceSolid {
+    DistanceSolid::build(mesh, &Job::default()).unwrap()
 }
 
 /// The furthest that a face's middle or corner of `a` is from the surface of `b`.
-fn apart(a: &TriMesh, b: &Solid) -> f64 {
+fn apart(a: &TriMesh, b: &DistanceSolid) -> f64 {
     let far = |p: DVec3| b.tree.nearest(p, f64::INFINITY).unwrap().distance();
     (0..a.triangles.len())
         .map(|t| {
@@ -37,8 +37,12 @@ fn noise_gives_a_closed_manifold() {
     for seed in 0..4 {
         let mut r = Random(seed);
         let n = 24;
-        let mut grid =
-            Grid { origin: DVec3::ZERO, spacing: 1.0, size: [n; 3], values: vec![1.0; n * n * n] };
+        let mut grid = DistanceGrid {
+            origin: DVec3::ZERO,
+            spacing: 1.0,
+            size: [n; 3],
+            values: vec![1.0; n * n * n],
+        };
         for k in 1..n - 1 {
             for j in 1..n - 1 {
                 for i in 1..n - 1 {
@@ -79,7 +83,7 @@ fn shapes_are_remeshed_within_half_a_voxel() {
         ("box", cuboid(DVec3::NEG_ONE, DVec3::new(1.0, 0.7, 0.9)).triangulate().0, true),
     ] {
         let old = solid(&mesh);
-        let settings = Settings { side: 64, sharp };
+        let settings = RemeshSettings { side: 64, sharp };
         let new = remesh(&mesh, &old, settings, &job).unwrap();
         assert!(manifold(&new), "{name}");
         let (lo, hi) = bounds(&mesh);
@@ -101,17 +105,17 @@ fn shapes_are_remeshed_within_half_a_voxel() {
             .map(|p| if p.x > 0.0 { [200, 0, 0, 255] } else { [0, 0, 90, 255] })
             .collect(),
     );
-    let new =
-        remesh(&coloured, &solid(&coloured), Settings { side: 32, sharp: false }, &job).unwrap();
+    let new = remesh(&coloured, &solid(&coloured), RemeshSettings { side: 32, sharp: false }, &job)
+        .unwrap();
     for (p, c) in new.positions.iter().zip(new.colours.as_ref().unwrap()) {
         assert!(p.x.abs() < 0.15 || (c[0] == 200) == (p.x > 0.0), "{p} {c:?}");
     }
     assert_eq!(
-        remesh(&coloured, &solid(&coloured), Settings { side: 4, sharp: false }, &job).err(),
+        remesh(&coloured, &solid(&coloured), RemeshSettings { side: 4, sharp: false }, &job).err(),
         Some(RemeshError::Side(4))
     );
     job.cancel();
-    assert!(remesh(&coloured, &solid(&coloured), Settings::default(), &job).is_err());
+    assert!(remesh(&coloured, &solid(&coloured), RemeshSettings::default(), &job).is_err());
 }
 
 #[test]
@@ -121,7 +125,7 @@ fn soups_and_crossed_meshes_become_one_solid() {
     let mut count = 0;
     for (name, mesh) in meshes(most) {
         let old = solid(&mesh);
-        match remesh(&mesh, &old, Settings { side, sharp: false }, &job) {
+        match remesh(&mesh, &old, RemeshSettings { side, sharp: false }, &job) {
             Ok(new) => {
                 assert!(manifold(&new), "{name}");
                 let (lo, hi) = bounds(&mesh);

@@ -11,7 +11,7 @@ use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::stroke::CurveAction;
-use sculptd_geometry::projection::Polygon;
+use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::panels::action::Action;
 use sculptd_window::panels::history::Thumb;
 use sculptd_window::panels::measure::{Distances, Measured};
@@ -445,7 +445,7 @@ fn sizes_are_told_with_their_units_and_the_outline_is_written() {
         projected: [3.24, 3.25, 3.26],
         direction: DVec3::NEG_Z,
         shadow: 3.0,
-        outline: vec![Polygon { outer: ring, holes: vec![] }],
+        outline: vec![PlaneRegion { outer: ring, holes: vec![] }],
     }));
     h.run_steps(2);
     assert!(h.query_by_label("4.1888 mm³").is_some());

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use super::store::{Checkpoint, Name, Store, StoreError};
 use super::tree::{Change, NOTHING, Node, Tree};
-use crate::session::history::retention::{Freed, High, Pin, bound};
+use crate::session::VERSION;
+use crate::session::history::retention::{Freed, HighestNumbers, Pin, bound};
 use crate::session::history::thumbnail;
 use sculptd_clay::{Page, Snapshot};
 use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, SideData};
@@ -432,6 +433,7 @@ impl HistoryWriter {
             core: saved.core.clone(),
             sides: ids,
             steps: saved.steps,
+            layout: VERSION,
         })?;
         self.store.db.execute_batch("COMMIT")?;
         self.bytes += bytes as u64;
@@ -466,8 +468,8 @@ impl HistoryWriter {
     }
 
     /// The highest numbers that a lineage ever had.
-    pub fn high(&self, object_id: u32) -> Result<High, StoreError> {
+    pub fn high(&self, object_id: u32) -> Result<HighestNumbers, StoreError> {
         let first = self.store.high(object_id)?;
-        Ok(self.tree.nodes().filter(|n| n.object_id == object_id).fold(first, High::over))
+        Ok(self.tree.nodes().filter(|n| n.object_id == object_id).fold(first, HighestNumbers::over))
     }
 }

@@ -14,7 +14,7 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 
 use super::store::{Store, StoreError};
-use super::tree::{Node, Tree, Way};
+use super::tree::{Node, Tree, TreePath};
 use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::session::history::history_writer::HistoryWriter;
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
@@ -42,7 +42,7 @@ pub enum Want {
 }
 
 #[derive(Debug)]
-enum Message {
+enum HistoryMessage {
     HistoryEntry { tick: u64, moment: HistoryEntry },
     State(Box<Saved>),
     Want(Want),
@@ -52,7 +52,7 @@ enum Message {
 /// The history as others reach it.
 #[derive(Debug, Clone)]
 pub struct Handle {
-    inbox: cc::Sender<Message>,
+    inbox: cc::Sender<HistoryMessage>,
     commands: Arc<OnceLock<CommandSender>>,
     tree: Arc<Mutex<Tree>>,
     fault: Arc<Mutex<Option<String>>>,
@@ -75,7 +75,7 @@ impl Handle {
         for moment in world.moments() {
             owed = true;
             if self.inbox.len() < WAITING {
-                self.send(Message::HistoryEntry { tick, moment: moment.clone() });
+                self.send(HistoryMessage::HistoryEntry { tick, moment: moment.clone() });
             }
         }
         match world.report().missed {
@@ -91,17 +91,17 @@ impl Handle {
         if self.inbox.len() >= WAITING || !world.is_at_rest() {
             return false;
         }
-        world.save().is_some_and(|saved| self.send(Message::State(Box::new(saved))))
+        world.save().is_some_and(|saved| self.send(HistoryMessage::State(Box::new(saved))))
     }
 
-    fn send(&self, message: Message) -> bool {
+    fn send(&self, message: HistoryMessage) -> bool {
         self.busy.fetch_add(1, Relaxed);
         self.inbox.send(message).is_ok()
     }
 
     pub fn want(&self, want: Want) {
         if self.inbox.len() < WAITING {
-            self.send(Message::Want(want));
+            self.send(HistoryMessage::Want(want));
         }
     }
 
@@ -156,7 +156,7 @@ impl Keeper {
         let first = world.moment(HistoryEvent::Step);
         let mut ledger = HistoryWriter::open(Store::write(path)?, purge, first.work.clone(), most)?;
         ledger.begin(world.tick(), &first, at)?;
-        let keeping = Keeping {
+        let keeping = HistoryThread {
             shown: Arc::new(Mutex::new(ledger.tree.clone())),
             ledger,
             path: path.to_path_buf(),
@@ -191,13 +191,13 @@ impl Keeper {
     /// Waits until all that was handed over is written.
     pub fn finish(self) -> Option<String> {
         self.handle.ending.store(true, Relaxed);
-        let _ = self.handle.inbox.send(Message::End);
+        let _ = self.handle.inbox.send(HistoryMessage::End);
         let _ = self.thread.join();
         self.handle.trouble()
     }
 }
 
-struct Keeping {
+struct HistoryThread {
     ledger: HistoryWriter,
     path: PathBuf,
     shown: Arc<Mutex<Tree>>,
@@ -209,10 +209,10 @@ struct Keeping {
     clock: Clock,
 }
 
-impl Keeping {
+impl HistoryThread {
     fn run(
         mut self,
-        inbox: &cc::Receiver<Message>,
+        inbox: &cc::Receiver<HistoryMessage>,
         fault: &Mutex<Option<String>>,
         commands: &OnceLock<CommandSender>,
         ending: &AtomicBool,
@@ -229,8 +229,8 @@ impl Keeping {
                 Err(cc::RecvTimeoutError::Disconnected) => break,
             };
             match &message {
-                Message::End => break,
-                Message::Want(want) => {
+                HistoryMessage::End => break,
+                HistoryMessage::Want(want) => {
                     // Wherever one wanted to go before: this is where one ends.
                     if matches!(want, Want::Node(_)) {
                         self.wants.clear();
@@ -239,7 +239,7 @@ impl Keeping {
                         self.wants.push_back(*want);
                     }
                 }
-                Message::HistoryEntry { .. } | Message::State(_) => {
+                HistoryMessage::HistoryEntry { .. } | HistoryMessage::State(_) => {
                     // A disk that takes nothing now may later: the moment is kept till then.
                     while let Err(e) = self.take(&message) {
                         let first =
@@ -268,9 +268,9 @@ impl Keeping {
         let _ = self.ledger.store.db.pragma_update(None, "synchronous", "full");
     }
 
-    fn take(&mut self, message: &Message) -> Result<(), StoreError> {
+    fn take(&mut self, message: &HistoryMessage) -> Result<(), StoreError> {
         match message {
-            Message::HistoryEntry { tick, moment } => {
+            HistoryMessage::HistoryEntry { tick, moment } => {
                 self.ledger.moment(*tick, moment)?;
                 self.sent = None;
                 if matches!(moment.deed, HistoryEvent::Jump(_)) {
@@ -279,7 +279,7 @@ impl Keeping {
                 self.show();
                 Ok(())
             }
-            Message::State(saved) => self.ledger.state(saved),
+            HistoryMessage::State(saved) => self.ledger.state(saved),
             _ => Ok(()),
         }
     }
@@ -353,18 +353,11 @@ impl Keeping {
             return Ok(None);
         };
         let from = (self.ledger.now.object_id(), self.ledger.now.revision());
-        let jump = |pages, other| Jump {
-            node: to,
-            from,
-            object_id: node.object_id,
-            pages,
-            other,
-        };
-        let queued = |jump, payload| {
-            QueuedCommand::with_payload(Command::Jump(Box::new(jump)), payload)
-        };
+        let jump = |pages, other| Jump { node: to, from, object_id: node.object_id, pages, other };
+        let queued =
+            |jump, payload| QueuedCommand::with_payload(Command::Jump(Box::new(jump)), payload);
         match way {
-            Way::Pages(pages) => {
+            TreePath::Pages(pages) => {
                 let mut got = Vec::with_capacity(pages.len());
                 for &(i, revision) in &pages {
                     let t = self.ledger.topology.get(&i).copied().unwrap_or(0);
@@ -376,7 +369,7 @@ impl Keeping {
                 self.ledger.pin(to, &jump.pages, None)?;
                 Ok(Some(queued(jump, Payload::Pages(got))))
             }
-            Way::Other => {
+            TreePath::Other => {
                 let base = base(&self.path)?;
                 let (rest, names) = describe(&self.ledger, node, base.page_count())?;
                 let mesh = assemble(&self.ledger.store, &base, &rest, &names, node.levels)?;
@@ -416,8 +409,8 @@ fn describe(
 /// The work that the session began with.
 fn base(path: &Path) -> Result<Snapshot, StoreError> {
     let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
-    let opened = crate::session::open(path).map_err(|e| damaged(&e))?;
-    let mut mesh = Clay::build(&opened.start, &Job::default()).map_err(|e| damaged(&e))?;
+    let start = crate::session::reader::read_start(path)?;
+    let mut mesh = Clay::build(&start, &Job::default()).map_err(|e| damaged(&e))?;
     Ok(mesh.snapshot())
 }
 

@@ -60,7 +60,7 @@ pub fn places(tree: &Tree) -> Vec<Place> {
 /// Where the file cannot be read.
 pub fn read(path: &Path) -> Result<History, StoreError> {
     let store = Store::read(path)?;
-    if !store.has_tables() {
+    if !store.has_tables()? {
         return Ok(History {
             places: Vec::new(),
             bytes: 0,

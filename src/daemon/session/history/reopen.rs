@@ -12,7 +12,8 @@ use super::super::reader::Opened;
 use super::super::replay::{Replayed, Run};
 use super::keeper::assemble;
 use super::store::{Store, StoreError};
-use sculptd_clay::{Clay, Workers};
+use super::tree::Tree;
+use sculptd_clay::{Clay, Snapshot, Workers};
 use sculptd_engine::world::{HistoryEvent, World, WorldOptions};
 use sculptd_geometry::job::Job;
 
@@ -35,47 +36,65 @@ pub fn reopen(
     workers: usize,
     job: &Job,
 ) -> Option<Reopened> {
-    let store = Store::read(path).ok().filter(Store::has_tables)?;
-    // A checkpoint of ticks that the log does not hold is no part of what is there.
-    let last = opened.input.last().map_or(0, |t| t.tick).min(until.unwrap_or(u64::MAX));
+    let store = Store::read(path).ok().filter(|s| s.has_tables().unwrap_or(false))?;
+    let earliest = opened.replay_from.as_ref().map(|r| r.tick);
+    // A checkpoint of ticks that the input does not hold is no part of what is there; where the
+    // input begins at a checkpoint, it may hold none yet.
+    let last = opened.input.last().map_or(0, |t| t.tick).max(earliest.unwrap_or(0));
+    let last = last.min(until.unwrap_or(u64::MAX));
     let tree = store.tree().ok()?;
     let mut base = Clay::build(&opened.start, job).ok()?;
     let base = base.snapshot();
-    for id in store.checkpoints(last).ok()?.into_iter().take(TRIED) {
-        let made = || -> Result<Option<Reopened>, StoreError> {
-            let c = store.checkpoint(id)?;
-            let Some(node) = tree.node(c.node) else { return Ok(None) };
-            let names = tree.names(node, c.rest.pages, base.page_count());
-            let (checkpoint, at) = (c.tick, c.node);
-            let empty = c.rest.empty.clone();
-            let mut mesh = assemble(&store, &base, &c.rest, &names, None)?;
-            mesh.set_empty(empty);
-            let saved = store.saved(c)?;
-            let steps = saved.steps;
-            let s = &opened.settings;
-            let options =
-                WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
-            let damaged = |_| StoreError::Damaged("a checkpoint's state".into());
-            let world =
-                World::restore(mesh, saved, Workers::new(workers), options).map_err(damaged)?;
-            let mut odd = false;
-            let mut see = |_: u64, world: &mut World| {
-                odd |= match world.report().missed {
-                    Some(HistoryEvent::Undo) => steps.0 > 0,
-                    Some(HistoryEvent::Redo) => steps.1 > 0,
-                    _ => false,
-                };
-            };
-            let run = Run { opened, base: &base, store: Some(&store), until };
-            let replayed = run.from(world, job, &mut see);
-            let sound = !odd && replayed.jumps_missed == 0 && !job.cancelled();
-            Ok(sound.then_some(Reopened { replayed, checkpoint, node: at }))
-        };
-        match made() {
+    // Where nothing else serves, every checkpoint is tried.
+    let tried = if earliest.is_some() { usize::MAX } else { TRIED };
+    for id in store.checkpoints(last).ok()?.into_iter().take(tried) {
+        match from_checkpoint((&store, &tree, &base), opened, id, until, workers, job) {
             Ok(Some(reopened)) => return Some(reopened),
             Ok(None) => {}
             Err(e) => tracing::warn!("{}: checkpoint {id} does not serve: {e}", path.display()),
         }
     }
     None
+}
+
+/// The world of one checkpoint and of the input after it; `None` where it may not be the one that
+/// a replay from the start gives.
+pub(in crate::session) fn from_checkpoint(
+    (store, tree, base): (&Store, &Tree, &Snapshot),
+    opened: &Opened,
+    id: u64,
+    until: Option<u64>,
+    workers: usize,
+    job: &Job,
+) -> Result<Option<Reopened>, StoreError> {
+    let c = store.checkpoint(id)?;
+    let earliest = opened.replay_from.as_ref().map(|r| r.tick);
+    let Some(node) = tree.node(c.node).filter(|_| earliest.is_none_or(|e| c.tick >= e)) else {
+        return Ok(None);
+    };
+    let names = tree.names(node, c.rest.pages, base.page_count());
+    let (checkpoint, at) = (c.tick, c.node);
+    let empty = c.rest.empty.clone();
+    let mut mesh = assemble(store, base, &c.rest, &names, None)?;
+    mesh.set_empty(empty);
+    let saved = store.saved(c)?;
+    let steps = saved.steps;
+    let s = &opened.settings;
+    let options =
+        WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
+    let damaged = |_| StoreError::Damaged("a checkpoint's state".into());
+    let world = World::restore(mesh, saved, Workers::new(workers), options).map_err(damaged)?;
+    let mut odd = false;
+    let mut see = |_: u64, world: &mut World| {
+        odd |= match world.report().missed {
+            Some(HistoryEvent::Undo) => steps.0 > 0,
+            Some(HistoryEvent::Redo) => steps.1 > 0,
+            _ => false,
+        };
+    };
+    let run = Run { opened, base, store: Some(store), until };
+    let replayed = run.from(world, job, &mut see);
+    // Where there is no replay from the start, what the checkpoint gives is what there is.
+    let sound = earliest.is_some() || !odd && replayed.jumps_missed == 0;
+    Ok((sound && !job.cancelled()).then_some(Reopened { replayed, checkpoint, node: at }))
 }

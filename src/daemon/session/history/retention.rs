@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::store::{Name, Store, StoreError};
 use super::tree::{NOTHING, Node, Tree};
+use crate::session::VERSION;
 
 /// Newest checkpoints that always stay.
 const KEPT: usize = 2;
@@ -36,16 +37,16 @@ pub struct Pin {
 /// The highest numbers that a lineage had in places that went: new ones go on above them, so that
 /// no name means two things.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct High {
+pub struct HighestNumbers {
     pub revision: u64,
     pub next: [u32; 2],
 }
 
-impl High {
-    pub fn over(self, node: &Node) -> High {
+impl HighestNumbers {
+    pub fn over(self, node: &Node) -> HighestNumbers {
         let revision =
             node.changes.iter().map(|c| c.2).filter(|r| *r != NOTHING).max().unwrap_or(0);
-        High {
+        HighestNumbers {
             revision: self.revision.max(revision),
             next: [self.next[0].max(node.next[0]), self.next[1].max(node.next[1])],
         }
@@ -72,7 +73,7 @@ pub fn bound(
     had: u64,
     most: u64,
 ) -> Result<(Freed, u64), StoreError> {
-    let mut cut = Cut::new(store, tree, had)?;
+    let mut cut = RetentionRun::new(store, tree, had)?;
     while cut.left > most && cut.place(tree, names)? {}
     while cut.left > most && cut.pin(names)? {}
     if cut.began {
@@ -84,7 +85,7 @@ pub fn bound(
 }
 
 /// A cutting under way.
-struct Cut<'a> {
+struct RetentionRun<'a> {
     store: &'a Store,
     freed: Freed,
     left: u64,
@@ -109,8 +110,8 @@ fn named(node: &Node) -> impl Iterator<Item = Name> + '_ {
     node.changes.iter().flat_map(both).filter(|n| n.2 != NOTHING)
 }
 
-impl<'a> Cut<'a> {
-    fn new(store: &'a Store, tree: &Tree, had: u64) -> Result<Cut<'a>, StoreError> {
+impl<'a> RetentionRun<'a> {
+    fn new(store: &'a Store, tree: &Tree, had: u64) -> Result<RetentionRun<'a>, StoreError> {
         let mut uses: BTreeMap<Name, u32> = BTreeMap::new();
         let pins = store.pins()?;
         let of_pins =
@@ -135,7 +136,7 @@ impl<'a> Cut<'a> {
             tree.nodes().filter(|n| n.parent.is_none() && !way.contains(&n.id)).map(|n| n.id);
         let strange = strange.collect();
         let (freed, left, open, began) = (Freed::default(), had, 0, false);
-        Ok(Cut {
+        Ok(RetentionRun {
             store,
             freed,
             left,
@@ -343,7 +344,7 @@ impl Store {
     /// A jump is sent that names these.
     pub fn put_pin(&self, pin: &Pin) -> Result<usize, StoreError> {
         let data = super::store::plain(postcard::to_stdvec(pin))?;
-        self.db.execute("INSERT INTO pin (tick, data) VALUES (?1, ?2)", (UNDER_WAY, &data))?;
+        self.db.execute("INSERT INTO pin (tick, data, layout) VALUES (?1, ?2, ?3)", (UNDER_WAY, &data, VERSION))?;
         Ok(data.len())
     }
 
@@ -369,10 +370,10 @@ impl Store {
     }
 
     /// The highest numbers of a lineage among the places that went.
-    pub fn high(&self, object_id: u32) -> Result<High, StoreError> {
+    pub fn high(&self, object_id: u32) -> Result<HighestNumbers, StoreError> {
         let sql = "SELECT revision, vertex, triangle FROM high WHERE lineage = ?1";
         let row = self.db.query_row(sql, [object_id], |r| {
-            Ok(High { revision: r.get::<_, i64>(0)? as u64, next: [r.get(1)?, r.get(2)?] })
+            Ok(HighestNumbers { revision: r.get::<_, i64>(0)? as u64, next: [r.get(1)?, r.get(2)?] })
         });
         Ok(row.optional()?.unwrap_or_default())
     }

@@ -1,24 +1,30 @@
 //! The history's tables: nodes, pages, checkpoints, pictures. Every row carries the checksum of its
-//! bytes.
+//! bytes, and where the bytes are a struct's, the layout that they were written in: rows of an older
+//! layout are decoded as it had them, see [`crate::session::format`].
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use rusqlite::{Connection, OpenFlags, OptionalExtension};
+use rusqlite::{Connection, OptionalExtension};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::tree::{NOTHING, Node, Tree};
+use crate::session::format::{field_counts, v3};
+use crate::session::{VERSION, reader};
 use sculptd_clay::brush::Picture;
 use sculptd_clay::page::PageTopology;
 use sculptd_clay::{Levels, ObjectState, Page};
+use sculptd_engine::old_layout::from_bytes;
 use sculptd_engine::world::{Saved, SideData};
 use sculptd_geometry::TriMesh;
 
 /// Added to a session's tables; a session from before them has none and is replayed.
 pub const TABLES: &str = "
-    CREATE TABLE IF NOT EXISTS node (id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS node (
+        id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL, layout INTEGER NOT NULL DEFAULT 3
+    );
     CREATE TABLE IF NOT EXISTS page (
         lineage INTEGER NOT NULL,
         number INTEGER NOT NULL,
@@ -36,15 +42,20 @@ pub const TABLES: &str = "
         data BLOB NOT NULL,
         PRIMARY KEY (lineage, number, revision)
     );
-    CREATE TABLE IF NOT EXISTS side (id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS side (
+        id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL, layout INTEGER NOT NULL DEFAULT 3
+    );
     CREATE TABLE IF NOT EXISTS checkpoint (
         id INTEGER PRIMARY KEY,
         tick INTEGER NOT NULL,
         crc INTEGER NOT NULL,
-        data BLOB NOT NULL
+        data BLOB NOT NULL,
+        layout INTEGER NOT NULL DEFAULT 3
     );
     CREATE TABLE IF NOT EXISTS sight (node INTEGER PRIMARY KEY, png BLOB NOT NULL);
-    CREATE TABLE IF NOT EXISTS pin (id INTEGER PRIMARY KEY, tick INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE TABLE IF NOT EXISTS pin (
+        id INTEGER PRIMARY KEY, tick INTEGER NOT NULL, data BLOB NOT NULL, layout INTEGER NOT NULL DEFAULT 3
+    );
     CREATE TABLE IF NOT EXISTS high (
         lineage INTEGER PRIMARY KEY,
         revision INTEGER NOT NULL,
@@ -74,12 +85,35 @@ pub struct Checkpoint {
     /// The sides: thing, picture, levels.
     pub sides: [Option<u64>; 3],
     pub steps: (u32, u32),
+    /// The layout that `core` is in; stands in a column of its own.
+    #[serde(skip)]
+    pub layout: u32,
+}
+
+/// One row's checksum, bytes and layout.
+struct StoredRow {
+    crc: u32,
+    data: Vec<u8>,
+    layout: u32,
+}
+
+impl StoredRow {
+    /// `None`: the bytes are not those that were written.
+    fn decode<T: DeserializeOwned>(&self) -> Option<T> {
+        let counts = field_counts(self.layout)?;
+        if crc32fast::hash(&self.data) != self.crc {
+            return None;
+        }
+        from_bytes(&self.data, counts).ok()
+    }
 }
 
 /// The tables, through a connection of their own.
 #[derive(Debug)]
 pub struct Store {
-    pub(super) db: Connection,
+    pub(in crate::session) db: Connection,
+    /// The SQL that gives a row's layout: a file of layout 3 has no column for it.
+    layout: &'static str,
 }
 
 pub(super) fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, StoreError> {
@@ -89,9 +123,9 @@ pub(super) fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, 
 impl Store {
     /// For reading; changes nothing.
     pub fn read(path: &Path) -> Result<Store, StoreError> {
-        let db = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-        db.busy_timeout(std::time::Duration::from_secs(2))?;
-        Ok(Store { db })
+        let db = reader::connect(path, false)?;
+        let found: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0))?;
+        Ok(Store { db, layout: if found == v3::LAYOUT { "3" } else { "layout" } })
     }
 
     /// For the keeper: synced by the session's own thread, see [`super::super::syncer`].
@@ -101,7 +135,7 @@ impl Store {
         db.pragma_update(None, "wal_autocheckpoint", 0)?;
         db.pragma_update(None, "synchronous", "off")?;
         db.execute_batch(TABLES)?;
-        Ok(Store { db })
+        Ok(Store { db, layout: "layout" })
     }
 
     /// Gives the room of what went back to the disk. Takes as long as the file is large.
@@ -112,21 +146,23 @@ impl Store {
     }
 
     /// Whether there is any history.
-    pub fn has_tables(&self) -> bool {
-        self.db.prepare("SELECT id FROM node LIMIT 1").is_ok()
+    ///
+    /// # Errors
+    /// Where that cannot be read.
+    pub fn has_tables(&self) -> Result<bool, StoreError> {
+        let sql = "SELECT count(*) FROM sqlite_schema WHERE name = 'node'";
+        Ok(self.db.query_row(sql, [], |r| r.get::<_, i64>(0))? > 0)
     }
 
     /// Every node whose parents are there too. A damaged one ends its branch.
     pub fn tree(&self) -> Result<Tree, StoreError> {
         let mut tree = Tree::default();
-        let mut query = self.db.prepare("SELECT crc, data FROM node ORDER BY id")?;
+        let sql = format!("SELECT crc, data, {} FROM node ORDER BY id", self.layout);
+        let mut query = self.db.prepare(&sql)?;
         let mut rows = query.query([])?;
         while let Some(row) = rows.next()? {
-            let (crc, data): (u32, Vec<u8>) = (row.get(0)?, row.get(1)?);
-            if crc32fast::hash(&data) != crc {
-                continue;
-            }
-            if let Ok(node) = postcard::from_bytes::<Node>(&data)
+            let row = StoredRow { crc: row.get(0)?, data: row.get(1)?, layout: row.get(2)? };
+            if let Some(node) = row.decode::<Node>()
                 && node.parent.is_none_or(|p| tree.node(p).is_some())
             {
                 tree.cursor = node.id;
@@ -136,17 +172,42 @@ impl Store {
         Ok(tree)
     }
 
-    fn checked<T: DeserializeOwned>(
-        &self,
-        what: &str,
-        row: Option<(u32, Vec<u8>)>,
-    ) -> Result<T, StoreError> {
-        let damaged = || StoreError::Damaged(what.into());
-        let (crc, data) = row.ok_or_else(damaged)?;
-        if crc32fast::hash(&data) != crc {
-            return Err(damaged());
+    fn row(&self, table: &str, id: u64) -> Result<StoredRow, StoreError> {
+        let sql = format!("SELECT crc, data, {} FROM {table} WHERE id = ?1", self.layout);
+        let row = self.db.query_row(&sql, [id as i64], |r| {
+            Ok(StoredRow { crc: r.get(0)?, data: r.get(1)?, layout: r.get(2)? })
+        });
+        row.optional()?.ok_or_else(|| StoreError::Damaged(format!("{table} {id}")))
+    }
+
+    /// Reads every row, and says what is damaged: how many rows of which table, or the table that
+    /// cannot be read to its end.
+    ///
+    /// # Errors
+    /// Where nothing can be read.
+    pub fn check(&self) -> Result<Option<String>, StoreError> {
+        if !self.has_tables()? {
+            return Ok(None);
         }
-        postcard::from_bytes(&data).map_err(|_| damaged())
+        let mut found = Vec::new();
+        for table in ["node", "page", "topology", "side", "checkpoint"] {
+            let mut bad = 0;
+            let mut read = || -> rusqlite::Result<()> {
+                let mut query = self.db.prepare(&format!("SELECT crc, data FROM {table}"))?;
+                let mut rows = query.query([])?;
+                while let Some(row) = rows.next()? {
+                    let (crc, data) = (row.get::<_, u32>(0)?, row.get_ref(1)?);
+                    bad += u64::from(data.as_blob().map(crc32fast::hash) != Ok(crc));
+                }
+                Ok(())
+            };
+            match read() {
+                Err(e) => found.push(format!("{table}: {e}")),
+                Ok(()) if bad > 0 => found.push(format!("{table}: {bad} rows")),
+                Ok(()) => {}
+            }
+        }
+        Ok(Some(found.join(", ")).filter(|text| !text.is_empty()))
     }
 
     /// The checkpoints at or before a tick, the newest first.
@@ -160,13 +221,10 @@ impl Store {
     }
 
     pub fn checkpoint(&self, id: u64) -> Result<Checkpoint, StoreError> {
-        let row = self
-            .db
-            .query_row("SELECT crc, data FROM checkpoint WHERE id = ?1", [id as i64], |r| {
-                Ok((r.get(0)?, r.get(1)?))
-            })
-            .optional()?;
-        self.checked("a checkpoint", row)
+        let row = self.row("checkpoint", id)?;
+        let (layout, made) = (row.layout, row.decode::<Checkpoint>());
+        let made = made.ok_or_else(|| StoreError::Damaged("a checkpoint".into()))?;
+        Ok(Checkpoint { layout, ..made })
     }
 
     /// The state of a checkpoint, with its sides.
@@ -180,17 +238,14 @@ impl Store {
             picture: picture.map(|id| self.side::<Picture>(id)).transpose()?.map(Arc::new),
             levels: levels.map(|id| self.side::<Levels>(id)).transpose()?.map(Arc::new),
             steps: c.steps,
+            field_counts: field_counts(c.layout)
+                .ok_or_else(|| StoreError::Damaged("the layout of a checkpoint".into()))?,
         })
     }
 
     pub fn side<T: DeserializeOwned>(&self, id: u64) -> Result<T, StoreError> {
-        let row = self
-            .db
-            .query_row("SELECT crc, data FROM side WHERE id = ?1", [id as i64], |r| {
-                Ok((r.get(0)?, r.get(1)?))
-            })
-            .optional()?;
-        self.checked("a thing beside the work", row)
+        let made = self.row("side", id)?.decode();
+        made.ok_or_else(|| StoreError::Damaged("a thing beside the object".into()))
     }
 
     pub fn put_side(&self, id: u64, side: &SideData) -> Result<usize, StoreError> {
@@ -199,8 +254,9 @@ impl Store {
             SideData::Picture(p) => postcard::to_stdvec(p.as_ref()),
             SideData::Levels(l) => postcard::to_stdvec(l.as_ref()),
         })?;
-        let row = (id as i64, crc32fast::hash(&data), &data);
-        self.db.execute("INSERT OR REPLACE INTO side (id, crc, data) VALUES (?1, ?2, ?3)", row)?;
+        let row = (id as i64, crc32fast::hash(&data), &data, VERSION);
+        self.db
+            .execute("INSERT OR REPLACE INTO side (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)", row)?;
         Ok(data.len())
     }
 
@@ -211,8 +267,8 @@ impl Store {
 
     pub fn put_node(&self, node: &Node) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(node))?;
-        let row = (node.id as i64, crc32fast::hash(&data), &data);
-        self.db.execute("INSERT OR REPLACE INTO node (id, crc, data) VALUES (?1, ?2, ?3)", row)?;
+        let row = (node.id as i64, crc32fast::hash(&data), &data, VERSION);
+        self.db.execute("INSERT OR REPLACE INTO node (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)", row)?;
         Ok(data.len())
     }
 
@@ -235,8 +291,8 @@ impl Store {
 
     pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(c))?;
-        let row = (c.tick as i64, crc32fast::hash(&data), &data);
-        self.db.execute("INSERT INTO checkpoint (tick, crc, data) VALUES (?1, ?2, ?3)", row)?;
+        let row = (c.tick as i64, crc32fast::hash(&data), &data, VERSION);
+        self.db.execute("INSERT INTO checkpoint (tick, crc, data, layout) VALUES (?1, ?2, ?3, ?4)", row)?;
         Ok(data.len())
     }
 

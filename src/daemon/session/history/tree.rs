@@ -46,7 +46,7 @@ pub struct Tree {
 
 /// The way from one node to another.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Way {
+pub enum TreePath {
     /// The pages to put in place, within one work.
     Pages(Vec<(u32, u64)>),
     /// Another work.
@@ -156,7 +156,7 @@ impl Tree {
     }
 
     /// From the cursor to a node; `None` where there is no way, for they do not hang together.
-    pub fn way(&self, to: u64) -> Option<Way> {
+    pub fn way(&self, to: u64) -> Option<TreePath> {
         let target = self.node(to)?;
         let up: Vec<&Node> = self.line(self.cursor).collect();
         let mut down: Vec<&Node> = Vec::new();
@@ -173,7 +173,7 @@ impl Tree {
         if target.object_id != object_id
             || up.iter().chain(&down).any(|n| n.deed == HistoryEvent::Replace)
         {
-            return Some(Way::Other);
+            return Some(TreePath::Other);
         }
         let mut pages = BTreeMap::new();
         for node in up {
@@ -182,7 +182,7 @@ impl Tree {
         for node in down.iter().rev() {
             pages.extend(node.changes.iter().map(|c| (c.0, c.2)));
         }
-        Some(Way::Pages(pages.into_iter().collect()))
+        Some(TreePath::Pages(pages.into_iter().collect()))
     }
 
     /// The version of every page of the work at a node. `first`: pages of the work that the session
@@ -240,11 +240,11 @@ mod tests {
         // After taking both back: a branch.
         tree.add(node(3, Some(0), &[(2, 0, 5), (4, 0, 5)]));
         tree.cursor = 2;
-        assert_eq!(tree.way(3), Some(Way::Pages(vec![(1, 0), (2, 5), (4, 5)])));
-        assert_eq!(tree.way(0), Some(Way::Pages(vec![(1, 0), (2, 0)])));
-        assert_eq!(tree.way(2), Some(Way::Pages(vec![])));
+        assert_eq!(tree.way(3), Some(TreePath::Pages(vec![(1, 0), (2, 5), (4, 5)])));
+        assert_eq!(tree.way(0), Some(TreePath::Pages(vec![(1, 0), (2, 0)])));
+        assert_eq!(tree.way(2), Some(TreePath::Pages(vec![])));
         tree.go(3);
-        assert_eq!(tree.way(1), Some(Way::Pages(vec![(1, 1), (2, 1), (4, 0)])));
+        assert_eq!(tree.way(1), Some(TreePath::Pages(vec![(1, 1), (2, 1), (4, 0)])));
         assert_eq!((tree.before(), tree.after()), (Some(0), None));
         tree.go(1);
         tree.go(0);

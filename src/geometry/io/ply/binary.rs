@@ -2,22 +2,22 @@
 
 use rayon::prelude::*;
 
-use super::super::problem::{At, Problem, Stop};
-use super::header::{Element, Header, Role, Scalar};
-use super::{Making, colour, index_problem, place, too_many};
+use super::super::problem::{FilePlace, FileProblem, ParseError};
+use super::builder::{PlyBuilder, colour, index_problem, place, too_many};
+use super::header::{PlyElement, PlyHeader, PlyRole, PlyScalar};
 use crate::job::Job;
 
 /// A byte order. The two are compiled apart, so that neither asks a question a value.
-pub(super) trait Order: Sync {
+pub(super) trait ByteOrder: Sync {
     fn u16(b: [u8; 2]) -> u16;
     fn u32(b: [u8; 4]) -> u32;
     fn u64(b: [u8; 8]) -> u64;
 }
 
-pub(super) struct Little;
-pub(super) struct Big;
+pub(super) struct LittleEndian;
+pub(super) struct BigEndian;
 
-impl Order for Little {
+impl ByteOrder for LittleEndian {
     fn u16(b: [u8; 2]) -> u16 {
         u16::from_le_bytes(b)
     }
@@ -29,7 +29,7 @@ impl Order for Little {
     }
 }
 
-impl Order for Big {
+impl ByteOrder for BigEndian {
     fn u16(b: [u8; 2]) -> u16 {
         u16::from_be_bytes(b)
     }
@@ -46,30 +46,30 @@ fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
 }
 
 #[inline]
-fn number<O: Order>(bytes: &[u8], at: usize, kind: Scalar) -> Option<f64> {
+fn number<O: ByteOrder>(bytes: &[u8], at: usize, kind: PlyScalar) -> Option<f64> {
     Some(match kind {
-        Scalar::I8 => *bytes.get(at)? as i8 as f64,
-        Scalar::U8 => *bytes.get(at)? as f64,
-        Scalar::I16 => O::u16(bytes_at(bytes, at)?) as i16 as f64,
-        Scalar::U16 => O::u16(bytes_at(bytes, at)?) as f64,
-        Scalar::I32 => O::u32(bytes_at(bytes, at)?) as i32 as f64,
-        Scalar::U32 => O::u32(bytes_at(bytes, at)?) as f64,
-        Scalar::F32 => f32::from_bits(O::u32(bytes_at(bytes, at)?)) as f64,
-        Scalar::F64 => f64::from_bits(O::u64(bytes_at(bytes, at)?)),
+        PlyScalar::I8 => *bytes.get(at)? as i8 as f64,
+        PlyScalar::U8 => *bytes.get(at)? as f64,
+        PlyScalar::I16 => O::u16(bytes_at(bytes, at)?) as i16 as f64,
+        PlyScalar::U16 => O::u16(bytes_at(bytes, at)?) as f64,
+        PlyScalar::I32 => O::u32(bytes_at(bytes, at)?) as i32 as f64,
+        PlyScalar::U32 => O::u32(bytes_at(bytes, at)?) as f64,
+        PlyScalar::F32 => f32::from_bits(O::u32(bytes_at(bytes, at)?)) as f64,
+        PlyScalar::F64 => f64::from_bits(O::u64(bytes_at(bytes, at)?)),
     })
 }
 
-pub(super) fn read<O: Order>(
+pub(super) fn read<O: ByteOrder>(
     bytes: &[u8],
-    header: &Header,
-    made: &mut Making,
+    header: &PlyHeader,
+    made: &mut PlyBuilder,
     job: &Job,
-) -> Result<(), Stop> {
+) -> Result<(), ParseError> {
     let mut at = header.data;
     made.mesh.face_starts.push(0);
     for element in &header.elements {
         at = match element.role {
-            Role::Vertex if element.fixed() => {
+            PlyRole::Vertex if element.fixed() => {
                 vertices::<O>(bytes, at, element, header, made, job)?
             }
             _ if element.fixed() => fixed_end(bytes, at, element)?,
@@ -80,12 +80,13 @@ pub(super) fn read<O: Order>(
     Ok(())
 }
 
-fn ended(bytes: &[u8], what: &str) -> Stop {
-    Problem::new(At::Byte(bytes.len() as u64), what.to_string(), "the end of the file").into()
+fn ended(bytes: &[u8], what: &str) -> ParseError {
+    FileProblem::new(FilePlace::Byte(bytes.len() as u64), what.to_string(), "the end of the file")
+        .into()
 }
 
 /// Where an element of rows of one length ends.
-fn fixed_end(bytes: &[u8], at: usize, element: &Element) -> Result<usize, Stop> {
+fn fixed_end(bytes: &[u8], at: usize, element: &PlyElement) -> Result<usize, ParseError> {
     element
         .least()
         .checked_mul(element.count)
@@ -105,14 +106,14 @@ fn fixed_end(bytes: &[u8], at: usize, element: &Element) -> Result<usize, Stop> 
 }
 
 /// Rows of one length: on all cores.
-fn vertices<O: Order>(
+fn vertices<O: ByteOrder>(
     bytes: &[u8],
     at: usize,
-    element: &Element,
-    header: &Header,
-    made: &mut Making,
+    element: &PlyElement,
+    header: &PlyHeader,
+    made: &mut PlyBuilder,
     job: &Job,
-) -> Result<usize, Stop> {
+) -> Result<usize, ParseError> {
     const BLOCK: usize = 1 << 14;
     let end = fixed_end(bytes, at, element)?;
     let stride = element.least();
@@ -169,31 +170,32 @@ fn vertices<O: Order>(
         .min_by_key(|b| b.map_or(0, |(v, _)| v));
     match bad {
         None => Ok(end),
-        Some(None) => Err(Stop::Cancelled),
+        Some(None) => Err(ParseError::Cancelled),
         Some(Some((v, found))) => {
-            let at = At::Byte((at + v * stride) as u64);
-            Err(Problem::new(at, format!("a finite coordinate of vertex {v}"), found).into())
+            let at = FilePlace::Byte((at + v * stride) as u64);
+            Err(FileProblem::new(at, format!("a finite coordinate of vertex {v}"), found).into())
         }
     }
 }
 
 /// Rows that hold lists, one after another.
-fn rows<O: Order>(
+fn rows<O: ByteOrder>(
     bytes: &[u8],
     mut at: usize,
-    element: &Element,
-    header: &Header,
-    made: &mut Making,
+    element: &PlyElement,
+    header: &PlyHeader,
+    made: &mut PlyBuilder,
     job: &Job,
-) -> Result<usize, Stop> {
+) -> Result<usize, ParseError> {
     let corners = element.corners();
     let roles = element.roles();
     let (coloured, scale) = (header.coloured(), header.colour_scale());
-    let plain = element.role == Role::Face && corners == Some(0) && element.properties.len() == 1;
-    let fast = plain
-        .then(|| &element.properties[0])
-        .filter(|p| p.list == Some(Scalar::U8) && matches!(p.kind, Scalar::I32 | Scalar::U32));
-    if element.role == Role::Face {
+    let plain =
+        element.role == PlyRole::Face && corners == Some(0) && element.properties.len() == 1;
+    let fast = plain.then(|| &element.properties[0]).filter(|p| {
+        p.list == Some(PlyScalar::U8) && matches!(p.kind, PlyScalar::I32 | PlyScalar::U32)
+    });
+    if element.role == PlyRole::Face {
         made.mesh.face_starts.reserve_exact(element.count);
         // As if all were triangles: never more than the file can hold.
         made.mesh.corners.reserve(element.count.saturating_mul(3).min(bytes.len()));
@@ -229,7 +231,12 @@ fn rows<O: Order>(
                     .ok_or_else(|| row_ended(bytes, element, row))?;
                 if n < 0.0 {
                     let found = n.to_string();
-                    return Err(Problem::new(At::Byte(at as u64), "a list's length", found).into());
+                    return Err(FileProblem::new(
+                        FilePlace::Byte(at as u64),
+                        "a list's length",
+                        found,
+                    )
+                    .into());
                 }
                 at += count_kind.size();
                 let size = property.kind.size();
@@ -244,7 +251,7 @@ fn rows<O: Order>(
                 list.clear();
                 for i in 0..n as usize {
                     let v = number::<O>(items, i * size, property.kind).unwrap_or(-1.0);
-                    if element.role == Role::Face {
+                    if element.role == PlyRole::Face {
                         let whole = (0.0..u32::MAX as f64).contains(&v) && v.fract() == 0.0;
                         made.mesh.corners.push(if whole { v as u32 } else { u32::MAX });
                     } else {
@@ -252,11 +259,14 @@ fn rows<O: Order>(
                     }
                 }
             }
-            if element.role == Role::Vertex {
+            if element.role == PlyRole::Vertex {
                 if let Some(found) = place(&values) {
-                    return Err(
-                        Problem::new(At::Byte(start as u64), "a finite coordinate", found).into()
-                    );
+                    return Err(FileProblem::new(
+                        FilePlace::Byte(start as u64),
+                        "a finite coordinate",
+                        found,
+                    )
+                    .into());
                 }
                 made.vertex(&values, coloured, scale);
             }
@@ -264,13 +274,13 @@ fn rows<O: Order>(
         if made.mesh.corners.len() >= u32::MAX as usize {
             return Err(too_many(header).into());
         }
-        let here = At::Byte(start as u64);
+        let here = FilePlace::Byte(start as u64);
         match element.role {
-            Role::Face if corners.is_some() => {
+            PlyRole::Face if corners.is_some() => {
                 made.face(first, count)
                     .map_err(|bad| index_problem(here, bad as i32 as i64, count))?;
             }
-            Role::Strips if corners.is_some() => {
+            PlyRole::Strips if corners.is_some() => {
                 made.strip(&list, count).map_err(|bad| index_problem(here, bad, count))?;
             }
             _ => {}
@@ -280,6 +290,6 @@ fn rows<O: Order>(
 }
 
 #[cold]
-fn row_ended(bytes: &[u8], element: &Element, row: usize) -> Stop {
+fn row_ended(bytes: &[u8], element: &PlyElement, row: usize) -> ParseError {
     ended(bytes, &format!("the rest of {} {row} of {}", element.name, element.count))
 }

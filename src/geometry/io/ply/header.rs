@@ -1,16 +1,20 @@
 //! The header, and the plan that it becomes.
 
-use super::super::problem::{At, Problem, excerpt};
+use super::super::problem::{FilePlace, FileProblem, excerpt};
+
+/// The roles that a vertex's properties play, in the order of the values that
+/// a vertex is built from.
+pub(super) const ROLES: [&str; 7] = ["x", "y", "z", "red", "green", "blue", "alpha"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Encoding {
+pub(super) enum PlyEncoding {
     Ascii,
-    Little,
-    Big,
+    LittleEndian,
+    BigEndian,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scalar {
+pub(super) enum PlyScalar {
     I8,
     U8,
     I16,
@@ -21,54 +25,54 @@ pub(super) enum Scalar {
     F64,
 }
 
-impl Scalar {
-    fn named(name: &str) -> Option<Scalar> {
+impl PlyScalar {
+    fn named(name: &str) -> Option<PlyScalar> {
         Some(match name {
-            "char" | "int8" => Scalar::I8,
-            "uchar" | "uint8" => Scalar::U8,
-            "short" | "int16" => Scalar::I16,
-            "ushort" | "uint16" => Scalar::U16,
-            "int" | "int32" => Scalar::I32,
-            "uint" | "uint32" => Scalar::U32,
-            "float" | "float32" => Scalar::F32,
-            "double" | "float64" => Scalar::F64,
+            "char" | "int8" => PlyScalar::I8,
+            "uchar" | "uint8" => PlyScalar::U8,
+            "short" | "int16" => PlyScalar::I16,
+            "ushort" | "uint16" => PlyScalar::U16,
+            "int" | "int32" => PlyScalar::I32,
+            "uint" | "uint32" => PlyScalar::U32,
+            "float" | "float32" => PlyScalar::F32,
+            "double" | "float64" => PlyScalar::F64,
             _ => return None,
         })
     }
 
     pub(super) fn size(self) -> usize {
         match self {
-            Scalar::I8 | Scalar::U8 => 1,
-            Scalar::I16 | Scalar::U16 => 2,
-            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
-            Scalar::F64 => 8,
+            PlyScalar::I8 | PlyScalar::U8 => 1,
+            PlyScalar::I16 | PlyScalar::U16 => 2,
+            PlyScalar::I32 | PlyScalar::U32 | PlyScalar::F32 => 4,
+            PlyScalar::F64 => 8,
         }
     }
 
     pub(super) fn whole(self) -> bool {
-        !matches!(self, Scalar::F32 | Scalar::F64)
+        !matches!(self, PlyScalar::F32 | PlyScalar::F64)
     }
 
     /// What a colour of this type is multiplied by to fill a byte.
     pub(super) fn colour_scale(self) -> f64 {
         match self {
-            Scalar::I16 | Scalar::U16 => 255.0 / 65535.0,
-            Scalar::F32 | Scalar::F64 => 255.0,
+            PlyScalar::I16 | PlyScalar::U16 => 255.0 / 65535.0,
+            PlyScalar::F32 | PlyScalar::F64 => 255.0,
             _ => 1.0,
         }
     }
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Property {
+pub(super) struct PlyProperty {
     pub name: String,
     /// Type of the count, if this is a list.
-    pub list: Option<Scalar>,
-    pub kind: Scalar,
+    pub list: Option<PlyScalar>,
+    pub kind: PlyScalar,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum PlyRole {
     Vertex,
     Face,
     Strips,
@@ -76,14 +80,14 @@ pub(super) enum Role {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Element {
+pub(super) struct PlyElement {
     pub name: String,
-    pub role: Role,
+    pub role: PlyRole,
     pub count: usize,
-    pub properties: Vec<Property>,
+    pub properties: Vec<PlyProperty>,
 }
 
-impl Element {
+impl PlyElement {
     /// Bytes of a row with all lists empty.
     pub(super) fn least(&self) -> usize {
         self.properties.iter().map(|p| p.list.unwrap_or(p.kind).size()).sum()
@@ -99,7 +103,7 @@ impl Element {
         named("vertex_indices").or_else(|| named("vertex_index"))
     }
 
-    /// For each property the place among [`super::ROLES`] that it fills.
+    /// For each property the place among [`ROLES`] that it fills.
     pub(super) fn roles(&self) -> Vec<Option<usize>> {
         self.properties
             .iter()
@@ -112,25 +116,25 @@ impl Element {
                     "a" => "alpha",
                     n => n,
                 };
-                super::ROLES.iter().position(|r| *r == name).filter(|_| p.list.is_none())
+                ROLES.iter().position(|r| *r == name).filter(|_| p.list.is_none())
             })
             .collect()
     }
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Header {
-    pub encoding: Encoding,
-    pub elements: Vec<Element>,
+pub(super) struct PlyHeader {
+    pub encoding: PlyEncoding,
+    pub elements: Vec<PlyElement>,
     /// Where the data starts.
     pub data: usize,
     /// The line on which text data starts.
     pub data_line: u64,
 }
 
-impl Header {
-    pub(super) fn vertices(&self) -> Option<&Element> {
-        self.elements.iter().find(|e| e.role == Role::Vertex)
+impl PlyHeader {
+    pub(super) fn vertices(&self) -> Option<&PlyElement> {
+        self.elements.iter().find(|e| e.role == PlyRole::Vertex)
     }
 
     pub(super) fn coloured(&self) -> bool {
@@ -151,42 +155,50 @@ impl Header {
     }
 
     /// That the counts stated fit into the file, before any memory is taken for them.
-    pub(super) fn check(&self, bytes: usize) -> Result<(), Problem> {
+    pub(super) fn check(&self, bytes: usize) -> Result<(), FileProblem> {
         let Some(vertex) = self.vertices() else {
-            return Err(Problem::new(At::Line(1), "an element \"vertex\"", "none in the header"));
+            return Err(FileProblem::new(
+                FilePlace::Line(1),
+                "an element \"vertex\"",
+                "none in the header",
+            ));
         };
         let roles = vertex.roles();
-        for (r, name) in super::ROLES.iter().enumerate().take(3) {
+        for (r, name) in ROLES.iter().enumerate().take(3) {
             if !roles.contains(&Some(r)) {
-                return Err(Problem::new(
-                    At::Line(1),
+                return Err(FileProblem::new(
+                    FilePlace::Line(1),
                     format!("a vertex property \"{name}\""),
                     "none in the header",
                 ));
             }
         }
         if vertex.count == 0 {
-            return Err(Problem::new(At::Line(1), "at least one vertex", "a count of 0"));
+            return Err(FileProblem::new(
+                FilePlace::Line(1),
+                "at least one vertex",
+                "a count of 0",
+            ));
         }
         let mut need = self.data as u128;
         for e in &self.elements {
             if e.count >= u32::MAX as usize {
-                return Err(Problem::new(
-                    At::Line(1),
+                return Err(FileProblem::new(
+                    FilePlace::Line(1),
                     "fewer than 2^32 of an element",
                     format!("{} of \"{}\"", e.count, e.name),
                 ));
             }
             if e.count > 0 && e.properties.is_empty() {
-                return Err(Problem::new(
-                    At::Line(1),
+                return Err(FileProblem::new(
+                    FilePlace::Line(1),
                     format!("a property of \"{}\"", e.name),
                     "none in the header",
                 ));
             }
             let row = match self.encoding {
                 // A digit and a separator each.
-                Encoding::Ascii => e.properties.len() * 2,
+                PlyEncoding::Ascii => e.properties.len() * 2,
                 _ => e.least(),
             };
             need += e.count as u128 * row as u128;
@@ -194,8 +206,8 @@ impl Header {
         // The last separator may be missing.
         if need > bytes as u128 + 1 {
             let found = format!("the end of the file after {bytes} bytes");
-            return Err(Problem::new(
-                At::Byte(bytes as u64),
+            return Err(FileProblem::new(
+                FilePlace::Byte(bytes as u64),
                 format!("at least {need} bytes for the counts in the header"),
                 found,
             ));
@@ -204,11 +216,11 @@ impl Header {
     }
 }
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
+pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, FileProblem> {
     let mut at = 0;
     let mut number = 0u64;
     let mut encoding = None;
-    let mut elements: Vec<Element> = Vec::new();
+    let mut elements: Vec<PlyElement> = Vec::new();
     loop {
         number += 1;
         let rest = &bytes[at..];
@@ -216,8 +228,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
         // "end_header".
         let end = memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
         let line = rest[..end].trim_ascii();
-        let problem =
-            |expected: &str| Problem::new(At::Line(number), expected.to_string(), excerpt(line));
+        let problem = |expected: &str| {
+            FileProblem::new(FilePlace::Line(number), expected.to_string(), excerpt(line))
+        };
         at = (at + end + 1).min(bytes.len());
         if rest.get(end) == Some(&b'\r') && bytes.get(at) == Some(&b'\n') {
             at += 1;
@@ -229,7 +242,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
             continue;
         }
         if rest.is_empty() {
-            return Err(Problem::new(At::Line(number), "\"end_header\"", "the end of the file"));
+            return Err(FileProblem::new(
+                FilePlace::Line(number),
+                "\"end_header\"",
+                "the end of the file",
+            ));
         }
         let Ok(line_text) = std::str::from_utf8(line) else {
             if line.starts_with(b"comment") || line.starts_with(b"obj_info") {
@@ -242,9 +259,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
             [] | ["comment" | "obj_info", ..] => {}
             ["format", kind, _version @ ..] => {
                 encoding = Some(match *kind {
-                    "ascii" => Encoding::Ascii,
-                    "binary_little_endian" => Encoding::Little,
-                    "binary_big_endian" => Encoding::Big,
+                    "ascii" => PlyEncoding::Ascii,
+                    "binary_little_endian" => PlyEncoding::LittleEndian,
+                    "binary_big_endian" => PlyEncoding::BigEndian,
                     _ => {
                         return Err(problem(
                             "format ascii, binary_little_endian or binary_big_endian",
@@ -257,15 +274,15 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
                     return Err(problem("\"element\", a name and a count"));
                 };
                 let role = match *name {
-                    "vertex" => Role::Vertex,
-                    "face" => Role::Face,
-                    "tristrips" => Role::Strips,
-                    _ => Role::Other,
+                    "vertex" => PlyRole::Vertex,
+                    "face" => PlyRole::Face,
+                    "tristrips" => PlyRole::Strips,
+                    _ => PlyRole::Other,
                 };
-                if role != Role::Other && elements.iter().any(|e| e.role == role) {
+                if role != PlyRole::Other && elements.iter().any(|e| e.role == role) {
                     return Err(problem("each element once"));
                 }
-                elements.push(Element {
+                elements.push(PlyElement {
                     name: name.to_string(),
                     role,
                     count,
@@ -274,7 +291,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
             }
             ["property", "list", count, kind, name] => {
                 let (Some(count), Some(kind)) =
-                    (Scalar::named(count).filter(|s| s.whole()), Scalar::named(kind))
+                    (PlyScalar::named(count).filter(|s| s.whole()), PlyScalar::named(kind))
                 else {
                     return Err(problem(
                         "\"property list\", a whole type for the count, a type, a name",
@@ -283,20 +300,20 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
                 let Some(element) = elements.last_mut() else {
                     return Err(problem("an element before its properties"));
                 };
-                element.properties.push(Property {
+                element.properties.push(PlyProperty {
                     name: name.to_string(),
                     list: Some(count),
                     kind,
                 });
             }
             ["property", kind, name] => {
-                let Some(kind) = Scalar::named(kind) else {
+                let Some(kind) = PlyScalar::named(kind) else {
                     return Err(problem("\"property\", a type, a name"));
                 };
                 let Some(element) = elements.last_mut() else {
                     return Err(problem("an element before its properties"));
                 };
-                element.properties.push(Property { name: name.to_string(), list: None, kind });
+                element.properties.push(PlyProperty { name: name.to_string(), list: None, kind });
             }
             ["end_header"] => break,
             _ => return Err(problem("format, element, property, comment or end_header")),
@@ -306,7 +323,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Problem> {
         }
     }
     let Some(encoding) = encoding else {
-        return Err(Problem::new(At::Line(2), "a line \"format ...\"", "none in the header"));
+        return Err(FileProblem::new(
+            FilePlace::Line(2),
+            "a line \"format ...\"",
+            "none in the header",
+        ));
     };
-    Ok(Header { encoding, elements, data: at, data_line: number + 1 })
+    Ok(PlyHeader { encoding, elements, data: at, data_line: number + 1 })
 }

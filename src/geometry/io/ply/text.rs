@@ -1,38 +1,38 @@
 //! Text data. Rows are read word by word, as the format has it: line ends mean nothing.
 
-use super::super::problem::{At, Problem, Stop};
-use super::super::text::{Cursor, float, unexpected};
-use super::header::{Header, Role};
-use super::{Making, index_problem, place, too_many};
+use super::super::problem::{FilePlace, FileProblem, ParseError};
+use super::super::text::{TextCursor, float, unexpected};
+use super::builder::{PlyBuilder, index_problem, place, too_many};
+use super::header::{PlyHeader, PlyRole};
 use crate::job::Job;
 
 pub(super) fn read(
     bytes: &[u8],
-    header: &Header,
-    made: &mut Making,
+    header: &PlyHeader,
+    made: &mut PlyBuilder,
     job: &Job,
-) -> Result<(), Stop> {
+) -> Result<(), ParseError> {
     let text = &bytes[header.data..];
-    let shift = |mut p: Problem| {
-        if let At::Line(n) = &mut p.at {
+    let shift = |mut p: FileProblem| {
+        if let FilePlace::Line(n) = &mut p.at {
             *n += header.data_line - 1;
         }
-        Stop::Problem(p)
+        ParseError::Problem(p)
     };
-    let mut cursor = Cursor::new(text);
+    let mut cursor = TextCursor::new(text);
     let (coloured, scale) = (header.coloured(), header.colour_scale());
     let mut list: Vec<i64> = Vec::new();
     for element in &header.elements {
         let roles = element.roles();
         let corners = element.corners();
         match element.role {
-            Role::Vertex => {
+            PlyRole::Vertex => {
                 made.mesh.positions.reserve_exact(element.count);
                 if coloured {
                     made.colours.reserve_exact(element.count);
                 }
             }
-            Role::Face => made.mesh.face_starts.reserve_exact(element.count + 1),
+            PlyRole::Face => made.mesh.face_starts.reserve_exact(element.count + 1),
             _ => {}
         }
         if made.mesh.face_starts.is_empty() {
@@ -47,7 +47,7 @@ pub(super) fn read(
             let first = made.mesh.corners.len();
             let row_at = cursor.at;
             for (p, property) in element.properties.iter().enumerate() {
-                let mut value = || -> Result<f64, Stop> {
+                let mut value = || -> Result<f64, ParseError> {
                     let at = cursor.at;
                     cursor.word_anywhere(false).and_then(float).ok_or_else(|| {
                         let expected =
@@ -78,7 +78,7 @@ pub(super) fn read(
                 list.clear();
                 for _ in 0..n as u64 {
                     let v = value()?;
-                    if wanted && element.role == Role::Face {
+                    if wanted && element.role == PlyRole::Face {
                         let whole = (0.0..u32::MAX as f64).contains(&v) && v.fract() == 0.0;
                         made.mesh.corners.push(if whole { v as u32 } else { u32::MAX });
                     } else if wanted {
@@ -91,21 +91,21 @@ pub(super) fn read(
             }
             let line = || {
                 let skip = text[row_at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
-                At::Line(super::super::text::line_of(text, row_at + skip))
+                FilePlace::Line(super::super::text::line_of(text, row_at + skip))
             };
             let vertices = made.mesh.positions.len();
             match element.role {
-                Role::Vertex => {
+                PlyRole::Vertex => {
                     if let Some(found) = place(&values) {
-                        return Err(shift(Problem::new(line(), "a finite coordinate", found)));
+                        return Err(shift(FileProblem::new(line(), "a finite coordinate", found)));
                     }
                     made.vertex(&values, coloured, scale);
                 }
-                Role::Face if corners.is_some() => {
+                PlyRole::Face if corners.is_some() => {
                     made.face(first, vertices)
                         .map_err(|bad| shift(index_problem(line(), bad as i64, vertices)))?;
                 }
-                Role::Strips if corners.is_some() => {
+                PlyRole::Strips if corners.is_some() => {
                     made.strip(&list, vertices)
                         .map_err(|bad| shift(index_problem(line(), bad, vertices)))?;
                 }

@@ -1,0 +1,272 @@
+//! The object: files, history, Booleans, levels, wall thickness.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+#[cfg(feature = "schema")]
+use crate::range::{COORDINATE, VIEW};
+
+/// A Boolean of the object (the first operand) and a tool (the second).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Operation {
+    /// What either covers. Version 1 calls it `add` in `join`.
+    #[serde(alias = "add")]
+    Union,
+    /// What both cover. Version 1 calls it `keep` in `join`.
+    #[serde(alias = "keep")]
+    Intersection,
+    /// The object without the tool. Version 1 calls it `carve` in `join`.
+    #[serde(alias = "carve")]
+    Difference,
+    /// The tool without the object.
+    ReverseDifference,
+}
+
+/// Parameters of `join`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct JoinParams {
+    /// Of the object and what the hands hold.
+    pub operation: Operation,
+}
+
+/// Parameters of `boolean`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct BooleanParams {
+    /// Of the object and the mesh in the file.
+    pub operation: Operation,
+    /// The tool: an absolute path of a mesh file.
+    #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
+    pub path: PathBuf,
+    /// The tool is moved by this, in the mesh's unit; [`crate::range::COORDINATE`].
+    #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
+    )]
+    pub at: [f64; 3],
+}
+
+/// Reply of `join`, `boolean` and `trim`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct BooleanReply {
+    /// Computed and written only around the tool.
+    pub local: bool,
+    /// Pages of the mesh that were written.
+    pub pages_written: u64,
+    /// Pages that stayed as they were.
+    pub pages_shared: u64,
+    /// How often it was computed: again where the object changed there meanwhile.
+    pub tries: u64,
+    /// How long it took, seconds.
+    pub seconds: f64,
+}
+
+/// Parameters of `trim`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TrimParams {
+    /// What is cut off, all the way through.
+    pub part: TrimRegion,
+}
+
+/// A region of the view, (0, 0) top left to (1, 1) bottom right; [`crate::range::VIEW`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum TrimRegion {
+    /// Two opposite corners: x, y, x, y.
+    Box(
+        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
+        [f32; 4],
+    ),
+    /// Everything to the left of the line from the first point to the second: x, y, x, y.
+    Line(
+        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
+        [f32; 4],
+    ),
+}
+
+/// Reply of `progress`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ProgressReply {
+    /// Whether a Boolean is under way.
+    pub running: bool,
+    /// How far it is, 0 to 1; `null` where none is.
+    pub done: Option<f32>,
+}
+
+/// Reply of `cancel`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CancelReply {
+    /// Whether there was one to cancel.
+    pub cancelled: bool,
+}
+
+/// Parameters of `level`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct LevelParams {
+    /// One level finer or coarser.
+    pub to: LevelStep,
+}
+
+/// One level finer or coarser.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum LevelStep {
+    /// Finer.
+    Up,
+    /// Coarser.
+    Down,
+}
+
+/// Reply of `level`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LevelReply {
+    /// The level that is shown from now on.
+    pub level: u64,
+    /// How many there are.
+    pub levels: u64,
+}
+
+/// Parameters of `jump`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct JumpParams {
+    /// A node of the history, as `history` lists them.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 9_007_199_254_740_992_u64)))]
+    pub node: u64,
+}
+
+/// Reply of `history`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct HistoryReply {
+    /// The node that the object is at.
+    pub here: u64,
+    /// Every node, in the order in which they were made.
+    pub places: Vec<HistoryNode>,
+}
+
+/// A node of the history tree: the object as it was after one step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct HistoryNode {
+    /// Its number, for `jump`.
+    pub node: u64,
+    /// The node before; `null` where an object begins.
+    pub parent: Option<u64>,
+    /// The tick that made it.
+    pub tick: u64,
+    /// What made it: the name of the event, for `Jump` with the node that was gone to.
+    #[serde(alias = "event")]
+    pub deed: Value,
+    /// Pages of the mesh that the step changed.
+    pub changed: u64,
+    /// Pages of the mesh.
+    pub pages: u64,
+    /// Whether another branch leaves the node before.
+    pub branch: bool,
+    /// Whether the object is here.
+    pub here: bool,
+}
+
+/// Reply of `load`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LoadReply {
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// What was left out or guessed, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reply of `take-up`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TakeUpReply {
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// What was left out or guessed, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reply of `export`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ExportReply {
+    /// The file that was written.
+    pub path: PathBuf,
+    /// The tick whose state it holds.
+    pub tick: u64,
+    /// Vertices that were written.
+    pub vertices: u64,
+}
+
+/// Reply of `hash`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct HashReply {
+    /// The tick whose state was hashed.
+    pub tick: u64,
+    /// 16 hexadecimal digits over the whole mesh.
+    pub hash: String,
+}
+
+/// Parameters of `thickness`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct ThicknessParams {
+    /// Rays for each vertex.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = 1000)))]
+    pub rays: u32,
+    /// What is near this point is measured first; [`crate::range::COORDINATE`].
+    #[cfg_attr(
+        feature = "schema",
+        schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
+    )]
+    pub near: [f32; 3],
+}
+
+impl Default for ThicknessParams {
+    fn default() -> Self {
+        ThicknessParams { rays: 1, near: [0.0; 3] }
+    }
+}
+
+/// Reply of `thickness`. Lengths are in the mesh's unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ThicknessReply {
+    /// The revision of the mesh that was measured.
+    pub revision: u64,
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Vertices that were measured this time: those whose thickness may have changed.
+    pub measured: u64,
+    /// Vertices with a thickness; the others see no opposite wall.
+    pub valid: u64,
+    /// The thinnest; `null` where none is valid.
+    pub min: Option<f32>,
+    /// The thickest.
+    pub max: Option<f32>,
+    /// The mean over vertices.
+    pub mean: f64,
+}

@@ -1,0 +1,301 @@
+//! Every method of the socket: one declaration binds its name, its parameters, its reply and what
+//! it does.
+//!
+//! From the table below come a type for each method ([`Method`]), the enum [`Request`], the trait
+//! [`Handler`] that a server implements (a method without an implementation does not compile), and
+//! the list [`METHODS`].
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use crate::brush::{
+    BrushSettings, BrushesReply, CurveParams, CurveReply, MaskParams, PathParams, PictureReply,
+    StrokeParams, StrokeReply,
+};
+use crate::check;
+use crate::edit::{
+    BooleanParams, BooleanReply, CancelReply, ExportReply, HashReply, HistoryReply, JoinParams,
+    JumpParams, LevelParams, LevelReply, LoadReply, ProgressReply, TakeUpReply, ThicknessParams,
+    ThicknessReply, TrimParams,
+};
+use crate::status::{
+    HelloParams, HelloReply, MethodsReply, NoParams, SentReply, ShutdownReply, StatusParams,
+    StatusReply, SubscribeReply,
+};
+use crate::view::{CameraSettings, ReachParams, ReachReply};
+use crate::wire::{Code, Envelope, RpcError};
+
+/// A method, as a type: what it is called, what it takes, what it answers.
+pub trait Method {
+    /// Its name on the line.
+    const NAME: &'static str;
+    /// What it does, for people.
+    const ABOUT: &'static str;
+    /// Its parameters.
+    type Params: Serialize + DeserializeOwned;
+    /// Its reply.
+    type Reply: Serialize + DeserializeOwned;
+}
+
+/// A method's name and what it does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MethodInfo {
+    /// Its name on the line.
+    pub name: &'static str,
+    /// What it does, for people.
+    pub about: &'static str,
+}
+
+/// Methods that are answered even while every other place is taken.
+pub const ALWAYS_ANSWERED: [&str; 2] = [Shutdown::NAME, Cancel::NAME];
+
+macro_rules! methods {
+    ($($(#[doc = $about:literal])+ $name:literal $variant:ident $handler:ident($params:ty) -> $reply:ty;)+) => {
+        $(
+            $(#[doc = $about])+
+            #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+            pub struct $variant;
+
+            impl Method for $variant {
+                const NAME: &'static str = $name;
+                const ABOUT: &'static str = concat!($($about),+).trim_ascii();
+                type Params = $params;
+                type Reply = $reply;
+            }
+        )+
+
+        /// Every method, in the order of the table.
+        pub const METHODS: &[MethodInfo] =
+            &[$(MethodInfo { name: $name, about: $variant::ABOUT }),+];
+
+        /// A request whose parameters were read and checked.
+        #[derive(Debug, Clone, PartialEq)]
+        #[allow(clippy::large_enum_variant)]
+        pub enum Request {
+            $($(#[doc = $about])+ $variant($params),)+
+        }
+
+        impl Request {
+            /// The name of its method.
+            pub fn name(&self) -> &'static str {
+                match self { $(Request::$variant(_) => $name,)+ }
+            }
+
+            /// Reads a request.
+            ///
+            /// # Errors
+            /// [`Code::NoMethod`] for a name that is not in [`METHODS`]; [`Code::BadParams`] for a
+            /// parameter that is missing, unknown, of another type, or out of its range, with the
+            /// field, the value and the range.
+            ///
+            /// ```
+            /// use sculptd_control::Request;
+            /// let e = Request::read("camera", serde_json::json!({ "pitch": 9 })).unwrap_err();
+            /// assert_eq!(e.code, -32602);
+            /// assert_eq!(e.message, "pitch = 9: expected a number from -1.553343 to 1.553343");
+            /// ```
+            pub fn read(method: &str, params: Value) -> Result<Request, RpcError> {
+                match method {
+                    $($name => read_params::<$params>($name, params).map(Request::$variant),)+
+                    _ => Err(RpcError::new(
+                        Code::NoMethod,
+                        format!("no method '{method}'; 'methods' lists them"),
+                    )),
+                }
+            }
+
+            /// The request as it is sent.
+            ///
+            /// # Errors
+            /// Where a parameter has no JSON form (a path that is not UTF-8).
+            pub fn envelope(&self, id: u64) -> serde_json::Result<Envelope> {
+                match self {
+                    $(Request::$variant(p) => Ok(Envelope::new(id, $name, serde_json::to_value(p)?)),)+
+                }
+            }
+        }
+
+        /// What answers requests: one function a method.
+        pub trait Handler {
+            $($(#[doc = $about])+
+            ///
+            /// # Errors
+            /// Where it cannot be carried out; the text says why.
+            fn $handler(&self, params: $params) -> Result<$reply, RpcError>;)+
+        }
+
+        /// Carries out a request.
+        ///
+        /// # Errors
+        /// What the handler refuses, and a reply that has no JSON form.
+        pub fn answer<H: Handler + ?Sized>(handler: &H, request: Request) -> Result<Value, RpcError> {
+            match request {
+                $(Request::$variant(params) => to_value(&handler.$handler(params)?),)+
+            }
+        }
+
+        /// The schema of every method's parameters and reply, by its name.
+        #[cfg(feature = "schema")]
+        pub(crate) fn schemas(
+            generator: &mut schemars::SchemaGenerator,
+        ) -> Vec<(MethodInfo, schemars::Schema, schemars::Schema)> {
+            let mut all = Vec::with_capacity(METHODS.len());
+            $(all.push((
+                MethodInfo { name: $name, about: $variant::ABOUT },
+                generator.subschema_for::<$params>(),
+                generator.subschema_for::<$reply>(),
+            ));)+
+            all
+        }
+    };
+}
+
+methods! {
+    /// Agrees on a version: the newest that both sides speak.
+    "hello" Hello hello(HelloParams) -> HelloReply;
+    /// Lists every method and what it does.
+    "methods" Methods methods(NoParams) -> MethodsReply;
+    /// The loop's figures, the mesh, the brush, the session file and what is wrong with it.
+    "status" Status status(StatusParams) -> StatusReply;
+    /// Changes the named settings of the brush, and answers with all.
+    "brush" Brush brush(BrushSettings) -> BrushSettings;
+    /// Every brush, what it does, its settings, its own numbers.
+    "brushes" Brushes brushes(NoParams) -> BrushesReply;
+    /// Loads a picture of heights (PNG, TIFF, EXR), for brushes with the alpha `picture`.
+    "picture" Picture picture(PathParams) -> PictureReply;
+    /// Changes the mask of the whole object.
+    "mask" Mask mask(MaskParams) -> SentReply;
+    /// Applies, discards or edits the curve that a pen has laid.
+    "curve" Curve curve(CurveParams) -> CurveReply;
+    /// Makes a stroke, as a pen would.
+    "stroke" Stroke stroke(StrokeParams) -> StrokeReply;
+    /// Changes the named settings of the camera, and answers with all.
+    "camera" Camera camera(CameraSettings) -> CameraSettings;
+    /// Takes back one step.
+    "undo" Undo undo(NoParams) -> SentReply;
+    /// Does the step that was taken back again.
+    "redo" Redo redo(NoParams) -> SentReply;
+    /// Every node of the history, branches too, as the session file keeps them.
+    "history" History history(NoParams) -> HistoryReply;
+    /// Goes to a node of the history.
+    "jump" Jump jump(JumpParams) -> SentReply;
+    /// Replaces the object by a mesh from a file of at most 1 GiB.
+    "load" Load load(PathParams) -> LoadReply;
+    /// Writes the object to a file; the name's ending says the format.
+    "export" Export export(PathParams) -> ExportReply;
+    /// One number over the whole mesh.
+    "hash" Hash hash(NoParams) -> HashReply;
+    /// Wall thickness of the object, measured again only where it may have changed.
+    "thickness" Thickness thickness(ThicknessParams) -> ThicknessReply;
+    /// Puts a mesh from a file of at most 1 GiB into the hands, to be carried to its place.
+    "take-up" TakeUp take_up(PathParams) -> TakeUpReply;
+    /// Removes what the hands hold.
+    "put-down" PutDown put_down(NoParams) -> SentReply;
+    /// A Boolean of the object and what the hands hold.
+    "join" Join join(JoinParams) -> BooleanReply;
+    /// Cuts off what is seen in a box, or to the left of a line.
+    "trim" Trim trim(TrimParams) -> BooleanReply;
+    /// Shows the object one level finer or coarser; what was sculpted on finer levels is kept.
+    "level" Level level(LevelParams) -> LevelReply;
+    /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
+    "boolean" Boolean boolean(BooleanParams) -> BooleanReply;
+    /// How far the Boolean is that is under way.
+    "progress" Progress progress(NoParams) -> ProgressReply;
+    /// Ends the Boolean that is under way; nothing is changed.
+    "cancel" Cancel cancel(NoParams) -> CancelReply;
+    /// Lays this part of the tracked space over the object, or measures it for five seconds.
+    "reach" Reach reach(ReachParams) -> ReachReply;
+    /// From now on sends a line for each change of mesh, history, brush, losses or session file.
+    "subscribe" Subscribe subscribe(NoParams) -> SubscribeReply;
+    /// Ends the daemon as a signal would.
+    "shutdown" Shutdown shutdown(NoParams) -> ShutdownReply;
+}
+
+fn read_params<T: DeserializeOwned>(method: &str, params: Value) -> Result<T, RpcError> {
+    let params = if params.is_null() { json!({}) } else { params };
+    if !params.is_object() {
+        return Err(RpcError::bad_params("expected an object"));
+    }
+    check::check_params(method, &params)?;
+    serde_json::from_value(params).map_err(|e| RpcError::bad_params(e.to_string()))
+}
+
+fn to_value<T: Serialize>(reply: &T) -> Result<Value, RpcError> {
+    serde_json::to_value(reply).map_err(|e| RpcError::failed(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_refuses_an_unknown_parameter_and_a_list() {
+        for m in METHODS.iter().filter(|m| m.name != Brush::NAME) {
+            for params in [json!({ "no such parameter": 1 }), json!([1])] {
+                let e = Request::read(m.name, params).expect_err(m.name);
+                assert_eq!(e.code, Code::BadParams as i32, "{}: {}", m.name, e.message);
+            }
+        }
+        let e = Request::read("frobnicate", Value::Null).expect_err("unknown");
+        assert_eq!(e.code, Code::NoMethod as i32);
+    }
+
+    #[test]
+    fn a_request_comes_back_from_its_envelope() {
+        let request = Request::read("boolean", json!({ "operation": "union", "path": "/a.stl" }));
+        let request = request.expect("fine");
+        let sent = request.envelope(1).expect("JSON");
+        assert_eq!(Request::read(&sent.method, sent.params), Ok(request));
+    }
+
+    #[test]
+    fn the_boolean_has_one_vocabulary_and_version_1_still_reads() {
+        let read = |word: &str| Request::read("join", json!({ "operation": word }));
+        for word in ["union", "intersection", "difference", "reverse-difference"] {
+            assert!(read(word).is_ok(), "{word}");
+        }
+        assert_eq!(read("carve"), read("difference"));
+        assert_eq!(read("add"), read("union"));
+        assert_eq!(read("keep"), read("intersection"));
+        let e = read("ball").expect_err("not an operation");
+        assert!(e.code == -32602 && e.message.contains("ball") && e.message.contains("union"));
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused_by_field_value_and_range() {
+        let refused = |method: &str, params: Value| {
+            let e = Request::read(method, params.clone()).expect_err(&params.to_string());
+            assert_eq!(e.code, Code::BadParams as i32);
+            e.message
+        };
+        let at = json!({ "operation": "union", "path": "/a.stl", "at": [0, 1e308, 0] });
+        let said = refused("boolean", at);
+        assert!(said == "at[1] = 1e+308: expected a number from -1000000 to 1000000", "{said}");
+        let said = refused("camera", json!({ "target": [0, 0, 1e38] }));
+        assert!(said.starts_with("target[2] = 1e+38: expected"), "{said}");
+        let said = refused("mask", json!({ "action": { "cavity": -1 } }));
+        assert_eq!(said, "action.cavity = -1: expected a number from 0 to 1");
+        for (method, params) in [
+            ("camera", json!({ "distance": 0 })),
+            ("camera", json!({ "yaw": 1e38 })),
+            ("thickness", json!({ "rays": 0 })),
+            ("thickness", json!({ "rays": 1001 })),
+            ("thickness", json!({ "near": [1e300, 0, 0] })),
+            ("reach", json!({ "middle_mm": [0, 2000, 0], "half_mm": 100 })),
+            ("reach", json!({ "middle_mm": [0, 0, 0], "half_mm": 1 })),
+            ("trim", json!({ "part": { "box": [0, 0, 1, 11] } })),
+            ("trim", json!({ "part": { "line": [0, 0, 1e39, 1] } })),
+            ("jump", json!({ "node": -1 })),
+            ("curve", json!({ "act": { "delete": 70000 } })),
+            ("load", json!({ "path": "" })),
+            ("load", json!({ "path": format!("/{}", "x".repeat(5000)) })),
+            ("stroke", json!({ "points": [], "space": "view" })),
+            ("stroke", json!({ "points": [[0, 0, 0.5, 1e9]], "space": "view" })),
+        ] {
+            refused(method, params);
+        }
+        assert!(Request::read("mask", json!({ "action": { "cavity": 1 } })).is_ok());
+        assert!(Request::read("camera", json!({ "pitch": 1.5, "yaw": null })).is_ok());
+    }
+}

@@ -1,0 +1,421 @@
+//! What each method does. It runs on the client's thread: slow work here delays that client only.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use super::host::{Host, locked};
+use crate::command_queue::QueuedCommand;
+use crate::session::history::{Handle, Want, listing};
+use crate::trim::Part;
+use crate::{Published, boolean_jobs, startup, trim};
+use sculptd_clay::brush::{self, BrushKind, Picture};
+use sculptd_clay::live_thickness::LiveMap;
+use sculptd_control::brush as asked;
+use sculptd_control::edit::{self, LevelStep, TrimRegion};
+use sculptd_control::method::{self, METHODS};
+use sculptd_control::status::{self, NoParams, SentReply, Versions};
+use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
+use sculptd_control::wire::Code;
+use sculptd_control::{Handler, Request, RpcError};
+use sculptd_devices::Clock;
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::hand::ReachBox;
+use sculptd_engine::payload::Payload;
+use sculptd_engine::stroke::CurveAction;
+use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::io::{read_mesh_within, read_regular, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::repair;
+
+/// Longest mesh file that a request may load, bytes: its mesh must fit into memory beside the one
+/// in place.
+pub const MAX_MESH_FILE: u64 = 1 << 30;
+/// Longest picture file, bytes.
+pub const MAX_PICTURE_FILE: u64 = 256 << 20;
+
+const SENT: SentReply = SentReply { sent: true };
+
+/// Answers one request by its name.
+///
+/// # Errors
+/// As [`Request::read`], and what the method refuses.
+pub fn call(host: &Host, name: &str, params: Value) -> Result<Value, RpcError> {
+    method::answer(host, Request::read(name, params)?)
+}
+
+fn failed(e: impl std::fmt::Display) -> RpcError {
+    RpcError::failed(e.to_string())
+}
+
+/// The same data in another type of the same JSON form.
+fn convert<T: DeserializeOwned>(value: impl Serialize) -> Result<T, RpcError> {
+    serde_json::to_value(value).and_then(serde_json::from_value).map_err(failed)
+}
+
+/// Lays the named fields over what is in force. An unknown field is refused by its name.
+fn merge<T: Serialize + DeserializeOwned>(now: &T, named: impl Serialize) -> Result<T, RpcError> {
+    let bad = |e: serde_json::Error| RpcError::bad_params(e.to_string());
+    let mut all = serde_json::to_value(now).map_err(bad)?;
+    if let Value::Object(named) = serde_json::to_value(named).map_err(bad)? {
+        for (key, value) in named {
+            all[key] = value;
+        }
+    }
+    serde_json::from_value(all).map_err(bad)
+}
+
+/// The brush in hand with the named settings. Another brush comes with its own settings, and what
+/// else is named is laid over them.
+pub(super) fn merged_brush(
+    presets: &brush::Presets,
+    shown: &Published,
+    named: &asked::BrushSettings,
+) -> Result<brush::BrushSettings, RpcError> {
+    let other = named.kind.as_deref().map(str::parse::<BrushKind>).transpose();
+    let other = other.map_err(RpcError::bad_params)?;
+    let base = match other.filter(|k| *k != shown.brush.kind) {
+        Some(kind) => presets.switched(&shown.brush, kind),
+        None => shown.brush,
+    };
+    let brush: brush::BrushSettings = merge(&base, named)?;
+    brush.check().map_err(RpcError::bad_params)?;
+    Ok(brush.clamped())
+}
+
+/// A path from outside: absolute, and no link at its end.
+fn safe(path: &Path) -> Result<(), RpcError> {
+    if !path.is_absolute() || path.components().any(|c| c == std::path::Component::ParentDir) {
+        return Err(RpcError::bad_params("path: expected an absolute path without '..'"));
+    }
+    if path.symlink_metadata().is_ok_and(|m| m.file_type().is_symlink()) {
+        return Err(RpcError::bad_params("path: expected a file, found a symbolic link"));
+    }
+    Ok(())
+}
+
+fn load(path: &Path) -> Result<startup::Loaded, RpcError> {
+    safe(path)?;
+    startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)
+}
+
+fn history(host: &Host) -> Result<&Handle, RpcError> {
+    let none = || RpcError::failed("no history is kept: the daemon runs without --session");
+    host.history.as_ref().ok_or_else(none)
+}
+
+/// Runs a Boolean that `progress` and `cancel` know of. One at a time.
+fn boolean(
+    host: &Host,
+    work: impl FnOnce(&Job) -> Result<boolean_jobs::Joined, boolean_jobs::JoinError>,
+) -> Result<edit::BooleanReply, RpcError> {
+    let place = host.begin_boolean()?;
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let joined = work(&place.job).map_err(failed)?;
+    Ok(edit::BooleanReply {
+        local: joined.local,
+        pages_written: joined.pages_written as u64,
+        pages_shared: joined.pages_shared as u64,
+        tries: joined.tries as u64,
+        seconds: (clock.now_us() - begun) as f64 * 1e-6,
+    })
+}
+
+fn operation(asked: edit::Operation) -> Operation {
+    match asked {
+        edit::Operation::Union => Operation::Union,
+        edit::Operation::Intersection => Operation::Intersection,
+        edit::Operation::Difference => Operation::Difference,
+        edit::Operation::ReverseDifference => Operation::ReverseDifference,
+    }
+}
+
+impl Handler for Host {
+    fn hello(&self, params: status::HelloParams) -> Result<status::HelloReply, RpcError> {
+        let theirs = params.versions.unwrap_or(Versions::OURS);
+        let protocol = Versions::OURS.newest_in_common(theirs);
+        let protocol = protocol.ok_or_else(|| other_version(theirs))?;
+        let version = env!("CARGO_PKG_VERSION").into();
+        Ok(status::HelloReply { protocol, versions: Versions::OURS, version })
+    }
+
+    fn methods(&self, _: NoParams) -> Result<status::MethodsReply, RpcError> {
+        Ok(METHODS.iter().map(|m| (m.name.into(), m.about.into())).collect())
+    }
+
+    fn status(&self, params: status::StatusParams) -> Result<status::StatusReply, RpcError> {
+        if let Some(v) = params.version {
+            let theirs = Versions { min: v, max: v };
+            Versions::OURS.newest_in_common(theirs).ok_or_else(|| other_version(theirs))?;
+        }
+        let shown = self.published.load_full();
+        let f = &shown.figures;
+        Ok(status::StatusReply {
+            protocol: Versions::OURS.max,
+            versions: Some(Versions::OURS),
+            version: env!("CARGO_PKG_VERSION").into(),
+            tick: shown.tick,
+            heard: f.newest_tick,
+            samples: f.samples,
+            dabs: f.dabs,
+            vertices_moved: f.vertices_moved,
+            overruns: f.overruns,
+            losses: losses(&shown),
+            tick_ms: convert(f.tick_ms)?,
+            vertices: shown.mesh.vertex_count() as u64,
+            triangles: shown.mesh.triangle_count() as u64,
+            undo_steps: shown.undo_steps as u64,
+            redo_steps: shown.redo_steps as u64,
+            brush: convert(shown.brush)?,
+            curve_points: shown.draft.points().len() as u64,
+            journal: self.journal.as_ref().map(|h| status::JournalStatus {
+                written: h.written.load(Relaxed),
+                lost: h.lost.load(Relaxed),
+                fault: h.trouble(),
+            }),
+        })
+    }
+
+    fn brush(&self, named: asked::BrushSettings) -> Result<asked::BrushSettings, RpcError> {
+        let brush = merged_brush(&self.presets, &self.published.load(), &named)?;
+        self.send(Command::Brush(brush))?;
+        convert(brush)
+    }
+
+    fn brushes(&self, _: NoParams) -> Result<asked::BrushesReply, RpcError> {
+        let all = BrushKind::ALL.iter().map(|kind| {
+            let preset = self.presets.get(*kind);
+            Ok(asked::BrushInfo {
+                name: kind.name().into(),
+                about: preset.about().into(),
+                settings: convert(preset.settings())?,
+                extra: convert(kind.own_numbers())?,
+            })
+        });
+        all.collect()
+    }
+
+    fn picture(&self, params: asked::PathParams) -> Result<asked::PictureReply, RpcError> {
+        safe(&params.path)?;
+        let named = |e: &dyn std::fmt::Display| failed(format!("{}: {e}", params.path.display()));
+        let bytes = read_regular(&params.path, MAX_PICTURE_FILE).map_err(|e| named(&e))?;
+        let picture = Picture::decode(&bytes).map_err(|e| named(&e))?;
+        let size = asked::PictureReply { width: picture.width, height: picture.height };
+        self.send(Command::Picture(Arc::new(picture)))?;
+        Ok(size)
+    }
+
+    fn mask(&self, params: asked::MaskParams) -> Result<SentReply, RpcError> {
+        self.send(Command::Mask(convert(params.action)?))?;
+        Ok(SENT)
+    }
+
+    fn curve(&self, params: asked::CurveParams) -> Result<asked::CurveReply, RpcError> {
+        let points = self.published.load().draft.points().len() as u64;
+        self.send(Command::CurveStroke(match params.act {
+            asked::CurveAction::Apply => CurveAction::Apply,
+            asked::CurveAction::Cancel => CurveAction::Cancel,
+            asked::CurveAction::Delete(handle) => CurveAction::Delete(handle as usize),
+        }))?;
+        Ok(asked::CurveReply { sent: true, points })
+    }
+
+    fn stroke(&self, params: asked::StrokeParams) -> Result<asked::StrokeReply, RpcError> {
+        params.check()?;
+        let pen = self.pen.as_ref().ok_or_else(|| failed("this run has no pen for strokes"))?;
+        match pen.try_lock() {
+            Ok(mut pen) => pen.draw(self, &params),
+            Err(std::sync::TryLockError::Poisoned(pen)) => pen.into_inner().draw(self, &params),
+            Err(std::sync::TryLockError::WouldBlock) => Err(failed("another stroke is under way")),
+        }
+    }
+
+    fn camera(&self, named: CameraSettings) -> Result<CameraSettings, RpcError> {
+        let camera: sculptd_engine::camera::Camera = merge(&self.published.load().camera, named)?;
+        if !camera.is_sane() {
+            return Err(RpcError::bad_params("no view can be made of this camera"));
+        }
+        self.send(Command::Camera(camera))?;
+        convert(camera)
+    }
+
+    fn undo(&self, _: NoParams) -> Result<SentReply, RpcError> {
+        self.send(Command::Undo)?;
+        Ok(SENT)
+    }
+
+    fn redo(&self, _: NoParams) -> Result<SentReply, RpcError> {
+        self.send(Command::Redo)?;
+        Ok(SENT)
+    }
+
+    fn history(&self, _: NoParams) -> Result<edit::HistoryReply, RpcError> {
+        let tree = history(self)?.tree();
+        Ok(edit::HistoryReply { here: tree.cursor, places: convert(listing::places(&tree))? })
+    }
+
+    fn jump(&self, params: edit::JumpParams) -> Result<SentReply, RpcError> {
+        let (node, history) = (params.node, history(self)?);
+        if history.tree().way(node).is_none() {
+            return Err(failed(format!("no way leads to {node}; 'history' lists the places")));
+        }
+        history.want(Want::Node(node));
+        Ok(SENT)
+    }
+
+    fn load(&self, params: asked::PathParams) -> Result<edit::LoadReply, RpcError> {
+        let loaded = load(&params.path)?;
+        let vertices = loaded.mesh.vertex_count() as u64;
+        let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
+        let built = Payload::Clay(Box::new(loaded.mesh));
+        self.send(QueuedCommand::with_payload(command, built))?;
+        Ok(edit::LoadReply { vertices, warnings: loaded.warnings })
+    }
+
+    fn export(&self, params: asked::PathParams) -> Result<edit::ExportReply, RpcError> {
+        safe(&params.path)?;
+        let shown = self.published.load_full();
+        let mesh = shown.mesh.to_tri().to_poly();
+        write_mesh(&params.path, &mesh).map_err(failed)?;
+        let vertices = mesh.positions.len() as u64;
+        Ok(edit::ExportReply { path: params.path, tick: shown.tick, vertices })
+    }
+
+    fn hash(&self, _: NoParams) -> Result<edit::HashReply, RpcError> {
+        let shown = self.published.load_full();
+        Ok(edit::HashReply { tick: shown.tick, hash: format!("{:016x}", shown.mesh.hash()) })
+    }
+
+    /// Brings the map that the host keeps up to the state of the mesh. The first call measures all.
+    fn thickness(&self, params: edit::ThicknessParams) -> Result<edit::ThicknessReply, RpcError> {
+        let (mesh, job) = (&self.published.load_full().mesh, Job::default());
+        let rays = params.rays as usize;
+        let mut kept = locked(&self.thickness);
+        // Taken out while it works, so that a panic leaves none rather than half of one.
+        let current = kept.take().filter(|m| m.rays() == rays);
+        let advanced = current.and_then(|mut m| m.advance(mesh).is_ok().then_some(m));
+        let mut map = match advanced {
+            Some(map) => map,
+            None => LiveMap::new(mesh, rays, &job).map_err(failed)?,
+        };
+        let measured = map.stale() as u64;
+        map.work(params.near.into(), usize::MAX, &job).map_err(failed)?;
+        let values = map.values();
+        let valid: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let sum = valid.iter().map(|&v| f64::from(v)).sum::<f64>();
+        let reply = edit::ThicknessReply {
+            revision: map.revision(),
+            vertices: values.len() as u64,
+            measured,
+            valid: valid.len() as u64,
+            min: valid.iter().copied().reduce(f32::min),
+            max: valid.iter().copied().reduce(f32::max),
+            mean: sum / valid.len().max(1) as f64,
+        };
+        *kept = Some(map);
+        Ok(reply)
+    }
+
+    fn take_up(&self, params: asked::PathParams) -> Result<edit::TakeUpReply, RpcError> {
+        let loaded = load(&params.path)?;
+        let triangles = loaded.plain.triangles.len() as u64;
+        self.send(Command::TakeUp(Arc::new(loaded.plain)))?;
+        Ok(edit::TakeUpReply { triangles, warnings: loaded.warnings })
+    }
+
+    fn put_down(&self, _: NoParams) -> Result<SentReply, RpcError> {
+        self.send(Command::PutDown)?;
+        Ok(SENT)
+    }
+
+    fn join(&self, params: edit::JoinParams) -> Result<edit::BooleanReply, RpcError> {
+        let operation = operation(params.operation);
+        boolean(self, |job| {
+            boolean_jobs::join_held(&self.published, operation, job, &self.commands)
+        })
+    }
+
+    fn trim(&self, params: edit::TrimParams) -> Result<edit::BooleanReply, RpcError> {
+        let part = match params.part {
+            TrimRegion::Box(corners) => Part::Box(corners),
+            TrimRegion::Line(ends) => Part::Line(ends),
+        };
+        boolean(self, |job| trim::carry_out(&self.published, &part, job, &self.commands))
+    }
+
+    fn level(&self, params: edit::LevelParams) -> Result<edit::LevelReply, RpcError> {
+        let finer = params.to == LevelStep::Up;
+        let (command, (level, levels)) =
+            boolean_jobs::level(&self.published, finer).map_err(failed)?;
+        self.send(command)?;
+        Ok(edit::LevelReply { level: level as u64, levels: levels as u64 })
+    }
+
+    fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {
+        safe(&params.path)?;
+        let read = read_mesh_within(&params.path, MAX_MESH_FILE, &Job::default());
+        let mut tool = read.map_err(failed)?.mesh;
+        repair::weld(&mut tool, 0.0);
+        tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(params.at));
+        let (given, operation) = (|_: &Published| Ok(tool.clone()), operation(params.operation));
+        boolean(self, |job| {
+            let (shown, commands) = (&self.published, &self.commands);
+            boolean_jobs::carry_out(shown, given, false, operation, job, commands)
+        })
+    }
+
+    fn progress(&self, _: NoParams) -> Result<edit::ProgressReply, RpcError> {
+        let under_way = locked(&self.joining);
+        let done = under_way.as_ref().map(|job| job.done());
+        Ok(edit::ProgressReply { running: under_way.is_some(), done })
+    }
+
+    fn cancel(&self, _: NoParams) -> Result<edit::CancelReply, RpcError> {
+        let under_way = locked(&self.joining);
+        under_way.iter().for_each(|job| job.cancel());
+        Ok(edit::CancelReply { cancelled: under_way.is_some() })
+    }
+
+    fn reach(&self, params: ReachParams) -> Result<ReachReply, RpcError> {
+        let reach = match (params.middle_mm, params.half_mm) {
+            (None, None) => None,
+            (Some(middle), Some(half_mm)) => Some(ReachBox { middle_mm: middle.into(), half_mm }),
+            _ => return Err(RpcError::bad_params("expected both middle_mm and half_mm, or none")),
+        };
+        if reach.is_some_and(|r| !r.is_sane()) {
+            let text = "expected a place within 2 m and half a side of 30 to 1000 mm";
+            return Err(RpcError::bad_params(text));
+        }
+        self.send(reach.map_or(Command::CalibrateReach, Command::Reach))?;
+        Ok(ReachReply { measuring: reach.is_none() })
+    }
+
+    fn subscribe(&self, _: NoParams) -> Result<status::SubscribeReply, RpcError> {
+        let events = sculptd_control::event::EventName::ALL.into();
+        Ok(status::SubscribeReply { events })
+    }
+
+    fn shutdown(&self, _: NoParams) -> Result<status::ShutdownReply, RpcError> {
+        self.stop.store(true, Relaxed);
+        Ok(status::ShutdownReply { stopping: true })
+    }
+}
+
+pub(super) fn losses(shown: &Published) -> status::Losses {
+    let l = shown.figures.losses;
+    status::Losses { motion: l.motion, transition: l.transition }
+}
+
+fn other_version(theirs: Versions) -> RpcError {
+    let ours = Versions::OURS;
+    let text = format!(
+        "this daemon speaks versions {} to {}, the client {} to {}",
+        ours.min, ours.max, theirs.min, theirs.max
+    );
+    RpcError::new(Code::Version, text)
+}

@@ -1,0 +1,125 @@
+//! What a request may touch.
+
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use arc_swap::ArcSwap;
+
+use super::stroke::VirtualPen;
+use crate::Published;
+use crate::command_queue::{CommandSender, QueuedCommand};
+use crate::session::Health;
+use crate::session::history::Handle;
+use sculptd_clay::brush::Presets;
+use sculptd_clay::live_thickness::LiveMap;
+use sculptd_control::RpcError;
+use sculptd_geometry::job::Job;
+
+/// What a request may touch. Cloning it gives another handle to the same.
+#[derive(Debug, Clone)]
+pub struct Host {
+    pub commands: CommandSender,
+    pub published: Arc<ArcSwap<Published>>,
+    /// What each brush begins with.
+    pub presets: Presets,
+    /// The wall thickness of the object, as last asked for.
+    pub thickness: Arc<Mutex<Option<LiveMap>>>,
+    /// The Boolean under way.
+    pub joining: Arc<Mutex<Option<Arc<Job>>>>,
+    /// How the session file stands; `None`: the run is not recorded.
+    pub journal: Option<Health>,
+    /// The history of the session, if one is kept.
+    pub history: Option<Handle>,
+    /// The pen of `stroke`; `None`: nothing takes its samples.
+    pub pen: Option<Arc<Mutex<VirtualPen>>>,
+    /// Raised by `shutdown`.
+    pub stop: Arc<AtomicBool>,
+}
+
+impl Host {
+    /// A host without session and pen, whose `stop` is its own.
+    pub fn new(
+        commands: CommandSender,
+        published: Arc<ArcSwap<Published>>,
+        presets: Presets,
+    ) -> Self {
+        Host {
+            commands,
+            published,
+            presets,
+            thickness: Arc::default(),
+            joining: Arc::default(),
+            journal: None,
+            history: None,
+            pen: None,
+            stop: Arc::default(),
+        }
+    }
+
+    /// Hands a command to the loop.
+    pub(super) fn send(&self, command: impl Into<QueuedCommand>) -> Result<(), RpcError> {
+        let full = "the loop has more commands waiting than it can take; try again";
+        self.commands.try_send(command).map_err(|_| RpcError::failed(full))
+    }
+
+    /// Takes the one place for a Boolean. It is given back when the guard is dropped, by a panic
+    /// too.
+    pub(super) fn begin_boolean(&self) -> Result<BooleanPlace<'_>, RpcError> {
+        let job = Arc::new(Job::default());
+        let mut place = locked(&self.joining);
+        if place.is_some() {
+            return Err(RpcError::failed("another join is under way"));
+        }
+        *place = Some(job.clone());
+        Ok(BooleanPlace { host: self, job })
+    }
+}
+
+/// The place of the Boolean under way.
+#[derive(Debug)]
+pub(super) struct BooleanPlace<'a> {
+    host: &'a Host,
+    pub job: Arc<Job>,
+}
+
+impl Drop for BooleanPlace<'_> {
+    fn drop(&mut self) {
+        *locked(&self.host.joining) = None;
+    }
+}
+
+/// The value behind a lock, whether or not a thread that held it has panicked: every value here is
+/// replaced as a whole.
+pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::PublishedFigures;
+    use sculptd_clay::Clay;
+    use sculptd_geometry::shapes;
+
+    #[test]
+    fn a_panic_during_a_boolean_gives_its_place_back() {
+        let mesh = Clay::build(&shapes::sphere_of_about(100), &Job::default()).expect("a ball");
+        let mut world = crate::startup::world(mesh, &crate::config::Config::default());
+        let shown = Published::of(&mut world, PublishedFigures::default());
+        let (commands, _queue) = crate::command_queue::command_queue(1);
+        let shown = Arc::new(ArcSwap::from_pointee(shown));
+        let host = Host::new(commands, shown, Presets::default());
+        let held = host.begin_boolean().expect("free");
+        assert!(host.begin_boolean().is_err(), "one at a time");
+        drop(held);
+        let inner = host.clone();
+        let thread = std::thread::spawn(move || {
+            let _place = inner.begin_boolean().expect("free");
+            let _lock = inner.thickness.lock();
+            panic!("a bug in a Boolean (expected in this test)");
+        });
+        assert!(thread.join().is_err());
+        assert!(host.begin_boolean().is_ok(), "the place is free again");
+        assert!(host.thickness.is_poisoned() && locked(&host.thickness).is_none());
+    }
+}

@@ -1,0 +1,167 @@
+//! A stroke as a request: its points become samples of a virtual pen, which take the same way as
+//! those of a tablet. So they are recorded, replayed and bounded like any other.
+
+use std::time::Duration;
+
+use glam::{Vec2, Vec3};
+
+use super::host::Host;
+use crate::Published;
+use crate::adaptors::CONTROL_PEN_ID;
+use sculptd_control::RpcError;
+use sculptd_control::brush::{StrokeParams, StrokePoint, StrokeReply};
+use sculptd_devices::queue::{Sender, SenderFactory};
+use sculptd_devices::{Body, Clock, Pen, Sample, Tool};
+use sculptd_engine::command::Command;
+
+/// Size of the virtual pen's active area, mm: the view's height, and its width by the aspect.
+const AREA_MM: f32 = 200.0;
+/// Longest wait for the loop to take what was sent.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Between two looks at the loop.
+const LOOK: Duration = Duration::from_millis(1);
+/// A point in space is seen where the first surface on the line of sight is no further from it than
+/// so many radii of the brush.
+const SEEN_WITHIN: f32 = 1.0;
+
+/// The pen whose samples `stroke` sends.
+#[derive(Debug)]
+pub struct VirtualPen {
+    sender: Sender,
+    clock: Clock,
+}
+
+impl VirtualPen {
+    /// A pen on the loop's channel. `clock` is the one that the loop runs by.
+    pub fn new(factory: &SenderFactory, clock: Clock) -> Self {
+        VirtualPen { sender: factory.sender(), clock }
+    }
+
+    /// Makes the stroke in the time that its points say, and waits until the loop has taken it.
+    ///
+    /// # Errors
+    /// A point in space that is not seen, and a loop that takes nothing.
+    pub fn draw(&mut self, host: &Host, stroke: &StrokeParams) -> Result<StrokeReply, RpcError> {
+        let shown = host.published.load_full();
+        let points = in_view(&shown, stroke)?;
+        let brush =
+            stroke.brush.as_ref().map(|b| super::handler::merged_brush(&host.presets, &shown, b));
+        if let Some(brush) = brush.transpose()? {
+            host.send(Command::Brush(brush))?;
+        }
+        let drawn = self.send_samples(host, &points, shown.camera.aspect);
+        if stroke.brush.is_some() {
+            // Whatever came of it: the brush in hand is the person's.
+            host.send(Command::Brush(shown.brush))?;
+        }
+        drawn
+    }
+
+    fn send_samples(
+        &mut self,
+        host: &Host,
+        points: &[ViewPoint],
+        aspect: f32,
+    ) -> Result<StrokeReply, RpcError> {
+        let area = Vec2::new(AREA_MM * aspect, AREA_MM);
+        let begun = self.clock.now_us();
+        let pen = |at: &ViewPoint, touches: bool| Pen {
+            tool: Tool::Pen,
+            in_range: touches,
+            tip: touches,
+            pos_mm: at.view * area,
+            area_mm: area,
+            pressure: Some(if touches { at.pressure } else { 0.0 }),
+            ..Pen::default()
+        };
+        let (quiet, Some(last)) = (cc_never(), points.last()) else {
+            return Err(RpcError::bad_params("points is empty"));
+        };
+        for at in points {
+            let due = begun + at.t_us;
+            while self.clock.now_us() < due && !stopped(host) {
+                let left = Duration::from_micros(due.saturating_sub(self.clock.now_us()));
+                let _ = quiet.recv_timeout(left.min(Duration::from_millis(50)));
+            }
+            if stopped(host) {
+                break;
+            }
+            self.push(pen(at, true));
+        }
+        // A stroke always ends, even where the daemon stops in the middle of it.
+        self.push(pen(last, false));
+        let give_up = self.clock.now_us() + PATIENCE.as_micros() as u64;
+        let mut taken_by = None;
+        loop {
+            if taken_by.is_none() && self.sender.flush() {
+                // The tick under way may have looked into the channel already.
+                taken_by = Some(host.published.load().tick + 2);
+            }
+            let tick = host.published.load().tick;
+            if taken_by.is_some_and(|by| tick >= by) {
+                return Ok(StrokeReply { samples: points.len() as u64 + 1, tick });
+            }
+            if stopped(host) || self.clock.now_us() > give_up {
+                return Err(RpcError::failed("the loop did not take the stroke"));
+            }
+            let _ = quiet.recv_timeout(LOOK);
+        }
+    }
+
+    fn push(&mut self, pen: Pen) {
+        let t_us = self.clock.now_us();
+        let body = Body::Pen(pen);
+        self.sender.push(Sample { device: CONTROL_PEN_ID, t_us, device_t_us: None, body });
+    }
+}
+
+/// A channel on which nothing ever comes: waiting on it is waiting for time.
+fn cc_never() -> crossbeam_channel::Receiver<()> {
+    crossbeam_channel::never()
+}
+
+fn stopped(host: &Host) -> bool {
+    host.stop.load(std::sync::atomic::Ordering::Relaxed)
+}
+
+/// A point of the stroke as the pen has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ViewPoint {
+    view: Vec2,
+    pressure: f32,
+    t_us: u64,
+}
+
+/// Every point in view coordinates.
+fn in_view(shown: &Published, stroke: &StrokeParams) -> Result<Vec<ViewPoint>, RpcError> {
+    let points = stroke.points.iter().enumerate();
+    points
+        .map(|(i, point)| {
+            let (view, pressure, ms) = match *point {
+                StrokePoint::View([x, y, pressure, ms]) => {
+                    (Vec2::new(x as f32, y as f32), pressure, ms)
+                }
+                StrokePoint::World([x, y, z, pressure, ms]) => {
+                    let at = Vec3::new(x as f32, y as f32, z as f32);
+                    let view = seen(shown, at).ok_or_else(|| {
+                        let text = "not seen from the camera as it stands";
+                        RpcError::failed(format!("points[{i}]: {text}"))
+                    })?;
+                    (view, pressure, ms)
+                }
+            };
+            Ok(ViewPoint { view, pressure: pressure as f32, t_us: (ms * 1e3) as u64 })
+        })
+        .collect()
+}
+
+/// Where a point of space is seen; `None` where it lies outside the view, behind the eye, or behind
+/// the surface.
+fn seen(shown: &Published, at: Vec3) -> Option<Vec2> {
+    let view = shown.camera.project(at)?;
+    if !(view.cmpge(Vec2::ZERO).all() && view.cmple(Vec2::ONE).all()) {
+        return None;
+    }
+    let hit = shown.mesh.pick(shown.camera.ray(view))?;
+    (hit.position.distance(at) <= shown.brush_radius * SEEN_WITHIN).then_some(view)
+}

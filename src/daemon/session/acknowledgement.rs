@@ -1,0 +1,198 @@
+//! The last tick that is known to be on the disk, written into the session file beside SQLite.
+//!
+//! The write-ahead log is a second file: where it is lost, damaged, or another session's, SQLite
+//! shows the database as it was at the last checkpoint and says nothing. So the acknowledgement is
+//! written directly into the main file, into a page that belongs to the one row of the table
+//! `acknowledged`. SQLite writes this page once, when the session is created, and never again, so
+//! it is never in the write-ahead log. Opening compares the input that it finds with this tick.
+//!
+//! The row's blob: 16 bytes [`MAGIC`], then two slots of [`SLOT`] bytes that are written in turns,
+//! so that a torn write leaves the other one. A slot, little-endian: `sequence` (8), creation
+//! number (8), tick (8), the two salts of the write-ahead log (4, 4; both 0: any), chain (4), and
+//! the CRC-32 of all these (4).
+
+use std::fs::File;
+use std::io::{Read, Result, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Marks the blob.
+pub const MAGIC: [u8; 16] = *b"sculptd:acknowl.";
+/// Bytes of a slot.
+pub const SLOT: usize = 40;
+/// Bytes that are read at once while the blob is looked for.
+const WINDOW: usize = 256 << 10;
+
+/// What is known to be on the disk.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Acknowledgement {
+    /// The session's creation number.
+    pub identity: u64,
+    pub tick: u64,
+    /// The chain of the row that ends with this tick, see [`super::format`].
+    pub chain: u32,
+    /// The salts of the write-ahead log that the input lies in; zeros: not known.
+    pub salts: [u32; 2],
+}
+
+/// The place of the acknowledgement in an open file.
+#[derive(Debug)]
+pub struct AcknowledgementPage {
+    file: Arc<File>,
+    at: u64,
+    sequence: u64,
+}
+
+/// What a file says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Acknowledged {
+    /// No acknowledgement is there: an older layout, or its page is lost.
+    Missing,
+    /// It is there and cannot be read.
+    Damaged,
+    Known(Acknowledgement),
+}
+
+fn number(bytes: &[u8]) -> u64 {
+    bytes.iter().rev().fold(0, |n, b| n << 8 | u64::from(*b))
+}
+
+fn encode(sequence: u64, a: &Acknowledgement) -> [u8; SLOT] {
+    let mut slot = [0; SLOT];
+    slot[..8].copy_from_slice(&sequence.to_le_bytes());
+    slot[8..16].copy_from_slice(&a.identity.to_le_bytes());
+    slot[16..24].copy_from_slice(&a.tick.to_le_bytes());
+    slot[24..28].copy_from_slice(&a.salts[0].to_le_bytes());
+    slot[28..32].copy_from_slice(&a.salts[1].to_le_bytes());
+    slot[32..36].copy_from_slice(&a.chain.to_le_bytes());
+    let crc = crc32fast::hash(&slot[..36]);
+    slot[36..].copy_from_slice(&crc.to_le_bytes());
+    slot
+}
+
+fn decode(slot: &[u8]) -> Option<(u64, Acknowledgement)> {
+    if number(&slot[36..SLOT]) != u64::from(crc32fast::hash(&slot[..36])) {
+        return None;
+    }
+    let salts = [number(&slot[24..28]) as u32, number(&slot[28..32]) as u32];
+    let (identity, tick) = (number(&slot[8..16]), number(&slot[16..24]));
+    let chain = number(&slot[32..36]) as u32;
+    Some((number(&slot[..8]), Acknowledgement { identity, tick, chain, salts }))
+}
+
+/// The blob of a new session.
+pub fn blob(first: &Acknowledgement) -> Vec<u8> {
+    [&MAGIC[..], &encode(1, first), &encode(0, first)].concat()
+}
+
+/// The newest readable slot of a blob.
+fn newest(blob: &[u8]) -> Option<(u64, Acknowledgement)> {
+    let slots = blob.get(MAGIC.len()..MAGIC.len() + 2 * SLOT)?;
+    slots.chunks_exact(SLOT).filter_map(decode).max_by_key(|s| s.0)
+}
+
+/// Where the blob lies, and what it says.
+fn find(file: &File) -> Result<Option<(u64, Option<(u64, Acknowledgement)>)>> {
+    let mut file = file;
+    let (mut best, mut at) = (None, 0u64);
+    let size = MAGIC.len() + 2 * SLOT;
+    let mut window = vec![0; WINDOW + size];
+    loop {
+        file.seek(SeekFrom::Start(at))?;
+        let mut have = 0;
+        while have < window.len() {
+            match file.read(&mut window[have..])? {
+                0 => break,
+                n => have += n,
+            }
+        }
+        let found = window[..have].windows(MAGIC.len()).enumerate().filter(|w| *w.1 == MAGIC);
+        for (offset, _) in found {
+            let says = newest(&window[offset..have]);
+            let better = best.as_ref().is_none_or(|b: &(u64, Option<(u64, Acknowledgement)>)| {
+                says.map(|s| s.0) > b.1.map(|s| s.0)
+            });
+            if better {
+                best = Some((at + offset as u64, says));
+            }
+        }
+        // It lies near the beginning, but in a file that came from an older layout.
+        if have < window.len() || best.as_ref().is_some_and(|b| b.1.is_some()) {
+            return Ok(best);
+        }
+        at += WINDOW as u64;
+    }
+}
+
+/// Reads the acknowledgement of a file.
+///
+/// # Errors
+/// Where the file cannot be read.
+pub fn read(path: &Path) -> Result<Acknowledged> {
+    Ok(match find(&File::open(path)?)? {
+        None => Acknowledged::Missing,
+        Some((_, None)) => Acknowledged::Damaged,
+        Some((_, Some((_, a)))) => Acknowledged::Known(a),
+    })
+}
+
+impl AcknowledgementPage {
+    /// Finds the page in a file that is open for reading and writing, with what it says.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn find(file: Arc<File>) -> Result<Option<(AcknowledgementPage, Acknowledgement)>> {
+        let found = find(&file)?;
+        Ok(found.and_then(|(at, says)| {
+            let (sequence, a) = says?;
+            Some((AcknowledgementPage { file, at, sequence }, a))
+        }))
+    }
+
+    /// Writes what is on the disk now. It is not synced: an older acknowledgement is true too.
+    ///
+    /// # Errors
+    /// Where the file cannot be written.
+    pub fn write(&mut self, a: &Acknowledgement) -> Result<()> {
+        self.sequence += 1;
+        let slot = u64::from(self.sequence % 2 == 0) * SLOT as u64;
+        let mut file: &File = &self.file;
+        file.seek(SeekFrom::Start(self.at + MAGIC.len() as u64 + slot))?;
+        file.write_all(&encode(self.sequence, a))
+    }
+
+    /// Brings it to the disk.
+    ///
+    /// # Errors
+    /// Where the disk does not take it.
+    pub fn sync(&self) -> Result<()> {
+        self.file.sync_data()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_whole_slot_counts() {
+        let first = Acknowledgement { identity: 7, ..Default::default() };
+        let mut file = tempfile::tempfile().expect("a file");
+        file.write_all(&[9; 5000]).expect("written");
+        file.write_all(&blob(&first)).expect("written");
+        let file = Arc::new(file);
+        let (mut page, a) = AcknowledgementPage::find(file.clone()).expect("read").expect("there");
+        assert_eq!(a, first);
+        for tick in 1..6 {
+            let a = Acknowledgement { tick, chain: 3, salts: [1, 2], ..first };
+            page.write(&a).expect("written");
+            assert_eq!(find(&file).expect("read").and_then(|f| f.1).map(|f| f.1), Some(a));
+        }
+        // The newest slot is torn: the one before it counts.
+        let mut f: &File = &file;
+        f.seek(SeekFrom::Start(5000 + 16 + SLOT as u64 * 0 + 20)).expect("sought");
+        f.write_all(&[0xAA; 4]).expect("written");
+        let left = find(&file).expect("read").and_then(|f| f.1).expect("a slot").1.tick;
+        assert!(left == 4 || left == 5, "{left}");
+    }
+}

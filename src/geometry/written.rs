@@ -1,0 +1,373 @@
+//! What a file will hold: a mesh in the format's faces and precision, without triangles that cross.
+//!
+//! Rounding moves each vertex on its own, so a mesh that crosses nothing may cross itself once it
+//! is written. Here it is rounded first, checked with exact predicates
+//! ([`crate::self_intersection`]), and repaired by local operations: an edge is flipped, an edge no longer than a few steps of the
+//! precision is collapsed, or a vertex is moved by a few steps. An operation is kept only where
+//! fewer pairs cross after it (the greedy scheme of Attene, "A lightweight approach to repairing
+//! digitized polygon meshes", 2010).
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+
+use crate::PolyMesh;
+use crate::boolean::box_tree::{Span, SpanTree};
+use crate::job::{Cancelled, Job};
+use crate::self_intersection;
+
+/// A mesh as a file will hold it.
+#[derive(Debug, Clone)]
+pub struct WrittenMesh<'a> {
+    /// Rounded to the format, in triangles where the format holds no others.
+    pub mesh: Cow<'a, PolyMesh>,
+    /// Pairs of triangles that crossed before the repair.
+    pub found: usize,
+    /// Pairs that still cross.
+    pub crossings: usize,
+}
+
+/// With more crossing pairs a mesh is no rounded solid, and is left as it is.
+const MOST_PAIRS: usize = 3000;
+const ROUNDS: usize = 6;
+
+/// `mesh` as a file with the ending `kind` will hold it (STL and GLB have single precision; they
+/// and 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision or
+/// four times `tolerance`, and only where triangles cross.
+///
+/// # Errors
+/// [`Cancelled`] when the job is.
+pub fn for_file<'a>(
+    mesh: &'a PolyMesh,
+    kind: &str,
+    tolerance: f64,
+    job: &Job,
+) -> Result<WrittenMesh<'a>, Cancelled> {
+    let single = matches!(kind, "stl" | "glb");
+    let mut out = Cow::Borrowed(mesh);
+    if matches!(kind, "stl" | "glb" | "3mf") && mesh.corners.len() != 3 * mesh.face_count() {
+        out = Cow::Owned(triangulated(mesh));
+    }
+    if single && mesh.positions.iter().any(|p| p.as_vec3().as_dvec3() != *p) {
+        let rounded = mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
+        out.to_mut().positions = rounded;
+    }
+    let (triangles, _) = out.triangles();
+    let pairs = self_intersection::pairs(&out.positions, &triangles, job)?;
+    let found = pairs.len();
+    let all = triangles.len() == out.face_count();
+    if pairs.is_empty() || !all || found > MOST_PAIRS {
+        return Ok(WrittenMesh { mesh: out, found, crossings: found });
+    }
+    let reach = out.positions.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
+    let step = reach * 2f64.powi(if single { -23 } else { -52 });
+    let mut local = LocalMesh::new(out.positions.clone(), triangles, single, step, tolerance, job)?;
+    let mut left = pairs;
+    for _ in 0..ROUNDS {
+        let before = left.len();
+        for &(s, t) in &left {
+            job.check()?;
+            local.repair(s, t);
+        }
+        left = self_intersection::pairs(&local.positions, &local.alive(), job)?;
+        if left.is_empty() || left.len() >= before {
+            break;
+        }
+        // The list's numbers are those of the triangles that are left.
+        let names = local.numbers();
+        left.iter_mut().for_each(|p| *p = (names[p.0 as usize], names[p.1 as usize]));
+    }
+    if left.len() < found {
+        local.store(out.to_mut());
+    }
+    Ok(WrittenMesh { mesh: out, found, crossings: left.len().min(found) })
+}
+
+/// A mesh with all its faces in triangles, colours and groups with them.
+pub fn triangulated(mesh: &PolyMesh) -> PolyMesh {
+    let (triangles, of) = mesh.triangles();
+    PolyMesh {
+        positions: mesh.positions.clone(),
+        face_starts: (0..=of.len() as u32).map(|t| t * 3).collect(),
+        corners: triangles.into_iter().flatten().collect(),
+        colours: mesh.colours.clone(),
+        groups: mesh.groups.as_ref().map(|g| of.iter().map(|&f| g[f as usize]).collect()),
+    }
+}
+
+/// Triangles that change one by one.
+struct LocalMesh {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    gone: Vec<bool>,
+    around: Vec<Vec<u32>>,
+    tree: SpanTree,
+    /// Triangles that are no longer where the tree has them.
+    changed: Vec<u32>,
+    single: bool,
+    step: f64,
+    limit: f64,
+}
+
+/// A change, and what undoes it.
+struct Undo {
+    triangles: Vec<(u32, [u32; 3], bool)>,
+    position: Option<(u32, DVec3)>,
+}
+
+impl LocalMesh {
+    fn new(
+        positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        single: bool,
+        step: f64,
+        tolerance: f64,
+        job: &Job,
+    ) -> Result<LocalMesh, Cancelled> {
+        let mut around = vec![Vec::new(); positions.len()];
+        for (t, c) in triangles.iter().enumerate() {
+            c.iter().for_each(|&v| around[v as usize].push(t as u32));
+        }
+        let spans: Vec<Span> =
+            triangles.iter().map(|t| Span::of(t.map(|v| positions[v as usize]))).collect();
+        let tree = SpanTree::build(&spans, job)?;
+        let gone = vec![false; triangles.len()];
+        let limit = (64.0 * step).max(4.0 * tolerance);
+        let changed = Vec::new();
+        Ok(LocalMesh { positions, triangles, gone, around, tree, changed, single, step, limit })
+    }
+
+    fn alive(&self) -> Vec<[u32; 3]> {
+        self.numbers().iter().map(|&t| self.triangles[t as usize]).collect()
+    }
+
+    fn numbers(&self) -> Vec<u32> {
+        (0..self.triangles.len() as u32).filter(|&t| !self.gone[t as usize]).collect()
+    }
+
+    /// Pairs that cross with one of `list` in them.
+    fn crossings(&self, list: &[u32]) -> usize {
+        let mut count = 0;
+        let mut near: Vec<u32> = Vec::new();
+        for &t in list.iter().filter(|t| !self.gone[**t as usize]) {
+            let own = self.triangles[t as usize];
+            let span = Span::of(own.map(|v| self.positions[v as usize])).grown(self.limit);
+            near.clear();
+            self.tree.each_meets(&span, |u| near.push(u));
+            near.extend(&self.changed);
+            near.sort_unstable();
+            near.dedup();
+            count += near
+                .iter()
+                .filter(|&&u| {
+                    let other = self.triangles[u as usize];
+                    u != t
+                        && !self.gone[u as usize]
+                        && !(list.contains(&u) && u < t)
+                        && Span::of(other.map(|v| self.positions[v as usize])).meets(&span)
+                        && self_intersection::crosses(&self.positions, own, other)
+                })
+                .count();
+        }
+        count
+    }
+
+    /// Tries what may part two triangles that cross.
+    fn repair(&mut self, s: u32, t: u32) {
+        let pair = [s, t];
+        if pair.iter().any(|&t| self.gone[t as usize])
+            || !self_intersection::crosses(
+                &self.positions,
+                self.triangles[s as usize],
+                self.triangles[t as usize],
+            )
+        {
+            return;
+        }
+        for t in pair {
+            let c = self.triangles[t as usize];
+            for k in 0..3 {
+                let (a, b) = (c[k], c[(k + 1) % 3]);
+                let length = self.positions[a as usize].distance(self.positions[b as usize]);
+                if length <= self.limit && (self.collapse(a, b) || self.collapse(b, a)) {
+                    return;
+                }
+            }
+        }
+        for t in pair {
+            let c = self.triangles[t as usize];
+            for k in 0..3 {
+                if self.flip(c[k], c[(k + 1) % 3]) {
+                    return;
+                }
+            }
+        }
+        let mut size = self.step;
+        while size <= self.limit {
+            for t in pair {
+                for v in self.triangles[t as usize] {
+                    for d in
+                        [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z]
+                    {
+                        if self.shift(v, d * size) {
+                            return;
+                        }
+                    }
+                }
+            }
+            size *= 4.0;
+        }
+    }
+
+    /// Keeps the change that `make` does where fewer pairs cross among `list` and what is new.
+    fn attempt(&mut self, list: &[u32], make: impl FnOnce(&mut LocalMesh) -> Option<Undo>) -> bool {
+        let before = self.crossings(list);
+        let Some(undo) = make(self) else { return false };
+        let marks = self.changed.len();
+        self.changed.extend(list.iter().copied());
+        if before > 0 && self.crossings(list) < before {
+            self.changed.sort_unstable();
+            self.changed.dedup();
+            return true;
+        }
+        self.changed.truncate(marks);
+        if let Some((v, p)) = undo.position {
+            self.positions[v as usize] = p;
+        }
+        for (t, corners, gone) in undo.triangles {
+            for v in self.triangles[t as usize] {
+                self.around[v as usize].retain(|&x| x != t);
+            }
+            (self.triangles[t as usize], self.gone[t as usize]) = (corners, gone);
+            for v in corners {
+                self.around[v as usize].push(t);
+            }
+        }
+        false
+    }
+
+    fn shift(&mut self, v: u32, by: DVec3) -> bool {
+        let list = self.around[v as usize].clone();
+        let old = self.positions[v as usize];
+        let new = if self.single { (old + by).as_vec3().as_dvec3() } else { old + by };
+        new != old
+            && self.attempt(&list, |m| {
+                m.positions[v as usize] = new;
+                Some(Undo { triangles: Vec::new(), position: Some((v, old)) })
+            })
+    }
+
+    /// The triangle with the edge from `a` to `b`, and its third corner.
+    fn beside(&self, a: u32, b: u32) -> Option<(u32, u32)> {
+        let mut found = self.around[a as usize].iter().filter_map(|&t| {
+            let c = self.triangles[t as usize];
+            (0..3).find(|&k| c[k] == a && c[(k + 1) % 3] == b).map(|k| (t, c[(k + 2) % 3]))
+        });
+        let one = found.next();
+        if found.next().is_some() { None } else { one }
+    }
+
+    fn set(&mut self, t: u32, corners: [u32; 3], gone: bool) -> (u32, [u32; 3], bool) {
+        let old = (t, self.triangles[t as usize], self.gone[t as usize]);
+        for v in old.1 {
+            self.around[v as usize].retain(|&x| x != t);
+        }
+        self.triangles[t as usize] = corners;
+        self.gone[t as usize] = gone;
+        if !gone {
+            for v in corners {
+                self.around[v as usize].push(t);
+            }
+        }
+        old
+    }
+
+    fn flip(&mut self, a: u32, b: u32) -> bool {
+        let (Some((s, c)), Some((t, d))) = (self.beside(a, b), self.beside(b, a)) else {
+            return false;
+        };
+        let p = |v: u32| self.positions[v as usize];
+        let normal = |x: u32, y: u32, z: u32| (p(y) - p(x)).cross(p(z) - p(x));
+        let sum = normal(a, b, c) + normal(b, a, d);
+        let flat = |v: u32| (p(v) - p(a)).dot(sum.normalize_or_zero()).abs() <= self.limit;
+        let (first, second) = (normal(c, a, d), normal(d, b, c));
+        if c == d
+            || ![b, c, d].into_iter().all(flat)
+            || first.dot(sum) <= 0.0
+            || second.dot(sum) <= 0.0
+            || self.around[c as usize].iter().any(|&x| self.triangles[x as usize].contains(&d))
+        {
+            return false;
+        }
+        self.attempt(&[s, t], |m| {
+            let triangles = vec![m.set(s, [c, a, d], false), m.set(t, [d, b, c], false)];
+            Some(Undo { triangles, position: None })
+        })
+    }
+
+    /// Makes `a` one with `b`.
+    fn collapse(&mut self, a: u32, b: u32) -> bool {
+        let (Some((s, c)), Some((t, d))) = (self.beside(a, b), self.beside(b, a)) else {
+            return false;
+        };
+        let ring = |v: u32| -> Vec<u32> {
+            let mut out: Vec<u32> = self.around[v as usize]
+                .iter()
+                .flat_map(|&t| self.triangles[t as usize])
+                .filter(|&w| w != v)
+                .collect();
+            out.sort_unstable();
+            out.dedup();
+            out
+        };
+        let (near, other) = (ring(a), ring(b));
+        let common = near.iter().filter(|v| other.binary_search(v).is_ok()).count();
+        if c == d || common != 2 || near.len() < 4 || other.len() < 4 {
+            return false;
+        }
+        let list = self.around[a as usize].clone();
+        self.attempt(&list, |m| {
+            let mut triangles = Vec::new();
+            for &x in &list {
+                let corners = m.triangles[x as usize];
+                let new = corners.map(|v| if v == a { b } else { v });
+                let flat = x == s || x == t;
+                triangles.push(m.set(x, if flat { corners } else { new }, flat));
+            }
+            Some(Undo { triangles, position: None })
+        })
+    }
+
+    /// The triangles that are left, in the mesh they came from.
+    fn store(self, mesh: &mut PolyMesh) {
+        let names = self.numbers();
+        mesh.groups = mesh.groups.take().map(|g| names.iter().map(|&t| g[t as usize]).collect());
+        mesh.corners = self.alive().into_iter().flatten().collect();
+        mesh.face_starts = (0..=names.len() as u32).map(|t| t * 3).collect();
+        mesh.positions = self.positions;
+        crate::repair::drop_unused(mesh);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::icosphere;
+
+    #[test]
+    fn a_ball_with_a_dented_vertex_crosses_nothing_once_written() {
+        let mut mesh = icosphere(1.0, 4).to_poly();
+        let job = Job::default();
+        assert_eq!(for_file(&mesh, "stl", 0.0, &job).expect("written").found, 0);
+        // A vertex pulled over its neighbour by a few steps of single precision.
+        let edge = [mesh.corners[0], mesh.corners[1]];
+        let to = mesh.positions[edge[1] as usize];
+        let from = mesh.positions[edge[0] as usize];
+        mesh.positions[edge[0] as usize] = to + (to - from).normalize() * 4e-6;
+        let made = for_file(&mesh, "stl", 0.0, &job).expect("written");
+        assert!(made.found > 0 && made.crossings == 0, "{} {}", made.found, made.crossings);
+        let facts = crate::check::report(&made.mesh, true, &job).expect("a report");
+        assert_eq!((facts.closed, facts.manifold), (true, true));
+        assert_eq!(facts.self_intersections, Some(0));
+    }
+}

@@ -1,0 +1,144 @@
+//! Power cuts: what was not synced is there, torn, or not.
+
+use super::*;
+
+/// One state of the disk.
+#[derive(Clone)]
+pub(super) struct Disk {
+    pub db: Vec<u8>,
+    pub wal: Vec<u8>,
+}
+
+impl Disk {
+    pub(super) fn of(path: &Path) -> Self {
+        let wal = std::fs::read(wal(path)).unwrap_or_default();
+        Disk { db: std::fs::read(path).expect("read"), wal }
+    }
+}
+
+pub(super) const SECTOR: usize = 512;
+
+/// Pages of the database that differ; one is the acknowledgement's.
+fn changed(a: &[u8], b: &[u8]) -> usize {
+    let more = a.len().abs_diff(b.len()) / 4096;
+    more + a.chunks(4096).zip(b.chunks(4096)).filter(|(a, b)| a != b).count()
+}
+
+/// What may be on the disk when the power goes between the states `a` (all of it synced) and `b`
+/// (its last writes not).
+fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
+    let restarted = a.wal.len() < 32 || b.wal.len() < a.wal.len() || a.wal[..32] != b.wal[..32];
+    // A log is begun again only after the database holds all of it: then the database is `b`'s.
+    let mut out = if restarted { b.clone() } else { Disk { db: a.db.clone(), wal: b.wal.clone() } };
+    let old = a.wal.clone();
+    // Bytes before this one were written and synced long ago; no write touches them again.
+    let keep =
+        old.iter().zip(&out.wal).position(|(x, y)| x != y).unwrap_or(old.len().min(out.wal.len()));
+    let differs: Vec<usize> = (0..out.wal.len())
+        .step_by(SECTOR)
+        .filter(|&s| {
+            let e = (s + SECTOR).min(out.wal.len());
+            old.get(s..e) != Some(&out.wal[s..e])
+        })
+        .collect();
+    match rng.below(4) {
+        // The file never grew.
+        0 if !restarted => {
+            let tail = out.wal.len() - a.wal.len();
+            out.wal.truncate(a.wal.len() + rng.below(tail as u64 + 1) as usize);
+        }
+        mode => {
+            for s in differs {
+                if rng.below(2) == 0 {
+                    continue;
+                }
+                let (s, e) = (s.max(keep), (s + SECTOR).min(out.wal.len()));
+                match (mode, old.get(s..e)) {
+                    (1 | 0, Some(was)) => out.wal[s..e].copy_from_slice(was),
+                    (2, _) => out.wal[s..e].iter_mut().for_each(|x| *x = rng.below(256) as u8),
+                    _ => out.wal[s..e].fill(0),
+                }
+            }
+        }
+    }
+    // A database that was being brought up to date, with the log that it is brought up to date from
+    // still there.
+    if !restarted && changed(&a.db, &b.db) > 1 && rng.below(2) == 0 {
+        out.wal = b.wal.clone();
+        out.db = b.db.clone();
+        for s in (0..a.db.len()).step_by(SECTOR) {
+            if rng.below(2) == 0 {
+                let e = (s + SECTOR).min(a.db.len()).min(out.db.len());
+                out.db[s..e].copy_from_slice(&a.db[s..e]);
+            }
+        }
+    }
+    out
+}
+
+/// `cuts` power cuts of one session; answers with groups lost in full, and checkpoints that a cut
+/// fell into.
+fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut rng = Rng::new(seed);
+    let mut script = Script::begin(dir.path());
+    // Memory is gone with the power.
+    session::catalog::logs_of(&script.path).iter().for_each(session::shared_memory_log::remove);
+    script.group(5);
+    let (mut lost, mut checkpoints) = (0, 0);
+    for n in 0..cuts {
+        let (synced, a) = (script.written(), Disk::of(&script.path));
+        script.group(1 + rng.below(90));
+        let (newest, b) = (script.written(), Disk::of(&script.path));
+        checkpoints += u64::from(changed(&a.db, &b.db) > 1);
+        let at = cut(&a, &b, &mut rng);
+        let path = dir.path().join("after.sculpt");
+        put(&path, &at.db);
+        put(&wal(&path), &at.wal);
+        let _ = std::fs::remove_file(format!("{}-shm", path.display()));
+        let opened = session::open(&path).unwrap_or_else(|e| panic!("seed {seed}, cut {n}: {e}"));
+        assert_eq!(opened.loss, None, "seed {seed}, cut {n}: a torn write must look like none");
+        let last = opened.input.last().map_or(0, |t| t.tick);
+        assert!(
+            (synced..=newest).contains(&last),
+            "seed {seed}, cut {n}: {last}, synced {synced}, newest {newest}"
+        );
+        assert_eq!(
+            hash_of(&opened),
+            script.hashes[last as usize],
+            "seed {seed}, cut {n}, tick {last}"
+        );
+        // And it can be gone on with.
+        let (writer, thread) = session::resume(&path).expect("goes on");
+        drop(writer);
+        assert_eq!(thread.finish(), None);
+        lost += u64::from(last < newest);
+    }
+    script.end();
+    (lost, checkpoints)
+}
+
+#[test]
+fn a_hundred_power_cuts_cost_the_last_group_at_most() {
+    let runs: Vec<_> =
+        (0..10).map(|seed| std::thread::spawn(move || power_cuts(100 + seed, 10))).collect();
+    let all: Vec<(u64, u64)> =
+        runs.into_iter().map(|r| r.join().expect("no cut was fatal")).collect();
+    let lost: u64 = all.iter().map(|a| a.0).sum();
+    println!("100 power cuts: {lost} cost their last group, {} kept it", 100 - lost);
+    assert!(lost > 20, "the cuts do tear: {all:?}");
+}
+
+/// With enough input between the cuts that SQLite moves its log into the database again and again.
+#[test]
+fn power_cuts_during_checkpoints_cost_no_more() {
+    if std::env::var_os("SCULPTD_LONG").is_none() {
+        println!("skipped: SCULPTD_LONG not set");
+        return;
+    }
+    let (lost, checkpoints) = power_cuts(5, 900);
+    println!(
+        "900 power cuts of one session: {lost} cost their last group, {checkpoints} fell into a checkpoint"
+    );
+    assert!(checkpoints > 0);
+}
