@@ -171,6 +171,7 @@ impl Ticking {
             let stepped = self.clock.now_ns() - begun;
             figures.tick(&report, stepped);
             let mut shown = published_figures(&figures, &self.receiver, stepped);
+            shown.garbage_overflows = self.garbage.overflowed();
             if let Some(sample) = samples.last() {
                 let took_us = self.clock.now_us().saturating_sub(sample.t_us);
                 newest = (sample.t_us, tick, took_us as f64 / 1e3);

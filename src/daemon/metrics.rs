@@ -33,6 +33,8 @@ pub fn page(p: &Published, journal: Option<&super::session::Health>) -> String {
     };
     put("ticks_total", "counter", "Ticks stepped.", p.tick as f64);
     put("overruns_total", "counter", "Ticks that came late.", f.overruns as f64);
+    let text = "Times that the queue of memory to be freed was full.";
+    put("garbage_overflows_total", "counter", text, f.garbage_overflows as f64);
     put("samples_total", "counter", "Samples of pens and hands.", f.samples as f64);
     put("dabs_total", "counter", "Dabs of brushes.", f.dabs as f64);
     put(

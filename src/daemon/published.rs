@@ -64,6 +64,8 @@ pub struct PublishedFigures {
     pub dabs: u64,
     pub vertices_moved: u64,
     pub overruns: u64,
+    /// How often the queue of memory to be freed was full, and a second one took it.
+    pub garbage_overflows: u64,
     pub tick_ms: Percentiles,
     pub losses: Losses,
     /// Duration of the newest tick, ms.

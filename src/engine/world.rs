@@ -19,9 +19,7 @@ pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SideData};
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
-use crate::hand::{
-    Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity,
-};
+use crate::hand::{Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity};
 use crate::payload::{Payload, PayloadStore};
 use crate::replaced::ReplacedClay;
 use crate::stroke::{CurveAction, PenTrack};

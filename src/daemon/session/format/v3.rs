@@ -13,9 +13,8 @@ pub const LAYOUT: u32 = 3;
 /// The key of `meta` that names the log in shared memory; eight bytes.
 pub const META_TAIL: &str = "tail";
 
-/// The number of fields of every struct that lay in a file of layout 3. Never changed. Structs of
-/// one name that could not be told apart (`Held`) are left out: they must not grow without a new
-/// name.
+/// The number of fields of every struct that lay in a file of layout 3, by the names of today.
+/// The numbers never change.
 pub const FIELD_COUNTS: &FieldCounts = &[
     ("AutoMask", 5),
     ("Beginning", 3),
@@ -35,6 +34,7 @@ pub const FIELD_COUNTS: &FieldCounts = &[
     ("HandTools", 15),
     ("Hands", 3),
     ("HeldObject", 2),
+    ("HeldStroke", 4),
     ("Jump", 5),
     ("Level", 2),
     ("Levels", 3),
@@ -57,8 +57,8 @@ pub const FIELD_COUNTS: &FieldCounts = &[
     ("Pin", 3),
     ("PressureCurve", 2),
     ("Push", 4),
-    ("Reach", 2),
     ("ReachBox", 2),
+    ("ReachCalibration", 2),
     ("Sample", 4),
     ("Settings", 6),
     ("Similarity", 3),
@@ -69,6 +69,7 @@ pub const FIELD_COUNTS: &FieldCounts = &[
     ("TickInput", 3),
     ("Topology", 4),
     ("Track", 16),
+    ("TrackedHand", 7),
     ("TriMesh", 3),
     ("Upper", 6),
     ("Volume", 3),
