@@ -470,7 +470,7 @@ fn attempt(
         job.check()?;
         let flat = 4.0 * floor.max(a.points.contact.farthest);
         let group = |o| simplify::group_of(operands, o);
-        for (origin, t) in simplify::retriangulated(cut, a.own, &a.points.at, flat, group) {
+        for (origin, t) in simplify::retriangulated(&cut, a.own, &a.points.at, flat, group) {
             mesh.push_face(&t);
             origins.push(origin);
         }
