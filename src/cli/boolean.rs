@@ -240,7 +240,16 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         let mut made = Made::of(name, file, written);
         if args.details {
             let plain = || s.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
-            made.origins = Some(origins.clone().unwrap_or_else(plain));
+            let all = origins.clone().unwrap_or_else(plain);
+            if all.len() == made.faces {
+                made.origins = Some(all);
+            } else {
+                out.warnings.push(format!(
+                    "{name}: the file has {} faces for the result's {}: no origins are given",
+                    made.faces,
+                    all.len()
+                ));
+            }
         }
         out.results.push(made);
     }

@@ -50,6 +50,46 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<BooleanFac
     Ok(facts)
 }
 
+/// Takes out shells whose volume is less than that of a sheet of their area and this thickness:
+/// what faces in contact leave between them. Returns how many went.
+pub fn drop_thin_shells(
+    mesh: &mut PolyMesh,
+    origins: &mut Vec<FaceOrigin>,
+    thickness: f64,
+) -> usize {
+    let mut shells = DisjointSets::new(mesh.positions.len());
+    for f in mesh.faces() {
+        f.windows(2).for_each(|w| shells.join(w[0], w[1]));
+    }
+    let (triangles, _) = mesh.triangles();
+    let mut sums = vec![(0.0f64, 0.0f64); mesh.positions.len()];
+    for t in &triangles {
+        let root = shells.root(t[0]);
+        let origin = mesh.positions[root as usize];
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize] - origin);
+        let n = (b - a).cross(c - a);
+        let sum = &mut sums[root as usize];
+        *sum = (sum.0 + a.dot(n) / 6.0, sum.1 + n.length() / 2.0);
+    }
+    let thin = |&(volume, area): &(f64, f64)| area > 0.0 && volume.abs() <= 0.5 * area * thickness;
+    let gone = sums.iter().filter(|s| thin(s)).count();
+    if gone == 0 {
+        return 0;
+    }
+    let old = std::mem::replace(mesh, PolyMesh::new());
+    mesh.positions = old.positions.clone();
+    let mut kept = Vec::with_capacity(origins.len());
+    for (f, corners) in old.faces().enumerate() {
+        if !thin(&sums[shells.root(corners[0]) as usize]) {
+            mesh.push_face(corners);
+            kept.push(origins[f]);
+        }
+    }
+    *origins = kept;
+    crate::repair::drop_unused(mesh);
+    gone
+}
+
 /// Volume, area and shells of a closed manifold.
 pub fn facts(mesh: &PolyMesh, job: &Job) -> Result<BooleanFacts, Cancelled> {
     let count = || {

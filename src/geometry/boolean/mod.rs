@@ -439,7 +439,7 @@ fn attempt(
     if let Some(why) = &a.doubt {
         return Ok(Err(why.clone()));
     }
-    let mut solids = Vec::new();
+    let (mut solids, mut thin) = (Vec::new(), Vec::new());
     for &operation in operations {
         job.check()?;
         let faces = operands.iter().map(|m| m.face_count()).sum();
@@ -470,12 +470,23 @@ fn attempt(
         job.check()?;
         let flat = 4.0 * floor.max(a.points.contact.farthest);
         let group = |o| simplify::group_of(operands, o);
-        for (origin, t) in simplify::retriangulated(cut, a.own, &a.points.at, flat, group) {
+        for (origin, t) in simplify::retriangulated(&cut, a.own, &a.points.at, flat, group) {
             mesh.push_face(&t);
             origins.push(origin);
         }
         job.check()?;
-        let facts = emit::finish(&mut mesh, &a.points.at, job)?;
+        let mut facts = emit::finish(&mut mesh, &a.points.at, job)?;
+        let contact = a.points.contact.farthest;
+        if facts.closed && facts.components > 1 && contact > 8.0 * floor {
+            let gone = emit::drop_thin_shells(&mut mesh, &mut origins, 2.0 * contact);
+            if gone > 0 {
+                facts = emit::facts(&mesh, job)?;
+                thin.push(format!(
+                    "{gone} shells of the {} that are thinner than the contact were left out",
+                    operation.name()
+                ));
+            }
+        }
         if !facts.closed {
             return Ok(Err(format!("the {} is not closed", operation.name())));
         }
@@ -489,6 +500,7 @@ fn attempt(
         return Ok(Err(why));
     }
     report.contact = a.points.contact;
+    report.warnings.extend(thin);
     report.cut = a.curve();
     job.progress(1.0);
     Ok(Ok(solids))

@@ -131,9 +131,11 @@ pub fn resolution(mesh: &PolyMesh) -> Resolution {
         near_single &= (v - f64::from(v as f32)).abs() <= 0.5 * 10f64.powi(-decimals);
         short.push((digits - decimals, digits, decimals));
     }
-    // Decimals of the largest values: smaller ones have more where digits are counted.
+    // What the longest value leaves behind the point of the largest one: exact where digits are
+    // counted, and where decimals are counted and a largest value uses all of them.
     let Some(&(largest, ..)) = short.iter().max_by_key(|d| d.0) else { return double };
-    let most = short.iter().filter(|d| d.0 == largest).map(|d| d.2).max().unwrap_or(0);
+    let longest = short.iter().map(|d| d.1).max().unwrap_or(0);
+    let most = longest - largest;
     let error = 0.5 * 10f64.powi(-most);
     let full = short.iter().filter(|d| d.1 >= LEAST_DIGITS && d.2 >= most).count();
     let used = short.len() >= 6 && full * 2 >= short.len();
@@ -199,6 +201,9 @@ mod tests {
         let nine = |v: f64| format!("{v:.8e}").parse::<f64>().expect("a number");
         let mut m = turned();
         m.positions.iter_mut().for_each(|p| *p += DVec3::new(10.3, -7.7, 0.01));
+        assert_eq!(resolution(&mapped(&m, nine)).error, 0.5e-7);
+        // A corner at the shift itself has few digits.
+        m.positions[0] = DVec3::new(10.3, -7.7, 0.01);
         assert_eq!(resolution(&mapped(&m, nine)).error, 0.5e-7);
     }
 

@@ -67,14 +67,14 @@ struct Region<'a> {
 /// The cut faces as triangles. Points below `own` are the operands'; `flat` is how far the corners
 /// of one plane may be from it; `group` gives the group of a face, which no triangle leaves.
 pub fn retriangulated(
-    cut: Vec<CutFace>,
+    cut: &[CutFace],
     own: usize,
     at: &[DVec3],
     flat: f64,
     group: impl Fn(FaceOrigin) -> u32,
 ) -> Vec<(FaceOrigin, [u32; 3])> {
     let (mut triangles, mut origins) = (Vec::new(), Vec::new());
-    for face in &cut {
+    for face in cut {
         match face.corners[..] {
             [a, b, c] => triangles.push([a, b, c]),
             _ => triangulate::face(at, &face.corners, &mut triangles),
@@ -403,7 +403,7 @@ mod tests {
         let rings: [&[u32]; 3] = [&[0, 4, 8, 5, 3], &[4, 6, 9, 7, 5, 8], &[6, 1, 2, 7, 9]];
         let cut = rings
             .map(|r| CutFace { origin: FaceOrigin { operand: 0, face: 0 }, corners: r.to_vec() });
-        let made = retriangulated(cut.to_vec(), 4, &at, 1e-12, |_| 0);
+        let made = retriangulated(&cut, 4, &at, 1e-12, |_| 0);
         // Points on the open border stay, for the faces beyond it have them; those inside go.
         assert_eq!(made.len(), 6);
         assert!(made.iter().all(|(_, t)| !t.contains(&8) && !t.contains(&9)));

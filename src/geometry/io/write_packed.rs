@@ -34,11 +34,17 @@ pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
             "count": points.len(), "type": "VEC4"}));
         attributes["COLOR_0"] = 2.into();
     }
-    let json = serde_json::json!({
+    let mut json = serde_json::json!({
         "asset": {"version": "2.0", "generator": "sculptd"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [{"attributes": attributes, "indices": 1, "mode": 4}]}],
         "buffers": [{"byteLength": total}], "bufferViews": views, "accessors": accessors,
     });
+    if points.is_empty() {
+        // No accessor may be empty: an empty solid is a scene without nodes.
+        json = serde_json::json!({
+            "asset": {"version": "2.0", "generator": "sculptd"}, "scene": 0, "scenes": [{}],
+        });
+    }
     let mut json = serde_json::to_vec(&json)?;
     json.resize(json.len().next_multiple_of(4), b' ');
     let length = u32::try_from(12 + 8 + json.len() + 8 + total)
