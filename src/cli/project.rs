@@ -13,8 +13,8 @@ use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::march::default_epsilon;
 use sculptd_geometry::projection::{
-    PlaneRegion, PointTest, ProjectionPlane, area, outline, png, sample, shadow_areas,
-    spread_directions, svg,
+    PlaneRegion, PointTest, ProjectionPlane, ProjectionSamples, area, outline, png, sample,
+    shadow_areas, spread_directions, svg,
 };
 
 #[derive(Debug, clap::Args)]
@@ -52,6 +52,10 @@ pub struct ProjectArgs {
     /// Instead of one direction: which of N spread ones have the smallest and the largest shadow?
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub orientations: Option<u64>,
+    /// Write the random points, one a line: u, v, and `inside` or `outside`; for `sample` and
+    /// `march`. The picture of `--png` then shows them too.
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
     /// Write the outline as a drawing to scale.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
@@ -121,6 +125,10 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         seconds: 0.0,
         warnings,
     };
+    if args.points.is_some() && matches!(args.method, MethodArg::Exact) {
+        return Err(Fail::Usage("--points: expected --method sample or march".into()));
+    }
+    let mut shown: Option<ProjectionSamples> = None;
     let polygons: Vec<PlaneRegion> = if let MethodArg::Exact = args.method {
         let (polygons, seconds) = timed(|| outline(&solid.topology, &plane));
         (out.area, out.seconds) = (area(&polygons), seconds);
@@ -153,6 +161,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         out.points = Some(Points { inside: samples.inside.len(), total: args.samples as usize });
         let (polygons, alpha_area) = samples.shape(args.alpha.unwrap_or(samples.alpha));
         out.alpha_area = Some(alpha_area);
+        shown = args.points.is_some().then_some(samples);
         polygons
     };
     out.polygons = polygons.len();
@@ -169,13 +178,26 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
             out.orientations = Some(Orientations { smallest, largest, directions: areas.len() });
         }
     }
+    if let (Some(file), Some(samples)) = (&args.points, &shown) {
+        let centre = plane.flat(part.centre);
+        let write = |w: &mut dyn std::io::Write| -> std::io::Result<()> {
+            for (points, name) in [(&samples.inside, "inside"), (&samples.outside, "outside")] {
+                for &p in points {
+                    let q = p + centre;
+                    writeln!(w, "{} {} {name}", q.x, q.y)?;
+                }
+            }
+            Ok(())
+        };
+        write_beside(file, write).map_err(|e| Fail::io(file, &e))?;
+    }
     if let Some(file) = &args.svg {
         write_beside(file, |w| w.write_all(svg(&polygons).as_bytes()))
             .map_err(|e| Fail::io(file, &e))?;
     }
     if let Some(file) = &args.png {
-        let bytes =
-            png(&polygons, 1200).map_err(|e| Fail::Input(format!("{}: {e}", file.display())))?;
+        let bytes = png(&polygons, shown.as_ref(), 1200)
+            .map_err(|e| Fail::Input(format!("{}: {e}", file.display())))?;
         write_beside(file, |w| w.write_all(&bytes)).map_err(|e| Fail::io(file, &e))?;
     }
     warn(&args.mesh, &out.warnings);

@@ -180,6 +180,45 @@ impl Picture {
         }
     }
 
+    /// Draws a scale of colours in the lower left corner: a bar from `low` to `high` by `colour`, and
+    /// the two numbers beneath it, in black. Pictures of less than 240 by 80 pixels have no
+    /// room for it and stay as they are.
+    pub fn legend(&mut self, low: f32, high: f32, colour: impl Fn(f32) -> [u8; 3]) {
+        let (bar, left, top) = (200, 16, self.height.saturating_sub(48));
+        if self.width < 240 || self.height < 80 {
+            return;
+        }
+        for y in top..top + 14 {
+            for x in 0..bar {
+                let value = low + (high - low) * x as f32 / (bar - 1) as f32;
+                self.rgb[y * self.width + left + x] = colour(value);
+            }
+        }
+        let upper = format!("{high:.3}");
+        let right = left + bar - (upper.len() * GLYPH_STEP).min(bar);
+        self.number(&format!("{low:.3}"), left, top + 18);
+        self.number(&upper, right, top + 18);
+    }
+
+    /// Writes digits, points and signs with their upper left corner at a pixel; what is beyond the
+    /// picture is cut off.
+    fn number(&mut self, text: &str, left: usize, top: usize) {
+        for (n, c) in text.chars().enumerate() {
+            let Some((_, rows)) = GLYPHS.iter().find(|g| g.0 == c) else { continue };
+            for (row, bits) in rows.iter().enumerate() {
+                for column in 0..3 {
+                    for pixel in 0..GLYPH_SCALE * GLYPH_SCALE {
+                        let x = left + n * GLYPH_STEP + column * GLYPH_SCALE + pixel % GLYPH_SCALE;
+                        let y = top + row * GLYPH_SCALE + pixel / GLYPH_SCALE;
+                        if bits >> (2 - column) & 1 == 1 && x < self.width && y < self.height {
+                            self.rgb[y * self.width + x] = [0; 3];
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// As a PNG file.
     pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
         use image::ImageEncoder;
@@ -193,6 +232,26 @@ impl Picture {
         Ok(out)
     }
 }
+
+/// Pixels a side of a dot of a glyph, and from one glyph to the next.
+const GLYPH_SCALE: usize = 3;
+const GLYPH_STEP: usize = 4 * GLYPH_SCALE;
+
+/// Glyphs of three by five dots, rows from the top, the left dot in the highest bit.
+const GLYPHS: [(char, [u8; 5]); 12] = [
+    ('0', [7, 5, 5, 5, 7]),
+    ('1', [2, 6, 2, 2, 7]),
+    ('2', [7, 1, 7, 4, 7]),
+    ('3', [7, 1, 7, 1, 7]),
+    ('4', [5, 5, 7, 1, 1]),
+    ('5', [7, 4, 7, 1, 7]),
+    ('6', [7, 4, 7, 5, 7]),
+    ('7', [7, 1, 1, 2, 2]),
+    ('8', [7, 5, 7, 5, 7]),
+    ('9', [7, 5, 7, 1, 7]),
+    ('.', [0, 0, 0, 0, 2]),
+    ('-', [0, 0, 7, 0, 0]),
+];
 
 #[cfg(test)]
 mod tests {
@@ -219,5 +278,19 @@ mod tests {
         assert_eq!(count(|c| c[0] > 50 && c[1] == 0), 32 * 32 - 16 * 16);
         assert_eq!(p.place(&camera, Vec3::new(0.5, 0.5, 3.0)), (48.0, 16.0));
         assert_eq!(&p.png().expect("encodes")[1..4], b"PNG");
+    }
+
+    #[test]
+    fn the_legend_has_the_colours_and_the_numbers() {
+        let blank = |w, h| Picture { width: w, height: h, rgb: vec![[255; 3]; w * h] };
+        let mut p = blank(300, 100);
+        p.legend(1.0, 2.0, |v| [(v * 100.0) as u8, 0, 1]);
+        let bar: Vec<u8> = p.rgb.iter().filter(|c| c[2] == 1).map(|c| c[0]).collect();
+        assert_eq!((bar.len(), bar[0], bar[199]), (200 * 14, 100, 200));
+        // "1.000" and "2.000": 8 + 1 + 3 * 12 and 11 + 1 + 3 * 12 dots of nine pixels.
+        assert_eq!(p.rgb.iter().filter(|c| **c == [0; 3]).count(), (45 + 48) * 9);
+        let mut small = blank(100, 60);
+        small.legend(1.0, 2.0, |_| [0; 3]);
+        assert_eq!(small, blank(100, 60));
     }
 }

@@ -6,7 +6,9 @@ pub mod presets;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use sculptd_devices::Clock;
+use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::CentredMesh;
@@ -16,7 +18,9 @@ use sculptd_geometry::picture::{Camera, draw};
 use sculptd_geometry::thickness::check::{
     CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict, add_places, check,
 };
+use sculptd_geometry::thickness::colour::colour;
 use sculptd_geometry::thickness::preset::Preset;
+use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
     Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, Thickness, ThicknessMethod,
@@ -32,6 +36,10 @@ pub struct ThicknessArgs {
     pub how: How,
     #[command(flatten)]
     pub limits: LimitArgs,
+    /// Tell the thickness at the point of the surface nearest to this one, with its rays, instead of
+    /// the whole part's; in the file's coordinates, millimetres.
+    #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
+    pub at: Option<DVec3>,
     /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
     #[arg(long, value_name = "FILE")]
     pub ply: Option<PathBuf>,
@@ -232,9 +240,61 @@ pub fn load(path: &Path, how: &How, job: &Job) -> Result<(CentredMesh, Vec<Strin
     Ok((part, loaded.warnings))
 }
 
+/// Three numbers with commas between.
+fn place(text: &str) -> Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|s| s.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
+            Ok(DVec3::new(x, y, z))
+        }
+        _ => Err("expected three numbers X,Y,Z".into()),
+    }
+}
+
+/// The answer of `--at`: like [`Probe`], in the file's coordinates.
+#[derive(Debug, Serialize)]
+struct AtAnswer {
+    file: String,
+    position: [f64; 3],
+    normal: [f32; 3],
+    thickness: Option<f32>,
+    error: f32,
+    rays: Vec<ProbedRay>,
+}
+
+fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) -> Outcome {
+    let loaded = read_mesh(path, job)?;
+    let part = CentredMesh::new(&loaded.mesh, args.how.unit.scale());
+    let found = probe(&part.mesh, &args.how.settings(), at - part.centre, job)
+        .map_err(|e| Fail::Usage(e.to_string()))?;
+    let Some(Probe { position, normal, thickness, error, rays, .. }) = found else {
+        return Err(Fail::Input(format!("{}: no surface there to measure at", path.display())));
+    };
+    let position = part.to_file(position.into()).to_array();
+    let file = path.display().to_string();
+    let out = AtAnswer { file, position, normal, thickness, error, rays };
+    answer(json, &out, |w| {
+        let [x, y, z] = out.position;
+        let value = out.thickness.map_or("none".into(), |v| format!("{v:.4} mm"));
+        writeln!(w, "thickness {value} +- {:.4} at ({x:.4}, {y:.4}, {z:.4})", out.error)?;
+        for r in &out.rays {
+            let length = r.length.map_or("none".into(), |l| format!("{l:.4}"));
+            writeln!(w, "  ray {:?} {length}", r.direction)?;
+        }
+        Ok(())
+    });
+    Ok(())
+}
+
 pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
     let limits = args.limits.limits()?;
     let job = Job::default();
+    if let Some(at) = args.at {
+        return match &args.meshes[..] {
+            [path] => tell_at(path, args, at, &job, json),
+            _ => Err(Fail::Usage("--at: expected one mesh".into())),
+        };
+    }
     let path = match &args.meshes[..] {
         [path] if args.out.is_none() => path,
         _ => return batch::run(args, limits, json),
@@ -250,7 +310,9 @@ pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
     if let Some(out) = &args.png {
         let colours = checked.thickness.colours(checked.thickness.scale());
         let camera = Camera::whole(&part.mesh, 4.0 / 3.0);
-        let picture = draw(&part.mesh, Some(&colours), &camera, 1200, 900);
+        let mut picture = draw(&part.mesh, Some(&colours), &camera, 1200, 900);
+        let (low, high) = checked.thickness.scale();
+        picture.legend(low, high, |v| colour(v, low, high));
         let png = picture.png().map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }

@@ -2,8 +2,8 @@
 //! and pieces of the file are read on all cores.
 //!
 //! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative
-//! indices, a backslash that continues a line, and `g`, `usemtl`, `o` as groups. Normals, texture
-//! coordinates, lines, points and smoothing groups are passed over in silence; free-form curves and
+//! indices, a backslash that continues a line, and `g`, `usemtl`, `o` as groups. Normals, lines,
+//! points and smoothing groups are passed over in silence; texture coordinates, free-form curves and
 //! surfaces with a warning.
 
 use std::collections::BTreeMap;
@@ -30,6 +30,7 @@ struct ObjPiece {
     /// (face of this piece from which it holds, kind, name)
     names: Vec<(u32, u8, String)>,
     short_faces: u64,
+    texture: u64,
     free_form: u64,
 }
 
@@ -81,7 +82,7 @@ pub(super) fn parse(
     let coloured = parts.iter().any(|p| !p.colours.is_empty());
     let mut colours = Vec::new();
     let mut groups = ObjGroups::default();
-    let (mut short, mut free) = (0, 0);
+    let (mut short, mut free, mut texture) = (0, 0, 0);
     for (part, &(start, end)) in parts.iter().zip(&spans) {
         job.check()?;
         let base = mesh.positions.len() as i64;
@@ -113,12 +114,16 @@ pub(super) fn parse(
         }
         short += part.short_faces;
         free += part.free_form;
+        texture += part.texture;
     }
     groups.fill(mesh.face_count());
     mesh.groups = groups.used.then_some(groups.of_face);
     mesh.colours = coloured.then_some(colours);
     if short > 0 {
         warnings.push(format!("{short} faces of fewer than three corners left out"));
+    }
+    if texture > 0 {
+        warnings.push(format!("{texture} texture coordinates (vt) left out"));
     }
     if free > 0 {
         warnings.push(format!("{free} free-form curves or surfaces left out"));
@@ -232,6 +237,7 @@ fn piece(text: &[u8]) -> Result<ObjPiece, FileProblem> {
                 out.names.push((out.lengths.len() as u32, keyword[0], name));
                 continue;
             }
+            b"vt" => out.texture += 1,
             b"curv" | b"curv2" | b"surf" => out.free_form += 1,
             _ => {}
         }

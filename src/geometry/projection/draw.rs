@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DVec2;
 use image::{ImageError, Rgb, RgbImage};
 
-use super::PlaneRegion;
+use super::{PlaneRegion, ProjectionSamples};
 
 fn frame(polygons: &[PlaneRegion]) -> (DVec2, DVec2) {
     let (lo, hi) = polygons
@@ -41,10 +41,15 @@ pub fn svg(polygons: &[PlaneRegion]) -> String {
     out
 }
 
-/// A picture, the longer side `longest` pixels (16 to 16,384), as a PNG file's bytes.
-pub fn png(polygons: &[PlaneRegion], longest: u32) -> Result<Vec<u8>, ImageError> {
+/// A picture, the longer side `longest` pixels (16 to 16,384), as a PNG file's bytes. `samples` are
+/// shown as dots, green inside and red outside.
+pub fn png(
+    polygons: &[PlaneRegion],
+    samples: Option<&ProjectionSamples>,
+    longest: u32,
+) -> Result<Vec<u8>, ImageError> {
     let longest = longest.clamp(16, 16_384);
-    let (lo, hi) = frame(polygons);
+    let (lo, hi) = samples.map_or_else(|| frame(polygons), |s| (s.lo, s.hi));
     let margin = (hi - lo).max_element() * 0.02;
     let (lo, size) = (lo - margin, hi - lo + 2.0 * margin);
     let pixel = size.max_element() / longest as f64;
@@ -65,6 +70,16 @@ pub fn png(polygons: &[PlaneRegion], longest: u32) -> Result<Vec<u8>, ImageError
             let column = |x: f64| (((x - lo.x) / pixel + 0.5).floor().max(0.0) as u32).min(w);
             for x in column(span[0])..column(span[1]) {
                 picture.put_pixel(x, y, Rgb([70, 84, 102]));
+            }
+        }
+    }
+    if let Some(s) = samples {
+        for (points, colour) in [(&s.inside, [60, 200, 90]), (&s.outside, [210, 60, 50])] {
+            for p in points {
+                let (x, y) = ((p.x - lo.x) / pixel, (lo.y + size.y - p.y) / pixel);
+                if x >= 0.0 && y >= 0.0 && (x as u32) < w && (y as u32) < h {
+                    picture.put_pixel(x as u32, y as u32, Rgb(colour));
+                }
             }
         }
     }

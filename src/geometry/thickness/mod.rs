@@ -17,6 +17,7 @@ pub mod colour;
 pub mod cone;
 mod edges;
 pub mod preset;
+pub mod probe;
 pub mod ray;
 pub mod refine;
 pub mod report;

@@ -45,7 +45,7 @@ fn known_shadows_with_holes_and_disjoint_parts() {
     let side = outline(&ring.topology, &ProjectionPlane::along(DVec3::X, 0.0).unwrap());
     assert_eq!((side.len(), side[0].holes.len()), (1, 0));
     assert!(svg(&down).contains("evenodd"));
-    let picture = image::load_from_memory(&png(&down, 200).unwrap()).unwrap().to_rgb8();
+    let picture = image::load_from_memory(&png(&down, None, 200).unwrap()).unwrap().to_rgb8();
     assert_eq!(picture.get_pixel(picture.width() / 2, picture.height() / 2).0, [255; 3]);
 
     let mut two = icosphere(1.0, 6);
