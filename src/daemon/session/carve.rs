@@ -230,10 +230,11 @@ impl PageImage {
 /// them have their own.
 fn frames(log: &[u8], page_size: usize) -> (Vec<(u32, usize)>, Option<[u32; 2]>) {
     let salts_at = |at: usize| Some([u32_at(log, at)?, u32_at(log, at + 4)?]);
-    let magic = u32_at(log, 0).unwrap_or(0);
-    // A damaged head: the first frame has the salts too.
-    let of_head = if magic & !1 == 0x377f_0682 { salts_at(16) } else { None };
-    let Some(salts) = of_head.or_else(|| salts_at(LOG_HEAD + 8)) else {
+    // The head or a frame may be damaged: the salts count that most frames have.
+    let places = (LOG_HEAD..log.len()).step_by(FRAME_HEAD + page_size);
+    let matching = |s: &[u32; 2]| places.clone().filter(|at| salts_at(at + 8) == Some(*s)).count();
+    let named = [salts_at(16), salts_at(LOG_HEAD + 8)].into_iter().flatten();
+    let Some(salts) = named.max_by_key(matching) else {
         return (Vec::new(), None);
     };
     let mut all = Vec::new();

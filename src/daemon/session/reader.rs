@@ -166,10 +166,13 @@ pub(super) fn connect(path: &Path, alone: bool) -> rusqlite::Result<Connection> 
 
 /// Whether the log beside a session is of another session, or of another time of this one.
 pub(super) fn log_is_foreign(path: &Path, known: &Acknowledgement) -> bool {
-    match (known.salts, log_salts(path)) {
-        ([0, 0], _) | (_, None) => false,
-        (had, Some(now)) => had != now && now[0].wrapping_sub(had[0]).wrapping_sub(1) >= RESTARTS,
-    }
+    log_salts(path).is_some_and(|now| salts_are_foreign(known, now))
+}
+
+/// Whether no log of this session has these salts since the acknowledgement.
+pub(super) fn salts_are_foreign(known: &Acknowledgement, now: [u32; 2]) -> bool {
+    let had = known.salts;
+    had != [0, 0] && had != now && now[0].wrapping_sub(had[0]).wrapping_sub(1) >= RESTARTS
 }
 
 /// The start mesh alone, for one who holds the session open for writing: no other handle of the

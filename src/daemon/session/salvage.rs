@@ -22,7 +22,7 @@ use super::format::{
 };
 use super::history::reopen::from_checkpoint;
 use super::history::{Node, Store, StoreError};
-use super::reader::{Loss, OpenError, Opened, indices_hold, log_is_foreign, open};
+use super::reader::{Loss, OpenError, Opened, indices_hold, open, salts_are_foreign};
 use super::shared_memory_log::{self, LogEntry};
 use super::writer::CreateError;
 use sculptd_clay::Clay;
@@ -130,8 +130,12 @@ pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
         Acknowledged::Known(a) => Some(a),
         _ => None,
     };
-    let foreign = known.is_some_and(|a| log_is_foreign(path, &a));
-    let mut image = PageImage::open(path, !foreign).map_err(io)?;
+    let mut image = PageImage::open(path, true).map_err(io)?;
+    if let (Some(known), Some(salts)) = (&known, image.salts)
+        && salts_are_foreign(known, salts)
+    {
+        image = PageImage::open(path, false).map_err(io)?;
+    }
     let (carved, identity) = CarvedInput::read(&mut image, known.map(|a| a.identity));
     let readable = read(path, carved, identity, known.map(|a| a.tick))?;
     let create = |source| SalvageError::Store { path: path.display().to_string(), source };

@@ -18,7 +18,9 @@ fn session_with_history(dir: &Path) -> Script {
     let keeper = Keeper::start(&script.path, &mut script.world, 0, None, 1 << 40).expect("kept");
     script.writer.iter_mut().for_each(|w| w.keep(keeper.handle.clone()));
     let history = keeper.handle.clone();
-    script.thread.iter_mut().for_each(|t| t.history = Some(keeper));
+    if let Some(thread) = &mut script.thread {
+        thread.history = Some(keeper);
+    }
     script.hashes = vec![script.world.hash()];
     for n in 0..TICKS / 60 {
         script.group(60);
