@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
@@ -13,9 +13,13 @@ use sculptd_daemon::command_queue::{QueuedCommand, command_queue};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::control::handler::call as answer;
 use sculptd_daemon::control::server::{Server, permitted};
+use sculptd_daemon::control::stroke::VirtualPen;
 use sculptd_daemon::control::{Host, MAX_CLIENTS, MAX_DEPTH, MAX_MESSAGE, MAX_RATE, PROTOCOL};
+use sculptd_daemon::live::{Journal, Live};
 use sculptd_daemon::published::{Published, PublishedFigures};
 use sculptd_daemon::startup;
+use sculptd_devices::{Clock, queue};
+use sculptd_geometry::io::write_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 use serde_json::{Value, json};
@@ -355,4 +359,77 @@ fn a_subscriber_hears_each_change_and_answers_still_come_whole() {
     let wrong = Client::new(&path)
         .ask(r#"{"jsonrpc":"2.0","id":1,"method":"subscribe","params":{"to":1}}"#);
     assert_eq!(wrong.expect("an answer")["error"]["code"], -32602);
+}
+
+/// A stroke by `stroke` goes through the law of a pen: it moves clay, is one step of undo, is in
+/// the session, and replays to the same mesh. The brush in hand stays.
+#[test]
+fn a_stroke_by_request_moves_clay_and_replays_to_the_same_hash() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (ball, session) = (dir.path().join("ball.ply"), dir.path().join("s.sculpt"));
+    write_mesh(&ball, &shapes::icosphere(1.0, 24).to_poly()).expect("written");
+    let config = Config {
+        r#loop: sculptd_daemon::config::LoopConfig { workers: 1, ..Default::default() },
+        ..Default::default()
+    };
+    let begun = startup::begin(Some(&ball), Some(&session), &config, &Job::default());
+    let begun = begun.expect("begins");
+    let (writer, thread) = begun.journal.unzip();
+    let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
+    let (factory, receiver) = queue::channel(4096);
+    let clock = Clock::monotonic();
+    let live = Live::start(begun.world, receiver, clock.clone(), config.r#loop, 4096, journal);
+    let live = live.expect("runs");
+    let host = Host {
+        pen: Some(Arc::new(Mutex::new(VirtualPen::new(&factory, clock)))),
+        ..Host::new(live.commands.clone(), live.published.clone())
+    };
+    let hash = || answer(&host, "hash", Value::Null).expect("a hash")["hash"].clone();
+    let before = (hash(), live.published.load().brush);
+
+    let points: Vec<_> =
+        (0..=40).map(|i| json!([0.4 + 0.005 * f64::from(i), 0.5, 0.8, 5 * i])).collect();
+    let stroke = json!({ "points": points, "space": "view", "brush": { "kind": "draw" } });
+    let made = answer(&host, "stroke", stroke).expect("a stroke");
+    assert_eq!(made["samples"], 42);
+    assert_ne!(hash(), before.0, "nothing moved");
+    let shown = live.published.load_full();
+    assert_eq!(shown.undo_steps, 1);
+    assert!(shown.figures.dabs > 1 && shown.figures.samples == 42);
+
+    // In space: on the side that is seen, with the brush in hand, which came back.
+    let view = glam::Vec2::new(0.45, 0.4);
+    let hit = shown.mesh.pick(shown.camera.ray(view)).expect("on the ball").position;
+    let at = |p: glam::Vec3, ms: f64| json!([p.x, p.y, p.z, 1.0, ms]);
+    let world = |points: Vec<Value>| json!({ "points": points, "space": "world" });
+    let between = hash();
+    answer(&host, "stroke", world(vec![at(hit, 0.0), at(hit, 30.0)])).expect("a stroke");
+    assert_ne!(hash(), between, "nothing moved");
+    assert_eq!(live.published.load().brush, before.1);
+    let behind = world(vec![at(hit, 0.0), at(-hit, 10.0)]);
+    let e = answer(&host, "stroke", behind).expect_err("not seen");
+    assert!(e.message.starts_with("points[1]: not seen"), "{}", e.message);
+    for points in [
+        json!([[0.5, 0.5, 1.5, 0.0]]),
+        json!([[0.5, 0.5, 1.0, 0.0], [0.5, 0.5, 1.0, 0.4]]),
+        json!([[0.5, 0.5, 1.0, 0.0, 0.0]]),
+        json!([[99.0, 0.5, 1.0, 0.0]]),
+        json!(vec![[0.5, 0.5, 1.0, 0.0]; 1001]),
+    ] {
+        let e = answer(&host, "stroke", json!({ "points": points, "space": "view" }));
+        assert_eq!(e.expect_err("refused").code, -32602);
+    }
+
+    let ended = live.stop().expect("ends").world;
+    let sculpted = ended.mesh().hash();
+    drop(ended);
+    assert_eq!(thread.and_then(|t| t.finish()), None);
+    let opened = sculptd_daemon::session::open(&session).expect("a session");
+    let again = sculptd_daemon::session::replay::replay(
+        &opened,
+        None,
+        sculptd_clay::Workers::new(1),
+        &Job::default(),
+    );
+    assert_eq!(again.expect("replays").world.mesh().hash(), sculpted);
 }
