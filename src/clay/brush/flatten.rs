@@ -26,6 +26,6 @@ impl Brush for FlattenBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
-        VertexChange::by(self.plane.normal * (-h * dab.sign * dab.strength * spot.weight))
+        VertexChange::by(self.plane.normal * (-h * dab.sign * dab.share * spot.weight))
     }
 }

@@ -18,6 +18,7 @@ pub const REACH: f32 = 3.5;
 #[derive(Debug, Clone, Copy)]
 pub struct GaussianBrush {
     centre: Vec3,
+    normal: Vec3,
     offset: Vec3,
     radius2: f32,
     /// Multiplies the squared distance in the exponent.
@@ -30,6 +31,7 @@ impl GaussianBrush {
         let scale = REACH / radius;
         GaussianBrush {
             centre,
+            normal,
             offset: normal * height,
             radius2: radius * radius,
             fall: -(scale * scale) / (2.0 * SIGMA * SIGMA),
@@ -41,7 +43,7 @@ impl Kernel for GaussianBrush {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         Weights::with(|w| {
-            out.visit_many(w.sphere(page, self.centre, self.radius2, |d2| exp(d2 * self.fall)));
+            out.visit_many(w.sphere(page, self.centre, self.normal, self.radius2, |d2| exp(d2 * self.fall)));
             out.push_all(self.offset, w.of(page));
         });
     }

@@ -14,6 +14,6 @@ impl Brush for MaskBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        VertexChange::mask(dab.sign * dab.strength * spot.weight)
+        VertexChange::mask(dab.sign * dab.strength * dab.span * spot.weight)
     }
 }

@@ -37,6 +37,6 @@ impl Brush for MaskBlurBrush {
         } else {
             0.0
         };
-        VertexChange::mask(by * dab.strength * spot.weight)
+        VertexChange::mask(by * dab.share * spot.weight)
     }
 }

@@ -122,8 +122,8 @@ pub struct PathSettings {
     pub jitter: f32,
     /// What dabs are strewn by.
     pub seed: u32,
-    /// Strength is scaled by the spacing over a fifth of the radius, so that closer dabs do not
-    /// build up more.
+    /// Strength counts over every fifth of the radius travelled, so that neither closer dabs nor
+    /// more reports of the pen build up more. Off: each dab has the whole strength.
     pub compensate: bool,
 }
 
@@ -137,7 +137,7 @@ impl Default for PathSettings {
             average: 0,
             jitter: 0.0,
             seed: 1,
-            compensate: false,
+            compensate: true,
         }
     }
 }

@@ -12,6 +12,6 @@ impl Brush for PaintBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        VertexChange { dye: dab.strength * spot.weight, ..VertexChange::default() }
+        VertexChange { dye: dab.share * spot.weight, ..VertexChange::default() }
     }
 }

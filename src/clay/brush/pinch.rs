@@ -19,6 +19,6 @@ impl Brush for PinchBrush {
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let d = dab.centre - spot.p;
         let flat = d - self.normal * d.dot(self.normal);
-        VertexChange::by(flat * (dab.sign * dab.strength * spot.weight))
+        VertexChange::by(flat * (dab.sign * dab.share * spot.weight))
     }
 }

@@ -14,6 +14,6 @@ impl Brush for RelaxBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (n, d) = (spot.normal(), spot.middle() - spot.p);
-        VertexChange::by((d - n * d.dot(n)) * (dab.strength * spot.weight))
+        VertexChange::by((d - n * d.dot(n)) * (dab.share * spot.weight))
     }
 }

@@ -29,6 +29,6 @@ impl Brush for ScrapeBrush {
         if h * dab.sign <= 0.0 {
             return VertexChange::default();
         }
-        VertexChange::by(self.plane.normal * (-h * dab.strength * spot.weight))
+        VertexChange::by(self.plane.normal * (-h * dab.share * spot.weight))
     }
 }

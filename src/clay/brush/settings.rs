@@ -47,7 +47,8 @@ pub struct BrushSettings {
     /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work
     /// is loaded or the setting changes, so that the brush does not breathe while the form grows.
     pub radius: f32,
-    /// 0 to 1. Gaussian: the height of one full dab is `strength * radius`.
+    /// 0 to 1. For brushes that raise: over every fifth of the radius travelled a stroke lays down a
+    /// dab `strength * radius` high, however many dabs that is made of ([`PathSettings::compensate`]).
     pub strength: f32,
     /// Carve instead of raise: what the brush does, the other way round.
     pub negative: bool,
@@ -83,18 +84,30 @@ pub struct BrushSettings {
     pub auto: AutoMask,
     pub path: PathSettings,
     pub topology: TopologySettings,
-    /// The brush's own numbers, as its file names them.
+    /// The brush's own numbers, in the order of [`BrushKind::own_numbers`]; 0 beyond them.
     pub extra: [f32; EXTRAS],
+    /// The share of the radius within which the brush works in full; the falloff runs over the
+    /// rest. 0 to 0.95.
+    pub hardness: f32,
+    /// Evening after each dab, as the smooth brush does it at this strength; 0 to 1.
+    pub auto_smooth: f32,
+    /// On: a dab is measured on what the stroke has raised so far, and a stroke climbs upon itself.
+    /// Off: on the surface as the stroke found it, for the brushes that can
+    /// ([`super::Brush::FOUND`]), and where no triangles are cut.
+    pub accumulate: bool,
+    /// The brush follows the pen by a string of so many radii (at least a few pixels), which takes
+    /// the tremble out of a hand and keeps a resting brush at rest. 0: no string; to 1.
+    pub steady: f32,
 }
 
 impl Default for BrushSettings {
     fn default() -> Self {
         BrushSettings {
-            kind: BrushKind::Gaussian,
+            kind: BrushKind::Draw,
             radius: 0.15,
             strength: 0.08,
             negative: false,
-            spacing: 0.2,
+            spacing: 0.1,
             pressure_strength: PressureCurve::default(),
             pressure_radius: PressureCurve { at_zero: 0.5, gamma: 1.0 },
             symmetry: [false; 3],
@@ -112,6 +125,10 @@ impl Default for BrushSettings {
             path: PathSettings::default(),
             topology: TopologySettings::default(),
             extra: [0.0; EXTRAS],
+            hardness: 0.0,
+            auto_smooth: 0.0,
+            accumulate: true,
+            steady: 0.1,
         }
     }
 }
@@ -210,6 +227,9 @@ impl BrushSettings {
         f("auto.normal_degrees", &mut self.auto.normal_degrees, 0.0, 180.0, 0.0);
         f("auto.cavity", &mut self.auto.cavity, -1.0, 1.0, 0.0);
         f("topology.edge", &mut self.topology.edge, 0.002, 1.0, d.topology.edge);
+        f("hardness", &mut self.hardness, 0.0, 0.95, 0.0);
+        f("auto_smooth", &mut self.auto_smooth, 0.0, 1.0, 0.0);
+        f("steady", &mut self.steady, 0.0, 1.0, d.steady);
         f("path.rope", &mut self.path.rope, 0.0, 0.5, 0.0);
         f("path.jitter", &mut self.path.jitter, 0.0, 2.0, 0.0);
         f("path.every_ticks", &mut self.path.every_ticks, 1.0, 1000.0, d.path.every_ticks);

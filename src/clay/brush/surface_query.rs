@@ -8,7 +8,7 @@ use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
 use crate::brush::geodesic::Geodesic;
 use crate::brush::stroke_param::StrokeParameters;
-use crate::{Clay, Reach};
+use crate::{Clay, Page, Reach};
 
 /// Memory kept from dab to dab.
 #[derive(Debug, Default)]
@@ -83,7 +83,7 @@ impl SurfaceQuery<'_> {
     pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
         let radius = dab.radius * dab.settings.normal_radius;
         let (mut point, mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO, 0.0f64);
-        self.mesh.each_vertex(&Reach::Sphere { centre: dab.centre, radius }, |page, v, d2| {
+        let mut add = |page: &Page, v: usize, d2: f32| {
             let n = page.normal(v);
             if n.dot(dab.normal) > 0.0 {
                 let w = f64::from((1.0 - d2 / (radius * radius)).max(0.0));
@@ -91,7 +91,20 @@ impl SurfaceQuery<'_> {
                 normal += n.as_dvec3() * w;
                 sum += w;
             }
-        });
+        };
+        let reach = Reach::Sphere { centre: dab.centre, radius };
+        if dab.found {
+            self.mesh.each_page_before(&reach, |_, page| {
+                for v in 0..page.own() {
+                    let d2 = (page.point(v) - dab.centre).length_squared();
+                    if d2 <= radius * radius {
+                        add(page, v, d2);
+                    }
+                }
+            });
+        } else {
+            self.mesh.each_vertex(&reach, add);
+        }
         let normal = normal.as_vec3().try_normalize().unwrap_or(dab.normal);
         let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };
         let trim = dab.settings.plane_trim;
