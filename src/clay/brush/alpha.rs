@@ -8,6 +8,7 @@ use std::f32::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
+/// A picture of heights that the program makes, or the one that was loaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Alpha {
@@ -35,7 +36,9 @@ pub enum Alpha {
 /// A loaded picture of heights, rows from the top.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
+    /// Pixels.
     pub width: u32,
+    /// Pixels.
     pub height: u32,
     /// 0 lowest to 65535 highest; `width * height` of them.
     pub heights: Vec<u16>,

@@ -31,6 +31,7 @@ pub enum Grip {
 /// One dab, in mesh units.
 #[derive(Debug, Clone, Copy)]
 pub struct Dab<'a> {
+    /// What the person set.
     pub settings: &'a BrushSettings,
     /// The middle of the dab: on the surface as the stroke found it if `found`, else as it is.
     pub centre: Vec3,
@@ -40,6 +41,7 @@ pub struct Dab<'a> {
     pub touch: Vec3,
     /// The dab is measured on the surface as the stroke found it.
     pub found: bool,
+    /// Mesh units, pressure counted in.
     pub radius: f32,
     /// 0 to 1, pressure counted in.
     pub strength: f32,
@@ -72,6 +74,7 @@ pub struct Dab<'a> {
     pub image: usize,
     /// Length of the stroke up to here, and a number that differs from stroke to stroke.
     pub travelled: f32,
+    /// See [`Dab::travelled`].
     pub stroke: u32,
 }
 
@@ -151,9 +154,11 @@ pub(super) fn facing(c: f32) -> f32 {
 /// A vertex that a brush looks at.
 #[derive(Debug, Clone, Copy)]
 pub struct VertexContext<'a> {
+    /// The page that it is an own vertex of.
     pub page: &'a PageIn<'a>,
     /// The page's number, and the vertex in it.
     pub number: u32,
+    /// See [`VertexContext::number`].
     pub v: usize,
     /// Where it is.
     pub p: Vec3,
@@ -207,6 +212,7 @@ impl VertexContext<'_> {
 /// What is to change at a vertex. Several images' changes add up.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct VertexChange {
+    /// Added to where it is.
     pub by: Vec3,
     /// Where it is to be from where the stroke found it, instead of where it is now.
     pub held: Option<Vec3>,
@@ -217,15 +223,18 @@ pub struct VertexChange {
 }
 
 impl VertexChange {
+    /// It moves from where it is.
     #[inline(always)]
     pub fn by(by: Vec3) -> VertexChange {
         VertexChange { by, ..VertexChange::default() }
     }
 
+    /// It moves to so far from where the stroke found it.
     pub fn held(by: Vec3) -> VertexChange {
         VertexChange { held: Some(by), ..VertexChange::default() }
     }
 
+    /// Its mask changes by so much, above 0 to more protection.
     pub fn mask(mask: f32) -> VertexChange {
         VertexChange { mask, ..VertexChange::default() }
     }

@@ -4,6 +4,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{SurfaceQuery, Plane};
 
+/// One dab of fill, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct FillBrush {
     plane: Plane,

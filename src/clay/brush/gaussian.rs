@@ -12,9 +12,12 @@ use super::tool::Tool;
 use super::weights::{Weights, exp};
 use crate::{Kernel, PageIn, PageOut};
 
+/// The standard deviation of the bell, in the unit in which the radius is [`REACH`].
 pub const SIGMA: f32 = 0.7;
+/// Where the profile ends.
 pub const REACH: f32 = 3.5;
 
+/// One dab of gaussian, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct GaussianBrush {
     centre: Vec3,

@@ -53,10 +53,11 @@ macro_rules! brushes {
         /// Which brush a dab is of.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum BrushKind {
-            $(#[serde(rename = $name)] $variant,)*
+            $(#[doc = concat!("`", $name, "`: see `config/brushes/", $name, ".toml`.")] #[serde(rename = $name)] $variant,)*
         }
 
         impl BrushKind {
+            /// Every brush, in the order of the table.
             pub const ALL: &[BrushKind] = &[$(BrushKind::$variant,)*];
 
             /// As it is written in files and on the command line.

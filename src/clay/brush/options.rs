@@ -68,6 +68,7 @@ pub enum Measure {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TopologySettings {
+    /// What [`TopologySettings::edge`] is a share of.
     pub by: Measure,
     /// Wanted length of edges as a share of the measure; 0.002 to 1.
     pub edge: f32,
@@ -105,9 +106,11 @@ pub enum Method {
     Curve,
 }
 
+/// How the pen's path becomes dabs, and how the brush follows it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PathSettings {
+    /// The way from path to dabs.
     pub method: Method,
     /// Dabs go on while the pen rests, whatever the method.
     pub continuous: bool,

@@ -3,6 +3,7 @@
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of paint, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct PaintBrush;
 

@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of pinch, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct PinchBrush {
     normal: Vec3,

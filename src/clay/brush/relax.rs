@@ -4,6 +4,7 @@
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of relax, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct RelaxBrush;
 

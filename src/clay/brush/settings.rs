@@ -29,6 +29,7 @@ impl Default for PressureCurve {
 }
 
 impl PressureCurve {
+    /// The factor for a pressure, which is clamped to 0 to 1.
     pub fn factor(&self, pressure: f32) -> f32 {
         let p = pressure.clamp(0.0, 1.0);
         let bent = if self.gamma == 1.0 { p } else { p.powf(self.gamma.clamp(0.1, 10.0)) };
@@ -40,9 +41,11 @@ impl PressureCurve {
 /// Numbers that only some brushes have; each brush's file names its own.
 pub const EXTRAS: usize = 4;
 
+/// A brush as a person set it. Plain data: it is part of commands and of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BrushSettings {
+    /// Which brush it is.
     pub kind: BrushKind,
     /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work
     /// is loaded or the setting changes, so that the brush does not breathe while the form grows.
@@ -54,12 +57,15 @@ pub struct BrushSettings {
     pub negative: bool,
     /// Distance between dabs as a share of the radius; 0.02 to 1.
     pub spacing: f32,
+    /// How pressure scales the strength.
     pub pressure_strength: PressureCurve,
+    /// How pressure scales the radius.
     pub pressure_radius: PressureCurve,
     /// Mirror over the planes x = 0, y = 0, z = 0 through the work's own middle at load.
     pub symmetry: [bool; 3],
     /// Any plane, and turns about an axis.
     pub mirror: Mirror,
+    /// How the brush fades from its middle to its rim.
     pub falloff: Falloff,
     /// Of a custom falloff: values at x = 0, 1/8, ... 1, each 0 to 1.
     pub curve: [f32; CURVE],
@@ -81,8 +87,11 @@ pub struct BrushSettings {
     pub alpha: Alpha,
     /// How the alpha is laid between the brush and the clay.
     pub stamp: Stamp,
+    /// What dabs leave alone by themselves.
     pub auto: AutoMask,
+    /// How the pen's path becomes dabs.
     pub path: PathSettings,
+    /// Dynamic topology under the brush.
     pub topology: TopologySettings,
     /// The brush's own numbers, in the order of [`BrushKind::own_numbers`]; 0 beyond them.
     pub extra: [f32; EXTRAS],

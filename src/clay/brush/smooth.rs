@@ -20,6 +20,7 @@ use sculptd_geometry::simd::cotangents::MAX_COT;
 /// Vertices looked at together.
 const BLOCK: usize = 64;
 
+/// One dab of smooth, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct SmoothBrush {
     centre: Vec3,

@@ -25,14 +25,17 @@ impl Scratch {
         self.walks.get(image).is_some_and(|w| w.distance(page, v).is_some())
     }
 
+    /// The alpha that was loaded.
     pub fn picture(&self) -> Option<&Picture> {
         self.picture.as_deref()
     }
 
+    /// The coordinates along the stroke of an image.
     pub fn unrolled(&self, image: usize) -> Option<&StrokeParameters> {
         self.unrolls.get(image)
     }
 
+    /// The distances along the surface of an image.
     pub fn walk(&self, image: usize) -> Option<&Geodesic> {
         self.walks.get(image)
     }
@@ -50,7 +53,9 @@ impl Scratch {
 /// The clay before a dab.
 #[derive(Debug)]
 pub struct SurfaceQuery<'a> {
+    /// The clay as it is.
     pub mesh: &'a Clay,
+    /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
     /// Which of the images that act together this is.
     pub image: usize,
@@ -59,6 +64,7 @@ pub struct SurfaceQuery<'a> {
 /// A plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
+    /// A point of it, mesh units.
     pub point: Vec3,
     /// Unit length.
     pub normal: Vec3,

@@ -10,6 +10,7 @@ use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
+/// One dab of texture, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct TextureBrush {
     /// The newest samples' numbers; vertices that belong to older ones stay as they are.

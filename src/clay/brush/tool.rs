@@ -12,14 +12,18 @@ use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 /// The clay in a brush's hand.
 #[derive(Debug)]
 pub struct Tool<'a> {
+    /// The clay.
     pub mesh: &'a mut Clay,
+    /// The threads that help.
     pub workers: &'a Workers,
+    /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
     /// Summed over all dabs.
     pub report: DabReport,
 }
 
 impl Tool<'_> {
+    /// Runs one kernel over the clay and counts what it did.
     pub fn run<K: Kernel>(&mut self, reach: &Reach, kernel: &K) {
         let r = self.mesh.dab(reach, kernel, self.workers);
         self.report.affected += r.affected;

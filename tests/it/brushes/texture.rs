@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::Clay;
-use sculptd_clay::brush::stroke_param::{Sample, Unroll};
+use sculptd_clay::brush::stroke_param::{StrokeSample, StrokeParameters};
 use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, PressureCurve};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
@@ -42,7 +42,7 @@ fn build(mesh: &TriMesh) -> Clay {
 }
 
 /// Calls `visit` with each vertex that has coordinates: where it is, and they.
-fn each_place(mesh: &Clay, unroll: &Unroll, mut visit: impl FnMut(Vec3, Vec2)) -> usize {
+fn each_place(mesh: &Clay, unroll: &StrokeParameters, mut visit: impl FnMut(Vec3, Vec2)) -> usize {
     let mut count = 0;
     for p in 0..mesh.page_count() as u32 {
         for v in 0..mesh.page(p).own() {
@@ -56,9 +56,9 @@ fn each_place(mesh: &Clay, unroll: &Unroll, mut visit: impl FnMut(Vec3, Vec2)) -
 }
 
 /// The greatest error over the radius, of coordinates about one point.
-fn worst_about(mesh: &TriMesh, from: Sample, radius: f32, exact: impl Fn(Vec3) -> Vec2) -> f32 {
+fn worst_about(mesh: &TriMesh, from: StrokeSample, radius: f32, exact: impl Fn(Vec3) -> Vec2) -> f32 {
     let mesh = build(mesh);
-    let mut unroll = Unroll::default();
+    let mut unroll = StrokeParameters::default();
     unroll.walk.begin(&mesh);
     unroll.spread(&mesh, &from, radius);
     let mut worst = 0.0f32;
@@ -74,7 +74,7 @@ fn a_cylinder_unrolls_to_its_development() {
         let a = (x - 0.5) * std::f32::consts::TAU;
         Vec3::new(a.sin(), y * 2.0 - 1.0, a.cos())
     };
-    let from = Sample { point: Vec3::Z, normal: Vec3::Z, along: Vec3::new(0.8, 0.6, 0.0), u: 0.3 };
+    let from = StrokeSample { point: Vec3::Z, normal: Vec3::Z, along: Vec3::new(0.8, 0.6, 0.0), u: 0.3 };
     let exact = |p: Vec3| {
         let flat = Vec2::new(p.x.atan2(p.z), p.y);
         Vec2::new(0.3 + flat.dot(Vec2::new(0.8, 0.6)), flat.dot(Vec2::new(-0.6, 0.8)))
@@ -105,7 +105,7 @@ fn a_cone_unrolls_to_its_development() {
     for strewn in [0.0, 0.4] {
         let worst = worst_about(
             &sheet(160, 70, strewn, cone),
-            Sample { point, normal, along, u: 0.0 },
+            StrokeSample { point, normal, along, u: 0.0 },
             0.4,
             exact,
         );
@@ -127,7 +127,7 @@ fn a_sphere_gets_its_exponential_map() {
     };
     for radius in [0.25, 0.5] {
         let worst =
-            worst_about(&mesh, Sample { point: normal, normal, along, u: 0.0 }, radius, exact);
+            worst_about(&mesh, StrokeSample { point: normal, normal, along, u: 0.0 }, radius, exact);
         println!("sphere, radius {radius}: {:.2} % of the radius", worst * 100.0);
         assert!(worst < 0.02, "{worst}");
     }
@@ -141,7 +141,7 @@ fn a_stroke_round_a_cylinder_unrolls_along_its_arc_length() {
     };
     let mesh = build(&sheet(200, 64, 0.3, tube));
     let radius = 0.3;
-    let mut unroll = Unroll::default();
+    let mut unroll = StrokeParameters::default();
     // A helix: a straight line in the development, from (-1, -0.4), rising by 0.4 a unit.
     let direction = Vec2::new(1.0, 0.4).normalize();
     let (start, step, steps) = (Vec2::new(-1.0, -0.4), 0.2 * radius, 34);
