@@ -41,6 +41,10 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "density",
     "simplify",
     "slide-relax",
+    "plane",
+    "multiplane-scrape",
+    "sharpen",
+    "surface-smooth",
 ];
 
 /// The embedded presets, read once.

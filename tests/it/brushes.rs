@@ -1,6 +1,7 @@
 //! Brushes: golden strokes, formulas, properties.
 
 mod curve;
+mod feel;
 mod formulas;
 mod golden;
 mod levels;

@@ -8,6 +8,7 @@ use std::f32::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
+/// A picture of heights that the program makes, or the one that was loaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Alpha {
@@ -35,7 +36,9 @@ pub enum Alpha {
 /// A loaded picture of heights, rows from the top.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
+    /// Pixels.
     pub width: u32,
+    /// Pixels.
     pub height: u32,
     /// 0 lowest to 65535 highest; `width * height` of them.
     pub heights: Vec<u16>,
@@ -51,19 +54,27 @@ impl Picture {
         pixels > 0 && pixels <= MOST && self.heights.len() as u64 == pixels
     }
 
-    /// Reads PNG, TIFF or OpenEXR, 8 or 16 bits or float; colours become their brightness. The
-    /// error says what is wrong.
+    /// Reads PNG, TIFF or OpenEXR, 8 or 16 bits or float; colours become their brightness,
+    /// and what is transparent is low: the height is brightness times the alpha channel.
+    ///
+    /// # Errors
+    /// Says what is wrong: not a picture, too large, empty.
     pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
         let reader = image::ImageReader::new(std::io::Cursor::new(bytes))
             .with_guessed_format()
             .map_err(|e| format!("not a picture: {e}"))?;
-        let (width, height) =
+        let (width, rows) =
             reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
-        if u64::from(width) * u64::from(height) > MOST {
-            return Err(format!("{width} x {height} pixels; at most {MOST} are taken"));
+        if u64::from(width) * u64::from(rows) > MOST {
+            return Err(format!("{width} x {rows} pixels; at most {MOST} are taken"));
         }
-        let luma = image::load_from_memory(bytes).map_err(|e| e.to_string())?.into_luma16();
-        let picture = Picture { width, height, heights: luma.into_raw() };
+        let image = image::load_from_memory(bytes).map_err(|e| e.to_string())?.into_luma_alpha16();
+        // What is transparent is low.
+        let height = |[luma, alpha]: [u16; 2]| {
+            ((u32::from(luma) * u32::from(alpha) + 32_767) / 65_535) as u16
+        };
+        let heights = image.pixels().map(|p| height(p.0)).collect();
+        let picture = Picture { width, height: rows, heights };
         if picture.is_sane() { Ok(picture) } else { Err("an empty picture".into()) }
     }
 
@@ -248,6 +259,18 @@ mod tests {
             let corner = read.at(0.125, 0.875);
             assert!((corner - f32::from(pixels[0]) / 65535.0).abs() < 1e-6);
         }
+        let see_through = image::ImageBuffer::<image::LumaA<u8>, _>::from_raw(
+            2,
+            1,
+            vec![200u8, 255, 200, 0],
+        );
+        png.clear();
+        let written = see_through.expect("fits").write_to(
+            &mut std::io::Cursor::new(&mut png),
+            image::ImageFormat::Png,
+        );
+        written.expect("written");
+        assert_eq!(Picture::decode(&png).expect("read").heights, [200 * 257, 0]);
         assert!(Picture::decode(b"not a picture").is_err());
         assert!(Picture::decode(&png[..png.len() / 2]).is_err());
     }

@@ -10,6 +10,7 @@ use crate::brush::surface_query::{Scratch, SurfaceQuery};
 /// Faces fade out over this much of the cosine to the eye.
 const FRONT_FADE: f32 = 0.2;
 
+/// What one dab leaves alone, found out before it acts.
 #[derive(Debug, Clone, Copy)]
 pub struct AutoMasking {
     on: bool,
@@ -24,6 +25,7 @@ pub struct AutoMasking {
 }
 
 impl AutoMasking {
+    /// For a dab; marks what hangs together with it where the settings ask for that.
     pub fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> AutoMasking {
         let a = &dab.settings.auto;
         if a.topology {

@@ -2,25 +2,25 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of blob.
 #[derive(Debug, Clone, Copy)]
 pub struct BlobBrush {
     heart: Vec3,
 }
 
 impl Brush for BlobBrush {
-    const OWN_NUMBERS: &'static [OwnNumber] = &[
-        OwnNumber {
-            name: "depth",
-            value: 0.6,
-            min: 0.05,
-            max: 2.0,
-            about: "how far below the surface that point lies, in radii",
-        },
-    ];
+    const FOUND: bool = true;
+    const OWN_NUMBERS: &'static [OwnNumber] = &[OwnNumber {
+        name: "depth",
+        value: 0.6,
+        min: 0.05,
+        max: 2.0,
+        about: "how far below the surface that point lies, in radii",
+    }];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let plane = on.plane(dab, 0.0);
@@ -28,7 +28,7 @@ impl Brush for BlobBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        let out = (spot.p - self.heart).normalize_or_zero();
+        let out = (spot.at - self.heart).normalize_or_zero();
         VertexChange::by(out * (dab.height() * spot.weight))
     }
 }

@@ -1,37 +1,62 @@
 //! Clay: fills up to a plane a little over the surface, so that it builds in flat coats; the other
 //! way round it wears down.
+//!
+//! The plane is that of the surface as the stroke found it (unless the stroke accumulates), so a
+//! stroke does not climb upon itself: it comes to one coat, however closely its dabs lie.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::preset::OwnNumber;
-use crate::brush::surface_query::{SurfaceQuery, Plane};
+use crate::brush::surface_query::{Plane, SurfaceQuery};
 
+/// One dab of clay.
 #[derive(Debug, Clone, Copy)]
 pub struct ClayBrush {
     plane: Plane,
+    /// The share of the way to the plane that this dab goes.
+    share: f32,
 }
 
 impl Brush for ClayBrush {
+    const FOUND: bool = true;
     const OWN_NUMBERS: &'static [OwnNumber] = &[
         OwnNumber {
             name: "lift",
-            value: 0.12,
+            value: 0.3,
             min: 0.0,
             max: 1.0,
             about: "how far over the surface the plane stands, in radii, at full strength",
         },
+        OwnNumber {
+            name: "fill",
+            value: 0.4,
+            min: 0.01,
+            max: 1.0,
+            about: "the share of the way to the plane over a fifth of the radius travelled",
+        },
     ];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
-        ClayBrush { plane: on.plane(dab, dab.extra(0) * dab.sign * dab.strength) }
+        let plane = on.plane(dab, dab.extra(0) * dab.sign * dab.strength);
+        ClayBrush { plane, share: dab.approach(dab.extra(1)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        coat(&self.plane, dab.sign, spot)
+        coat(&self.plane, dab.sign, self.share, spot)
     }
 }
 
-/// Moves what lies under the plane (over it, if `sign` is negative) up to it, by its weight.
-pub(super) fn coat(plane: &Plane, sign: f32, spot: &VertexContext<'_>) -> VertexChange {
+/// Moves what lies under the plane (over it, if `sign` is negative) `share` of the way up to it, by
+/// its weight.
+pub(super) fn coat(
+    plane: &Plane,
+    sign: f32,
+    share: f32,
+    spot: &VertexContext<'_>,
+) -> VertexChange {
     let h = plane.height(spot.p);
-    if h * sign >= 0.0 { VertexChange::default() } else { VertexChange::by(plane.normal * (-h * spot.weight)) }
+    if h * sign >= 0.0 {
+        VertexChange::default()
+    } else {
+        VertexChange::by(plane.normal * (-h * share * spot.weight))
+    }
 }

@@ -1,44 +1,67 @@
-//! Clay strips: clay laid on in bands with a square end, turned along the stroke.
+//! Clay strips: clay laid on in bands with flat tops and square ends, turned along the stroke.
+//!
+//! The footprint is a square in the tangent plane, its falloff the product of one along the stroke
+//! and one across it, so that what a stroke adds up to across itself is that of a single dab. As
+//! [`super::clay`] it fills to the plane of the surface as the stroke found it.
 
 use glam::Vec3;
 
 use super::clay::coat;
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext, soft};
 use super::preset::OwnNumber;
-use crate::brush::surface_query::{SurfaceQuery, Plane};
+use crate::brush::surface_query::{Plane, SurfaceQuery};
 use crate::{PageIn, Reach};
 
+/// One dab of clay strips.
 #[derive(Debug, Clone, Copy)]
 pub struct ClayStripsBrush {
     plane: Plane,
     along: Vec3,
     across: Vec3,
+    /// The share of the way to the plane that this dab goes.
+    share: f32,
     /// 1 a disc, 0 a square.
     round: f32,
 }
 
 impl Brush for ClayStripsBrush {
+    const FOUND: bool = true;
     const OWN_NUMBERS: &'static [OwnNumber] = &[
         OwnNumber {
             name: "lift",
-            value: 0.15,
+            value: 0.3,
             min: 0.0,
             max: 1.0,
             about: "how far over the surface the plane stands, in radii, at full strength",
         },
         OwnNumber {
             name: "roundness",
-            value: 0.1,
+            value: 0.0,
             min: 0.0,
             max: 1.0,
             about: "0 a square, 1 a disc",
+        },
+        OwnNumber {
+            name: "fill",
+            value: 0.5,
+            min: 0.01,
+            max: 1.0,
+            about: "the share of the way to the plane over a fifth of the radius travelled",
         },
     ];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let plane = on.plane(dab, dab.extra(0) * dab.sign * dab.strength);
         let along = dab.along();
-        ClayStripsBrush { plane, along, across: along.cross(dab.normal), round: dab.extra(1) }
+        // A stroke has no direction yet where it begins: a disc has none either.
+        let round = if dab.heading == Vec3::ZERO { 1.0 } else { dab.extra(1) };
+        ClayStripsBrush {
+            plane,
+            along,
+            across: along.cross(dab.normal),
+            share: dab.approach(dab.extra(2)),
+            round,
+        }
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {
@@ -46,19 +69,23 @@ impl Brush for ClayStripsBrush {
         dab.ball(std::f32::consts::SQRT_2)
     }
 
-    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
-        let d = (p - dab.centre) / dab.radius;
+    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, at: Vec3) -> f32 {
+        let d = (at - dab.centre) / dab.radius;
         let (x, y, z) = (d.dot(self.along), d.dot(self.across), d.dot(dab.normal));
         if z * z >= 1.0 {
             return 0.0;
         }
-        let square = x.abs().max(y.abs());
-        let disc = (x * x + y * y).sqrt();
-        let r = square + (disc - square) * self.round;
-        dab.settings.falloff.at(r, &dab.settings.curve)
+        let s = dab.settings;
+        let fade = |r: f32| s.falloff.at(soft(r, s.hardness), &s.curve);
+        let square = fade(x.abs()) * fade(y.abs());
+        if self.round == 0.0 {
+            return square;
+        }
+        let disc = fade((x * x + y * y).sqrt());
+        square + (disc - square) * self.round
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        coat(&self.plane, dab.sign, spot)
+        coat(&self.plane, dab.sign, self.share, spot)
     }
 }

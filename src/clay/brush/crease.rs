@@ -1,47 +1,58 @@
-//! Crease: a groove (or a ridge) drawn together from both sides.
+//! Crease: a groove (or a ridge) drawn together from both sides, a continuous valley along the
+//! stroke.
+//!
+//! How deep it cuts is measured on the surface as the stroke found it; what it draws together goes
+//! towards the line of the stroke by a share of its way there, so it never passes the line. The
+//! first dab has no line and only cuts.
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of crease.
 #[derive(Debug, Clone, Copy)]
 pub struct CreaseBrush {
     normal: Vec3,
-    /// The direction of the stroke, along which nothing is drawn together; zero for a single dab.
+    /// The direction of the stroke, along which nothing is drawn together.
     along: Vec3,
+    /// The share of the way to the line.
+    pinch: f32,
 }
 
 impl CreaseBrush {
     /// What leads a vertex to the stroke's line, in the tangent plane.
     fn inward(&self, dab: &Dab<'_>, p: Vec3) -> Vec3 {
-        let d = dab.centre - p;
+        let d = dab.touch - p;
         let flat = d - self.normal * d.dot(self.normal);
         flat - self.along * flat.dot(self.along)
     }
 }
 
 impl Brush for CreaseBrush {
-    const OWN_NUMBERS: &'static [OwnNumber] = &[
-        OwnNumber {
-            name: "pinch",
-            value: 0.6,
-            min: 0.0,
-            max: 1.0,
-            about: "how much the sides are drawn together",
-        },
-    ];
+    const FOUND: bool = true;
+    const OWN_NUMBERS: &'static [OwnNumber] = &[OwnNumber {
+        name: "pinch",
+        value: 0.6,
+        min: 0.0,
+        max: 1.0,
+        about: "how much the sides are drawn together",
+    }];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
-        let along = if dab.motion == Vec3::ZERO { Vec3::ZERO } else { dab.along() };
-        CreaseBrush { normal: on.plane(dab, 0.0).normal, along }
+        let rate = if dab.heading == Vec3::ZERO { 0.0 } else { dab.extra(0) * dab.strength };
+        CreaseBrush {
+            normal: on.plane(dab, 0.0).normal,
+            along: dab.along(),
+            pinch: dab.approach(rate),
+        }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let w = spot.weight;
         // Sharper than it is pinched: the groove's floor is a line.
         let cut = self.normal * (dab.height() * w * w);
-        VertexChange::by(cut + self.inward(dab, spot.p) * (dab.extra(0) * dab.strength * w))
+        VertexChange::by(cut + self.inward(dab, spot.p) * (self.pinch * w))
     }
 }

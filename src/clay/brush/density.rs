@@ -8,6 +8,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use super::relax::RelaxBrush;
 
+/// One dab of density, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct DensityBrush(RelaxBrush);
 

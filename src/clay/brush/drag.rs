@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::{Kernel, PageIn, PageOut};
 
+/// A ball of clay that is carried along.
 #[derive(Debug, Clone, Copy)]
 pub struct Drag {
     centre: Vec3,

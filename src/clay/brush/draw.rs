@@ -2,15 +2,18 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of draw.
 #[derive(Debug, Clone, Copy)]
 pub struct DrawBrush {
     offset: Vec3,
 }
 
 impl Brush for DrawBrush {
+    const FOUND: bool = true;
+
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         DrawBrush { offset: on.plane(dab, 0.0).normal * dab.height() }
     }

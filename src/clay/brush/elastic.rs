@@ -26,6 +26,7 @@ const SIZE: f32 = 0.75;
 /// Beyond so many radii the motion left is under a part in a thousand, and is let go.
 const FAR: f32 = 4.0;
 
+/// One dab of elastic, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct ElasticBrush {
     sizes: [f32; 3],

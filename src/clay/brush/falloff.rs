@@ -33,6 +33,7 @@ pub enum Falloff {
 pub const CURVE: usize = 9;
 
 impl Falloff {
+    /// Every profile.
     pub const ALL: [Falloff; 8] = [
         Falloff::Gaussian,
         Falloff::Smooth,

@@ -4,6 +4,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{SurfaceQuery, Plane};
 
+/// One dab of fill, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct FillBrush {
     plane: Plane,
@@ -29,6 +30,6 @@ impl Brush for FillBrush {
         if h * -dab.sign <= 0.0 {
             return VertexChange::default();
         }
-        VertexChange::by(self.plane.normal * (-h * dab.strength * spot.weight))
+        VertexChange::by(self.plane.normal * (-h * dab.share * spot.weight))
     }
 }

@@ -4,6 +4,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{SurfaceQuery, Plane};
 
+/// One dab of flatten, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct FlattenBrush {
     plane: Plane,
@@ -26,6 +27,6 @@ impl Brush for FlattenBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
-        VertexChange::by(self.plane.normal * (-h * dab.sign * dab.strength * spot.weight))
+        VertexChange::by(self.plane.normal * (-h * dab.sign * dab.share * spot.weight))
     }
 }

@@ -12,12 +12,16 @@ use super::tool::Tool;
 use super::weights::{Weights, exp};
 use crate::{Kernel, PageIn, PageOut};
 
+/// The standard deviation of the bell, in the unit in which the radius is [`REACH`].
 pub const SIGMA: f32 = 0.7;
+/// Where the profile ends.
 pub const REACH: f32 = 3.5;
 
+/// One dab of gaussian, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct GaussianBrush {
     centre: Vec3,
+    normal: Vec3,
     offset: Vec3,
     radius2: f32,
     /// Multiplies the squared distance in the exponent.
@@ -30,6 +34,7 @@ impl GaussianBrush {
         let scale = REACH / radius;
         GaussianBrush {
             centre,
+            normal,
             offset: normal * height,
             radius2: radius * radius,
             fall: -(scale * scale) / (2.0 * SIGMA * SIGMA),
@@ -41,7 +46,7 @@ impl Kernel for GaussianBrush {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         Weights::with(|w| {
-            out.visit_many(w.sphere(page, self.centre, self.radius2, |d2| exp(d2 * self.fall)));
+            out.visit_many(w.sphere(page, self.centre, self.normal, self.radius2, |d2| exp(d2 * self.fall)));
             out.push_all(self.offset, w.of(page));
         });
     }

@@ -132,6 +132,7 @@ impl Geodesic {
         self.find(page).and_then(|b| b.owner.get(v as usize)).is_some_and(|o| o[1] == owner)
     }
 
+    /// Gives a vertex its coordinates and directions from the source that reached it.
     pub fn settle(&mut self, mesh: &Clay, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
         let block = self.block(mesh, key.0);
         block.place[key.1 as usize] = place;

@@ -4,6 +4,7 @@ use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
 
+/// One dab of grab, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct GrabBrush;
 

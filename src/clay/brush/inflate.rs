@@ -1,17 +1,20 @@
 //! Inflate: every vertex along its own normal, so that the form swells, or shrinks.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of inflate.
 #[derive(Debug, Clone, Copy)]
 pub struct InflateBrush;
 
 impl Brush for InflateBrush {
+    const FOUND: bool = true;
+
     fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         InflateBrush
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        VertexChange::by(spot.normal() * (dab.height() * spot.weight))
+        VertexChange::by(spot.normal_at(dab) * (dab.height() * spot.weight))
     }
 }

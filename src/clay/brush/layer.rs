@@ -1,14 +1,16 @@
 //! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all
-//! its dabs, not their sum.
+//! its dabs, not their sum, each measured from where the stroke found the surface.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of layer.
 #[derive(Debug, Clone, Copy)]
 pub struct LayerBrush;
 
 impl Brush for LayerBrush {
     const CUTS: bool = false;
+    const FOUND: bool = true;
 
     fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         LayerBrush
@@ -18,7 +20,11 @@ impl Brush for LayerBrush {
         let normal = spot.page.normal_before(spot.v);
         // How high the stroke has raised it, in the direction of the brush.
         let so_far = (spot.p - spot.page.before(spot.v)).dot(normal) * dab.sign;
-        let goal = dab.height().abs() * spot.weight;
-        if goal > so_far { VertexChange::by(normal * ((goal - so_far) * dab.sign)) } else { VertexChange::default() }
+        let goal = dab.whole_height().abs() * spot.weight;
+        if goal > so_far {
+            VertexChange::by(normal * ((goal - so_far) * dab.sign))
+        } else {
+            VertexChange::default()
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of mask, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct MaskBrush;
 
@@ -14,6 +15,6 @@ impl Brush for MaskBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        VertexChange::mask(dab.sign * dab.strength * spot.weight)
+        VertexChange::mask(dab.sign * dab.strength * dab.span * spot.weight)
     }
 }

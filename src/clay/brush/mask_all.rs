@@ -8,14 +8,19 @@ use super::mask_blur::{sharper, slope};
 use crate::brush::automask::hollow;
 use crate::{Kernel, PageIn, PageOut, Reach};
 
+/// What is done to the whole mask.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MaskAction {
+    /// Everything is free.
     Clear,
+    /// Everything is protected.
     Fill,
+    /// Free becomes protected, protected free.
     Invert,
     /// To the mean of the neighbours.
     Blur,
+    /// Edges of the mask become steeper.
     Sharpen,
     /// Each vertex takes the greatest mask of its neighbours.
     Grow,
@@ -36,7 +41,9 @@ impl MaskAction {
 /// An action on a work of this bounding radius.
 #[derive(Debug, Clone, Copy)]
 pub struct MaskAll {
+    /// What is done.
     pub action: MaskAction,
+    /// The bounding radius, mesh units.
     pub extent: f32,
 }
 

@@ -5,6 +5,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::PageIn;
 
+/// One dab of mask blur, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct MaskBlurBrush;
 
@@ -37,6 +38,6 @@ impl Brush for MaskBlurBrush {
         } else {
             0.0
         };
-        VertexChange::mask(by * dab.strength * spot.weight)
+        VertexChange::mask(by * dab.share * spot.weight)
     }
 }

@@ -53,10 +53,11 @@ macro_rules! brushes {
         /// Which brush a dab is of.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum BrushKind {
-            $(#[serde(rename = $name)] $variant,)*
+            $(#[doc = concat!("`", $name, "`: see `config/brushes/", $name, ".toml`.")] #[serde(rename = $name)] $variant,)*
         }
 
         impl BrushKind {
+            /// Every brush, in the order of the table.
             pub const ALL: &[BrushKind] = &[$(BrushKind::$variant,)*];
 
             /// As it is written in files and on the command line.
@@ -74,6 +75,11 @@ macro_rules! brushes {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::GRIP,)* }
             }
 
+            /// Whether it can be measured on the surface as the stroke found it.
+            pub fn found(self) -> bool {
+                match self { $(BrushKind::$variant => <$module::$brush as Brush>::FOUND,)* }
+            }
+
             /// Whether triangles may be cut under it.
             pub fn cuts(self) -> bool {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::CUTS,)* }
@@ -82,6 +88,7 @@ macro_rules! brushes {
             /// One dab of this brush, and its images.
             pub fn apply(self, dabs: &[Dab<'_>], tool: &mut Tool<'_>) {
                 match self { $(BrushKind::$variant => tool.apply::<$module::$brush>(dabs),)* }
+                tool.even(dabs);
             }
         }
     };
@@ -118,13 +125,17 @@ brushes! {
     "density" Density density::DensityBrush,
     "simplify" Simplify simplify::SimplifyBrush,
     "slide-relax" SlideRelax slide_relax::SlideRelaxBrush,
+    "plane" Plane plane::PlaneBrush,
+    "multiplane-scrape" MultiplaneScrape multiplane_scrape::MultiplaneScrapeBrush,
+    "sharpen" Sharpen sharpen::SharpenBrush,
+    "surface-smooth" SurfaceSmooth surface_smooth::SurfaceSmoothBrush,
 }
 
 // The variants come from a macro, which marks no default.
 #[allow(clippy::derivable_impls)]
 impl Default for BrushKind {
     fn default() -> Self {
-        BrushKind::Gaussian
+        BrushKind::Draw
     }
 }
 

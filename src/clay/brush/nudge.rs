@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of nudge, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct NudgeBrush {
     by: Vec3,

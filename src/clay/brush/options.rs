@@ -68,6 +68,7 @@ pub enum Measure {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TopologySettings {
+    /// What [`TopologySettings::edge`] is a share of.
     pub by: Measure,
     /// Wanted length of edges as a share of the measure; 0.002 to 1.
     pub edge: f32,
@@ -105,9 +106,11 @@ pub enum Method {
     Curve,
 }
 
+/// How the pen's path becomes dabs, and how the brush follows it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PathSettings {
+    /// The way from path to dabs.
     pub method: Method,
     /// Dabs go on while the pen rests, whatever the method.
     pub continuous: bool,
@@ -122,8 +125,8 @@ pub struct PathSettings {
     pub jitter: f32,
     /// What dabs are strewn by.
     pub seed: u32,
-    /// Strength is scaled by the spacing over a fifth of the radius, so that closer dabs do not
-    /// build up more.
+    /// Strength counts over every fifth of the radius travelled, so that neither closer dabs nor
+    /// more reports of the pen build up more. Off: each dab has the whole strength.
     pub compensate: bool,
 }
 
@@ -137,7 +140,7 @@ impl Default for PathSettings {
             average: 0,
             jitter: 0.0,
             seed: 1,
-            compensate: false,
+            compensate: true,
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of paint, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct PaintBrush;
 
@@ -12,6 +13,6 @@ impl Brush for PaintBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        VertexChange { dye: dab.strength * spot.weight, ..VertexChange::default() }
+        VertexChange { dye: dab.share * spot.weight, ..VertexChange::default() }
     }
 }

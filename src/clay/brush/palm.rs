@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::{Kernel, PageIn, PageOut};
 
+/// A disc on its way.
 #[derive(Debug, Clone, Copy)]
 pub struct Palm {
     from: Vec3,

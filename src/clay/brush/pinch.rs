@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of pinch, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct PinchBrush {
     normal: Vec3,
@@ -19,6 +20,6 @@ impl Brush for PinchBrush {
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let d = dab.centre - spot.p;
         let flat = d - self.normal * d.dot(self.normal);
-        VertexChange::by(flat * (dab.sign * dab.strength * spot.weight))
+        VertexChange::by(flat * (dab.sign * dab.share * spot.weight))
     }
 }

@@ -4,6 +4,7 @@
 use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of relax, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct RelaxBrush;
 
@@ -14,6 +15,6 @@ impl Brush for RelaxBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (n, d) = (spot.normal(), spot.middle() - spot.p);
-        VertexChange::by((d - n * d.dot(n)) * (dab.strength * spot.weight))
+        VertexChange::by((d - n * d.dot(n)) * (dab.share * spot.weight))
     }
 }

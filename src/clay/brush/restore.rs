@@ -8,7 +8,9 @@ use crate::{Kernel, PageIn, PageOut};
 /// then.
 #[derive(Debug, Clone, Copy)]
 pub struct Restore {
+    /// The middle of the ball.
     pub centre: Vec3,
+    /// Its radius, mesh units.
     pub radius: f32,
 }
 

@@ -29,6 +29,7 @@ impl Default for PressureCurve {
 }
 
 impl PressureCurve {
+    /// The factor for a pressure, which is clamped to 0 to 1.
     pub fn factor(&self, pressure: f32) -> f32 {
         let p = pressure.clamp(0.0, 1.0);
         let bent = if self.gamma == 1.0 { p } else { p.powf(self.gamma.clamp(0.1, 10.0)) };
@@ -40,25 +41,31 @@ impl PressureCurve {
 /// Numbers that only some brushes have; each brush's file names its own.
 pub const EXTRAS: usize = 4;
 
+/// A brush as a person set it. Plain data: it is part of commands and of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BrushSettings {
+    /// Which brush it is.
     pub kind: BrushKind,
     /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work
     /// is loaded or the setting changes, so that the brush does not breathe while the form grows.
     pub radius: f32,
-    /// 0 to 1. Gaussian: the height of one full dab is `strength * radius`.
+    /// 0 to 1. For brushes that raise: over every fifth of the radius travelled a stroke lays down a
+    /// dab `strength * radius` high, however many dabs that is made of ([`PathSettings::compensate`]).
     pub strength: f32,
     /// Carve instead of raise: what the brush does, the other way round.
     pub negative: bool,
     /// Distance between dabs as a share of the radius; 0.02 to 1.
     pub spacing: f32,
+    /// How pressure scales the strength.
     pub pressure_strength: PressureCurve,
+    /// How pressure scales the radius.
     pub pressure_radius: PressureCurve,
     /// Mirror over the planes x = 0, y = 0, z = 0 through the work's own middle at load.
     pub symmetry: [bool; 3],
     /// Any plane, and turns about an axis.
     pub mirror: Mirror,
+    /// How the brush fades from its middle to its rim.
     pub falloff: Falloff,
     /// Of a custom falloff: values at x = 0, 1/8, ... 1, each 0 to 1.
     pub curve: [f32; CURVE],
@@ -80,21 +87,36 @@ pub struct BrushSettings {
     pub alpha: Alpha,
     /// How the alpha is laid between the brush and the clay.
     pub stamp: Stamp,
+    /// What dabs leave alone by themselves.
     pub auto: AutoMask,
+    /// How the pen's path becomes dabs.
     pub path: PathSettings,
+    /// Dynamic topology under the brush.
     pub topology: TopologySettings,
-    /// The brush's own numbers, as its file names them.
+    /// The brush's own numbers, in the order of [`BrushKind::own_numbers`]; 0 beyond them.
     pub extra: [f32; EXTRAS],
+    /// The share of the radius within which the brush works in full; the falloff runs over the
+    /// rest. 0 to 0.95.
+    pub hardness: f32,
+    /// Evening after each dab, as the smooth brush does it at this strength; 0 to 1.
+    pub auto_smooth: f32,
+    /// On: a dab is measured on what the stroke has raised so far, and a stroke climbs upon itself.
+    /// Off: on the surface as the stroke found it, for the brushes that can
+    /// ([`super::Brush::FOUND`]), and where no triangles are cut.
+    pub accumulate: bool,
+    /// The brush follows the pen by a string of so many radii (at least a few pixels), which takes
+    /// the tremble out of a hand and keeps a resting brush at rest. 0: no string; to 1.
+    pub steady: f32,
 }
 
 impl Default for BrushSettings {
     fn default() -> Self {
         BrushSettings {
-            kind: BrushKind::Gaussian,
+            kind: BrushKind::Draw,
             radius: 0.15,
             strength: 0.08,
             negative: false,
-            spacing: 0.2,
+            spacing: 0.1,
             pressure_strength: PressureCurve::default(),
             pressure_radius: PressureCurve { at_zero: 0.5, gamma: 1.0 },
             symmetry: [false; 3],
@@ -112,6 +134,10 @@ impl Default for BrushSettings {
             path: PathSettings::default(),
             topology: TopologySettings::default(),
             extra: [0.0; EXTRAS],
+            hardness: 0.0,
+            auto_smooth: 0.0,
+            accumulate: true,
+            steady: 0.1,
         }
     }
 }
@@ -210,6 +236,9 @@ impl BrushSettings {
         f("auto.normal_degrees", &mut self.auto.normal_degrees, 0.0, 180.0, 0.0);
         f("auto.cavity", &mut self.auto.cavity, -1.0, 1.0, 0.0);
         f("topology.edge", &mut self.topology.edge, 0.002, 1.0, d.topology.edge);
+        f("hardness", &mut self.hardness, 0.0, 0.95, 0.0);
+        f("auto_smooth", &mut self.auto_smooth, 0.0, 1.0, 0.0);
+        f("steady", &mut self.steady, 0.0, 1.0, d.steady);
         f("path.rope", &mut self.path.rope, 0.0, 0.5, 0.0);
         f("path.jitter", &mut self.path.jitter, 0.0, 2.0, 0.0);
         f("path.every_ticks", &mut self.path.every_ticks, 1.0, 1000.0, d.path.every_ticks);

@@ -8,6 +8,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use super::relax::RelaxBrush;
 
+/// One dab of simplify, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct SimplifyBrush(RelaxBrush);
 

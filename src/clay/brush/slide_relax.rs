@@ -14,6 +14,7 @@ use crate::brush::surface_query::SurfaceQuery;
 /// Of the shortest edge about a vertex, the furthest that one dab takes it.
 const SAFE: f32 = 0.3;
 
+/// One dab of slide relax, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct SlideRelaxBrush {
     /// Where to; none: each to the middle of its neighbours.

@@ -20,9 +20,12 @@ use sculptd_geometry::simd::cotangents::MAX_COT;
 /// Vertices looked at together.
 const BLOCK: usize = 64;
 
+/// One dab of smooth, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct SmoothBrush {
     centre: Vec3,
+    /// What faces away from it is left alone; zero: nothing is.
+    normal: Vec3,
     radius: f32,
     lambda: f32,
 }
@@ -30,7 +33,12 @@ pub struct SmoothBrush {
 impl SmoothBrush {
     /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre.
     pub fn new(centre: Vec3, radius: f32, lambda: f32) -> Self {
-        SmoothBrush { centre, radius, lambda: lambda.clamp(0.0, 1.0) }
+        SmoothBrush { centre, normal: Vec3::ZERO, radius, lambda: lambda.clamp(0.0, 1.0) }
+    }
+
+    fn of(dab: &Dab<'_>) -> Self {
+        let lambda = dab.approach(dab.strength);
+        SmoothBrush { normal: dab.normal, ..SmoothBrush::new(dab.centre, dab.radius, lambda) }
     }
 }
 
@@ -76,7 +84,7 @@ fn any(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
 }
 
 #[inline(always)]
-fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
+pub(super) fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
     if let Some(sum) = page.cotangents(v) {
         (sum.truncate(), sum.w)
     } else if page.is_closed(v) && page.ring(v).len() <= LANES {
@@ -96,7 +104,7 @@ impl Kernel for SmoothBrush {
                 let fade = 1.0 - d2 / radius2;
                 self.lambda * (fade * fade)
             };
-            out.visit_many(w.sphere(page, self.centre, radius2, fade));
+            out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
             let weights = w.of(page);
             for first in (0..weights.len()).step_by(BLOCK) {
                 let (mut count, mut regular) = (0, 0);
@@ -121,7 +129,7 @@ impl Kernel for SmoothBrush {
 
 impl Brush for SmoothBrush {
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
-        SmoothBrush::new(dab.centre, dab.radius, dab.strength)
+        SmoothBrush::of(dab)
     }
 
     #[inline(always)]
@@ -140,7 +148,7 @@ impl Brush for SmoothBrush {
     }
 
     fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(&Self::reach(dab), &SmoothBrush::new(dab.centre, dab.radius, dab.strength));
+        tool.run(&Self::reach(dab), &SmoothBrush::of(dab));
         true
     }
 }

@@ -3,6 +3,7 @@
 use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
+/// One dab of snake hook, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct SnakeHookBrush;
 

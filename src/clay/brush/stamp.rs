@@ -25,9 +25,11 @@ pub enum StampBy {
     Stencil,
 }
 
+/// An alpha between the brush and the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stamp {
+    /// How it is laid.
     pub by: StampBy,
     /// Its width: in widths of the brush, a stencil's in heights of the view; 0.05 to 10.
     pub size: f32,
@@ -48,14 +50,18 @@ impl Default for Stamp {
 /// How an eye sees the work: enough to find where a point is on the view.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Lens {
+    /// Where the eye is, mesh units.
     pub eye: Vec3,
     /// Unit: right, up, and back towards the eye.
     pub right: Vec3,
+    /// See [`Lens::right`].
     pub up: Vec3,
+    /// See [`Lens::right`].
     pub back: Vec3,
     /// Half the view's height over the distance from the eye; without perspective half the height
     /// itself.
     pub half: f32,
+    /// Without perspective.
     pub parallel: bool,
 }
 

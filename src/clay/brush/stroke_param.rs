@@ -19,16 +19,20 @@ use crate::{Clay, Page, Reach};
 /// A sample of a stroke on the surface as it was.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StrokeSample {
+    /// Where it lies, mesh units.
     pub point: Vec3,
+    /// Unit, of the surface there.
     pub normal: Vec3,
     /// Unit, in the tangent plane, along the stroke.
     pub along: Vec3,
+    /// Length of the stroke up to it, mesh units.
     pub u: f32,
 }
 
 /// A stroke being unrolled.
 #[derive(Debug, Default)]
 pub struct StrokeParameters {
+    /// The coordinates of each vertex.
     pub walk: Geodesic,
     /// Which stroke it is.
     stroke: u32,
@@ -43,6 +47,7 @@ impl StrokeParameters {
         self.walk.owner(page, v)
     }
 
+    /// Samples so far.
     pub fn count(&self) -> u32 {
         self.count
     }

@@ -8,7 +8,7 @@ use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
 use crate::brush::geodesic::Geodesic;
 use crate::brush::stroke_param::StrokeParameters;
-use crate::{Clay, Reach};
+use crate::{Clay, Page, Reach};
 
 /// Memory kept from dab to dab.
 #[derive(Debug, Default)]
@@ -25,14 +25,17 @@ impl Scratch {
         self.walks.get(image).is_some_and(|w| w.distance(page, v).is_some())
     }
 
+    /// The alpha that was loaded.
     pub fn picture(&self) -> Option<&Picture> {
         self.picture.as_deref()
     }
 
+    /// The coordinates along the stroke of an image.
     pub fn unrolled(&self, image: usize) -> Option<&StrokeParameters> {
         self.unrolls.get(image)
     }
 
+    /// The distances along the surface of an image.
     pub fn walk(&self, image: usize) -> Option<&Geodesic> {
         self.walks.get(image)
     }
@@ -50,7 +53,9 @@ impl Scratch {
 /// The clay before a dab.
 #[derive(Debug)]
 pub struct SurfaceQuery<'a> {
+    /// The clay as it is.
     pub mesh: &'a Clay,
+    /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
     /// Which of the images that act together this is.
     pub image: usize,
@@ -59,6 +64,7 @@ pub struct SurfaceQuery<'a> {
 /// A plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
+    /// A point of it, mesh units.
     pub point: Vec3,
     /// Unit length.
     pub normal: Vec3,
@@ -83,7 +89,7 @@ impl SurfaceQuery<'_> {
     pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
         let radius = dab.radius * dab.settings.normal_radius;
         let (mut point, mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO, 0.0f64);
-        self.mesh.each_vertex(&Reach::Sphere { centre: dab.centre, radius }, |page, v, d2| {
+        let mut add = |page: &Page, v: usize, d2: f32| {
             let n = page.normal(v);
             if n.dot(dab.normal) > 0.0 {
                 let w = f64::from((1.0 - d2 / (radius * radius)).max(0.0));
@@ -91,7 +97,20 @@ impl SurfaceQuery<'_> {
                 normal += n.as_dvec3() * w;
                 sum += w;
             }
-        });
+        };
+        let reach = Reach::Sphere { centre: dab.centre, radius };
+        if dab.found {
+            self.mesh.each_page_before(&reach, |_, page| {
+                for v in 0..page.own() {
+                    let d2 = (page.point(v) - dab.centre).length_squared();
+                    if d2 <= radius * radius {
+                        add(page, v, d2);
+                    }
+                }
+            });
+        } else {
+            self.mesh.each_vertex(&reach, add);
+        }
         let normal = normal.as_vec3().try_normalize().unwrap_or(dab.normal);
         let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };
         let trim = dab.settings.plane_trim;

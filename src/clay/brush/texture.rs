@@ -10,6 +10,7 @@ use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
+/// One dab of texture, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct TextureBrush {
     /// The newest samples' numbers; vertices that belong to older ones stay as they are.
@@ -32,6 +33,13 @@ impl Brush for TextureBrush {
             min: 0.0,
             max: 1.0,
             about: "the height of the alpha that stays on the surface; what is lower is pressed in",
+        },
+        OwnNumber {
+            name: "width",
+            value: 1.0,
+            min: 0.1,
+            max: 10.0,
+            about: "width of the alpha, in widths of the brush: below 1 it repeats across the stroke, above 1 it is cropped",
         },
     ];
 
@@ -58,9 +66,11 @@ impl Brush for TextureBrush {
         let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else { return VertexChange::default() };
         let far = unroll.walk.distance(spot.number, spot.v).unwrap_or(0.0);
         // A square of the alpha is as wide as the brush, and `scale` times as long.
-        let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / dab.radius);
+        let width = dab.radius * dab.extra(2);
+        let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / width);
+        let t = if (0.0..=1.0).contains(&t) { t } else { t - t.floor() };
         let alpha = dab.settings.alpha.at(s, t, spot.scratch.picture());
-        let h = dab.height() * (alpha - dab.extra(1)) * dab.fade(far * far) * spot.weight;
+        let h = dab.whole_height() * (alpha - dab.extra(1)) * dab.fade(far * far) * spot.weight;
         VertexChange::held(spot.page.normal_before(spot.v) * h)
     }
 }

@@ -6,6 +6,7 @@ use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
 
+/// One dab of thumb, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct ThumbBrush {
     by: Vec3,

@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, Grip, IMAGES, VertexChange, VertexContext};
+use super::dab::{Brush, VertexChange, Dab, Grip, IMAGES, VertexContext};
+use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
 use crate::brush::automask::AutoMasking;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
@@ -11,14 +12,18 @@ use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 /// The clay in a brush's hand.
 #[derive(Debug)]
 pub struct Tool<'a> {
+    /// The clay.
     pub mesh: &'a mut Clay,
+    /// The threads that help.
     pub workers: &'a Workers,
+    /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
     /// Summed over all dabs.
     pub report: DabReport,
 }
 
 impl Tool<'_> {
+    /// Runs one kernel over the clay and counts what it did.
     pub fn run<K: Kernel>(&mut self, reach: &Reach, kernel: &K) {
         let r = self.mesh.dab(reach, kernel, self.workers);
         self.report.affected += r.affected;
@@ -29,6 +34,34 @@ impl Tool<'_> {
     /// A dab and its images, [`IMAGES`] at most; what is beyond is left out.
     pub fn apply<B: Brush>(&mut self, dabs: &[Dab<'_>]) {
         let dabs = &dabs[..dabs.len().min(IMAGES)];
+        for pass in 0..B::PASSES {
+            if pass == 0 {
+                self.pass::<B>(dabs);
+                continue;
+            }
+            let mut again = [dabs[0]; IMAGES];
+            again[..dabs.len()].copy_from_slice(dabs);
+            again.iter_mut().for_each(|d| d.pass = pass);
+            self.pass::<B>(&again[..dabs.len()]);
+        }
+    }
+
+    /// Evens the surface under a dab, where the settings ask for it.
+    pub fn even(&mut self, dabs: &[Dab<'_>]) {
+        let dabs = &dabs[..dabs.len().min(IMAGES)];
+        let Some(first) = dabs.first().filter(|d| d.settings.auto_smooth > 0.0) else { return };
+        if first.settings.kind.grip() != Grip::Surface {
+            return;
+        }
+        let mut even = [*first; IMAGES];
+        for (even, dab) in even.iter_mut().zip(dabs) {
+            let strength = dab.settings.auto_smooth;
+            *even = Dab { centre: dab.touch, found: false, sign: 1.0, strength, ..*dab };
+        }
+        self.pass::<SmoothBrush>(&even[..dabs.len()]);
+    }
+
+    fn pass<B: Brush>(&mut self, dabs: &[Dab<'_>]) {
         let Some(first) = dabs.first() else { return };
         let stamped = first.settings.stamp.by != StampBy::Off;
         let plain = !first.settings.auto.is_on() && !stamped && first.settings.saturation == 0.0;
@@ -103,25 +136,32 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
             let mut sum = VertexChange::default();
             let mut within = false;
             for (dab, brush, auto) in self.members.iter().flatten() {
-                let share = brush.share(dab, page, v, p);
+                let before = dab.found || matches!(B::GRIP, Grip::Anchor);
+                let at = if before { page.before(v) } else { p };
+                let share = brush.share(dab, page, v, at);
                 if !(share > 0.0) {
                     continue;
                 }
                 within = true;
-                let at = if matches!(B::GRIP, Grip::Anchor) { page.before(v) } else { p };
                 let free = if B::MASKED { 1.0 - page.mask(v) } else { 1.0 };
-                let weight = share * free * auto.share(page, v, at, self.scratch);
+                let mut weight = share * free * auto.share(page, v, at, self.scratch);
+                if matches!(B::GRIP, Grip::Surface) {
+                    let n = if dab.found { page.normal_before(v) } else { page.normals.get(v) };
+                    weight *= dab.facing(n);
+                }
                 if !(weight > 0.0) {
                     continue;
                 }
-                let spot = VertexContext {
-                    page,
-                    number: page.number(),
-                    v,
-                    p,
-                    weight,
-                    scratch: self.scratch,
-                };
+                let spot =
+                    VertexContext {
+                        page,
+                        number: page.number(),
+                        v,
+                        p,
+                        at,
+                        weight,
+                        scratch: self.scratch,
+                    };
                 let c = brush.change(dab, &spot);
                 sum.by += c.by;
                 if let Some(by) = c.held {

@@ -7,6 +7,7 @@ use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
+/// One dab of topological, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct TopologicalBrush;
 

@@ -6,6 +6,7 @@ use super::dab::{Brush, VertexChange, Dab, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{SurfaceQuery, Plane};
 
+/// One dab of trim, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct TrimBrush {
     plane: Plane,

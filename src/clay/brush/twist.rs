@@ -7,6 +7,7 @@ use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
 
+/// One dab of twist, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct TwistBrush {
     angle: f32,

@@ -4,6 +4,7 @@
 
 use glam::Vec3;
 
+use super::dab::facing;
 use crate::{PAGE_VERTICES, PageIn};
 
 /// Vertices looked at together.
@@ -26,17 +27,22 @@ impl Weights {
 
     /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) *
     /// (1 - mask)` within `radius2`, else 0. Returns how many lie within.
+    /// What faces away from `normal` is left alone as [`super::Dab::facing`] has it; a normal of
+    /// zero: nothing is.
     #[inline(always)]
     pub fn sphere(
         &mut self,
         page: &PageIn<'_>,
         centre: Vec3,
+        normal: Vec3,
         radius2: f32,
         profile: impl Fn(f32) -> f32,
     ) -> usize {
+        let normals = page.normal_rows();
         let own = page.own().min(MOST);
         let mut within = 0u32;
-        for (rows, weights) in page.rows()[..own].chunks(BLOCK).zip(self.weight.chunks_mut(BLOCK)) {
+        let blocks = page.rows()[..own].chunks(BLOCK).zip(normals[..own].chunks(BLOCK));
+        for ((rows, normals), weights) in blocks.zip(self.weight.chunks_mut(BLOCK)) {
             let (mut d2, mut free) = ([f32::INFINITY; BLOCK], [0.0f32; BLOCK]);
             for ((row, d2), free) in rows.iter().zip(&mut d2).zip(&mut free) {
                 let [x, y, z, mask] = row.to_array();
@@ -49,6 +55,10 @@ impl Weights {
             if inside == 0 {
                 weights.fill(0.0);
                 continue;
+            }
+            for (row, free) in normals.iter().zip(&mut free) {
+                let [x, y, z, _] = row.to_array();
+                *free *= facing(x * normal.x + y * normal.y + z * normal.z);
             }
             for ((&d2, &free), weight) in d2.iter().zip(&free).zip(weights.iter_mut()) {
                 let w = profile(d2) * free;

@@ -78,6 +78,11 @@ pub trait Surface {
     fn pick(&mut self, view: Vec2) -> Option<Hit>;
     /// The wanted distance between dabs here, mesh units, > 0.
     fn spacing(&self, at: &PenPoint) -> f32;
+    /// Length of the string by which the brush follows the pen in a stroke that begins here, in
+    /// heights of the view; 0: none.
+    fn string(&mut self, _at: &PenPoint) -> f32 {
+        0.0
+    }
     /// World length of a step of one view height at the hit's depth.
     fn world_per_view(&self, hit: &Hit) -> f32;
     /// How the pen's path becomes dabs.

@@ -56,6 +56,8 @@ pub struct PenTrack {
     pub seen: Option<PenPoint>,
     /// Motion merged because the queue was full.
     pub merged: u64,
+    /// Length of the string by which the brush follows the pen, in heights of the view.
+    string: f32,
 }
 
 impl Default for PenTrack {
@@ -76,6 +78,7 @@ impl Default for PenTrack {
             open: false,
             seen: None,
             merged: 0,
+            string: 0.0,
         }
     }
 }
@@ -262,6 +265,7 @@ impl PenTrack {
                 self.open = true;
                 self.spacer = Spacer::new(aspect);
                 (self.from, self.start, self.drawing) = (at, at, false);
+                self.string = on.string(&at);
                 match on.way() {
                     StrokeMethod::Spaced | StrokeMethod::Each => self.spacer.begin(&at, on),
                     StrokeMethod::Held => on.hold(&at, true),
@@ -274,6 +278,10 @@ impl PenTrack {
                 Flow::Go
             }
             PenEvent::Move(to) => {
+                let to = match on.way() {
+                    StrokeMethod::Spaced => self.pulled(&to, aspect),
+                    _ => to,
+                };
                 let flow = match on.way() {
                     StrokeMethod::Spaced => {
                         self.share = self.spacer.advance(&self.from, &to, self.share, on);
@@ -310,6 +318,20 @@ impl PenTrack {
         self.share = 0.0;
         self.waiting.pop_front();
         Some(walked)
+    }
+
+    /// Where a pen at `to` pulls the brush by its string (a string pulled by a trembling hand is
+    /// drawn out straight, and a loose one moves nothing).
+    fn pulled(&self, to: &PenPoint, aspect: f32) -> PenPoint {
+        let d = (to.view - self.from.view) * Vec2::new(aspect, 1.0);
+        let length = d.length();
+        if self.string <= 0.0 {
+            return *to;
+        }
+        if length <= self.string {
+            return PenPoint { view: self.from.view, ..*to };
+        }
+        PenPoint { view: self.from.view.lerp(to.view, 1.0 - self.string / length), ..*to }
     }
 
     /// Draws the line that waited for the pen to lift. False: there is more of it, for the next

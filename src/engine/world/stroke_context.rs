@@ -15,6 +15,16 @@ use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
 /// one stopped.
 const MOST_CUTS: usize = 2000;
 
+/// The way over which the direction of a stroke is averaged, in radii.
+const HEADING: f32 = 0.5;
+/// The way over which the pressure that counts may rise from nothing to all, in radii: a stroke
+/// begins softly however hard the pen comes down after its first touch. It falls at once.
+const ONSET: f32 = 0.35;
+/// Strengths are those of a dab a fifth of the radius from the one before.
+const FIFTH: f32 = 0.2;
+/// Strings by which a brush follows the pen: the shortest and the longest, in heights of the view.
+const STRINGS: (f32, f32) = (0.004, 0.05);
+
 /// What one pen's stroke remembers from dab to dab.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Stroke {
@@ -28,6 +38,12 @@ pub(super) struct Stroke {
     held: Option<HeldStroke>,
     /// Ticks that the pen has rested.
     pub(super) rested: u32,
+    /// Centre of the last dab on the surface that dabs are measured on.
+    last_measured: Option<Vec3>,
+    /// The direction of the stroke, averaged over [`HEADING`] radii, of any length.
+    heading: Vec3,
+    /// The pressure that counts: it rises no faster than [`ONSET`] allows.
+    pressure: f32,
 }
 
 /// Where a held brush took hold, and how far it was drawn.
@@ -166,6 +182,40 @@ impl StrokeContext<'_> {
         (self.camera.backward() + right * lean.x - up * lean.y).normalize()
     }
 
+    /// Where a hit was when the stroke began, and the normal there.
+    fn as_found(&self, hit: &Hit) -> (Vec3, Vec3) {
+        let page = self.mesh.before(hit.page);
+        let mix = |[a, b, c]: [Vec3; 3]| {
+            let [u, v, w] = hit.barycentric;
+            a * u + b * v + c * w
+        };
+        let corners = page.triangles()[hit.triangle as usize].map(usize::from);
+        let normal = mix(corners.map(|v| page.normal(v)));
+        let normal = normal.try_normalize().unwrap_or(hit.normal);
+        (mix(page.corners(hit.triangle as usize)), normal)
+    }
+
+    /// The stroke goes on to a dab at `centre`: its direction, the pressure that counts, and the
+    /// way that the dab stands for, in fifths of the radius.
+    fn go_on(&mut self, at: &PenPoint, centre: Vec3, radius: f32, share: f32) -> f32 {
+        let s = self.brush;
+        let stroke = &mut self.stroke;
+        let step = stroke.last_measured.map_or(Vec3::ZERO, |last| centre - last);
+        stroke.last_measured = Some(centre);
+        let way = step.length() / radius;
+        stroke.heading = stroke.heading * (-way / HEADING).exp() + step / radius;
+        let spaced = matches!(self.way(), StrokeMethod::Spaced | StrokeMethod::Line | StrokeMethod::Curve);
+        let stroke = &mut self.stroke;
+        // A dab that did not move (the first of a run, or that of a resting pen) stands for a
+        // spacing, and one that is strewn for its share of one.
+        let measured = spaced && s.path.jitter <= 0.0 && way > 1e-3 * s.spacing;
+        let way = if measured { way.min(s.spacing) } else { s.spacing * share };
+        let first = stroke.dabs == 0;
+        let most = if first { 1.0 } else { stroke.pressure + way / ONSET };
+        stroke.pressure = at.pressure.min(most);
+        if s.path.compensate && spaced { way / FIFTH } else { share }
+    }
+
     /// One dab and its images. `share`: of the strength. `drag`: what a held brush was drawn, now
     /// and before.
     fn one_dab(
@@ -178,32 +228,39 @@ impl StrokeContext<'_> {
     ) {
         self.mesh.begin_step();
         let s = self.brush;
-        let mut strength = s.strength * s.pressure_strength.factor(at.pressure);
-        if s.path.compensate {
-            strength = (strength * (s.spacing / 0.2)).min(1.0);
-        }
-        strength *= share;
+        let cuts = s.topology.by != Measure::Off && s.kind.cuts();
+        let found = s.kind.found() && !s.accumulate && !cuts;
+        let (centre, normal) =
+            if found { self.as_found(hit) } else { (hit.position, hit.normal) };
         let normal = match at.tilt {
-            Some(tilt) if s.tilt > 0.0 => hit
-                .normal
-                .lerp(self.pen_direction(tilt), s.tilt)
-                .try_normalize()
-                .unwrap_or(hit.normal),
-            _ => hit.normal,
+            Some(tilt) if s.tilt > 0.0 => {
+                normal.lerp(self.pen_direction(tilt), s.tilt).try_normalize().unwrap_or(normal)
+            }
+            _ => normal,
         };
         let moved = self.stroke.last.map_or(Vec3::ZERO, |last| hit.position - last);
+        let mut span = share;
         if drag.is_none() {
             self.stroke.travelled += moved.length();
             self.stroke.last = Some(hit.position);
+            span = self.go_on(at, centre, radius, share);
         }
+        let pressure = if drag.is_none() { self.stroke.pressure } else { at.pressure };
+        let strength = s.strength * s.pressure_strength.factor(pressure);
         let (motion, last) = drag.unwrap_or((moved, Vec3::ZERO));
         let ray = self.camera.ray(at.view);
         let first = Dab {
             settings: s,
-            centre: hit.position,
+            centre,
             normal,
+            touch: hit.position,
+            found,
             radius,
             strength,
+            span,
+            share: 0.0,
+            heading: self.stroke.heading,
+            pass: 0,
             sign: if s.negative != at.inverted { -1.0 } else { 1.0 },
             motion,
             last,
@@ -215,26 +272,34 @@ impl StrokeContext<'_> {
             travelled: self.stroke.travelled,
             stroke: self.stroke.number,
         };
+        let first = Dab { share: first.approach(strength), ..first };
         let mut dabs = [first; IMAGES];
         let mut count = 1;
         for (i, image) in Images::of(s, self.middle, self.extent).each().iter().enumerate().skip(1)
         {
-            let (centre, normal) = (image.at(hit.position), image.m * normal);
+            let (touch, centre) = (image.at(hit.position), image.at(centre));
+            let normal = image.m * normal;
             // The same view from the mirrored eye. On a symmetric work it lands on the mirrored
             // point, which is then taken as it is; else the brush lies on what is there.
             let there =
                 self.mesh.pick(Ray { origin: image.at(ray.origin), dir: image.m * ray.dir });
             let held = drag.is_some();
-            let (centre, normal) = match there {
-                _ if held => (centre, normal),
-                Some(h) if (h.position - centre).length() < radius * 1e-3 => (centre, normal),
-                Some(h) => (h.position, h.normal),
+            let (touch, centre, normal) = match there {
+                _ if held => (touch, centre, normal),
+                Some(h) if (h.position - touch).length() < radius * 1e-3 => (touch, centre, normal),
+                Some(h) if found => {
+                    let (centre, normal) = self.as_found(&h);
+                    (h.position, centre, normal)
+                }
+                Some(h) => (h.position, h.position, h.normal),
                 None => continue,
             };
             dabs[count] = Dab {
                 image: i,
                 centre,
                 normal,
+                touch,
+                heading: image.m * self.stroke.heading,
                 motion: image.m * motion,
                 last: image.m * last,
                 eye: image.m * first.eye,
@@ -383,6 +448,15 @@ impl Surface for StrokeContext<'_> {
         self.radius(at.pressure) * self.brush.spacing
     }
 
+    fn string(&mut self, at: &PenPoint) -> f32 {
+        if !(self.brush.steady > 0.0) {
+            return 0.0;
+        }
+        let Some(hit) = self.pick(at.view) else { return STRINGS.0 };
+        let radius = self.radius(1.0) / self.world_per_view(&hit).max(1e-20);
+        (radius * self.brush.steady).clamp(STRINGS.0, STRINGS.1)
+    }
+
     fn world_per_view(&self, hit: &Hit) -> f32 {
         let depth = (self.camera.eye() - hit.position).dot(self.camera.backward());
         self.camera.world_per_view(depth.max(1e-6))
@@ -425,6 +499,7 @@ impl Surface for StrokeContext<'_> {
         if laid.first && self.way() != StrokeMethod::Each {
             // Nothing leads over from the run before.
             self.stroke.last = None;
+            self.stroke.last_measured = None;
         }
         let hit = self.strewn(hit, radius);
         self.one_dab(at, &hit, radius, laid.share, None);

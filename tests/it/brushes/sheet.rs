@@ -43,13 +43,19 @@ fn cell(kind: BrushKind) -> Picture {
             | BrushKind::Fill
             | BrushKind::Scrape
             | BrushKind::Relax
+            | BrushKind::Plane
+            | BrushKind::SurfaceSmooth
     );
     if evens {
         (brush.radius, brush.strength) = (0.2, 1.0);
     }
     let coarse = matches!(
         kind,
-        BrushKind::Smooth | BrushKind::Relax | BrushKind::SlideRelax | BrushKind::Density
+        BrushKind::Smooth
+            | BrushKind::Relax
+            | BrushKind::SlideRelax
+            | BrushKind::Density
+            | BrushKind::SurfaceSmooth
     );
     let mut start = form(if coarse { 8_000 } else { 60_000 });
     if kind == BrushKind::Simplify {

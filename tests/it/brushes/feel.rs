@@ -1,0 +1,312 @@
+//! What a stroke looks like: the waviness of its crest, its section, its height at any rate of
+//! reports and spacing, and a pen that rests.
+//!
+//! Waviness is the root mean square slope, in degrees, of what is left of the height along the
+//! crest when a moving average over half a radius is taken away: what an eye sees as corrugation.
+
+use glam::{Vec2, Vec3};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Grip, PressureCurve};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_geometry::{TriMesh, shapes};
+
+use super::super::clay::Dice;
+use super::Studio;
+
+/// Radius of the brush, mesh units, on forms about two units wide.
+const RADIUS: f32 = 0.2;
+/// Half a millimetre on a tablet 152 mm high before a view 2.1 units high.
+const TREMBLE: f32 = 0.5 / 152.0 * 2.1;
+
+/// Where a stroke is drawn: its form, and for a length along it the point of the form.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum TestForm {
+    /// A square of side 2, straight over it.
+    Plane,
+    /// The same square, along a circle of radius 0.4.
+    Arc,
+    /// A ball of radius 1, along its equator.
+    Ball,
+}
+
+impl TestForm {
+    /// With about so many vertices across the brush.
+    fn mesh(self, across: u32) -> TriMesh {
+        // An even number of cells, so that vertices lie on the line of the stroke.
+        match self {
+            TestForm::Plane | TestForm::Arc => {
+                let cells = across * 5 / 2 * 2;
+                shapes::grid(2.0, 2.0, cells, cells).triangulate().0
+            }
+            TestForm::Ball => {
+                let around = across * 16;
+                let mut ball = shapes::uv_sphere(1.0, around / 2, around).triangulate().0;
+                // The poles go from the z axis to the y axis.
+                ball.positions.iter_mut().for_each(|p| *p = Vec3::new(p.x, p.z, -p.y));
+                ball
+            }
+        }
+    }
+
+    fn at(self, u: f32) -> Vec3 {
+        match self {
+            TestForm::Plane => Vec3::new(u, 0.0, 0.0),
+            TestForm::Arc => {
+                let a = u / 0.4;
+                Vec3::new(0.4 * a.sin(), 0.4 * (1.0 - a.cos()) - 0.2, 0.0)
+            }
+            TestForm::Ball => Vec3::new(u.sin(), 0.0, u.cos()),
+        }
+    }
+
+    /// Length along the stroke, distance from its line, height.
+    fn measure(self, before: Vec3, after: Vec3) -> [f32; 3] {
+        match self {
+            TestForm::Plane => [before.x, before.y, after.z],
+            TestForm::Arc => {
+                let d = before - Vec3::new(0.0, 0.2, 0.0);
+                [d.x.atan2(-d.y) * 0.4, 0.4 - d.truncate().length(), after.z]
+            }
+            TestForm::Ball => {
+                let height = if before.z > 0.0 { after.length() - 1.0 } else { 0.0 };
+                [before.x.atan2(before.z), before.y, height]
+            }
+        }
+    }
+}
+
+/// A stroke and how it is drawn.
+#[derive(Clone, Copy)]
+pub struct Trial {
+    pub brush: BrushSettings,
+    pub form: TestForm,
+    pub across: u32,
+    /// Reports a second of a stroke that takes 1.2 seconds.
+    pub rate: u32,
+    /// How far the pen trembles, mesh units.
+    pub tremble: f32,
+}
+
+impl Trial {
+    pub fn new(brush: BrushSettings) -> Trial {
+        let firm = PressureCurve { at_zero: 1.0, gamma: 1.0 };
+        let radius = RADIUS / std::f32::consts::SQRT_2;
+        let brush = BrushSettings { radius, pressure_radius: firm, ..brush };
+        Trial { brush, form: TestForm::Plane, across: 60, rate: 125, tremble: 0.0 }
+    }
+
+    /// The form before and after, as length, offset and height.
+    pub fn draw(&self) -> Stroke {
+        let mesh = self.form.mesh(self.across);
+        let mut brush = self.brush;
+        if self.form == TestForm::Ball {
+            // The bounding radius of a ball in a box is the box's.
+            brush.radius = RADIUS / 3f32.sqrt();
+        }
+        let mut studio = Studio::new(&mesh, brush, 1);
+        let camera = Camera { orthographic: true, ..*studio.world.camera() };
+        studio.tell(Command::Camera(camera));
+        let mut dice = Dice(3);
+        let count = (1.2 * self.rate as f32) as usize;
+        let half = if self.form == TestForm::Plane { 0.6 } else { 0.45 };
+        let points: Vec<(Vec2, f32)> = (0..=count)
+            .map(|i| {
+                let u = half * (2.0 * i as f32 / count as f32 - 1.0);
+                let mut off = || (dice.next() * 2.0 - 1.0) * self.tremble;
+                let aside = Vec3::new(off(), off(), 0.0);
+                (studio.view(self.form.at(u) + aside), 0.7)
+            })
+            .collect();
+        studio.stroke(&points);
+        let after = studio.positions();
+        let rows = mesh.positions.iter().zip(&after).map(|(b, a)| self.form.measure(*b, *a));
+        Stroke(rows.collect())
+    }
+}
+
+/// What a stroke left: length along it, distance from its line, height, for each vertex.
+pub struct Stroke(Vec<[f32; 3]>);
+
+impl Stroke {
+    /// Mean height along the crest, and its waviness in degrees.
+    pub fn crest(&self) -> (f32, f32) {
+        const BINS: usize = 200;
+        const HALF: f32 = 0.32;
+        let band = |[u, v, _]: &&[f32; 3]| v.abs() < 0.055 * RADIUS && u.abs() < HALF;
+        // What the section's own slope and roundness do to vertices beside the line is taken away:
+        // the least squares of `a + b v` and of `a + c v^2` (the band is as wide on either side).
+        let (mut n, mut s1, mut s2, mut s4) = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
+        let (mut t0, mut t1, mut t2) = (0.0f64, 0.0f64, 0.0f64);
+        for [_, v, h] in self.0.iter().filter(band) {
+            let (v2, h) = (f64::from(v * v), f64::from(*h));
+            (n, s1, s2, s4) = (n + 1.0, s1 + f64::from(*v), s2 + v2, s4 + v2 * v2);
+            (t0, t1, t2) = (t0 + h, t1 + f64::from(*v) * h, t2 + v2 * h);
+        }
+        let det = n * s4 - s2 * s2;
+        let wide = n * s2 - s1 * s1;
+        let slope = if wide > 1e-9 * n * s2 { (n * t1 - s1 * t0) / wide } else { 0.0 };
+        let round = if det > 1e-12 * n * s4 { (n * t2 - s2 * t0) / det } else { 0.0 };
+        let mut sums = [(0.0f64, 0u32); BINS];
+        for [u, v, h] in self.0.iter().filter(band) {
+            let bin = ((u + HALF) / (2.0 * HALF) * BINS as f32) as usize;
+            let sum = &mut sums[bin.min(BINS - 1)];
+            let v = f64::from(*v);
+            *sum = (sum.0 + f64::from(*h) - slope * v - round * v * v, sum.1 + 1);
+        }
+        let known: Vec<(usize, f64)> = sums
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| s.1 > 0)
+            .map(|(i, s)| (i, s.0 / f64::from(s.1)))
+            .collect();
+        let heights: Vec<f64> = (0..BINS)
+            .map(|i| {
+                let k = known.partition_point(|(at, _)| *at <= i).clamp(1, known.len() - 1);
+                let ((a, x), (b, y)) = (known[k - 1], known[k]);
+                let t = (i as f64 - a as f64) / (b as f64 - a as f64);
+                x + (y - x) * t.clamp(0.0, 1.0)
+            })
+            .collect();
+        let step = f64::from(2.0 * HALF) / BINS as f64;
+        let half = (f64::from(RADIUS) / 4.0 / step).round() as usize;
+        let inner = half + 10..BINS - half - 10;
+        let ripple: Vec<f64> = inner
+            .map(|i| {
+                let around = &heights[i - half..=i + half];
+                heights[i] - around.iter().sum::<f64>() / around.len() as f64
+            })
+            .collect();
+        let squares = ripple.windows(2).map(|w| ((w[1] - w[0]) / step).powi(2)).sum::<f64>();
+        let slope = (squares / (ripple.len() - 1) as f64).sqrt();
+        let mean = heights.iter().sum::<f64>() / BINS as f64;
+        (mean.abs() as f32, slope.atan().to_degrees() as f32)
+    }
+
+    /// Mean height at distances from the line of up to `reach` radii, by tenths of a radius.
+    pub fn section(&self, reach: f32) -> Vec<f32> {
+        let count = (reach * 10.0).round() as i32;
+        (-count..=count)
+            .map(|k| {
+                let here = |v: f32| (v / RADIUS * 10.0 - k as f32).abs() < 0.3;
+                let near = self.0.iter().filter(|[u, v, _]| u.abs() < 0.2 && here(*v));
+                let (sum, n) = near.fold((0.0, 0.0f32), |(s, n), [.., h]| (s + h, n + 1.0));
+                sum / n.max(1.0)
+            })
+            .collect()
+    }
+}
+
+/// How far the heights of a section lie apart, as a share of their mean.
+pub fn flatness(section: &[f32]) -> f32 {
+    let (lo, hi) = section.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+    let mean = section.iter().sum::<f32>() / section.len() as f32;
+    (hi - lo) / mean.abs()
+}
+
+/// The brushes that raise, each of whose strokes must be clean.
+pub const RAISING: [BrushKind; 7] = [
+    BrushKind::Draw,
+    BrushKind::Clay,
+    BrushKind::ClayStrips,
+    BrushKind::Layer,
+    BrushKind::Inflate,
+    BrushKind::Blob,
+    BrushKind::Gaussian,
+];
+
+#[test]
+fn a_stroke_over_a_plane_is_smooth_along_its_crest() {
+    for kind in RAISING {
+        let (height, waviness) = Trial::new(sculptd::presets().of(kind)).draw().crest();
+        println!("{kind}: {waviness:.3} degrees at a height of {height:.4}");
+        assert!(height > 0.02 * RADIUS, "{kind}: only {height} high");
+        assert!(waviness <= 0.1, "{kind}: {waviness} degrees");
+    }
+}
+
+#[test]
+fn strokes_are_smooth_on_a_ball_along_a_curve_and_with_a_trembling_pen() {
+    for kind in RAISING {
+        let brush = sculptd::presets().of(kind);
+        for form in [TestForm::Plane, TestForm::Arc, TestForm::Ball] {
+            for (across, tremble) in [(10, 0.0), (10, TREMBLE), (30, 0.0), (30, TREMBLE)] {
+                let trial = Trial { form, across, tremble, ..Trial::new(brush) };
+                let (_, waviness) = trial.draw().crest();
+                println!("{kind}, {form:?}, {across} across, {tremble:.4}: {waviness:.3} degrees");
+                assert!(waviness <= 0.3, "{kind}, {form:?}, {across}: {waviness} degrees");
+            }
+        }
+    }
+}
+
+#[test]
+fn layer_and_clay_strips_leave_a_flat_top() {
+    for (kind, most) in [(BrushKind::Layer, 0.02), (BrushKind::ClayStrips, 0.03)] {
+        let section = Trial::new(sculptd::presets().of(kind)).draw().section(0.6);
+        println!("{kind}: {:.4} of {section:?}", flatness(&section));
+        assert!(flatness(&section) <= most, "{kind}: {section:?}");
+    }
+}
+
+#[test]
+fn neither_the_rate_of_reports_nor_the_spacing_changes_the_height() {
+    for kind in RAISING {
+        let trial = Trial { across: 30, ..Trial::new(sculptd::presets().of(kind)) };
+        let (height, _) = trial.draw().crest();
+        let rates = [60, 133, 266, 1000].map(|rate| Trial { rate, ..trial });
+        let spaced = [0.03, 0.05, 0.1, 0.2].map(|spacing| {
+            let mut other = trial;
+            other.brush.spacing = spacing;
+            other
+        });
+        for (i, other) in rates.iter().chain(&spaced).enumerate() {
+            let off = other.draw().crest().0 / height - 1.0;
+            println!("{kind}, {i}: {:.2} % off", off * 100.0);
+            assert!(off.abs() < 0.02, "{kind}, {i}: {off}");
+        }
+    }
+}
+
+#[test]
+fn a_resting_pen_that_trembles_does_nothing_more() {
+    let mesh = TestForm::Plane.mesh(20);
+    for kind in BrushKind::ALL.iter().filter(|k| k.grip() == Grip::Surface) {
+        let trial = Trial::new(sculptd::presets().of(*kind));
+        let mut studio = Studio::new(&mesh, trial.brush, 1);
+        let camera = Camera { orthographic: true, ..*studio.world.camera() };
+        studio.tell(Command::Camera(camera));
+        // Up to here the stroke has a direction; then two seconds at 125 reports each.
+        for i in 0..20 {
+            let at = Vec3::new(-0.4 + 0.02 * i as f32, 0.0, 0.0);
+            studio.sample(studio.view(at), 0.7, true);
+        }
+        let (before, mut dice) = (studio.positions(), Dice(8));
+        let mut dabs = 0;
+        for _ in 0..250 {
+            let mut off = || (dice.next() - 0.5) * TREMBLE;
+            let at = Vec3::new(-0.02 + off(), off(), 0.0);
+            dabs += studio.sample(studio.view(at), 0.7, true);
+        }
+        let after = studio.positions();
+        let far = before.iter().zip(&after).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        println!("{kind}: {dabs} dabs while the pen rests, {far:.5} far");
+        assert!(dabs <= 1, "{kind}: {dabs} dabs while the pen rests");
+    }
+}
+
+#[test]
+fn the_far_side_of_a_thin_plate_stays() {
+    // A ball pressed to a plate 0.02 thick.
+    let mut mesh = shapes::icosphere(1.0, 80);
+    mesh.positions.iter_mut().for_each(|p| p.z *= 0.01);
+    for kind in RAISING.into_iter().chain([BrushKind::Smooth, BrushKind::Crease]) {
+        let mut studio = Studio::new(&mesh, sculptd::presets().of(kind), 1);
+        let points: Vec<_> = (0..20).map(|i| Vec3::new(-0.3 + 0.03 * i as f32, 0.0, 0.0)).collect();
+        let points: Vec<_> = points.into_iter().map(|p| (studio.view(p), 0.8)).collect();
+        studio.stroke(&points);
+        let far = mesh.positions.iter().zip(studio.positions());
+        let far = far.filter(|(a, _)| a.z < 0.0 && a.truncate().length() < 0.8);
+        let most = far.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+        assert!(most == 0.0, "{kind}: the far side went {most}");
+    }
+}
