@@ -45,7 +45,7 @@
 //! | workers | [`mesh::Workers`] | parts of a large dab | the tick thread |
 //! | one a tablet, one a serial port, one a tracker | the adaptors in `devices` | read, parse, push | its device |
 //! | `sculptd-join` | [`daemon::joiner`] | Booleans of the work with the thing in the hands, sent back as commands | a wish |
-//! | `sculptd-preview`, `-distance`, `-thickness`, `-measure` | `viewer::wishes`, `viewer::work` | follow the newest snapshot for the window | a wish; a newer one replaces it |
+//! | `sculptd-preview`, `-distance`, `-thickness`, `-measure` | `viewer::snapshot_workers`, `viewer::tasks` | follow the newest snapshot for the window | a request; a newer one replaces it |
 //! | `sculptd-tail` | [`daemon::session`] | copies input to memory that outlives the process | the tick thread's data |
 //! | journal | [`daemon::session`] | writes samples and commands in groups | that thread's data, the disk |
 //! | `sculptd-history` | [`daemon::session::history`] | writes the pages of each step; fetches them for undo | the tick thread's moments, the disk |

@@ -49,7 +49,9 @@ pub fn open(session: &Path, config: Option<&Path>) -> Outcome {
     let program = std::env::current_exe().map_err(|e| Fail::io(session, &e))?;
     let mut next = std::process::Command::new(&program);
     next.arg("run").arg("--session").arg(session);
-    config.iter().for_each(|c| drop(next.arg("--config").arg(c)));
+    if let Some(config) = config {
+        next.arg("--config").arg(config);
+    }
     #[cfg(unix)]
     {
         use std::os::unix::process::CommandExt;
