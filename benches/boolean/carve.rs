@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3};
 use sculptd_clay::Clay;
 use sculptd_clay::local_boolean::local;
 use sculptd_devices::Clock;
-use sculptd_geometry::boolean::{Operation, BooleanOptions};
+use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, shapes};
 

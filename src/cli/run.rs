@@ -152,8 +152,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     } else {
         run_stepped(args, &config, begun, players)?
     };
-    if let Some(path) = &own {
-        library::remove_untouched(path);
+    if let Some(own) = &own {
+        library::remove_untouched(own);
     }
     if let Some(next) = open_next.lock().ok().and_then(|n| n.clone()) {
         return library::open(&next, args.config.as_deref());

@@ -8,9 +8,10 @@ mod words;
 use std::path::{Path, PathBuf};
 
 /// The crates of the workspace, and where their sources lie.
-const CRATES: [(&str, &str); 7] = [
+const CRATES: [(&str, &str); 8] = [
     ("sculptd-geometry", "src/geometry"),
     ("sculptd-devices", "devices/src"),
+    ("sculptd-control", "src/control"),
     ("sculptd-clay", "src/clay"),
     ("sculptd-engine", "src/engine"),
     ("sculptd-daemon", "src/daemon"),

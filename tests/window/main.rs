@@ -8,5 +8,6 @@
 mod first_minutes;
 mod idle;
 mod presses;
+mod sessions;
 mod stage;
 mod versions;

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::stage::{MIDDLE, Stage};
 
 /// Two brushes of the left panel: where their buttons are, and their names.
-const BRUSHES: [((i32, i32), &str); 2] = [((43, 64), "draw"), ((113, 64), "clay")];
+const BRUSHES: [((i32, i32), &str); 2] = [((41, 80), "draw"), ((111, 80), "clay")];
 /// Presses on each side.
 const PRESSES: u32 = 100;
 

@@ -43,7 +43,7 @@ pub struct Stage {
     display: String,
     // In this order: the daemon goes before its screen.
     pub daemon: Ended,
-    _screen: Ended,
+    screen: Ended,
     pub last: Option<RgbaImage>,
     _alone: MutexGuard<'static, ()>,
 }
@@ -74,6 +74,24 @@ fn start(dir: &Path, display: &str, args: &[&str]) -> Ended {
     Ended(daemon)
 }
 
+/// A new screen: its process and its name.
+fn screen(dir: &Path) -> (Ended, String) {
+    // Xvfb chooses a free number and writes it.
+    let told = dir.join("display");
+    let file = std::fs::File::create(&told).expect("a file");
+    let size = format!("{}x{}x24", SIZE.0, SIZE.1);
+    let screen = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", &size, "-nolisten", "tcp"])
+        .stdout(file)
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("Xvfb starts");
+    let display = wait("Xvfb has chosen a display", || {
+        std::fs::read_to_string(&told).ok().filter(|d| d.ends_with('\n'))
+    });
+    (Ended(screen), format!(":{}", display.trim()))
+}
+
 /// What a condition gives once it gives something.
 #[allow(clippy::disallowed_methods)] // A test waits for other processes.
 fn wait<T>(what: &str, mut so: impl FnMut() -> Option<T>) -> T {
@@ -98,30 +116,9 @@ impl Stage {
         }
         let alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
         let dir = tempfile::tempdir().expect("a folder");
-        // Xvfb chooses a free number and writes it.
-        let told = dir.path().join("display");
-        let file = std::fs::File::create(&told).expect("a file");
-        let screen = Command::new("Xvfb")
-            .args([
-                "-displayfd",
-                "1",
-                "-screen",
-                "0",
-                &format!("{}x{}x24", SIZE.0, SIZE.1),
-                "-nolisten",
-                "tcp",
-            ])
-            .stdout(file)
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("Xvfb starts");
-        let screen = Ended(screen);
-        let display = wait("Xvfb has chosen a display", || {
-            std::fs::read_to_string(&told).ok().filter(|d| d.ends_with('\n'))
-        });
-        let display = format!(":{}", display.trim());
+        let (screen, display) = screen(dir.path());
         let daemon = start(dir.path(), &display, args);
-        let mut stage = Stage { dir, display, daemon, _screen: screen, last: None, _alone: alone };
+        let mut stage = Stage { dir, display, daemon, screen, last: None, _alone: alone };
         stage.shown().then_some(stage)
     }
 
@@ -151,6 +148,20 @@ impl Stage {
     pub fn restart(&mut self, args: &[&str]) {
         self.ask("shutdown", &Value::Null);
         self.until("the daemon ends", |s| s.daemon.0.try_wait().is_ok_and(|d| d.is_some()));
+        self.daemon = start(self.dir.path(), &self.display, args);
+        assert!(self.shown());
+    }
+
+    /// The X server is killed: the daemon loses its screen in the middle of what it does.
+    pub fn lose_screen(&mut self) {
+        let _ = self.screen.0.kill();
+        let _ = self.screen.0.wait();
+    }
+
+    /// The daemon ended with its screen: both begin anew, on the same data folder.
+    pub fn begin_anew(&mut self, args: &[&str]) {
+        self.until("the daemon has ended", |s| s.daemon.0.try_wait().is_ok_and(|d| d.is_some()));
+        (self.screen, self.display) = screen(self.dir.path());
         self.daemon = start(self.dir.path(), &self.display, args);
         assert!(self.shown());
     }

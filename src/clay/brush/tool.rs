@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, Grip, IMAGES, VertexContext};
+use super::dab::{Brush, Dab, Grip, IMAGES, VertexChange, VertexContext};
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
 use crate::brush::automask::AutoMasking;
@@ -152,16 +152,15 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
                 if !(weight > 0.0) {
                     continue;
                 }
-                let spot =
-                    VertexContext {
-                        page,
-                        number: page.number(),
-                        v,
-                        p,
-                        at,
-                        weight,
-                        scratch: self.scratch,
-                    };
+                let spot = VertexContext {
+                    page,
+                    number: page.number(),
+                    v,
+                    p,
+                    at,
+                    weight,
+                    scratch: self.scratch,
+                };
                 let c = brush.change(dab, &spot);
                 sum.by += c.by;
                 if let Some(by) = c.held {

@@ -6,7 +6,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::orient3d;
 
-use crate::disjoint_sets::DisjointSets;
 use super::arrange::Around;
 use super::pieces::{FacePiece, Placement, triangles as parts_of};
 use super::points::{Map, PointSet};
@@ -14,6 +13,7 @@ use crate::PolyMesh;
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::boolean::broad_phase::SurfaceView;
 use crate::boolean::intersect::{Intersections, c3};
+use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;
 

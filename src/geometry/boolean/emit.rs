@@ -5,8 +5,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::fans;
-use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
+use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
 use crate::triangulate::area_vector;
 

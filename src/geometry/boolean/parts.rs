@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::{BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, compute};
-use crate::disjoint_sets::DisjointSets;
 use crate::PolyMesh;
 use crate::boolean::box_tree::Span;
+use crate::disjoint_sets::DisjointSets;
 use crate::job::Job;
 
 /// The solid above the plane `normal . p = offset` and the solid below it, both closed by the cut;

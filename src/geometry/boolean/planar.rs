@@ -6,8 +6,8 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-use crate::disjoint_sets::DisjointSets;
 use super::points::Map;
+use crate::disjoint_sets::DisjointSets;
 
 /// A cell: counter-clockwise border, clockwise holes.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -57,8 +57,11 @@ pub fn read_mesh(path: &Path, job: &Job) -> Result<LoadedMesh, ReadError> {
 pub fn read_mesh_within(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh, ReadError> {
     let bytes = read_regular(path, limit).map_err(|source| match source.kind() {
         std::io::ErrorKind::FileTooLarge => {
-            let problem =
-                FileProblem::new(FilePlace::File, format!("at most {limit} bytes"), source.to_string());
+            let problem = FileProblem::new(
+                FilePlace::File,
+                format!("at most {limit} bytes"),
+                source.to_string(),
+            );
             ReadError::Format { path: path.into(), problem }
         }
         _ => ReadError::Io { path: path.into(), source },

@@ -83,7 +83,11 @@ impl WindowState {
                 self.pacing.want();
                 return;
             }
-            _ => return,
+            // Not now, or nobody sees it: tried again at the next poll.
+            _ => {
+                self.drawn = None;
+                return;
+            }
         };
         let begun_ns = wiring.clock.now_ns();
         let state = wiring.published.load_full();
@@ -238,6 +242,9 @@ impl WindowState {
             self.pacing.want();
         }
         self.egui.handle_platform_output(&self.window, out.platform_output);
+        if let Some(delay) = out.viewport_output.values().map(|v| v.repaint_delay).min() {
+            self.pacing.egui_wants(wiring.clock.now_us(), delay);
+        }
         let scale = out.pixels_per_point;
         let jobs = context.tessellate(out.shapes, scale);
         let screen = egui_wgpu::ScreenDescriptor {

@@ -24,7 +24,8 @@ impl WindowState {
         let (corner, size) = self.view_rect();
         let pen = Pen {
             tool: Tool::Touch,
-            in_range: self.pointer.inside,
+            // Over a panel it is as far from the clay as a pen beside its tablet.
+            in_range: self.pointer.inside && (tip || !self.over_panel(self.pointer.at)),
             tip,
             pos_mm: self.pointer.at - corner,
             area_mm: size,

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
 
 use sculptd_devices::Clock;
 
@@ -53,6 +54,12 @@ impl Pacing {
             let delay = u64::try_from(info.delay.as_micros()).unwrap_or(u64::MAX);
             at.fetch_min(clock.now_us().saturating_add(delay), Relaxed);
         });
+    }
+
+    /// After a pass egui says itself when it wants the next: a click within one frame takes two.
+    pub(super) fn egui_wants(&self, now_us: u64, delay: Duration) {
+        let delay = u64::try_from(delay.as_micros()).unwrap_or(u64::MAX);
+        self.egui_us.fetch_min(now_us.saturating_add(delay), Relaxed);
     }
 
     /// Something that is shown has changed.

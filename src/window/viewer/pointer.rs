@@ -64,11 +64,7 @@ impl Speed {
 
 /// The brush for one stroke with these keys down: Shift evens, Ctrl and Alt turn it round.
 /// Slide-relax evens by itself.
-pub(super) fn lent(
-    brush: BrushSettings,
-    mods: ModifiersState,
-    presets: &Presets,
-) -> BrushSettings {
+pub(super) fn lent(brush: BrushSettings, mods: ModifiersState, presets: &Presets) -> BrushSettings {
     let mut now = match (mods.shift_key(), brush.kind) {
         (true, BrushKind::SlideRelax) => BrushSettings { negative: !brush.negative, ..brush },
         (true, _) => presets.switched(&brush, BrushKind::Smooth),

@@ -93,7 +93,10 @@ impl TriangleGatherer {
 /// # Errors
 /// As a Boolean: an open thing, or an object that cannot be cut. [`boolean::BooleanError::Cancelled`] when a
 /// newer one is request.
-pub fn compute(request: &PreviewRequest, job: &Job) -> Result<Option<Preview>, boolean::BooleanError> {
+pub fn compute(
+    request: &PreviewRequest,
+    job: &Job,
+) -> Result<Option<Preview>, boolean::BooleanError> {
     let Some(operation) = boolean_jobs::operation(request.choice) else { return Ok(None) };
     let tool = request.thing.placed().to_poly();
     let options = BooleanOptions::default();

@@ -137,6 +137,15 @@ impl WindowState {
         }
         let usages = surface.get_capabilities(&gpu.adapter).usages;
         config.usage |= usages & wgpu::TextureUsages::COPY_DST;
+        // Frames come by this window's own pace: presenting must not block the event loop, which
+        // first-in-first-out does for seconds on a screen without a vertical blank.
+        let modes = surface.get_capabilities(&gpu.adapter).present_modes;
+        let wanted = [wgpu::PresentMode::Mailbox, wgpu::PresentMode::Immediate];
+        let usable = |m: &&wgpu::PresentMode| {
+            modes.contains(m) && (gpu.software || **m == wgpu::PresentMode::Mailbox)
+        };
+        config.present_mode =
+            wanted.iter().find(usable).copied().unwrap_or(wgpu::PresentMode::Fifo);
         surface.configure(&gpu.device, &config);
         let (preferences_file, mut ui_state) = match wiring.kiosk {
             None => PreferencesFile::load(),

@@ -142,12 +142,7 @@ impl Tasks {
 
     /// Joins the held object with the object; the result takes the object's place, and undo
     /// brings the object back.
-    pub fn join(
-        &self,
-        choice: MenuItem,
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn join(&self, choice: MenuItem, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
             let (text, wrong) =
@@ -189,12 +184,7 @@ impl Tasks {
     }
 
     /// The object one level finer or coarser.
-    pub fn level(
-        &self,
-        finer: bool,
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
             Ok((vec![command], format!("Level {} of {of}", at + 1)))

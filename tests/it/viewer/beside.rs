@@ -124,7 +124,10 @@ fn a_preview_that_is_no_longer_wanted_ends() {
     let wanted =
         PreviewRequest { mesh: mesh.snapshot(), thing: thing(Vec3::Z), choice: MenuItem::Keep };
     let ended = preview::compute(&wanted, &job);
-    assert!(matches!(ended, Err(sculptd_geometry::boolean::BooleanError::Cancelled(_))), "{ended:?}");
+    assert!(
+        matches!(ended, Err(sculptd_geometry::boolean::BooleanError::Cancelled(_))),
+        "{ended:?}"
+    );
 }
 
 #[test]

@@ -19,7 +19,7 @@ use sculptd_window::panels::state::StepPicture;
 use sculptd_window::panels::state::{DistanceSummary, Measured};
 use sculptd_window::panels::state::{ThicknessSummary, ThinSpot, TrialStatus};
 use sculptd_window::panels::state::{Trim, TrimShape};
-use sculptd_window::panels::{Tab, UiRequest, UiState, View, all};
+use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
 pub(super) struct State {
     pub published: Published,
@@ -371,7 +371,7 @@ fn a_join_is_tried_then_applied_or_dismissed() {
     assert!(h.query_by_role_and_label(Role::ComboBox, "Preview").is_some());
     h.key_press_modifiers(Modifiers::COMMAND, Key::K);
     h.run_steps(3);
-    h.get_by_label("Search actions").type_text("try to cut");
+    h.get_by_label("Search actions").type_text("preview: cut");
     h.run_steps(3);
     h.key_press(Key::Enter);
     h.run_steps(3);
@@ -422,8 +422,10 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     let [UiRequest::Trim(Part::Box(part))] = h.state().asked[..] else {
         panic!("{:?}", h.state().asked)
     };
-    let want = [480.0 / 1280.0, 0.25, 0.5, 0.5];
-    assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-3), "{part:?}");
+    // Shares of the part between the panels, which the harness surrounds by a margin of 8.
+    let (left, width) = (PANEL + 8.0, 1280.0 - 2.0 * (PANEL + 8.0));
+    let want = [(480.0 - left) / width, (180.0 - 8.0) / 704.0, 0.5, 0.5];
+    assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-2), "{part:?}");
     assert!(h.state().ui_state.trim.is_none());
     // Escape leaves the work as it is.
     h.state_mut().ui_state.trim = Some(Trim { shape: TrimShape::Line, from: None });
@@ -539,4 +541,61 @@ fn a_step_is_gone_to_by_its_picture() {
         "{:?}",
         h.state().asked
     );
+}
+
+#[test]
+fn an_export_asks_before_it_replaces_a_file() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("mine.stl");
+    std::fs::File::create(&path).expect("a file");
+    let mut h = harness(Tab::Files);
+    h.state_mut().ui_state.files.export = path.display().to_string();
+    h.run_steps(3);
+    let exports = |h: &Harness<'_, State>| {
+        let of = |a: &&UiRequest| matches!(a, UiRequest::Export(p) if *p == path);
+        h.state().asked.iter().filter(of).count()
+    };
+    h.get_by_role_and_label(Role::Button, "Export").click();
+    h.run_steps(4);
+    assert_eq!(exports(&h), 0, "the file is there");
+    h.get_by_label_contains("exists. Replace it?");
+    h.get_by_label("Cancel").click();
+    h.run_steps(4);
+    assert_eq!(exports(&h), 0);
+    assert!(h.query_by_label("Replace").is_none());
+    h.get_by_role_and_label(Role::Button, "Export").click();
+    h.run_steps(4);
+    h.get_by_label("Replace").click();
+    h.run_steps(4);
+    assert_eq!(exports(&h), 1);
+}
+
+#[test]
+fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
+    let mut s = state(Tab::Look);
+    s.ui_state.look.map = Map::Thickness;
+    let mut h = Harness::builder().with_size([1280.0, 720.0]).build_ui_state(
+        |ui: &mut egui::Ui, (s, free): &mut (State, egui::Rect)| {
+            let view = View {
+                state: &s.published,
+                camera: s.published.camera,
+                devices: &[],
+                session: None,
+                recent: &[],
+                uploaded: 0,
+                adapter: "an adapter",
+                frame: FrameFigures::default(),
+                demo_runs: false,
+            };
+            *free = all(ui, &view, &mut s.ui_state, &mut s.asked);
+        },
+        (s, egui::Rect::NOTHING),
+    );
+    h.run_steps(4);
+    let free = h.state().1;
+    assert!((free.width() - (1280.0 - 2.0 * PANEL)).abs() < 20.0, "{free:?}");
+    assert!((free.center().x - 640.0).abs() < 2.0 && free.height() > 690.0, "{free:?}");
+    h.state_mut().0.ui_state.hidden = true;
+    h.run_steps(4);
+    assert!(h.state().1.width() > 1250.0, "{:?}", h.state().1);
 }

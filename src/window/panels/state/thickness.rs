@@ -42,11 +42,6 @@ pub struct WallsPage {
 
 impl Default for WallsPage {
     fn default() -> Self {
-        WallsPage {
-            found: None,
-            presets: Vec::new(),
-            preset: None,
-            limit: 1.0,
-        }
+        WallsPage { found: None, presets: Vec::new(), preset: None, limit: 1.0 }
     }
 }
