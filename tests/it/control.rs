@@ -382,7 +382,7 @@ fn a_stroke_by_request_moves_clay_and_replays_to_the_same_hash() {
     let live = live.expect("runs");
     let host = Host {
         pen: Some(Arc::new(Mutex::new(VirtualPen::new(&factory, clock)))),
-        ..Host::new(live.commands.clone(), live.published.clone())
+        ..Host::new(live.commands.clone(), live.published.clone(), sculptd::presets().clone())
     };
     let hash = || answer(&host, "hash", Value::Null).expect("a hash")["hash"].clone();
     let before = (hash(), live.published.load().brush);

@@ -141,7 +141,7 @@ mod tests {
         let clock = Clock::manual();
         p.listen(&context, &clock);
         p.begin_frame(0);
-        context.request_repaint_after(std::time::Duration::from_secs(2));
+        context.request_repaint_after(Duration::from_secs(2));
         assert!(!p.frame_is_due(1_000_000));
         assert!(p.wait_us(20_000) <= 2_000_000);
         assert!(p.frame_is_due(2_100_000));

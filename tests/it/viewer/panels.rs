@@ -578,6 +578,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
         |ui: &mut egui::Ui, (s, free): &mut (State, egui::Rect)| {
             let view = View {
                 state: &s.published,
+                presets: sculptd::presets(),
                 camera: s.published.camera,
                 devices: &[],
                 session: None,
