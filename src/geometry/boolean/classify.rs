@@ -192,9 +192,11 @@ fn one_side(
             p.place = placements[n as usize];
         }
     }
-    // Faces and pieces that were not settled by contact, as their loops.
+    // Pieces and faces that were not settled by contact. Pieces are near the other surface, so they
+    // are asked even where their part reaches beyond its box: a part that the cut failed to divide
+    // does, and is not outside as a whole.
     let asked = |n: u32| n != NONE && !parts[n as usize].beyond;
-    let near: Vec<usize> = (0..pieces.len()).filter(|&i| asked(of_piece[i])).collect();
+    let near: Vec<usize> = (0..pieces.len()).filter(|&i| of_piece[i] != NONE).collect();
     let far: Vec<usize> = if parts.iter().all(|p| p.beyond) {
         Vec::new()
     } else {
