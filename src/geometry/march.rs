@@ -85,8 +85,7 @@ mod tests {
                 ((p - 5.0).length() - 3.0) as f32
             })
             .collect();
-        let grid =
-            DistanceGrid { origin: DVec3::splat(-5.0), spacing: 1.0, size: [n; 3], values };
+        let grid = DistanceGrid { origin: DVec3::splat(-5.0), spacing: 1.0, size: [n; 3], values };
         let down = |x: f64| march(&grid, DVec3::new(x, 0.0, 20.0), DVec3::NEG_Z, 0.01);
         assert!(matches!(down(0.0), MarchOutcome::Hit(t) if (t - 17.0).abs() < 0.5));
         assert_eq!(down(4.5), MarchOutcome::Miss);

@@ -49,7 +49,11 @@ impl Site<'_> {
     /// Whether the site lies on triangle `t`. Thousands of triangles may share a vertex.
     #[inline(always)]
     pub(super) fn owns(&self, t: u32) -> bool {
-        if self.own.len() <= 16 { self.own.contains(&t) } else { self.own.binary_search(&t).is_ok() }
+        if self.own.len() <= 16 {
+            self.own.contains(&t)
+        } else {
+            self.own.binary_search(&t).is_ok()
+        }
     }
 }
 
