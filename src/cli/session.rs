@@ -207,7 +207,9 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
                 }
             });
             match entry {
-                SessionEntry { facts: None, damage: Some(why), .. } => return Err(Fail::Input(why)),
+                SessionEntry { facts: None, damage: Some(why), .. } => {
+                    return Err(Fail::Input(why));
+                }
                 SessionEntry { damage: Some(_), .. } => {
                     let text = format!(
                         "damaged; mend it with: sculptd session save '{}'",

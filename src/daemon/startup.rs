@@ -107,11 +107,9 @@ pub fn begin(
         if !matches!(
             &opened,
             Ok(Opened { loss: None, .. })
-                | Err(
-                    OpenError::OtherLayout { .. }
-                        | OpenError::Io { .. }
-                        | OpenError::ReadOnlyFolder { .. }
-                )
+                | Err(OpenError::OtherLayout { .. }
+                    | OpenError::Io { .. }
+                    | OpenError::ReadOnlyFolder { .. })
         ) {
             // A damaged file is kept as it is; the work goes on in another, beside it.
             match session::salvage(&path) {

@@ -137,9 +137,11 @@ fn a_kill_while_the_session_is_made_never_stops_the_next_start() {
         let mut daemon = Daemon { child: start() };
         // From the first sign of a file on: the start before it takes as long as the machine
         // likes.
-        let seen = || std::fs::read_dir(dir.path()).is_ok_and(|f| {
-            f.flatten().any(|e| e.file_name().to_string_lossy().contains("s.sculpt"))
-        });
+        let seen = || {
+            std::fs::read_dir(dir.path()).is_ok_and(|f| {
+                f.flatten().any(|e| e.file_name().to_string_lossy().contains("s.sculpt"))
+            })
+        };
         let mut waited = 0;
         while !seen() && waited < 20_000 {
             pause(1);

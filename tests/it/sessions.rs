@@ -15,8 +15,8 @@ use sculptd_daemon::config::Config;
 use sculptd_daemon::live::Journal;
 use sculptd_daemon::session;
 use sculptd_daemon::session::format::Settings;
-use sculptd_daemon::session::writer::WriterThread;
 use sculptd_daemon::session::salvage::SalvageError;
+use sculptd_daemon::session::writer::WriterThread;
 use sculptd_daemon::session::{SessionWriter, replay, salvage};
 use sculptd_daemon::startup;
 use sculptd_devices::sim::faults::Rng;
@@ -301,10 +301,7 @@ fn a_session_of_layout_3_opens_at_its_newest_checkpoint_and_goes_on() {
     std::fs::copy(fixture, &path).expect("copied");
     let before = std::fs::read(&path).expect("read");
     let run = |args: &[&str]| {
-        let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
-            .args(args)
-            .output()
-            .expect("runs");
+        let out = Command::new(env!("CARGO_BIN_EXE_sculptd")).args(args).output().expect("runs");
         let value: Value = serde_json::from_slice(&out.stdout).unwrap_or_default();
         (out.status.code(), value, String::from_utf8_lossy(&out.stderr).into_owned())
     };

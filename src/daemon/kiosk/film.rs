@@ -65,7 +65,9 @@ impl AttractRecording {
             };
             Sample { device: as_device, t_us, device_t_us: None, body: Body::Pen(pen) }
         };
-        AttractRecording::cut((0..=journal.pen.end_us() / STEP_US + 1).map(|i| sample(i * STEP_US)).collect())
+        AttractRecording::cut(
+            (0..=journal.pen.end_us() / STEP_US + 1).map(|i| sample(i * STEP_US)).collect(),
+        )
     }
 
     /// Leaves out what comes before the first touch and shortens every pause. The last word of each

@@ -13,7 +13,7 @@ use super::film::AttractRecording;
 #[cfg(unix)]
 use super::share;
 use super::spool::Spool;
-use super::{KioskAct, Cycle, KioskConfig, Language, Stage, View, gallery};
+use super::{Cycle, KioskAct, KioskConfig, Language, Stage, View, gallery};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
 use sculptd_clay::Clay;

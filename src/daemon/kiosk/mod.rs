@@ -19,5 +19,5 @@ pub mod settings;
 pub mod share;
 pub mod spool;
 
-pub use cycle::{KioskAct, Cycle, Stage, View};
+pub use cycle::{Cycle, KioskAct, Stage, View};
 pub use settings::{KioskConfig, Language};

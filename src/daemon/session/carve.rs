@@ -182,13 +182,7 @@ impl PageImage {
         }
     }
 
-    fn cell(
-        &mut self,
-        page: &[u8],
-        at: usize,
-        kind: u8,
-        log: bool,
-    ) -> Option<(i64, Vec<Column>)> {
+    fn cell(&mut self, page: &[u8], at: usize, kind: u8, log: bool) -> Option<(i64, Vec<Column>)> {
         let table = kind == 0x0d;
         let mut at = if kind == 0x02 { at + 4 } else { at };
         let (total, n) = varint(page.get(at..)?)?;
@@ -277,7 +271,11 @@ fn record(bytes: &[u8]) -> Option<Vec<Column>> {
                 let value = bytes.get(body..body.checked_add(n)?)?.to_vec();
                 let text = kind % 2 == 1;
                 (
-                    if text { Column::Text(String::from_utf8(value).ok()?) } else { Column::Blob(value) },
+                    if text {
+                        Column::Text(String::from_utf8(value).ok()?)
+                    } else {
+                        Column::Blob(value)
+                    },
                     n,
                 )
             }

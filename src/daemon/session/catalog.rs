@@ -91,13 +91,15 @@ pub fn look(path: &Path) -> std::io::Result<SessionEntry> {
         written_s: since.map_or(0, |d| d.as_secs()),
         facts,
         damage,
-        history: listing::read(path).ok().filter(|h| !h.places.is_empty()).map(|h| HistoryFigures {
-            places: h.places.len(),
-            branches: h.places.iter().filter(|p| p.branch).count(),
-            checkpoints: h.checkpoints,
-            bytes: h.bytes,
-            total_bytes: h.total_bytes,
-            dropped: h.dropped,
+        history: listing::read(path).ok().filter(|h| !h.places.is_empty()).map(|h| {
+            HistoryFigures {
+                places: h.places.len(),
+                branches: h.places.iter().filter(|p| p.branch).count(),
+                checkpoints: h.checkpoints,
+                bytes: h.bytes,
+                total_bytes: h.total_bytes,
+                dropped: h.dropped,
+            }
         }),
     })
 }

@@ -111,8 +111,7 @@ impl SessionDraft {
         static SERIAL: AtomicU32 = AtomicU32::new(0);
         let name = || path.display().to_string();
         let store = |source| CreateError::Store { path: name(), source };
-        refuse_others_folder(path)
-            .map_err(|source| CreateError::Io { path: name(), source })?;
+        refuse_others_folder(path).map_err(|source| CreateError::Io { path: name(), source })?;
         remove_leftovers(path);
         let (pid, serial) = (std::process::id(), SERIAL.fetch_add(1, Relaxed));
         let temporary = beside(path, &format!("{pid}-{serial}"));

@@ -29,7 +29,13 @@ pub(super) struct InputEnd {
 
 impl InputEnd {
     /// Puts the next row.
-    pub fn put(&mut self, db: &Connection, first: u64, last: u64, data: &[u8]) -> rusqlite::Result<()> {
+    pub fn put(
+        &mut self,
+        db: &Connection,
+        first: u64,
+        last: u64,
+        data: &[u8],
+    ) -> rusqlite::Result<()> {
         let before = (self.number, self.chain);
         let row = InputRow::after(before, self.identity, first..=last, data.to_vec());
         let mut put = db.prepare_cached(
@@ -81,13 +87,11 @@ pub(super) fn upgrade(db: &mut Connection) -> rusqlite::Result<()> {
     if found != v3::LAYOUT {
         return Ok(());
     }
-    let oldest: Option<i64> =
-        db.query_row("SELECT min(tick) FROM checkpoint", [], |r| r.get(0))?;
+    let oldest: Option<i64> = db.query_row("SELECT min(tick) FROM checkpoint", [], |r| r.get(0))?;
     let oldest = oldest.unwrap_or_default() as u64;
     let (mut input, _) = v3::read_log(db);
     let sql = "SELECT value FROM meta WHERE key = ?1";
-    let old_log: Option<Vec<u8>> =
-        db.query_row(sql, [v3::META_TAIL], |r| r.get(0)).optional()?;
+    let old_log: Option<Vec<u8>> = db.query_row(sql, [v3::META_TAIL], |r| r.get(0)).optional()?;
     let old_log = old_log.and_then(|l| l.try_into().ok()).map(u64::from_le_bytes);
     if let Some(name) = old_log {
         v3::lengthen(&mut input, name);

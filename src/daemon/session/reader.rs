@@ -201,9 +201,10 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
         Some(ErrorCode::CannotOpen | ErrorCode::ReadOnly) => {
             OpenError::ReadOnlyFolder { path: name.clone() }
         }
-        Some(ErrorCode::PermissionDenied) => {
-            OpenError::Io { path: name.clone(), source: std::io::ErrorKind::PermissionDenied.into() }
-        }
+        Some(ErrorCode::PermissionDenied) => OpenError::Io {
+            path: name.clone(),
+            source: std::io::ErrorKind::PermissionDenied.into(),
+        },
         Some(ErrorCode::NotADatabase) => OpenError::NotASession { path: name.clone() },
         _ => OpenError::Damaged { path: name.clone(), what: "the database", source: e.into() },
     };
@@ -249,8 +250,7 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
     if !indices_hold(&start) {
         return Err(damaged(META_START, "an index is out of range".into()));
     }
-    let settings =
-        from_bytes(&settings, counts).map_err(|e| damaged(META_SETTINGS, e.into()))?;
+    let settings = from_bytes(&settings, counts).map_err(|e| damaged(META_SETTINGS, e.into()))?;
     let path = path.to_path_buf();
     if layout == v3::LAYOUT {
         let (mut input, cause) = v3::read_log(&db);
@@ -318,7 +318,9 @@ fn expected(
         Acknowledged::Known(a) => {
             let must = Some(a.tick.max(newest));
             let cause = if foreign {
-                Some("the write-ahead log beside it is another session's, or of another time".into())
+                Some(
+                    "the write-ahead log beside it is another session's, or of another time".into(),
+                )
             } else if a.tick > kept {
                 Some(format!("{log}: tick {} is acknowledged", a.tick))
             } else if newest > kept {
@@ -332,7 +334,9 @@ fn expected(
         }
         Acknowledged::Damaged | Acknowledged::Missing => (
             None,
-            Some("the acknowledgement cannot be read: whether ticks are missing is not known".into()),
+            Some(
+                "the acknowledgement cannot be read: whether ticks are missing is not known".into(),
+            ),
         ),
     }
 }

@@ -176,7 +176,8 @@ fn read(
         what,
         source,
     };
-    let layout = if identity.is_none() && !carved.old_groups.is_empty() { v3::LAYOUT } else { VERSION };
+    let layout =
+        if identity.is_none() && !carved.old_groups.is_empty() { v3::LAYOUT } else { VERSION };
     let counts = field_counts(layout).unwrap_or(&[]);
     let sums: Vec<(u32, u32)> = carved
         .meta
@@ -193,8 +194,8 @@ fn read(
         start_changed |= exact.is_none() && !sums.is_empty();
         exact.or_else(|| all.last().cloned())
     };
-    let start = best(META_START, &|s| s.0)
-        .ok_or_else(|| damaged(META_START, "it is missing".into()))?;
+    let start =
+        best(META_START, &|s| s.0).ok_or_else(|| damaged(META_START, "it is missing".into()))?;
     let settings = best(META_SETTINGS, &|s| s.1)
         .ok_or_else(|| damaged(META_SETTINGS, "it is missing".into()))?;
     let start: TriMesh = from_bytes(&start, counts).map_err(|e| damaged(META_START, e.into()))?;

@@ -386,8 +386,10 @@ mod tests {
         let Some(mut log) = SharedMemoryLog::create(file, Path::new("/nowhere"), (5, start)) else {
             return;
         };
-        assert_eq!(LogName::parse(&log.name.path(0).file_name().expect("a name").to_string_lossy()),
-            Some(log.name.clone()));
+        assert_eq!(
+            LogName::parse(&log.name.path(0).file_name().expect("a name").to_string_lossy()),
+            Some(log.name.clone())
+        );
         assert!(log.name.is_own());
         let mut chains = vec![start; 6];
         for tick in 6..20_000 {

@@ -127,9 +127,8 @@ fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<SyncedLog> {
     let mut head = [0; 24];
     log.seek(SeekFrom::Start(0))?;
     let salts = match log.read_exact(&mut head) {
-        Ok(()) => [16, 20].map(|at| {
-            u32::from_be_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]])
-        }),
+        Ok(()) => [16, 20]
+            .map(|at| u32::from_be_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]])),
         Err(_) => [0, 0],
     };
     Ok(SyncedLog { bytes: log.metadata()?.len(), salts })

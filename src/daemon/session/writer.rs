@@ -14,8 +14,8 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 use rusqlite::Connection;
 
-use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
 use super::GROUP_MS;
+use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
 use super::create::{SessionDraft, is_half_made};
 use super::format::{Settings, append};
 use super::history::{Handle, keeper::Keeper};
@@ -212,12 +212,8 @@ fn start_thread(
     let Some((mut page, _)) = found else {
         return Err(io(std::io::Error::other("the acknowledgement cannot be read")));
     };
-    let first = Acknowledgement {
-        identity: end.identity,
-        tick: end.tick,
-        chain: end.chain,
-        salts: [0, 0],
-    };
+    let first =
+        Acknowledgement { identity: end.identity, tick: end.tick, chain: end.chain, salts: [0, 0] };
     page.write(&first).map_err(io)?;
     let syncer =
         Syncer::start(path, health.written.clone(), taken_over, page, first).map_err(io)?;
@@ -317,7 +313,8 @@ impl Drop for SessionWriter {
     fn drop(&mut self) {
         if !self.carry.is_empty() {
             let carry = std::mem::take(&mut self.carry);
-            let _ = self.full.send(InputMessage::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
+            let _ =
+                self.full.send(InputMessage::Ticks(self.carry_ticks.0, self.carry_ticks.1, carry));
         }
     }
 }

@@ -344,7 +344,10 @@ impl Store {
     /// A jump is sent that names these.
     pub fn put_pin(&self, pin: &Pin) -> Result<usize, StoreError> {
         let data = super::store::plain(postcard::to_stdvec(pin))?;
-        self.db.execute("INSERT INTO pin (tick, data, layout) VALUES (?1, ?2, ?3)", (UNDER_WAY, &data, VERSION))?;
+        self.db.execute(
+            "INSERT INTO pin (tick, data, layout) VALUES (?1, ?2, ?3)",
+            (UNDER_WAY, &data, VERSION),
+        )?;
         Ok(data.len())
     }
 
@@ -373,7 +376,10 @@ impl Store {
     pub fn high(&self, object_id: u32) -> Result<HighestNumbers, StoreError> {
         let sql = "SELECT revision, vertex, triangle FROM high WHERE lineage = ?1";
         let row = self.db.query_row(sql, [object_id], |r| {
-            Ok(HighestNumbers { revision: r.get::<_, i64>(0)? as u64, next: [r.get(1)?, r.get(2)?] })
+            Ok(HighestNumbers {
+                revision: r.get::<_, i64>(0)? as u64,
+                next: [r.get(1)?, r.get(2)?],
+            })
         });
         Ok(row.optional()?.unwrap_or_default())
     }

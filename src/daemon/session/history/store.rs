@@ -255,8 +255,10 @@ impl Store {
             Side::Levels(l) => postcard::to_stdvec(l.as_ref()),
         })?;
         let row = (id as i64, crc32fast::hash(&data), &data, VERSION);
-        self.db
-            .execute("INSERT OR REPLACE INTO side (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)", row)?;
+        self.db.execute(
+            "INSERT OR REPLACE INTO side (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)",
+            row,
+        )?;
         Ok(data.len())
     }
 
@@ -268,7 +270,10 @@ impl Store {
     pub fn put_node(&self, node: &Node) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(node))?;
         let row = (node.id as i64, crc32fast::hash(&data), &data, VERSION);
-        self.db.execute("INSERT OR REPLACE INTO node (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)", row)?;
+        self.db.execute(
+            "INSERT OR REPLACE INTO node (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)",
+            row,
+        )?;
         Ok(data.len())
     }
 
@@ -292,7 +297,10 @@ impl Store {
     pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(c))?;
         let row = (c.tick as i64, crc32fast::hash(&data), &data, VERSION);
-        self.db.execute("INSERT INTO checkpoint (tick, crc, data, layout) VALUES (?1, ?2, ?3, ?4)", row)?;
+        self.db.execute(
+            "INSERT INTO checkpoint (tick, crc, data, layout) VALUES (?1, ?2, ?3, ?4)",
+            row,
+        )?;
         Ok(data.len())
     }
 
