@@ -133,7 +133,8 @@ pub(super) fn upgrade(db: &mut Connection) -> rusqlite::Result<()> {
     }
     all.execute("DELETE FROM meta WHERE key IN (?1, ?2)", (META_SUMS, v3::META_TAIL))?;
     let why = format!(
-        "it was begun by an older sculptd (layout {found}), in which the same input makes other clay"
+        "it was begun by an older sculptd (layout {found}), in which the same input makes other \
+         clay"
     );
     let from = postcard::to_stdvec(&ReplayFrom { tick: oldest, why }).unwrap_or_default();
     let put = "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)";

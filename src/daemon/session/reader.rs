@@ -35,10 +35,10 @@ pub enum OpenError {
     )]
     NotASession { path: String },
     #[error(
-        "{path}: written by {} sculptd (layout {found}, this one reads {VERSION}{}); nothing was changed, open it \
-         with that one and export the sculpture",
+        "{path}: written by {} sculptd (layout {found}, this one reads {VERSION}{}); nothing was \
+         changed, open it with that one and export the sculpture",
         if *.found > VERSION { "a newer" } else { "an older" },
-        if *.found > VERSION { "" } else { ", and older ones that have a checkpoint: this one has none" }
+        if *.found > VERSION { "" } else { ", and older ones with a checkpoint: it has none" }
     )]
     OtherLayout { path: String, found: u32 },
     #[error("{path}: it can be opened at a checkpoint only, and none can be read: {why}")]
@@ -48,8 +48,8 @@ pub enum OpenError {
     #[error("{path}: {source}")]
     Io { path: String, source: std::io::Error },
     #[error(
-        "{path}: its folder cannot be written, and its log ({path}-wal) must be taken over there: copy both to a folder \
-         that can be written"
+        "{path}: its folder cannot be written, and its log ({path}-wal) must be taken over there: \
+         copy both to a folder that can be written"
     )]
     ReadOnlyFolder { path: String },
 }
@@ -356,7 +356,8 @@ fn older(db: &Connection, name: &str) -> Result<ReplayFrom, OpenError> {
     Ok(ReplayFrom {
         tick: tick as u64,
         why: format!(
-            "it was begun by an older sculptd (layout {layout}), in which the same input makes other clay"
+            "it was begun by an older sculptd (layout {layout}), in which the same input makes \
+             other clay"
         ),
     })
 }

@@ -1,6 +1,6 @@
 //! The history's tables: nodes, pages, checkpoints, pictures. Every row carries the checksum of its
-//! bytes, and where the bytes are a struct's, the layout that they were written in: rows of an older
-//! layout are decoded as it had them, see [`crate::session::format`].
+//! bytes and, where the bytes are a struct's, the layout that they were written in: rows of an
+//! older layout are decoded as it had them, see [`crate::session::format`].
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,7 +23,10 @@ use sculptd_geometry::TriMesh;
 /// Added to a session's tables; a session from before them has none and is replayed.
 pub const TABLES: &str = "
     CREATE TABLE IF NOT EXISTS node (
-        id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL, layout INTEGER NOT NULL DEFAULT 3
+        id INTEGER PRIMARY KEY,
+        crc INTEGER NOT NULL,
+        data BLOB NOT NULL,
+        layout INTEGER NOT NULL DEFAULT 3
     );
     CREATE TABLE IF NOT EXISTS page (
         lineage INTEGER NOT NULL,
@@ -43,7 +46,10 @@ pub const TABLES: &str = "
         PRIMARY KEY (lineage, number, revision)
     );
     CREATE TABLE IF NOT EXISTS side (
-        id INTEGER PRIMARY KEY, crc INTEGER NOT NULL, data BLOB NOT NULL, layout INTEGER NOT NULL DEFAULT 3
+        id INTEGER PRIMARY KEY,
+        crc INTEGER NOT NULL,
+        data BLOB NOT NULL,
+        layout INTEGER NOT NULL DEFAULT 3
     );
     CREATE TABLE IF NOT EXISTS checkpoint (
         id INTEGER PRIMARY KEY,
@@ -54,7 +60,10 @@ pub const TABLES: &str = "
     );
     CREATE TABLE IF NOT EXISTS sight (node INTEGER PRIMARY KEY, png BLOB NOT NULL);
     CREATE TABLE IF NOT EXISTS pin (
-        id INTEGER PRIMARY KEY, tick INTEGER NOT NULL, data BLOB NOT NULL, layout INTEGER NOT NULL DEFAULT 3
+        id INTEGER PRIMARY KEY,
+        tick INTEGER NOT NULL,
+        data BLOB NOT NULL,
+        layout INTEGER NOT NULL DEFAULT 3
     );
     CREATE TABLE IF NOT EXISTS high (
         lineage INTEGER PRIMARY KEY,
