@@ -49,6 +49,8 @@ fn the_first_minutes_in_a_real_window() {
 
     let tool = s.dir.path().join("tool.obj");
     write_mesh(&tool, &shapes::sphere_of_about(2_000).to_poly()).expect("written");
+    // Away from the clay, so that what is held beside it is in view.
+    s.drive(&["mousemove", "640", "360", "click", "--repeat", "6", "5"]);
     s.ask("take-up", &json!({ "path": tool }));
     s.seen("7-thing");
     let before = s.figure("triangles");
@@ -136,6 +138,8 @@ fn what_would_come_is_seen_before_it_is_made() {
     s.ask("load", &json!({ "path": ball }));
     s.until("the ball is there", |s| s.figure("vertices") != begun);
     s.drive(&["key", "Home"]);
+    // Away from the clay, so that what is held beside it is in view.
+    s.drive(&["mousemove", "640", "360", "click", "--repeat", "6", "5"]);
     s.ask("take-up", &json!({ "path": tool }));
     s.seen("a2-thing");
     let (triangles, hash) = (s.figure("triangles"), s.ask("hash", &Value::Null)["hash"].clone());
