@@ -63,8 +63,7 @@ impl Picture {
         let reader = image::ImageReader::new(std::io::Cursor::new(bytes))
             .with_guessed_format()
             .map_err(|e| format!("not a picture: {e}"))?;
-        let (width, rows) =
-            reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
+        let (width, rows) = reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
         if u64::from(width) * u64::from(rows) > MOST {
             return Err(format!("{width} x {rows} pixels; at most {MOST} are taken"));
         }
@@ -259,16 +258,12 @@ mod tests {
             let corner = read.at(0.125, 0.875);
             assert!((corner - f32::from(pixels[0]) / 65535.0).abs() < 1e-6);
         }
-        let see_through = image::ImageBuffer::<image::LumaA<u8>, _>::from_raw(
-            2,
-            1,
-            vec![200u8, 255, 200, 0],
-        );
+        let see_through =
+            image::ImageBuffer::<image::LumaA<u8>, _>::from_raw(2, 1, vec![200u8, 255, 200, 0]);
         png.clear();
-        let written = see_through.expect("fits").write_to(
-            &mut std::io::Cursor::new(&mut png),
-            image::ImageFormat::Png,
-        );
+        let written = see_through
+            .expect("fits")
+            .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png);
         written.expect("written");
         assert_eq!(Picture::decode(&png).expect("read").heights, [200 * 257, 0]);
         assert!(Picture::decode(b"not a picture").is_err());

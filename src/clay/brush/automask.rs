@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::dab::Dab;
 use super::stamp::PlacedStamp;
 use crate::PageIn;
-use crate::brush::surface_query::{SurfaceQuery, Scratch};
+use crate::brush::surface_query::{Scratch, SurfaceQuery};
 
 /// Faces fade out over this much of the cosine to the eye.
 const FRONT_FADE: f32 = 0.2;

@@ -6,10 +6,10 @@
 
 use glam::Vec3;
 
-use super::preset::OwnNumber;
 use super::BrushSettings;
+use super::preset::OwnNumber;
 use super::stamp::Lens;
-use crate::brush::surface_query::{SurfaceQuery, Scratch};
+use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{PageIn, Reach};
 
 /// Images of a dab at most, itself counted.

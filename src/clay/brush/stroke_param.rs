@@ -13,7 +13,7 @@
 
 use glam::{Quat, Vec3};
 
-use crate::brush::geodesic::{Key, Geodesic, ring};
+use crate::brush::geodesic::{Geodesic, Key, ring};
 use crate::{Clay, Page, Reach};
 
 /// A sample of a stroke on the surface as it was.

@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, Grip, IMAGES, VertexContext};
+use super::dab::{Brush, Dab, Grip, IMAGES, VertexChange, VertexContext};
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
 use crate::brush::automask::AutoMasking;
-use crate::brush::surface_query::{SurfaceQuery, Scratch};
+use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 
 /// The clay in a brush's hand.
@@ -89,8 +89,11 @@ impl Tool<'_> {
             for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
                 let mut on =
                     SurfaceQuery { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
-                members[n] =
-                    Some((dabs[i], B::ready(&dabs[i], &mut on), AutoMasking::ready(&dabs[i], &mut on)));
+                members[n] = Some((
+                    dabs[i],
+                    B::ready(&dabs[i], &mut on),
+                    AutoMasking::ready(&dabs[i], &mut on),
+                ));
                 lo = lo.min(balls[i].0 - balls[i].1);
                 hi = hi.max(balls[i].0 + balls[i].1);
                 n += 1;
@@ -149,16 +152,15 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
                 if !(weight > 0.0) {
                     continue;
                 }
-                let spot =
-                    VertexContext {
-                        page,
-                        number: page.number(),
-                        v,
-                        p,
-                        at,
-                        weight,
-                        scratch: self.scratch,
-                    };
+                let spot = VertexContext {
+                    page,
+                    number: page.number(),
+                    v,
+                    p,
+                    at,
+                    weight,
+                    scratch: self.scratch,
+                };
                 let c = brush.change(dab, &spot);
                 sum.by += c.by;
                 if let Some(by) = c.held {

@@ -204,7 +204,8 @@ impl StrokeContext<'_> {
         stroke.last_measured = Some(centre);
         let way = step.length() / radius;
         stroke.heading = stroke.heading * (-way / HEADING).exp() + step / radius;
-        let spaced = matches!(self.way(), StrokeMethod::Spaced | StrokeMethod::Line | StrokeMethod::Curve);
+        let spaced =
+            matches!(self.way(), StrokeMethod::Spaced | StrokeMethod::Line | StrokeMethod::Curve);
         let stroke = &mut self.stroke;
         // A dab that did not move (the first of a run, or that of a resting pen) stands for a
         // spacing, and one that is strewn for its share of one.
@@ -230,8 +231,7 @@ impl StrokeContext<'_> {
         let s = self.brush;
         let cuts = s.topology.by != Measure::Off && s.kind.cuts();
         let found = s.kind.found() && !s.accumulate && !cuts;
-        let (centre, normal) =
-            if found { self.as_found(hit) } else { (hit.position, hit.normal) };
+        let (centre, normal) = if found { self.as_found(hit) } else { (hit.position, hit.normal) };
         let normal = match at.tilt {
             Some(tilt) if s.tilt > 0.0 => {
                 normal.lerp(self.pen_direction(tilt), s.tilt).try_normalize().unwrap_or(normal)

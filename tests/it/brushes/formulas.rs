@@ -211,7 +211,8 @@ fn symmetric_strokes_mirror() {
     let start = shapes::icosphere(1.0, 40);
     for kind in BrushKind::ALL {
         for symmetry in [[true, false, false], [true, true, true]] {
-            let mut brush = BrushSettings { symmetry, radius: 0.12, ..sculptd::presets().of(*kind) };
+            let mut brush =
+                BrushSettings { symmetry, radius: 0.12, ..sculptd::presets().of(*kind) };
             // Cuts are made one image after another, and are not symmetric to the bit.
             brush.topology = TopologySettings::default();
             let mut studio = Studio::new(&start, brush, 1);

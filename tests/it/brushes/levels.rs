@@ -30,8 +30,10 @@ fn volume(mesh: &TriMesh) -> f64 {
 #[test]
 fn detail_survives_strokes_on_a_coarser_level() {
     let start = shapes::icosphere(1.0, 16);
-    let fine = BrushSettings { radius: 0.06, strength: 0.1, ..sculptd::presets().of(BrushKind::Draw) };
-    let coarse = BrushSettings { radius: 0.5, strength: 0.4, ..sculptd::presets().of(BrushKind::Grab) };
+    let fine =
+        BrushSettings { radius: 0.06, strength: 0.1, ..sculptd::presets().of(BrushKind::Draw) };
+    let coarse =
+        BrushSettings { radius: 0.5, strength: 0.4, ..sculptd::presets().of(BrushKind::Grab) };
     let mut studio = Studio::new(&start, fine, 1);
     assert_eq!(go(&mut studio, true), (1, 2));
     assert_eq!(go(&mut studio, true), (2, 3));

@@ -311,8 +311,11 @@ fn the_cut_into_frames_changes_nothing_of_what_is_laid_down() {
 #[test]
 fn a_stroke_drawn_fast_and_one_drawn_slowly_raise_the_same_clay() {
     let start = form(40_000);
-    let brush =
-        BrushSettings { radius: 0.12, strength: 0.05, ..sculptd::presets().of(BrushKind::Gaussian) };
+    let brush = BrushSettings {
+        radius: 0.12,
+        strength: 0.05,
+        ..sculptd::presets().of(BrushKind::Gaussian)
+    };
     let volume = |studio: &Studio| -> f64 {
         let mesh = studio.world.mesh().to_tri();
         let c = |v: u32| mesh.positions[v as usize].as_dvec3();

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::Clay;
-use sculptd_clay::brush::stroke_param::{StrokeSample, StrokeParameters};
+use sculptd_clay::brush::stroke_param::{StrokeParameters, StrokeSample};
 use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, PressureCurve};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
@@ -56,7 +56,12 @@ fn each_place(mesh: &Clay, unroll: &StrokeParameters, mut visit: impl FnMut(Vec3
 }
 
 /// The greatest error over the radius, of coordinates about one point.
-fn worst_about(mesh: &TriMesh, from: StrokeSample, radius: f32, exact: impl Fn(Vec3) -> Vec2) -> f32 {
+fn worst_about(
+    mesh: &TriMesh,
+    from: StrokeSample,
+    radius: f32,
+    exact: impl Fn(Vec3) -> Vec2,
+) -> f32 {
     let mesh = build(mesh);
     let mut unroll = StrokeParameters::default();
     unroll.walk.begin(&mesh);
@@ -74,7 +79,8 @@ fn a_cylinder_unrolls_to_its_development() {
         let a = (x - 0.5) * std::f32::consts::TAU;
         Vec3::new(a.sin(), y * 2.0 - 1.0, a.cos())
     };
-    let from = StrokeSample { point: Vec3::Z, normal: Vec3::Z, along: Vec3::new(0.8, 0.6, 0.0), u: 0.3 };
+    let from =
+        StrokeSample { point: Vec3::Z, normal: Vec3::Z, along: Vec3::new(0.8, 0.6, 0.0), u: 0.3 };
     let exact = |p: Vec3| {
         let flat = Vec2::new(p.x.atan2(p.z), p.y);
         Vec2::new(0.3 + flat.dot(Vec2::new(0.8, 0.6)), flat.dot(Vec2::new(-0.6, 0.8)))
@@ -126,8 +132,12 @@ fn a_sphere_gets_its_exponential_map() {
             * p.normalize().dot(normal).clamp(-1.0, 1.0).acos()
     };
     for radius in [0.25, 0.5] {
-        let worst =
-            worst_about(&mesh, StrokeSample { point: normal, normal, along, u: 0.0 }, radius, exact);
+        let worst = worst_about(
+            &mesh,
+            StrokeSample { point: normal, normal, along, u: 0.0 },
+            radius,
+            exact,
+        );
         println!("sphere, radius {radius}: {:.2} % of the radius", worst * 100.0);
         assert!(worst < 0.02, "{worst}");
     }
