@@ -47,12 +47,7 @@ impl Brush for ClayBrush {
 
 /// Moves what lies under the plane (over it, if `sign` is negative) `share` of the way up to it, by
 /// its weight.
-pub(super) fn coat(
-    plane: &Plane,
-    sign: f32,
-    share: f32,
-    spot: &VertexContext<'_>,
-) -> VertexChange {
+pub(super) fn coat(plane: &Plane, sign: f32, share: f32, spot: &VertexContext<'_>) -> VertexChange {
     let h = plane.height(spot.p);
     if h * sign >= 0.0 {
         VertexChange::default()

@@ -15,7 +15,7 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
@@ -68,15 +68,13 @@ impl ElasticBrush {
 
 impl Brush for ElasticBrush {
     const GRIP: Grip = Grip::Anchor;
-    const OWN_NUMBERS: &'static [OwnNumber] = &[
-        OwnNumber {
-            name: "poisson",
-            value: 0.5,
-            min: 0.0,
-            max: 0.5,
-            about: "how far the clay keeps its volume: 0.5 wholly",
-        },
-    ];
+    const OWN_NUMBERS: &'static [OwnNumber] = &[OwnNumber {
+        name: "poisson",
+        value: 0.5,
+        min: 0.0,
+        max: 0.5,
+        about: "how far the clay keeps its volume: 0.5 wholly",
+    }];
 
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         ElasticBrush::new(dab.motion * (dab.strength * dab.sign), dab.radius * SIZE, dab.extra(0))

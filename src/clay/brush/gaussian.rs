@@ -6,10 +6,10 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::tool::Tool;
 use super::weights::{Weights, exp};
+use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
 
 /// The standard deviation of the bell, in the unit in which the radius is [`REACH`].
@@ -46,7 +46,9 @@ impl Kernel for GaussianBrush {
     #[inline]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         Weights::with(|w| {
-            out.visit_many(w.sphere(page, self.centre, self.normal, self.radius2, |d2| exp(d2 * self.fall)));
+            out.visit_many(
+                w.sphere(page, self.centre, self.normal, self.radius2, |d2| exp(d2 * self.fall)),
+            );
             out.push_all(self.offset, w.of(page));
         });
     }
@@ -68,7 +70,10 @@ impl Brush for GaussianBrush {
     }
 
     fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(&Self::reach(dab), &GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height()));
+        tool.run(
+            &Self::reach(dab),
+            &GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height()),
+        );
         true
     }
 }

@@ -1,8 +1,8 @@
 //! Grab: what was under the brush when the pen came down follows the pen.
 
-use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use crate::Reach;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of grab, made ready.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Mask: protects what it paints from other brushes; the other way round it frees it.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of mask, made ready.

@@ -1,9 +1,9 @@
 //! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it
 //! sharpens them.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::PageIn;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of mask blur, made ready.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of nudge, made ready.

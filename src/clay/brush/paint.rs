@@ -1,6 +1,6 @@
 //! Paint: lays the brush's colour on.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of paint, made ready.

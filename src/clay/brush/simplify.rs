@@ -4,9 +4,9 @@
 //! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]); its own file turns
 //! it on.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::relax::RelaxBrush;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of simplify, made ready.
 #[derive(Debug, Clone, Copy)]

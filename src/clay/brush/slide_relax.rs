@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// Of the shortest edge about a vertex, the furthest that one dab takes it.

@@ -10,10 +10,10 @@
 use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::tool::Tool;
 use super::weights::Weights;
+use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
 use sculptd_geometry::simd::cotangents::MAX_COT;
 
@@ -116,8 +116,11 @@ impl Kernel for SmoothBrush {
                 page.cotangents_of(&who[..regular], &mut sums[..regular]);
                 for (i, &v) in who[..count].iter().enumerate() {
                     let (v, p) = (v as usize, page.point(v));
-                    let (sum, all) =
-                        if i < regular { (sums[i].truncate(), sums[i].w) } else { around(page, v, p) };
+                    let (sum, all) = if i < regular {
+                        (sums[i].truncate(), sums[i].w)
+                    } else {
+                        around(page, v, p)
+                    };
                     if all > 0.0 {
                         out.set(v, p + sum * (weights[v] / all));
                     }

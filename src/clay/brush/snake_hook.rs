@@ -1,6 +1,6 @@
 //! Snake hook: draws clay out after the pen, and goes with it.
 
-use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of snake hook, made ready.

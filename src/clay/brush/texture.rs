@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
@@ -55,7 +55,11 @@ impl Brush for TextureBrush {
 
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         let far = dab.radius * (1.5 + dab.strength);
-        if self.newest > 0 && (page.before(v) - dab.centre).length_squared() < far * far { 1.0 } else { 0.0 }
+        if self.newest > 0 && (page.before(v) - dab.centre).length_squared() < far * far {
+            1.0
+        } else {
+            0.0
+        }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
@@ -63,7 +67,9 @@ impl Brush for TextureBrush {
         if unroll.owner(spot.number, spot.v) + 1 < self.newest {
             return VertexChange::default();
         }
-        let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else { return VertexChange::default() };
+        let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else {
+            return VertexChange::default();
+        };
         let far = unroll.walk.distance(spot.number, spot.v).unwrap_or(0.0);
         // A square of the alpha is as wide as the brush, and `scale` times as long.
         let width = dab.radius * dab.extra(2);

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use crate::Reach;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of thumb, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,9 @@ impl Brush for ThumbBrush {
     const GRIP: Grip = Grip::Anchor;
 
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
-        ThumbBrush { by: (dab.motion - dab.normal * dab.motion.dot(dab.normal)) * (dab.strength * dab.sign) }
+        ThumbBrush {
+            by: (dab.motion - dab.normal * dab.motion.dot(dab.normal)) * (dab.strength * dab.sign),
+        }
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {

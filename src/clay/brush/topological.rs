@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
+use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
@@ -25,12 +25,18 @@ impl Brush for TopologicalBrush {
 
     /// The walk says how far it is; see [`Topological::change`].
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
-        if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius { 1.0 } else { 0.0 }
+        if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius {
+            1.0
+        } else {
+            0.0
+        }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let walk = spot.scratch.walk(dab.image);
-        let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else { return VertexChange::default() };
+        let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else {
+            return VertexChange::default();
+        };
         let w = dab.fade(d * d) * spot.weight;
         VertexChange::held(dab.motion * (dab.strength * dab.sign * w))
     }

@@ -2,9 +2,9 @@
 //! whatever is deep within the brush comes to lie on the plane at once. The other way round it
 //! fills to a plane set over the surface.
 
-use super::dab::{Brush, VertexChange, Dab, VertexContext};
+use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::preset::OwnNumber;
-use crate::brush::surface_query::{SurfaceQuery, Plane};
+use crate::brush::surface_query::{Plane, SurfaceQuery};
 
 /// One dab of trim, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -13,15 +13,13 @@ pub struct TrimBrush {
 }
 
 impl Brush for TrimBrush {
-    const OWN_NUMBERS: &'static [OwnNumber] = &[
-        OwnNumber {
-            name: "depth",
-            value: 0.1,
-            min: 0.0,
-            max: 1.0,
-            about: "how far below the surface it cuts, in radii, at full strength",
-        },
-    ];
+    const OWN_NUMBERS: &'static [OwnNumber] = &[OwnNumber {
+        name: "depth",
+        value: 0.1,
+        min: 0.0,
+        max: 1.0,
+        about: "how far below the surface it cuts, in radii, at full strength",
+    }];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         TrimBrush { plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength) }

@@ -3,9 +3,9 @@
 
 use glam::Quat;
 
-use super::dab::{Brush, VertexChange, Dab, Grip, VertexContext};
-use crate::brush::surface_query::SurfaceQuery;
+use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use crate::Reach;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of twist, made ready.
 #[derive(Debug, Clone, Copy)]
