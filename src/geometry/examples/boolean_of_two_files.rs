@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use glam::DVec3;
-use sculptd_geometry::boolean::{Operation, Options, compute};
+use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, shapes};
@@ -52,7 +52,8 @@ fn run() -> Result<(), Box<dyn Error>> {
         _ => return Err("expected an operation, two mesh files and the result's name".into()),
     };
     // The last argument is a clock for the phases' times, which this program does not print.
-    let (solids, report) = compute([&a, &b], &[operation], &Options::default(), &job, || 0.0)?;
+    let (solids, report) =
+        compute([&a, &b], &[operation], &BooleanOptions::default(), &job, || 0.0)?;
     for warning in &report.warnings {
         eprintln!("warning: {warning}");
     }
