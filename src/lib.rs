@@ -56,10 +56,10 @@
 //!   multiresolution, undo, snapshots, local Booleans.
 //! * `sculptd-engine` (`src/engine`) knows devices, geometry, clay: commands, payloads, the world,
 //!   camera, strokes, hands.
-//! * `sculptd-control` (`src/control`) knows nobody: the requests, replies and events of the control
-//!   socket as types, their JSON schema, a client.
-//! * `sculptd-daemon` (`src/daemon`) knows all of the above: the tick loop, simulated time, sessions,
-//!   control socket, kiosk, metrics.
+//! * `sculptd-control` (`src/control`) knows nobody: the requests, replies and events of the
+//!   control socket as types, their JSON schema, a client.
+//! * `sculptd-daemon` (`src/daemon`) knows all of the above: the tick loop, simulated time,
+//!   sessions, control socket, kiosk, metrics.
 //! * `sculptd-window` (`src/window`) knows all but the command line: panels (egui) and viewer
 //!   (wgpu): they see snapshots and send commands.
 //! * `sculptd` (`src/main.rs`, `src/cli`) knows all: the command line: reads arguments, calls,
@@ -112,15 +112,15 @@
 //! * `sculptd-limit`, made by `cli::live`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
-//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, made by `window::viewer::tasks`: changes of
-//!   the whole object that the window asked for, sent as commands. Waits for: the loop's answer.
+//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, made by `window::viewer::tasks`: changes
+//!   of the whole object that the window asked for, sent as commands. Waits for: the loop's answer.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by
-//!   `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits for: a request;
-//!   a newer one replaces it.
+//!   `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits for: a
+//!   request; a newer one replaces it.
 //! * `sculptd-sights`, made by `window::viewer::history_tree`: reads thumbnails of the history.
 //!   Waits for: the disk.
 //!

@@ -86,7 +86,8 @@ fn rates(name: &str, mesh: &TriMesh) {
             })
         });
         println!(
-            "  {what:8} nearest {:.0} ns, signed by normal {:.0} ns, winding number {:.0} ns; parry3d {:.0} ns",
+            "  {what:8} nearest {:.0} ns, signed by normal {:.0} ns, winding number {:.0} ns; \
+                parry3d {:.0} ns",
             ours * each,
             signed * each,
             winding * each,

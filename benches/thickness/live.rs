@@ -151,7 +151,8 @@ fn main() {
             let at = |q: f64| us.get((us.len() as f64 * q) as usize).copied().unwrap_or(0);
             let _ = writeln!(
                 std::io::stdout(),
-                "{} map: tick p50 {} us, p90 {}, p99 {}, max {}; right after pen-up in ms: {right_ms:.1?}",
+                "{} map: tick p50 {} us, p90 {}, p99 {}, max {}; right after pen-up in ms: \
+                    {right_ms:.1?}",
                 if beside { "with   " } else { "without" },
                 at(0.5),
                 at(0.9),

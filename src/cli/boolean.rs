@@ -192,7 +192,8 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     };
     if !fits {
         return Err(Fail::Usage(
-            "expected one operand for split and shells, two for all and reverse-difference, else two or more"
+            "expected one operand for split and shells, two for all and reverse-difference, else \
+                two or more"
                 .into(),
         ));
     }
@@ -424,7 +425,8 @@ fn operand(
         phase(out, "solve");
     } else if crossed > 0 {
         out.warnings.push(format!(
-            "{}: {crossed} pairs of triangles cross; what lies there is taken as it is (--solve winding mends it)",
+            "{}: {crossed} pairs of triangles cross; what lies there is taken as it is (--solve \
+                winding mends it)",
             path.display()
         ));
     }

@@ -14,7 +14,8 @@ pub fn room_for(need: u64, what: &str) -> Result<(), Fail> {
     let gib = |b: u64| b as f64 / f64::from(1 << 30);
     match available() {
         Some(have) if need > have => Err(Fail::Input(format!(
-            "{what} needs about {:.1} GiB of memory, and this machine has {:.1} GiB left: not even tried",
+            "{what} needs about {:.1} GiB of memory, and this machine has {:.1} GiB left: not even \
+                tried",
             gib(need),
             gib(have)
         ))),

@@ -155,7 +155,8 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
     if replayed.jumps_missed > 0 {
         let n = replayed.jumps_missed;
         eprintln!(
-            "sculptd: warning: {n} jumps within the history could not be made again, the clay may be another; --from-checkpoint begins later"
+            "sculptd: warning: {n} jumps within the history could not be made again, the clay may \
+                be another; --from-checkpoint begins later"
         );
     }
     let answer_ = Answer {

@@ -9,8 +9,8 @@ use sculptd_devices::tablet::TabletError;
 use sculptd_devices::{Clock, DeviceId, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial
-/// ports from 100, the tracker 200, recordings from 300, the window's own pointer 400, the pen of the control
-/// socket's strokes 401.
+/// ports from 100, the tracker 200, recordings from 300, the window's own pointer 400, the pen of
+/// the control socket's strokes 401.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
 pub const RECORDING_IDS: u16 = 300;

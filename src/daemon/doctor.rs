@@ -129,7 +129,8 @@ fn tablets(config: &Config, dev: &Path) -> Check {
     Check::fail(
         NAME,
         format!("none of {} may be read by this user", closed.join(", ")),
-        "sudo cp config/70-sculptd.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger",
+        "sudo cp config/70-sculptd.rules /etc/udev/rules.d/ && sudo udevadm control --reload && \
+            sudo udevadm trigger",
     )
 }
 
@@ -310,7 +311,8 @@ fn scheduling() -> Check {
     Check::warn(
         NAME,
         format!("{got}: without real-time scheduling a busy machine delays ticks"),
-        "echo \"$USER - rtprio 20\" | sudo tee /etc/security/limits.d/70-sculptd.conf   # then log in again",
+        "echo \"$USER - rtprio 20\" | sudo tee /etc/security/limits.d/70-sculptd.conf   # then log \
+            in again",
     )
 }
 
@@ -325,7 +327,8 @@ fn rate(config: &LoopConfig) -> Check {
     let late = ticks_ms[ticks_ms.len() * 99 / 100];
     let holds = (1e3 / late.max(1e-3)).min(1e5);
     let cause = format!(
-        "99 of 100 ticks take {late:.2} ms or less (a stroke on {PROBE_VERTICES} vertices): {holds:.0} Hz; {} Hz allow {allowed_ms:.2} ms",
+        "99 of 100 ticks take {late:.2} ms or less (a stroke on {PROBE_VERTICES} vertices): \
+            {holds:.0} Hz; {} Hz allow {allowed_ms:.2} ms",
         config.rate_hz
     );
     let slower = [60, 30].into_iter().find(|r| f64::from(*r) < holds * 0.7).unwrap_or(30);

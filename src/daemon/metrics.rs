@@ -168,7 +168,9 @@ fn serve(mut stream: TcpStream, at: SocketAddr, watched: &Watched) -> std::io::R
         Err((status, why)) => (status, format!("{why}\n")),
     };
     let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: text/plain; version=0.0.4; charset=utf-8\r\nContent-Length: {}\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+        "HTTP/1.1 {status}\r\nContent-Type: text/plain; version=0.0.4; \
+            charset=utf-8\r\nContent-Length: {}\r\nX-Content-Type-Options: nosniff\r\nConnection: \
+            close\r\n\r\n",
         body.len()
     );
     stream.write_all(head.as_bytes())?;

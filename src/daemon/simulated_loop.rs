@@ -56,7 +56,8 @@ pub struct SimulatedOptions {
 #[derive(Debug, thiserror::Error)]
 pub enum SimulatedError {
     #[error(
-        "the simulated devices sent {expected} samples, but only {arrived} arrived within {PATIENCE:?}"
+        "the simulated devices sent {expected} samples, but only {arrived} arrived within \
+            {PATIENCE:?}"
     )]
     Silent { expected: u64, arrived: u64 },
     #[error("tick {tick}: {text}")]

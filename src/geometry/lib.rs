@@ -1,9 +1,9 @@
 //! Meshes as files hold them, and the questions asked of a solid: repair, Booleans, wall thickness,
 //! measures, distance, projection, remeshing, decimation, subdivision.
 //!
-//! Everything here works on immutable data; long work takes a [`job::Job`] that can be cancelled and
-//! reports its progress. Parallel work runs on the current rayon pool, and every result is the same
-//! with any number of threads. This crate knows no other member of the workspace.
+//! Everything here works on immutable data; long work takes a [`job::Job`] that can be cancelled
+//! and reports its progress. Parallel work runs on the current rayon pool, and every result is the
+//! same with any number of threads. This crate knows no other member of the workspace.
 //!
 //! Read first: [`flat`] (what a mesh is), then [`io`], then the question that you have:
 //!

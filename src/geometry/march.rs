@@ -25,8 +25,8 @@ pub enum MarchOutcome {
     Unsure,
 }
 
-/// How much the trilinear interpolant of a distance can be wrong, in spacings: a distance changes by
-/// no more than the way, and the mean square way to the corners of a cell, weighted as the
+/// How much the trilinear interpolant of a distance can be wrong, in spacings: a distance changes
+/// by no more than the way, and the mean square way to the corners of a cell, weighted as the
 /// interpolant weights them, is `x (1 - x) + y (1 - y) + z (1 - z)`, at most 3/4.
 const INTERPOLATION: f64 = 0.867;
 
@@ -63,8 +63,8 @@ pub fn march(grid: &DistanceGrid, origin: DVec3, dir: DVec3, epsilon: f64) -> Ma
         if d < -unsure {
             return MarchOutcome::Hit(hit.unwrap_or(t));
         }
-        // The true distance is at least `d - unsure`, so a long step meets nothing before its end; of
-        // a short one the surface may be an eighth of a spacing away from both ends.
+        // The true distance is at least `d - unsure`, so a long step meets nothing before its end;
+        // of a short one the surface may be an eighth of a spacing away from both ends.
         close |= d < epsilon + unsure + grid.spacing * 0.125;
         t += (d.abs() - unsure).max(grid.spacing * 0.25);
     }

@@ -1,6 +1,6 @@
-//! Solids offset, hollowed and joined with a fillet, from the sampled signed distance: the level set
-//! is extracted by dual marching cubes (Nielson 2004, see [`crate::remesh::dual`]) and its vertices
-//! are moved to the exact distance.
+//! Solids offset, hollowed and joined with a fillet, from the sampled signed distance: the level
+//! set is extracted by dual marching cubes (Nielson 2004, see [`crate::remesh::dual`]) and its
+//! vertices are moved to the exact distance.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -129,8 +129,8 @@ fn cavity_at(
 /// Rounds of [`hollow`] after which the wall is as it is: the second, as a rule, finds nothing.
 const ROUNDS: usize = 4;
 
-/// The least distance from the solid's surface to a cavity, at the corners, the middles of the edges
-/// and the centre of each of its triangles.
+/// The least distance from the solid's surface to a cavity, at the corners, the middles of the
+/// edges and the centre of each of its triangles.
 fn least_wall(
     solid: &DistanceSolid,
     cavity: &OffsetSurface,

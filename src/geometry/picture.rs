@@ -1,6 +1,6 @@
-//! A picture of a mesh, rasterised with a depth buffer on the CPU: for reports, for `--png`, for machines without a GPU. The
-//! same mesh and camera give the same bytes everywhere: no threads share a pixel, no time, no
-//! library's mathematics but `sqrt`.
+//! A picture of a mesh, rasterised with a depth buffer on the CPU: for reports, for `--png`, for
+//! machines without a GPU. The same mesh and camera give the same bytes everywhere: no threads
+//! share a pixel, no time, no library's mathematics but `sqrt`.
 
 use glam::{Mat3, Vec3};
 
@@ -180,8 +180,8 @@ impl Picture {
         }
     }
 
-    /// Draws a scale of colours in the lower left corner: a bar from `low` to `high` by `colour`, and
-    /// the two numbers beneath it, in black. Pictures of less than 240 by 80 pixels have no
+    /// Draws a scale of colours in the lower left corner: a bar from `low` to `high` by `colour`,
+    /// and the two numbers beneath it, in black. Pictures of less than 240 by 80 pixels have no
     /// room for it and stay as they are.
     pub fn legend(&mut self, low: f32, high: f32, colour: impl Fn(f32) -> [u8; 3]) {
         let (bar, left, top) = (200, 16, self.height.saturating_sub(48));

@@ -114,9 +114,9 @@ pub fn pairs(
     Ok(crossed)
 }
 
-/// Pairs of triangles that share an edge cross only where they lie in one plane, on the same side of
-/// the edge. The triangles at each edge are sorted by their direction around it, so that thousands
-/// at one edge are not compared each with each.
+/// Pairs of triangles that share an edge cross only where they lie in one plane, on the same side
+/// of the edge. The triangles at each edge are sorted by their direction around it, so that
+/// thousands at one edge are not compared each with each.
 fn along_shared_edges(positions: &[DVec3], triangles: &[[u32; 3]], out: &mut Vec<(u32, u32)>) {
     // (lower vertex, upper vertex, triangle)
     let mut uses: Vec<(u32, u32, u32)> = triangles

@@ -1,6 +1,6 @@
 //! Subdivision surfaces: one level makes every face smaller and the surface rounder. Loop's scheme
-//! for triangles ("Smooth subdivision surfaces based on triangles", 1987) and Catmull and Clark's for
-//! polygons ("Recursively generated B-spline surfaces on arbitrary topological meshes", 1978).
+//! for triangles ("Smooth subdivision surfaces based on triangles", 1987) and Catmull and Clark's
+//! for polygons ("Recursively generated B-spline surfaces on arbitrary topological meshes", 1978).
 //!
 //! Borders are smoothed as curves of their own (a border edge's vertex at its middle, a border
 //! vertex at 1/8, 3/4, 1/8), so that two meshes that share a border still do afterwards. Vertices

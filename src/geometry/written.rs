@@ -2,10 +2,10 @@
 //!
 //! Rounding moves each vertex on its own, so a mesh that crosses nothing may cross itself once it
 //! is written. Here it is rounded first, checked with exact predicates
-//! ([`crate::self_intersection`]), and repaired by local operations: an edge is flipped, an edge no longer than a few steps of the
-//! precision is collapsed, or a vertex is moved by a few steps. An operation is kept only where
-//! fewer pairs cross after it (the greedy scheme of Attene, "A lightweight approach to repairing
-//! digitized polygon meshes", 2010).
+//! ([`crate::self_intersection`]), and repaired by local operations: an edge is flipped, an edge no
+//! longer than a few steps of the precision is collapsed, or a vertex is moved by a few steps. An
+//! operation is kept only where fewer pairs cross after it (the greedy scheme of Attene, "A
+//! lightweight approach to repairing digitized polygon meshes", 2010).
 
 use std::borrow::Cow;
 
@@ -32,8 +32,8 @@ const MOST_PAIRS: usize = 3000;
 const ROUNDS: usize = 6;
 
 /// `mesh` as a file with the ending `kind` will hold it (STL and GLB have single precision; they
-/// and 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision or
-/// four times `tolerance`, and only where triangles cross.
+/// and 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision
+/// or four times `tolerance`, and only where triangles cross.
 ///
 /// # Errors
 /// [`Cancelled`] when the job is.

@@ -78,7 +78,10 @@ fn broken_meshes_name_the_place_and_write_nothing() {
 fn a_recording_of_an_unknown_device_is_an_absent_device() {
     let bench = Bench::new();
     // A keyboard's own descriptor: real, and no pen.
-    let keyboard = b"D:0\nR: 63 05 01 09 06 a1 01 05 07 19 e0 29 e7 15 00 25 01 75 01 95 08 81 02 95 01 75 08 81 03 95 05 75 01 05 08 19 01 29 05 91 02 95 01 75 03 91 03 95 06 75 08 15 00 25 65 05 07 19 00 29 65 81 00 c0\nN: Somebody's Keyboard\nI: 3 dead beef\nE: 0.000000 8 00 00 04 00 00 00 00 00\n";
+    let keyboard = b"D:0\nR: 63 05 01 09 06 a1 01 05 07 19 e0 29 e7 15 00 25 01 75 01 95 08 81 02 \
+        95 01 75 08 81 03 95 05 75 01 05 08 19 01 29 05 91 02 95 01 75 03 91 03 95 06 75 08 15 00 \
+        25 65 05 07 19 00 29 65 81 00 c0\nN: Somebody's Keyboard\nI: 3 dead beef\nE: 0.000000 8 00 \
+        00 04 00 00 00 00 00\n";
     let path = bench.file("keyboard.hid", keyboard);
     let out = bench.out();
     let args = [

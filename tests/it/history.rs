@@ -398,7 +398,8 @@ fn a_checkpoint_costs_what_moved() {
         let found = listing::read(&path).expect("reads");
         let changed: usize = found.places.iter().map(|p| p.changed).sum();
         println!(
-            "{vertices} vertices, {pages} pages, {} KiB: a stroke changes {:.1} pages and adds {:.0} KiB",
+            "{vertices} vertices, {pages} pages, {} KiB: a stroke changes {:.1} pages and adds \
+                {:.0} KiB",
             whole / 1024,
             changed as f64 / strokes as f64,
             found.bytes as f64 / 1024.0 / strokes as f64

@@ -142,25 +142,101 @@ fn what_is_wrong_is_told_with_its_place() {
     let cube = shapes::cuboid(DVec3::ZERO, DVec3::ONE);
     let stl = bytes("stl", &cube);
     for (name, text, want) in [
-        ("a.obj", &b"v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n"[..], "line 5: expected a vertex index from 1 to 3, found 4"),
-        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "line 4: expected a vertex index from 1 to 3, found 0"),
+        (
+            "a.obj",
+            &b"v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n"[..],
+            "line 5: expected a vertex index \
+            from 1 to 3, found 4",
+        ),
+        (
+            "a.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n",
+            "line 4: expected a vertex index from 1 \
+            to 3, found 0",
+        ),
         ("a.obj", b"v 0 0 0\nv nan 0 0\n", "line 2: expected a finite coordinate, found NaN"),
-        ("a.obj", b"v 0 0 0\nv 1 0\n", "line 2: expected three coordinates after \"v\", found \"v 1 0\""),
+        (
+            "a.obj",
+            b"v 0 0 0\nv 1 0\n",
+            "line 2: expected three coordinates after \"v\", found \"v 1 \
+            0\"",
+        ),
         ("a.obj", b"v 0 0 0\nv 1 0 x\n", "line 2: expected a number of the vertex, found \"x\""),
-        ("a.obj", b"v 0 0 0\nf 1 a 1\n", "line 2: expected a vertex index (not 0) of the face, found \"a 1\""),
-        ("a.obj", b"hello\n", "expected OBJ text with vertices (lines \"v x y z\"), found \"hello\""),
+        (
+            "a.obj",
+            b"v 0 0 0\nf 1 a 1\n",
+            "line 2: expected a vertex index (not 0) of the face, \
+            found \"a 1\"",
+        ),
+        (
+            "a.obj",
+            b"hello\n",
+            "expected OBJ text with vertices (lines \"v x y z\"), found \
+            \"hello\"",
+        ),
         ("a.ply", b"this is no mesh\n", "line 1: expected \"ply\", found \"this is no mesh\""),
-        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "byte 115: expected at least 6000000109 bytes for the counts in the header, found the end of the file after 115 bytes"),
-        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 inf 0\n", "line 8: expected a finite coordinate, found a coordinate beyond 3.4e38"),
-        ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6: expected a vertex index from 0 to 2, found 3"),
-        ("a.off", b"OFF\n4 4 0\n0 0 0\n1 0 0\n", "line 5: expected three coordinates of vertex 2, found the end of the file"),
-        ("a.off", b"OFF\n99999999 1 0\n", "line 2: expected as many vertices and faces as the file has room for, found counts of 99999999 vertices and 1 faces in a file of 17 bytes"),
+        (
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty \
+            float y\nproperty float z\nend_header\n0 0 0\n",
+            "byte 115: expected at least 6000000109 bytes for the counts in the header, found the end of the file after 115 bytes",
+        ),
+        (
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float \
+            y\nproperty float z\nend_header\n0 inf 0\n",
+            "line 8: expected a finite coordinate, found a coordinate beyond 3.4e38",
+        ),
+        (
+            "a.off",
+            b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+            "line 6: expected a vertex index \
+            from 0 to 2, found 3",
+        ),
+        (
+            "a.off",
+            b"OFF\n4 4 0\n0 0 0\n1 0 0\n",
+            "line 5: expected three coordinates of vertex 2, \
+            found the end of the file",
+        ),
+        (
+            "a.off",
+            b"OFF\n99999999 1 0\n",
+            "line 2: expected as many vertices and faces as the file \
+            has room for, found counts of 99999999 vertices and 1 faces in a file of 17 bytes",
+        ),
         ("a.stl", b"", "byte 0: expected a mesh, found an empty file"),
-        ("a.stl", &stl[..400], "byte 400: expected 684 bytes for the 12 triangles that the header at byte 80 states, found the end of the file after 6 whole triangles (not text either: it starts with \"sculptd"),
-        ("a.stl", b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\n", "line 7: expected three corners before the facet's end, not 2, found \"endfacet\""),
-        ("a.stl", b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0", "line 5: expected \"vertex\" and three numbers, found \"vertex 1 0\""),
-        ("a.xyz", b"\x00\x01\x02", "byte 0: expected a mesh as OBJ, STL, PLY, OFF, glTF, GLB or 3MF, found \"...\""),
-        ("a.glb", b"glTF\x02\x00\x00\x00\xff\x00\x00\x00", "byte 12: expected 255 bytes as the header states, found the end of the file after 12 bytes"),
+        (
+            "a.stl",
+            &stl[..400],
+            "byte 400: expected 684 bytes for the 12 triangles that the header \
+            at byte 80 states, found the end of the file after 6 whole triangles (not text either: \
+            it starts with \"sculptd",
+        ),
+        (
+            "a.stl",
+            b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 \
+            0\nendloop\nendfacet\n",
+            "line 7: expected three corners before the facet's end, not 2, found \"endfacet\"",
+        ),
+        (
+            "a.stl",
+            b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0",
+            "line 5: \
+            expected \"vertex\" and three numbers, found \"vertex 1 0\"",
+        ),
+        (
+            "a.xyz",
+            b"\x00\x01\x02",
+            "byte 0: expected a mesh as OBJ, STL, PLY, OFF, glTF, GLB or \
+            3MF, found \"...\"",
+        ),
+        (
+            "a.glb",
+            b"glTF\x02\x00\x00\x00\xff\x00\x00\x00",
+            "byte 12: expected 255 bytes as the \
+            header states, found the end of the file after 12 bytes",
+        ),
         ("a.gltf", b"{\n \"asset\": 5}", "line 2: expected glTF 2.0 as JSON, found"),
         ("a.3mf", b"PK\x03\x04", "byte 4: expected a zip's directory at the end, found"),
     ] {
@@ -265,7 +341,10 @@ fn the_commands_answer_and_bad_input_leaves_nothing_behind() {
         (v["volume"].as_f64(), v["faces"].as_u64(), v["closed"].as_bool()),
         (Some(8.0), Some(6), Some(true))
     );
-    for field in "vertices faces triangles components closed manifold oriented euler genus bounds volume area self_intersections".split(' ') {
+    for field in "vertices faces triangles components closed manifold oriented euler genus bounds \
+        volume area self_intersections"
+        .split(' ')
+    {
         assert!(!v[field].is_null(), "{field}");
     }
     assert!(sculptd(&["subdivide", &ply, "--levels", "4", "-o", &fine]).status.success());

@@ -108,17 +108,30 @@ fn mesh_case(kind: &str, more: &[&[u8]]) {
 
 #[test]
 fn obj() {
-    mesh_case("obj", &[b"mtllib a.mtl\no x\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl b\ns off\nf 1/1/1 2//1 -1\nf 1 2 \\\n3\nl 1 2\n"]);
+    mesh_case(
+        "obj",
+        &[b"mtllib a.mtl\no x\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng \
+        a\nusemtl b\ns off\nf 1/1/1 2//1 -1\nf 1 2 \\\n3\nl 1 2\n"],
+    );
 }
 
 #[test]
 fn stl() {
-    mesh_case("stl", &[b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"]);
+    mesh_case(
+        "stl",
+        &[b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 \
+        0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"],
+    );
 }
 
 #[test]
 fn ply() {
-    mesh_case("ply", &[b"ply\nformat ascii 1.0\ncomment x\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n3 0 1 2\n"]);
+    mesh_case(
+        "ply",
+        &[b"ply\nformat ascii 1.0\ncomment x\nelement vertex 3\nproperty float \
+        x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 1\nproperty list \
+        uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n3 0 1 2\n"],
+    );
 }
 
 #[test]

@@ -79,7 +79,8 @@ fn the_doctor_names_what_is_broken_and_the_repair() {
     let bad = file(
         dir.path(),
         "bad.toml",
-        "[loop]\nrate_hz = 30\n[devices]\nhid = false\nserial = [\"/dev/sculptd-none\"]\nleap = \"ws://127.0.0.1:1/v6.json\"\n",
+        "[loop]\nrate_hz = 30\n[devices]\nhid = false\nserial = [\"/dev/sculptd-none\"]\nleap = \
+            \"ws://127.0.0.1:1/v6.json\"\n",
     );
     let seen = doctor(dir.path(), &bad, &dir.path().join("no/such/folder"));
     assert_eq!(seen.code, Some(1));

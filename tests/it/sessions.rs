@@ -203,7 +203,8 @@ fn a_damaged_session_is_saved_beside_the_old_one_and_the_loss_told_in_ticks() {
         );
     }
     println!(
-        "100 damaged sessions: {intact} whole in all that counts, {saved} saved, {refused} refused with a reason"
+        "100 damaged sessions: {intact} whole in all that counts, {saved} saved, {refused} refused \
+            with a reason"
     );
     assert!(saved >= 30, "{intact} {saved} {refused}");
 }

@@ -279,7 +279,8 @@ fn an_hour_of_faults() {
         .unwrap_or_else(|_| Err("a panic, above".into()));
     if let Err(e) = told {
         panic!(
-            "{e}; again: SCULPTD_SEED={seed} SCULPTD_TICKS={ticks} cargo test --release --test it soak"
+            "{e}; again: SCULPTD_SEED={seed} SCULPTD_TICKS={ticks} cargo test --release --test it \
+                soak"
         );
     }
 }

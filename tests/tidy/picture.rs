@@ -1,6 +1,6 @@
-//! The picture of the map, drawn from the manifests and from the `use` statements: one box a crate, its
-//! modules in it, one arrow a dependency, with the number of
-//! files that make it. Dependencies that a chain of arrows implies are not drawn.
+//! The picture of the map, drawn from the manifests and from the `use` statements: one box a crate,
+//! its modules in it, one arrow a dependency, with the number of files that make it. Dependencies
+//! that a chain of arrows implies are not drawn.
 //!
 //! `SCULPTD_BLESS=1 cargo test --test tidy picture` draws it anew.
 
@@ -93,7 +93,8 @@ fn draw() -> String {
             body,
             "<rect x=\"20\" y=\"{y}\" width=\"{BOX}\" height=\"{height}\" rx=\"6\" fill=\"#f4efe8\" \
              stroke=\"#6b5b4b\"/>\n<text x=\"34\" y=\"{}\" font-weight=\"bold\">{name}</text>\n\
-             <text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#6b5b4b\">{dir}, about {thousands},000 \
+             <text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#6b5b4b\">{dir}, about \
+             {thousands},000 \
              lines</text>",
             y + 22,
             BOX + 6,
@@ -129,7 +130,8 @@ fn draw() -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{y}\" \
          font-family=\"sans-serif\" font-size=\"13\">\n<defs><marker id=\"tip\" markerWidth=\"8\" \
          markerHeight=\"8\" refX=\"6\" refY=\"4\" orient=\"auto\"><path d=\"M0 0 L8 4 L0 8 z\" \
-         fill=\"#8a4b2a\"/></marker></defs>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
+         fill=\"#8a4b2a\"/></marker></defs>\n<rect \
+         width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
          {body}</svg>\n"
     )
 }

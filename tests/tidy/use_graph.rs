@@ -1,7 +1,8 @@
 //! The `use` graph of a crate: which file names which, read from the source text.
 //!
-//! A module's file is a node. An edge leads from a file to the file that defines what it names, through
-//! re-exports. Inline `mod tests` at the end of a file are left out: a test may name what it likes.
+//! A module's file is a node. An edge leads from a file to the file that defines what it names,
+//! through re-exports. Inline `mod tests` at the end of a file are left out: a test may name what
+//! it likes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -18,7 +19,8 @@ pub struct UseGraph {
 }
 
 impl UseGraph {
-    /// Reads every Rust file under `root`, a folder with a `lib.rs`, but for the folders named in `without`.
+    /// Reads every Rust file under `root`, a folder with a `lib.rs`, but for the folders named in
+    /// `without`.
     pub fn read(root: &Path, without: &[&str]) -> UseGraph {
         let mut files = BTreeMap::new();
         collect(root, &mut Vec::new(), without, &mut files);
@@ -70,8 +72,9 @@ impl UseGraph {
         UseGraph { files, edges }
     }
 
-    /// Circles among the children of every folder: each entry lists the modules of one circle. Files of
-    /// the crate's root folder are nodes of their own; a folder below it is one node to its siblings.
+    /// Circles among the children of every folder: each entry lists the modules of one circle.
+    /// Files of the crate's root folder are nodes of their own; a folder below it is one node to
+    /// its siblings.
     pub fn circles_between_siblings(&self) -> Vec<Vec<String>> {
         let folders: BTreeSet<ModulePath> = self
             .files
@@ -159,7 +162,8 @@ fn uses(text: &str) -> Vec<(Vec<String>, bool)> {
     out
 }
 
-/// `a::{b, c::d}` as `a::b` and `a::c::d`; a rename is left out, `self` and `*` stand for the module.
+/// `a::{b, c::d}` as `a::b` and `a::c::d`; a rename is left out, `self` and `*` stand for the
+/// module.
 fn expand(tree: &str) -> Vec<Vec<String>> {
     let Some(open) = tree.find('{') else {
         let path = tree.split(" as ").next().unwrap_or("").trim();

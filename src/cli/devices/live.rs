@@ -61,7 +61,8 @@ pub(super) fn list(config: &DevicesConfig, json: bool) -> Outcome {
             if !d.candidates.is_empty() {
                 writeln!(
                     out,
-                    "    which is it? say so in the settings: [devices] models = {{ \"{:04x}:{:04x}\" = \"NAME\" }}",
+                    "    which is it? say so in the settings: [devices] models = {{ \
+                        \"{:04x}:{:04x}\" = \"NAME\" }}",
                     d.vid, d.pid
                 )?;
                 writeln!(out, "    {}", d.candidates.join(", "))?;

@@ -164,9 +164,12 @@ fn index(rows: &[Row]) -> String {
     let mut out = head("Wall thickness of many parts");
     let count = |v: &str| rows.iter().filter(|r| r.verdict == v).count();
     out.push_str(&format!(
-        "<h1>Wall thickness</h1><p class=file>{} parts: {} pass, {} warn, {} fail, {} not judged, {} unreadable</p>\
-         <table><thead><tr><th scope=col>Part<th scope=col>Verdict<th scope=col class=n>Minimum, mm<th scope=col class=n>Median, mm\
-         <th scope=col class=n>Maximum, mm<th scope=col class=n>Area below, %<th scope=col>Why</thead><tbody>",
+        "<h1>Wall thickness</h1><p class=file>{} parts: {} pass, {} warn, {} fail, {} not judged, \
+            {} unreadable</p>\
+         <table><thead><tr><th scope=col>Part<th scope=col>Verdict<th scope=col class=n>Minimum, \
+         mm<th scope=col class=n>Median, mm\
+         <th scope=col class=n>Maximum, mm<th scope=col class=n>Area below, %<th \
+         scope=col>Why</thead><tbody>",
         rows.len(),
         count("pass"),
         count("warn"),
@@ -182,7 +185,8 @@ fn index(rows: &[Row]) -> String {
             .as_ref()
             .map_or(name.clone(), |l| format!("<a href=\"{}\">{name}</a>", escape(&link(l))));
         out.push_str(&format!(
-            "<tr><th scope=row>{link}<td>{}<td class=n>{}<td class=n>{}<td class=n>{}<td class=n>{}<td>{}",
+            "<tr><th scope=row>{link}<td>{}<td class=n>{}<td class=n>{}<td class=n>{}<td \
+                class=n>{}<td>{}",
             r.verdict,
             n(r.min),
             n(r.median),
@@ -214,7 +218,8 @@ pub(super) fn junit(rows: &[Row]) -> String {
     let count = |v: &str| rows.iter().filter(|r| r.verdict == v).count();
     let seconds: f64 = rows.iter().map(|r| r.seconds).sum();
     let mut out = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites><testsuite name=\"wall thickness\" tests=\"{}\" failures=\"{}\" \
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites><testsuite name=\"wall \
+            thickness\" tests=\"{}\" failures=\"{}\" \
          errors=\"{}\" time=\"{seconds:.3}\">\n",
         rows.len(),
         count("fail"),

@@ -36,8 +36,8 @@ pub struct ThicknessArgs {
     pub how: How,
     #[command(flatten)]
     pub limits: LimitArgs,
-    /// Tell the thickness at the point of the surface nearest to this one, with its rays, instead of
-    /// the whole part's; in the file's coordinates, millimetres.
+    /// Tell the thickness at the point of the surface nearest to this one, with its rays, instead
+    /// of the whole part's; in the file's coordinates, millimetres.
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<DVec3>,
     /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
@@ -448,9 +448,12 @@ fn write_ply(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std::io::R
     let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
     write!(
         w,
-        "ply\nformat binary_little_endian 1.0\ncomment thickness in mm; nan: no value; reason 0 measured, 1 edge, 2 nothing \
-         ahead, 3 no normal, 4 no face\nelement vertex {n}\nproperty double x\nproperty double y\nproperty double z\n\
-         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float thickness\nproperty uchar reason\n\
+        "ply\nformat binary_little_endian 1.0\ncomment thickness in mm; nan: no value; reason 0 \
+            measured, 1 edge, 2 nothing \
+         ahead, 3 no normal, 4 no face\nelement vertex {n}\nproperty double x\nproperty double \
+         y\nproperty double z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float \
+         thickness\nproperty uchar reason\n\
          element face {m}\nproperty list uchar int vertex_indices\nend_header\n"
     )?;
     let colours = t.colours(t.scale());

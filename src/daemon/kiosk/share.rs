@@ -164,7 +164,10 @@ fn serve(
         }
     };
     let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: default-src 'none'; style-src 'unsafe-inline'\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n",
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: \
+            nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: default-src \
+            'none'; style-src 'unsafe-inline'\r\nCache-Control: no-store\r\nConnection: \
+            close\r\n\r\n",
         body.len()
     );
     stream.write_all(head.as_bytes())?;
@@ -190,7 +193,11 @@ fn answer(
         None | Some("") => {
             // Names are digits and fixed letters, the token is digits: nothing to escape.
             let page = format!(
-                "<!doctype html><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>sculptd</title><style>body{{font:1.4em sans-serif;margin:2em}}</style><h1>sculptd</h1><p><a href=\"/{token}/{file}\" download>{file}</a></p>"
+                "<!doctype html><meta charset=\"utf-8\"><meta \
+                    name=\"viewport\" \
+                    content=\"width=device-width\"><title>sculptd</title><style>body{{font:1.4em \
+                    sans-serif;margin:2em}}</style><h1>sculptd</h1><p><a href=\"/{token}/{file}\" \
+                    download>{file}</a></p>"
             );
             Ok(("text/html; charset=utf-8", page.into_bytes()))
         }

@@ -31,7 +31,8 @@ const RESTARTS: u32 = 16;
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     #[error(
-        "{path}: not a session file (expected an SQLite database with application id {APPLICATION_ID:#x})"
+        "{path}: not a session file (expected an SQLite database with application id \
+            {APPLICATION_ID:#x})"
     )]
     NotASession { path: String },
     #[error(

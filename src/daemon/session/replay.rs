@@ -119,8 +119,8 @@ impl Run<'_> {
         Replayed { world, ticks: tick, jumps_missed }
     }
 
-    /// Puts what a jump names beside the world; where that is not in the file, the world ignores the
-    /// jump, and it is counted.
+    /// Puts what a jump names beside the world; where that is not in the file, the world ignores
+    /// the jump, and it is counted.
     fn fetch(&self, jump: &Jump, world: &mut World) {
         let Some(store) = self.store else { return };
         let object_id = jump.object_id;

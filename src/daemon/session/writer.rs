@@ -444,7 +444,8 @@ impl JournalThread {
                 // hole cannot be replayed.
                 self.closed = true;
                 Some(format!(
-                    "the session file takes nothing and {kept} bytes wait: input is being lost ({e})"
+                    "the session file takes nothing and {kept} bytes wait: input is being lost \
+                        ({e})"
                 ))
             }
             Err(e) => Some(format!("the session file takes nothing, input is kept in memory: {e}")),
@@ -452,7 +453,10 @@ impl JournalThread {
         let written = self.health.written.load(Relaxed);
         let text = text.or_else(|| {
             self.closed.then(|| {
-                format!("the session file ends at tick {written}: the disk was full too long; begin another session")
+                format!(
+                    "the session file ends at tick {written}: the disk was full too long; begin \
+                    another session"
+                )
             })
         });
         let Ok(mut fault) = self.health.fault.lock() else { return };

@@ -1,5 +1,5 @@
-//! A tree of boxes over triangles: which pairs may meet, which triangles a line may cross. In double
-//! precision, unlike [`crate::bvh`], whose head says why both are there.
+//! A tree of boxes over triangles: which pairs may meet, which triangles a line may cross. In
+//! double precision, unlike [`crate::bvh`], whose head says why both are there.
 
 use glam::DVec3;
 

@@ -15,10 +15,10 @@
 //!    the result is made a closed manifold.
 //!
 //! Every result is checked before it is returned: closed, samples that agree with the winding
-//! number of the other operand, and volumes that add up (union and intersection give A and B, difference
-//! and intersection give A). Where a check fails, other tolerances are tried, then the exact engine
-//! of the crate `manifold-rust` (`global`); where that fails too, the answer is an error. Where the
-//! answer depends on the tolerance, [`BooleanReport`] says so.
+//! number of the other operand, and volumes that add up (union and intersection give A and B,
+//! difference and intersection give A). Where a check fails, other tolerances are tried, then the
+//! exact engine of the crate `manifold-rust` (`global`); where that fails too, the answer is an
+//! error. Where the answer depends on the tolerance, [`BooleanReport`] says so.
 //!
 //! Not promised: a meaning for operands that cross themselves ([`solve`] makes them solids);
 //! features smaller than the tolerance.
@@ -261,7 +261,8 @@ pub fn compute(
                     contact.farthest > 8.0 * floor || contact.near_misses > 0;
                 if contact.farthest > 8.0 * floor {
                     report.warnings.push(format!(
-                        "{} places up to {:.1e} apart were taken as in contact (tolerance {eps:.1e}, \
+                        "{} places up to {:.1e} apart were taken as in contact (tolerance \
+                            {eps:.1e}, \
                          coordinates in {}); a smaller tolerance may give another result",
                         contact.places,
                         contact.farthest,

@@ -1,9 +1,9 @@
 //! What the coordinates of an operand can resolve, and the tolerance that follows from it.
 //!
 //! A face that two solids share is stored twice, and each copy is rounded on its own: to 53 bits,
-//! to the 24 bits of single precision (STL, PLY, glTF and the clay itself), or to the digits of a text
-//! file. Contact can be recognised only within what that rounding moved. The precision is found
-//! from the coordinates themselves, so that it is the same whatever way a mesh took.
+//! to the 24 bits of single precision (STL, PLY, glTF and the clay itself), or to the digits of a
+//! text file. Contact can be recognised only within what that rounding moved. The precision is
+//! found from the coordinates themselves, so that it is the same whatever way a mesh took.
 
 use glam::DVec3;
 use serde::Serialize;

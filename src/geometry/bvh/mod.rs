@@ -9,8 +9,8 @@
 //! Built as a binary tree by parallel locally-ordered clustering (PLOC: Meister and Bittner,
 //! "Parallel locally-ordered clustering for bounding volume hierarchy construction", 2018, crate
 //! `obvhs`), improved by a short reinsertion ("Parallel reinsertion for bounding volume hierarchy
-//! optimization", 2018, the same authors), then collapsed into wide nodes at the least expected cost
-//! (`collapse.rs`). Rays are tested as Woop, Benthin and Wald do ([`crate::simd::wide`]).
+//! optimization", 2018, the same authors), then collapsed into wide nodes at the least expected
+//! cost (`collapse.rs`). Rays are tested as Woop, Benthin and Wald do ([`crate::simd::wide`]).
 //!
 //! The workspace has three trees of boxes, each for what the others cannot do:
 //!
@@ -18,8 +18,8 @@
 //!   Its build looks for the best tree, which is worth it for many queries only.
 //! - `boolean::box_tree`: double precision and no padding, so that a pair of boxes that do not meet
 //!   proves that two triangles do not; two trees are descended together.
-//! - `boxtree` of the clay crate: no pointers and a fixed shape, so that a dab refits the few leaves
-//!   that it touched, and a copy of a page is a copy of bytes.
+//! - `boxtree` of the clay crate: no pointers and a fixed shape, so that a dab refits the few
+//!   leaves that it touched, and a copy of a page is a copy of bytes.
 
 mod build;
 mod closest;

@@ -45,8 +45,8 @@ pub struct DistanceSolid {
 const CHUNK: usize = 256;
 
 impl DistanceSolid {
-    /// About 0.4 us a triangle. The sign is the winding number's; [`DistanceSolid::with_sign`] changes
-    /// that.
+    /// About 0.4 us a triangle. The sign is the winding number's; [`DistanceSolid::with_sign`]
+    /// changes that.
     pub fn build(mesh: &TriMesh, job: &Job) -> Result<DistanceSolid, Cancelled> {
         let (tree, topology) = rayon::join(|| Bvh8::build(mesh, job), || Topology::build(mesh));
         let tree = tree?;

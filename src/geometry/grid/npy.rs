@@ -39,7 +39,8 @@ impl DistanceGrid {
         let [x, y, z] = self.size;
         let o = self.origin;
         let mut header = format!(
-            "{{'descr': '<f4', 'fortran_order': False, 'shape': ({z}, {y}, {x}), }} # origin {:e} {:e} {:e} spacing {:e}",
+            "{{'descr': '<f4', 'fortran_order': False, 'shape': ({z}, {y}, {x}), }} # origin {:e} \
+                {:e} {:e} spacing {:e}",
             o.x, o.y, o.z, self.spacing
         );
         while !(MAGIC.len() + 2 + header.len() + 1).is_multiple_of(64) {

@@ -3,8 +3,8 @@
 //!
 //! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative
 //! indices, a backslash that continues a line, and `g`, `usemtl`, `o` as groups. Normals, lines,
-//! points and smoothing groups are passed over in silence; texture coordinates, free-form curves and
-//! surfaces with a warning.
+//! points and smoothing groups are passed over in silence; texture coordinates, free-form curves
+//! and surfaces with a warning.
 
 use std::collections::BTreeMap;
 

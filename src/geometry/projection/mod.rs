@@ -47,7 +47,8 @@ pub struct ProjectionSamples {
     pub area: f64,
     /// One standard deviation of `area`.
     pub standard_error: f64,
-    /// The alpha that [`ProjectionSamples::shape`] takes unless told: 2.5 times the points' mean spacing.
+    /// The alpha that [`ProjectionSamples::shape`] takes unless told: 2.5 times the points' mean
+    /// spacing.
     pub alpha: f64,
 }
 

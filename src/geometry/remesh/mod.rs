@@ -1,7 +1,7 @@
 //! Voxel remeshing: a new mesh from the sampled distance to an old one, even triangles, one closed
-//! surface, whatever the old one was. The surface is extracted by dual marching cubes (Nielson 2004,
-//! see [`dual`]) and projected onto the old one; with sharp edges its vertices are placed as dual
-//! contouring does (Ju et al. 2002).
+//! surface, whatever the old one was. The surface is extracted by dual marching cubes (Nielson
+//! 2004, see [`dual`]) and projected onto the old one; with sharp edges its vertices are placed as
+//! dual contouring does (Ju et al. 2002).
 
 pub mod dual;
 

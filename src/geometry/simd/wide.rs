@@ -49,8 +49,8 @@ pub struct Prepared {
     inverse: [f32; 3],
     /// The same for the far sides, so much larger that rounding never loses a box.
     wider: [f32; 3],
-    /// Index into [`WideNode::planes`], below 6, of the side that the ray meets first, and last, per
-    /// axis.
+    /// Index into [`WideNode::planes`], below 6, of the side that the ray meets first, and last,
+    /// per axis.
     near: [usize; 3],
     far: [usize; 3],
     /// The axes, below 3, in the order in which the triangle test reads them: the last is the ray's

@@ -205,8 +205,8 @@ pub struct Thickness {
     /// Why each of `face_values` is what it is.
     pub face_reasons: Vec<Reason>,
     /// One a triangle, for statistics by area, which must not depend on how the part is meshed: the
-    /// mean of the corners that were measured themselves; where all lie on sharp edges, the value at
-    /// the centroid. NaN without a value.
+    /// mean of the corners that were measured themselves; where all lie on sharp edges, the value
+    /// at the centroid. NaN without a value.
     pub area_values: Vec<f32>,
     /// Rays and ball queries asked for.
     pub queries: u64,

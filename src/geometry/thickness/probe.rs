@@ -33,8 +33,8 @@ pub struct Probe {
     pub thickness: Option<f32>,
     /// Standard error of the cone's mean; 0 of one ray and of the sphere.
     pub error: f32,
-    /// The rays, the cone's axis first. The value is their mean by the settings' correction, without
-    /// outliers.
+    /// The rays, the cone's axis first. The value is their mean by the settings' correction,
+    /// without outliers.
     pub rays: Vec<ProbedRay>,
 }
 

@@ -156,7 +156,8 @@ impl Caster<'_> {
                         scratch.push((hit.t, weight));
                     } else if along > 0.1 {
                         let depth = -(dir * hit.t).dot(both) / along;
-                        // A wall that bends towards the axis sends the chord's depth beyond the part.
+                        // A wall that bends towards the axis sends the chord's depth beyond the
+                        // part.
                         if depth > 0.0 && depth <= longest {
                             scratch.push((depth, weight));
                         }

@@ -15,15 +15,15 @@ const SLIVER: f32 = 0.1;
 
 /// A triangle lower than this share of the spacing is a sliver, and so is one lower than
 /// [`ROUNDINGS`] roundings of the largest coordinate. No edge of a sliver is cut: the middle of an
-/// edge is rounded to single precision, which would fold the halves of a sliver over each other, and
-/// a fold is measured as a wall of no thickness.
+/// edge is rounded to single precision, which would fold the halves of a sliver over each other,
+/// and a fold is measured as a wall of no thickness.
 const LOW: f32 = 0.01;
 const ROUNDINGS: f32 = 64.0;
 
 /// The same surface with every triangle that is longer than `spacing` halved across its longest
-/// edge that may be cut, until none is (slivers excepted, see `SLIVER` and `LOW`) or two million are
-/// reached. The mesh's own vertices keep their indices; both triangles of an edge are cut at the
-/// same point, so a closed mesh stays closed.
+/// edge that may be cut, until none is (slivers excepted, see `SLIVER` and `LOW`) or two million
+/// are reached. The mesh's own vertices keep their indices; both triangles of an edge are cut at
+/// the same point, so a closed mesh stays closed.
 pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
     let mut out = TriMesh { colours: None, ..mesh.clone() };
     let usable = |t: &[u32; 3]| {

@@ -65,21 +65,29 @@ pub fn html(
 /// The page's beginning with its style; shared with the batch's summary.
 pub fn head(title: &str) -> String {
     format!(
-        "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width,\
+        "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport \
+            content=\"width=device-width,\
          initial-scale=1\"><title>{}</title><style>{STYLE}</style></head><body><main>",
         escape(title)
     )
 }
 
-const STYLE: &str = "body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;background:#fff;margin:0}\
-main{max-width:60rem;margin:0 auto;padding:1.5rem}h1{margin:0}h2{margin:1.8rem 0 .5rem;font-size:1.25rem}\
-.file{margin:.2rem 0 1rem;color:#444;overflow-wrap:anywhere}.verdict{padding:.7rem 1rem;border:3px solid;border-radius:6px;\
+const STYLE: &str = "body{font:16px/1.45 \
+    system-ui,sans-serif;color:#1a1a1a;background:#fff;margin:0}\
+main{max-width:60rem;margin:0 auto;padding:1.5rem}h1{margin:0}h2{margin:1.8rem 0 \
+.5rem;font-size:1.25rem}\
+.file{margin:.2rem 0 1rem;color:#444;overflow-wrap:anywhere}.verdict{padding:.7rem 1rem;border:3px \
+solid;border-radius:6px;\
 font-size:1.1rem}.pass{border-color:#1b6e2e}.warn{border-color:#8a5a00}.fail{border-color:#a8001c}.unjudged{border-color:#555}\
-table{border-collapse:collapse;width:100%}th,td{text-align:left;padding:.3rem .6rem;border-bottom:1px solid #ccc;\
+table{border-collapse:collapse;width:100%}th,td{text-align:left;padding:.3rem \
+.6rem;border-bottom:1px solid #ccc;\
 vertical-align:top}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}caption{text-align:left;color:#444;\
-padding:.2rem 0}figure{margin:0}figcaption{color:#444;font-size:.9rem}img{max-width:100%;height:auto;border:1px solid #bbb}\
+padding:.2rem \
+0}figure{margin:0}figcaption{color:#444;font-size:.9rem}img{max-width:100%;height:auto;border:1px \
+solid #bbb}\
 .views{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));gap:1rem}svg{max-width:100%;height:auto}\
-details{margin:.5rem 0}@media print{main{padding:0;max-width:none}h2{break-after:avoid}figure,tr,svg{break-inside:avoid}\
+details{margin:.5rem 0}@media \
+print{main{padding:0;max-width:none}h2{break-after:avoid}figure,tr,svg{break-inside:avoid}\
 details>summary{display:none}.verdict{print-color-adjust:exact}}";
 
 /// The page is for others: where the file lies on this machine is not theirs.
@@ -128,7 +136,8 @@ fn figure(
     let data = base64(&picture.png()?);
     let _ = write!(
         out,
-        "<figure><img width={} height={} alt=\"{}\" src=\"data:image/png;base64,{data}\"><figcaption>{}</figcaption></figure>",
+        "<figure><img width={} height={} \
+            alt=\"{}\" src=\"data:image/png;base64,{data}\"><figcaption>{}</figcaption></figure>",
         picture.width,
         picture.height,
         escape(alt),
@@ -141,7 +150,8 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
     const STEPS: usize = 40;
     let _ = write!(
         out,
-        "<svg role=img width=520 height=58 viewBox=\"0 0 520 58\" aria-label=\"Colours: dark red is {low:.3} mm, pale yellow \
+        "<svg role=img width=520 height=58 viewBox=\"0 0 520 58\" aria-label=\"Colours: dark red is \
+            {low:.3} mm, pale yellow \
          {high:.3} mm and more, blue is no value\">"
     );
     for i in 0..STEPS {
@@ -155,8 +165,10 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
     }
     let _ = write!(
         out,
-        "<rect x=440 y=4 width=24 height=24 fill=\"{}\"/><g font-size=14 font-family=sans-serif><text x=0 y=48>{low:.3} mm</text>\
-         <text x=200 y=48 text-anchor=middle>{:.3}</text><text x=400 y=48 text-anchor=end>{high:.3} mm</text>\
+        "<rect x=440 y=4 width=24 height=24 fill=\"{}\"/><g font-size=14 \
+            font-family=sans-serif><text x=0 y=48>{low:.3} mm</text>\
+         <text x=200 y=48 text-anchor=middle>{:.3}</text><text x=400 y=48 text-anchor=end>{high:.3} \
+         mm</text>\
          <text x=470 y=22>none</text></g></svg>",
         hex(NONE),
         (low + high) * 0.5
@@ -193,7 +205,8 @@ fn histogram(out: &mut String, a: &ThicknessAnswer) {
     let max = a.summary.max.unwrap_or(0.0);
     let _ = write!(
         out,
-        "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 230\" aria-label=\"Area by thickness from 0 \
+        "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 \
+            230\" aria-label=\"Area by thickness from 0 \
          to {max:.3} millimetres in 100 classes; the same numbers are in the table below\">"
     );
     for (i, &c) in counts.iter().enumerate() {
@@ -212,19 +225,24 @@ fn histogram(out: &mut String, a: &ThicknessAnswer) {
         let x = 12.0 + 700.0 * limit / max;
         let _ = write!(
             out,
-            "<line x1={x:.1} x2={x:.1} y1=0 y2=200 stroke=\"#a8001c\" stroke-width=2 stroke-dasharray=\"5 3\"/>\
-             <text x={:.1} y=12 font-size=13 font-family=sans-serif fill=\"#a8001c\">limit {limit}</text>",
+            "<line x1={x:.1} x2={x:.1} y1=0 y2=200 stroke=\"#a8001c\" stroke-width=2 \
+                stroke-dasharray=\"5 3\"/>\
+             <text x={:.1} y=12 font-size=13 font-family=sans-serif fill=\"#a8001c\">limit \
+             {limit}</text>",
             x + 4.0
         );
     }
     let _ = write!(
         out,
-        "<line x1=5 x2=712 y1=200 y2=200 stroke=\"#333\"/><g font-size=13 font-family=sans-serif><text x=0 y=218>none, 0</text>\
-         <text x=362 y=218 text-anchor=middle>{:.3}</text><text x=712 y=218 text-anchor=end>{max:.3} mm</text></g></svg>",
+        "<line x1=5 x2=712 y1=200 y2=200 stroke=\"#333\"/><g font-size=13 \
+            font-family=sans-serif><text x=0 y=218>none, 0</text>\
+         <text x=362 y=218 text-anchor=middle>{:.3}</text><text x=712 y=218 \
+         text-anchor=end>{max:.3} mm</text></g></svg>",
         max * 0.5
     );
     out.push_str(
-        "<details><summary>The same as a table (classes that are not empty)</summary><table><thead><tr>\
+        "<details><summary>The same as a table (classes that are not \
+            empty)</summary><table><thead><tr>\
                   <th scope=col>Class<th scope=col class=n>Area, mm²</thead><tbody>",
     );
     for (i, &c) in counts.iter().enumerate().filter(|(_, c)| **c > 0.0) {
@@ -250,9 +268,12 @@ fn worst(
         return Ok(());
     }
     out.push_str(
-        "<table><caption>Connected regions below the limit (without a limit: of the thinnest hundredth), the thinnest \
-         first</caption><thead><tr><th scope=col class=n>No.<th scope=col class=n>Thickness, mm<th scope=col class=n>Area, mm²\
-         <th scope=col>Thinnest at x, y, z, mm<th scope=col>View along the wall's normal</thead><tbody>",
+        "<table><caption>Connected regions below the limit (without a limit: of the thinnest \
+            hundredth), the thinnest \
+         first</caption><thead><tr><th scope=col class=n>No.<th scope=col class=n>Thickness, mm<th \
+         scope=col class=n>Area, mm²\
+         <th scope=col>Thinnest at x, y, z, mm<th scope=col>View along the wall's \
+         normal</thead><tbody>",
     );
     let whole = Camera::whole(&part.mesh, 1.0).half_height;
     for (i, (spot, told)) in checked.spots.iter().zip(&checked.answer.worst).enumerate() {
@@ -285,32 +306,53 @@ fn worst(
 fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     let s = &a.settings;
     let how = match s.method {
-        ThicknessMethod::Sphere => "Thickness is the diameter of the largest sphere that lies in the wall and touches the surface at the \
-                           place; in a convex edge it goes to zero, so places held by an edge follow the edge policy."
+        ThicknessMethod::Sphere => "Thickness is the diameter of the largest sphere that lies in \
+            the wall and touches the surface at the \
+                           place; in a convex edge it goes to zero, so places held by an edge \
+                           follow the edge policy."
             .to_string(),
-        ThicknessMethod::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, opposite the surface's normal.".into(),
+        ThicknessMethod::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, \
+            opposite the surface's normal."
+            .into(),
         ThicknessMethod::Ray => {
             let corrected = match s.correction {
-                Correction::None => "The rays' own lengths are averaged, which is up to 32 % too much at 120 degrees.",
-                Correction::Angle => "Each length is corrected by the angle between the ray and the hit face.",
+                Correction::None => {
+                    "The rays' own lengths are averaged, which is up to 32 % too \
+                    much at 120 degrees."
+                }
+                Correction::Angle => {
+                    "Each length is corrected by the angle between the ray and the \
+                    hit face."
+                }
                 Correction::Chord => {
-                    "Each ray gives the wall's depth along the normal: a chord of the opposite wall stands at right angles to the \
-                     sum of the wall's normals at its ends, which removes the bias of slanted and of bent walls."
+                    "Each ray gives the wall's depth along the normal: a chord of the opposite wall \
+                        stands at right angles to the \
+                     sum of the wall's normals at its ends, which removes the bias of slanted and \
+                     of bent walls."
                 }
             };
-            format!("Thickness is the mean of {} rays in a cone of {} degrees into the wall. {corrected}", s.rays, s.opening)
+            format!(
+                "Thickness is the mean of {} rays in a cone of {} degrees into the wall. \
+                {corrected}",
+                s.rays, s.opening
+            )
         }
     };
     let l = &a.limits;
     let limit = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v} mm"));
     let _ = write!(
         out,
-        "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that face the same way.</p>\
-         <p>Error bound: 95 % of the values are within {:.4} mm of the surface that the triangles describe. It adds single \
-         precision, the uncertainty of the normal, and twice the standard error of the cone's mean. What the triangles miss of \
+        "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that face \
+            the same way.</p>\
+         <p>Error bound: 95 % of the values are within {:.4} mm of the surface that the triangles \
+         describe. It adds single \
+         precision, the uncertainty of the normal, and twice the standard error of the cone's mean. \
+         What the triangles miss of \
          the real part is not in it.</p>\
-         <p>Limits: warn below {}, fail below {}, fail above {}; a value fails when it is strictly beyond.</p>\
-         <table><tbody><tr><th scope=row>File<td>{}<tr><th scope=row>Size<td>{} bytes<tr><th scope=row>Hash (FNV-1a, 64 bits)\
+         <p>Limits: warn below {}, fail below {}, fail above {}; a value fails when it is strictly \
+         beyond.</p>\
+         <table><tbody><tr><th scope=row>File<td>{}<tr><th scope=row>Size<td>{} bytes<tr><th \
+         scope=row>Hash (FNV-1a, 64 bits)\
          <td><code>{:016x}</code><tr><th scope=row>Program<td>{}</table>",
         a.summary.error_bound,
         limit(l.warn_below),

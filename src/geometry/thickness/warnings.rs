@@ -14,7 +14,8 @@ pub fn warnings(faults: &MeshFaults, summary: &ThicknessSummary, size: f32) -> V
     };
     say(faults.broken, &|n| {
         format!(
-            "{n} triangles name a vertex that is not there or a coordinate that is no number: left out"
+            "{n} triangles name a vertex that is not there or a coordinate that is no number: left \
+                out"
         )
     });
     say(faults.degenerate, &|n| {
@@ -22,7 +23,8 @@ pub fn warnings(faults: &MeshFaults, summary: &ThicknessSummary, size: f32) -> V
     });
     say(faults.duplicate, &|n| {
         format!(
-            "{n} triangles are there twice: the copies are left out, or they would hide the wall behind them"
+            "{n} triangles are there twice: the copies are left out, or they would hide the wall \
+                behind them"
         )
     });
     say(faults.boundary_edges, &|n| {
@@ -31,42 +33,51 @@ pub fn warnings(faults: &MeshFaults, summary: &ThicknessSummary, size: f32) -> V
             lost => format!("{lost} vertices are without a value"),
         };
         format!(
-            "the mesh is open ({n} edges have one face only): what lies behind an opening has no thickness; {lost}"
+            "the mesh is open ({n} edges have one face only): what lies behind an opening has no \
+                thickness; {lost}"
         )
     });
     say(faults.inverted_edges, &|n| {
         format!(
-            "at {n} edges a face is inverted against its neighbour: an inverted face measures the gap in front of it \
+            "at {n} edges a face is inverted against its neighbour: an inverted face measures the \
+                gap in front of it \
              instead of the wall, and no ray stops at it; repair the orientation first"
         )
     });
     say(faults.crowded_edges, &|n| {
         format!(
-            "{n} edges have more than two faces: the solid is not defined there, and values beside them may be wrong"
+            "{n} edges have more than two faces: the solid is not defined there, and values beside \
+                them may be wrong"
         )
     });
     say(faults.inside_out as usize, &|_| {
-        "the mesh is inside out (its volume is negative): measured as if every face were turned round".into()
+        "the mesh is inside out (its volume is negative): measured as if every face were turned \
+            round"
+            .into()
     });
     say(faults.shells.saturating_sub(1), &|n| {
         format!(
-            "{} separate shells: a cavity is measured rightly, but where shells overlap, each counts as a wall of its own",
+            "{} separate shells: a cavity is measured rightly, but where shells overlap, each \
+                counts as a wall of its own",
             n + 1
         )
     });
     say(summary.missing.no_normal as usize, &|n| {
         format!(
-            "{n} vertices have faces that cancel each other, so no direction to measure in: no value there"
+            "{n} vertices have faces that cancel each other, so no direction to measure in: no \
+                value there"
         )
     });
     if size > 0.0 && size < 1.0 {
         out.push(format!(
-            "the largest dimension is {size:.4} mm: a file in metres? then all lengths are 1000 times too small; say --unit m"
+            "the largest dimension is {size:.4} mm: a file in metres? then all lengths are 1000 \
+                times too small; say --unit m"
         ));
     }
     if size > 10_000.0 {
         out.push(format!(
-            "the largest dimension is {size:.0} mm: a file in micrometres or inches? say --unit with the right one"
+            "the largest dimension is {size:.0} mm: a file in micrometres or inches? say --unit \
+                with the right one"
         ));
     }
     out

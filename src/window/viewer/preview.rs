@@ -91,8 +91,8 @@ impl TriangleGatherer {
 /// Computes it; `None` where the choice joins nothing.
 ///
 /// # Errors
-/// As a Boolean: an open thing, or an object that cannot be cut. [`boolean::BooleanError::Cancelled`] when a
-/// newer one is request.
+/// As a Boolean: an open thing, or an object that cannot be cut.
+/// [`boolean::BooleanError::Cancelled`] when a newer one is request.
 pub fn compute(
     request: &PreviewRequest,
     job: &Job,

@@ -1,6 +1,6 @@
-//! Background tasks of the window, each on a thread of its own: reading and writing meshes, the live
-//! thickness map, file dialogs. The window never waits for them. The tick loop hears of them only by
-//! the command that a loaded mesh becomes.
+//! Background tasks of the window, each on a thread of its own: reading and writing meshes, the
+//! live thickness map, file dialogs. The window never waits for them. The tick loop hears of them
+//! only by the command that a loaded mesh becomes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

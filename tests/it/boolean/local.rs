@@ -109,7 +109,8 @@ fn what_is_far_from_the_tool_is_shared_and_costs_nothing() {
         }
         times.sort_by(f64::total_cmp);
         println!(
-            "a tool of 2,000 out of {} triangles: {:.1} ms (least {:.1}); {} pages written, {} shared",
+            "a tool of 2,000 out of {} triangles: {:.1} ms (least {:.1}); {} pages written, {} \
+                shared",
             triangles, times[4], times[0], pages.0, pages.1
         );
         assert!(pages.0 <= 24, "{} pages written", pages.0);

@@ -74,7 +74,8 @@ fn detail_survives_strokes_on_a_coarser_level() {
     let detail = before.iter().copied().fold(0.0, f32::max);
     let off = before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     println!(
-        "{most:.4} sculpted, {taken:.4} of it seen two levels lower; {detail:.4} of detail kept to {off:.1e} under a pull"
+        "{most:.4} sculpted, {taken:.4} of it seen two levels lower; {detail:.4} of detail kept to \
+            {off:.1e} under a pull"
     );
     assert!(detail > 0.001 && off < 0.03 * detail, "{off} of {detail}");
     // Each way is a step of undo: back to the detailed form before the way down.

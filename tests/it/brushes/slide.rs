@@ -66,7 +66,8 @@ fn triangles_slide_with_the_stroke_and_the_form_stays() {
         ways.iter().map(|w| w.x).sum::<f32>() / ways.iter().map(|w| w.length()).sum::<f32>();
     let off = off(&start, &end) / edge;
     println!(
-        "slid up to {furthest:.2} edges, {along:.2} of it along the stroke; {off:.4} edges off the form"
+        "slid up to {furthest:.2} edges, {along:.2} of it along the stroke; {off:.4} edges off the \
+            form"
     );
     assert!(furthest > 1.0 && along > 0.8 && off < 0.12 && turned(&start, &end) == 0);
 }

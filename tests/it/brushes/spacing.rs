@@ -234,7 +234,8 @@ fn a_pen_at_any_speed_over_any_form_leaves_no_gap() {
         }
     }
     println!(
-        "{dabs} dabs, the widest step {widest:.4} of the spacing; runs ended {seen} times at an edge, {leaps} at a wide leap, \
+        "{dabs} dabs, the widest step {widest:.4} of the spacing; runs ended {seen} times at an \
+            edge, {leaps} at a wide leap, \
          {overhung} under an overhang"
     );
     assert!(dabs > 10_000 && seen > 10 && leaps > 10);

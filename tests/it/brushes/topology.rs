@@ -103,7 +103,8 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
             assert!(least >= 1.0, "round {round}: an angle of {least} degrees");
             if round % 10 == 0 || round + 1 == rounds {
                 println!(
-                    "{} dabs: {splits} splits, {collapses} collapses, {flips} flips, {} vertices, {} pages, least angle {least:.2}",
+                    "{} dabs: {splits} splits, {collapses} collapses, {flips} flips, {} vertices, \
+                        {} pages, least angle {least:.2}",
                     (round + 1) * 100,
                     mesh.vertex_count(),
                     mesh.page_count()

@@ -138,7 +138,8 @@ fn power_cuts_during_checkpoints_cost_no_more() {
     }
     let (lost, checkpoints) = power_cuts(5, 900);
     println!(
-        "900 power cuts of one session: {lost} cost their last group, {checkpoints} fell into a checkpoint"
+        "900 power cuts of one session: {lost} cost their last group, {checkpoints} fell into a \
+            checkpoint"
     );
     assert!(checkpoints > 0);
 }

@@ -184,7 +184,8 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                     let mut s = state(tab);
                     s.ui_state.prefs.light = light;
                     s.devices = vec![
-                        "A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: connected"
+                        "A tablet with a long name, model PTK-440 (medium) on /dev/hidraw12: \
+                            connected"
                             .into(),
                     ];
                     fill(&mut s, tab);
@@ -225,7 +226,8 @@ fn the_search_the_ring_and_a_message_fit_the_smallest_screen() {
                 0 => s.ui_state.search = Some(Default::default()),
                 1 => s.ui_state.hidden = true,
                 _ => s.ui_state.say(
-                    "/a/rather/long/path/to/a/file/that/was/not/there.stl: no such file or directory",
+                    "/a/rather/long/path/to/a/file/that/was/not/there.stl: no such file or \
+                        directory",
                     true,
                 ),
             }

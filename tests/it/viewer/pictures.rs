@@ -135,7 +135,8 @@ fn only_changed_rows_are_sent_and_the_picture_is_right_afterwards() {
     let mesh_bytes = all + mesh.triangle_count() as u64 * 12;
     let share = sent as f64 / mesh_bytes as f64;
     println!(
-        "dab of {affected} vertices: {sent} bytes sent, {rows} in changed rows, {dirty} in dirty pages; {:.3} % of the \
+        "dab of {affected} vertices: {sent} bytes sent, {rows} in changed rows, {dirty} in dirty \
+            pages; {:.3} % of the \
          mesh on the card ({mesh_bytes}), {:.3} % of its vertices",
         share * 100.0,
         sent as f64 / all as f64 * 100.0

@@ -261,7 +261,8 @@ impl<'a> RetentionRun<'a> {
             }
             self.uses.remove(&name);
             names.remove(&name);
-            let sql = "DELETE FROM page WHERE lineage = ?1 AND number = ?2 AND revision = ?3 RETURNING length(data)";
+            let sql = "DELETE FROM page WHERE lineage = ?1 AND number = ?2 AND revision = ?3 \
+                RETURNING length(data)";
             let key = (name.0, name.1, name.2 as i64);
             let mut query = self.store.db.prepare_cached(sql)?;
             let bytes: Option<i64> = query.query_row(key, |r| r.get(0)).optional()?;
@@ -308,7 +309,8 @@ impl<'a> RetentionRun<'a> {
         let spare: Vec<Name> =
             all.iter().filter(|n| n.2 != 0 && !used.contains(*n)).copied().collect();
         for name in spare {
-            let sql = "DELETE FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = ?3 RETURNING length(data)";
+            let sql = "DELETE FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = ?3 \
+                RETURNING length(data)";
             let key = (name.0, name.1, name.2 as i64);
             let bytes: Option<i64> = self.store.db.query_row(sql, key, |r| r.get(0)).optional()?;
             all.remove(&name);
@@ -386,7 +388,8 @@ impl Store {
 
     fn raise(&self, object_id: u32, node: &Node) -> Result<(), StoreError> {
         let h = self.high(object_id)?.over(node);
-        let sql = "INSERT OR REPLACE INTO high (lineage, revision, vertex, triangle) VALUES (?1, ?2, ?3, ?4)";
+        let sql = "INSERT OR REPLACE INTO high (lineage, revision, vertex, triangle) VALUES (?1, \
+            ?2, ?3, ?4)";
         self.db.execute(sql, (object_id, h.revision as i64, h.next[0], h.next[1]))?;
         Ok(())
     }

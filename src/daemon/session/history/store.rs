@@ -351,7 +351,8 @@ impl Store {
     pub fn put_topology(&self, name: Name, topology: &PageTopology) -> Result<usize, StoreError> {
         let data = topology.to_bytes();
         let mut put = self.db.prepare_cached(
-            "INSERT OR IGNORE INTO topology (lineage, number, revision, crc, data) VALUES (?1, ?2, ?3, ?4, ?5)",
+            "INSERT OR IGNORE INTO topology (lineage, number, revision, crc, data) VALUES (?1, ?2, \
+                ?3, ?4, ?5)",
         )?;
         put.execute((name.0, name.1, name.2 as i64, crc32fast::hash(&data), &data))?;
         Ok(data.len())
@@ -362,7 +363,8 @@ impl Store {
         let row: Option<(u32, Vec<u8>)> = self
             .db
             .prepare_cached(
-                "SELECT crc, data FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = ?3",
+                "SELECT crc, data FROM topology WHERE lineage = ?1 AND number = ?2 AND revision = \
+                    ?3",
             )?
             .query_row((name.0, name.1, name.2 as i64), |r| Ok((r.get(0)?, r.get(1)?)))
             .optional()?;
@@ -387,7 +389,8 @@ impl Store {
         let row: Option<(i64, u32, Vec<u8>)> = self
             .db
             .prepare_cached(
-                "SELECT topology, crc, data FROM page WHERE lineage = ?1 AND number = ?2 AND revision = ?3",
+                "SELECT topology, crc, data FROM page WHERE lineage = ?1 AND number = ?2 AND \
+                    revision = ?3",
             )?
             .query_row((name.0, name.1, name.2 as i64), |r| Ok((r.get(0)?, r.get(1)?, r.get(2)?)))
             .optional()?;

@@ -16,8 +16,8 @@ pub(super) struct PlyBuilder {
 }
 
 impl PlyBuilder {
-    /// One vertex of the values of [`super::header::ROLES`]. `scale`: 1 where colours are bytes, 255 where they
-    /// are 0 to 1, and so on.
+    /// One vertex of the values of [`super::header::ROLES`]. `scale`: 1 where colours are bytes,
+    /// 255 where they are 0 to 1, and so on.
     #[inline]
     pub(super) fn vertex(&mut self, values: &[f64; 7], coloured: bool, scale: f64) {
         self.mesh.positions.push(DVec3::new(values[0], values[1], values[2]));
