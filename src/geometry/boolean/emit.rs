@@ -77,16 +77,17 @@ pub fn drop_thin_shells(
         return 0;
     }
     let old = std::mem::replace(mesh, PolyMesh::new());
-    mesh.positions = old.positions.clone();
+    let mut degrees = vec![0u32; old.positions.len()];
     let mut kept = Vec::with_capacity(origins.len());
     for (f, corners) in old.faces().enumerate() {
         if !thin(&sums[shells.root(corners[0]) as usize]) {
+            corners.iter().for_each(|&v| degrees[v as usize] += 1);
             mesh.push_face(corners);
             kept.push(origins[f]);
         }
     }
     *origins = kept;
-    crate::repair::drop_unused(mesh);
+    compact(mesh, &old.positions, &degrees);
     gone
 }
 
