@@ -91,8 +91,11 @@ fn newest(blob: &[u8]) -> Option<(u64, Acknowledgement)> {
     slots.chunks_exact(SLOT).filter_map(decode).max_by_key(|s| s.0)
 }
 
-/// Where the blob lies, and what it says.
-fn find(file: &File) -> Result<Option<(u64, Option<(u64, Acknowledgement)>)>> {
+/// A slot's sequence number and what it says.
+type Slot = (u64, Acknowledgement);
+
+/// Where the blob lies, and what its newest readable slot says.
+fn find(file: &File) -> Result<Option<(u64, Option<Slot>)>> {
     let mut file = file;
     let (mut best, mut at) = (None, 0u64);
     let size = MAGIC.len() + 2 * SLOT;
@@ -109,9 +112,9 @@ fn find(file: &File) -> Result<Option<(u64, Option<(u64, Acknowledgement)>)>> {
         let found = window[..have].windows(MAGIC.len()).enumerate().filter(|w| *w.1 == MAGIC);
         for (offset, _) in found {
             let says = newest(&window[offset..have]);
-            let better = best.as_ref().is_none_or(|b: &(u64, Option<(u64, Acknowledgement)>)| {
-                says.map(|s| s.0) > b.1.map(|s| s.0)
-            });
+            let better = best
+                .as_ref()
+                .is_none_or(|b: &(u64, Option<Slot>)| says.map(|s| s.0) > b.1.map(|s| s.0));
             if better {
                 best = Some((at + offset as u64, says));
             }

@@ -9,7 +9,7 @@
 //! 1.6 (b-tree pages), 1.7 (overflow), 2.1 (records) and 4.1 (the log's frames); the way of looking
 //! is that of its recover extension.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -64,7 +64,7 @@ pub struct PageImage {
     /// Offsets of the frames' pages, in order, with their page numbers.
     frames: Vec<(u32, usize)>,
     /// The newest frame of each page.
-    newest: HashMap<u32, usize>,
+    newest: BTreeMap<u32, usize>,
     /// The log's salts, where there is a log.
     pub salts: Option<[u32; 2]>,
 }
