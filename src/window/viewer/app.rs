@@ -92,7 +92,10 @@ impl ApplicationHandler<AccessibilityEvent> for App {
             open.redraw(wiring);
             return;
         }
-        match event.clone() {
+        if open.egui.on_window_event(&open.window, &event).repaint {
+            open.pacing.want();
+        }
+        match event {
             // Visitors do not end an installation that staff ends by a number.
             WindowEvent::CloseRequested if wiring.kiosk.as_ref().is_some_and(|k| k.staff) => {}
             WindowEvent::CloseRequested => {
@@ -126,15 +129,5 @@ impl ApplicationHandler<AccessibilityEvent> for App {
             }
             _ => {}
         }
-        // After our own: the clay's sample does not wait for a frame. egui looks once a pass where
-        // the pointer is, so each press and each release has a pass of its own.
-        let button = matches!(event, WindowEvent::MouseInput { .. } | WindowEvent::Touch(_));
-        if open.button_waits && (button || matches!(event, WindowEvent::CursorMoved { .. })) {
-            open.redraw(wiring);
-        }
-        if open.egui.on_window_event(&open.window, &event).repaint {
-            open.pacing.want();
-        }
-        open.button_waits |= button;
     }
 }

@@ -208,7 +208,6 @@ impl WindowState {
     ) -> Vec<UiRequest> {
         let mut requests = Vec::new();
         let input = self.egui.take_egui_input(&self.window);
-        self.button_waits = false;
         // What a click or a key has set is seen in the frame after: the clay of this one is drawn.
         let moved = |e: &egui::Event| matches!(e, egui::Event::PointerMoved(_));
         if !input.events.iter().all(moved) {

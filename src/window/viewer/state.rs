@@ -98,8 +98,6 @@ pub(super) struct WindowState {
     pub(super) clay_picture: Option<wgpu::Texture>,
     /// Buttons and fingers that went down on a panel and are still down.
     pub(super) held_on_panels: u32,
-    /// egui has been given a press or a release that no pass has seen.
-    pub(super) button_waits: bool,
 }
 
 impl WindowState {
@@ -231,7 +229,6 @@ impl WindowState {
             free: None,
             clay_picture: None,
             held_on_panels: 0,
-            button_waits: false,
         };
         open.send_camera(wiring);
         Ok(open)
