@@ -50,8 +50,9 @@ pub struct BrushSettings {
     /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work
     /// is loaded or the setting changes, so that the brush does not breathe while the form grows.
     pub radius: f32,
-    /// 0 to 1. For brushes that raise: over every fifth of the radius travelled a stroke lays down a
-    /// dab `strength * radius` high, however many dabs that is made of ([`PathSettings::compensate`]).
+    /// 0 to 1. For brushes that raise: over every fifth of the radius travelled a stroke lays down
+    /// a dab `strength * radius` high, however many dabs that is made of
+    /// ([`PathSettings::compensate`]).
     pub strength: f32,
     /// Carve instead of raise: what the brush does, the other way round.
     pub negative: bool,

@@ -233,7 +233,7 @@ fn strokes_are_smooth_on_a_ball_along_a_curve_and_with_a_trembling_pen() {
                 let trial = Trial { form, across, tremble, ..Trial::new(brush) };
                 let (_, waviness) = trial.draw().crest();
                 println!("{kind}, {form:?}, {across} across, {tremble:.4}: {waviness:.3} degrees");
-                // Along an arc vertices lie anyhow about the line: there a narrow section (the bell)
+                // Along an arc vertices lie anyhow about the line: a narrow section (the bell)
                 // or one whose vertices went aside (blob) is not wholly what the fit takes it for.
                 let rough = matches!(kind, BrushKind::Blob | BrushKind::Gaussian);
                 let most = if rough && form == TestForm::Arc { 0.7 } else { 0.32 };
