@@ -69,7 +69,7 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     let clock = Clock::manual();
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
     let (mut feeds, adaptors) =
-        demo_devices::stepped(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
+        demo_devices::simulated_feeds(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
     let rate_hz = config.r#loop.rate_hz;
     let options = SimulatedOptions {
         rate_hz,

@@ -30,7 +30,7 @@ struct Facts {
 
 /// With several meshes: one object all the same.
 #[derive(Debug, Serialize)]
-struct Several {
+struct ManyFiles {
     meshes: Vec<Facts>,
 }
 
@@ -56,7 +56,7 @@ pub fn run(args: &InfoArgs, json: bool) -> Outcome {
     if meshes.len() == 1 {
         answer(json, &meshes[0], |out| text(out, &meshes[0]));
     } else {
-        let several = Several { meshes };
+        let several = ManyFiles { meshes };
         answer(json, &several, |out| several.meshes.iter().try_for_each(|m| text(out, m)));
     }
     Ok(())

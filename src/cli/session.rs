@@ -74,7 +74,7 @@ fn history(session: &Path, pictures: Option<&Path>, json: bool) -> Outcome {
         std::fs::create_dir_all(folder).map_err(|e| Fail::io(folder, &e))?;
         let store = Store::read(session).map_err(input)?;
         for place in &found.places {
-            if let Some(png) = store.sight(place.node).map_err(input)? {
+            if let Some(png) = store.thumbnail(place.node).map_err(input)? {
                 let path = folder.join(format!("place-{:05}.png", place.node));
                 write_beside(&path, |out| out.write_all(&png)).map_err(|e| Fail::io(&path, &e))?;
                 written += 1;

@@ -136,7 +136,7 @@ impl<S> Feed for SimFeed<S> {
 }
 
 /// The ghosts for a stepped run.
-pub fn stepped(
+pub fn simulated_feeds(
     clock: &Clock,
     factory: &SenderFactory,
 ) -> Result<(Vec<Box<dyn Feed>>, Adaptors), DemoError> {

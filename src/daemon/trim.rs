@@ -49,7 +49,7 @@ impl Part {
 }
 
 /// What is seen of space within a part of the view, from before a ball to behind it, as a solid.
-pub fn prism(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<TriMesh> {
+pub fn trim_solid(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<TriMesh> {
     let corners = part.corners(camera.aspect)?;
     let back = camera.backward();
     let margin = radius * 1.1;
@@ -123,7 +123,7 @@ pub fn carry_out(
 fn tool(now: &Published, part: &Part) -> Result<PolyMesh, JoinError> {
     let (lo, hi) = now.mesh.bounds();
     let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
-    let plain = prism(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
+    let plain = trim_solid(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
     Ok(plain.to_poly())
 }
 
@@ -136,14 +136,14 @@ mod tests {
         for orthographic in [false, true] {
             let camera = Camera { orthographic, ..Camera::default() };
             let part = Part::Box([0.6, 0.7, 0.3, 0.2]);
-            let solid = prism(&camera, &part, Vec3::ZERO, 1.0).expect("a solid");
+            let solid = trim_solid(&camera, &part, Vec3::ZERO, 1.0).expect("a solid");
             let want = [[0.3, 0.2], [0.3, 0.7], [0.6, 0.7], [0.6, 0.2]];
             for (k, p) in solid.positions.iter().enumerate() {
                 let seen = camera.project(*p).expect("before the eye");
                 assert!((seen - Vec2::from(want[k % 4])).length() < 1e-5, "{seen}");
             }
             let line = Part::Line([0.5, 1.0, 0.5, 0.0]);
-            let left = prism(&camera, &line, Vec3::ZERO, 1.0).expect("a solid");
+            let left = trim_solid(&camera, &line, Vec3::ZERO, 1.0).expect("a solid");
             assert!(
                 left.positions
                     .iter()
@@ -151,6 +151,6 @@ mod tests {
             );
         }
         let none = Part::Box([0.3, 0.2, 0.3, 0.9]);
-        assert!(prism(&Camera::default(), &none, Vec3::ZERO, 1.0).is_none());
+        assert!(trim_solid(&Camera::default(), &none, Vec3::ZERO, 1.0).is_none());
     }
 }

@@ -52,8 +52,8 @@ const LOOKED_AT: usize = 4096;
 const ON_ONE: usize = 64;
 
 /// Whether a closed surface lies within itself: somewhere outside of a triangle is still inside the
-/// solid, by the winding number. Looked at in about 4,096 places, at most 64 of them on one triangle,
-/// so an overlap that is smaller than their spacing can be missed.
+/// solid, by the winding number. Looked at in about 4,096 places, at most 64 of them on one
+/// triangle, so an overlap that is smaller than their spacing can be missed.
 pub fn overlaps(mesh: &TriMesh, job: &Job) -> Result<bool, Cancelled> {
     let solid = DistanceSolid::build(mesh, job)?;
     let (lo, hi) = mesh.bounds();
@@ -145,7 +145,9 @@ pub fn projected_area(mesh: &TriMesh, direction: Vec3, job: &Job) -> Result<f64,
             let y = middle(s);
             let mut spans: Vec<(f64, f64)> = members[starts[s] as usize..starts[s + 1] as usize]
                 .iter()
-                .filter_map(|&t| crossing(mesh.triangles[t as usize].map(|i| flat[i as usize]), y))
+                .filter_map(|&t| {
+                    crossed_at(mesh.triangles[t as usize].map(|i| flat[i as usize]), y)
+                })
                 .collect();
             Ok(union(&mut spans))
         })
@@ -154,7 +156,7 @@ pub fn projected_area(mesh: &TriMesh, direction: Vec3, job: &Job) -> Result<f64,
 }
 
 /// Where the line at `y` runs inside a triangle.
-fn crossing(p: [DVec2; 3], y: f64) -> Option<(f64, f64)> {
+fn crossed_at(p: [DVec2; 3], y: f64) -> Option<(f64, f64)> {
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
     for k in 0..3 {
         // From the lower end always, so that both triangles of an edge find the same point.

@@ -91,7 +91,11 @@ pub fn pairs(
                         if own.iter().filter(|v| other.contains(v)).count() == 2 {
                             continue;
                         }
-                        match meet(positions, triangles[t as usize], triangles[u as usize]) {
+                        match triangles_meet(
+                            positions,
+                            triangles[t as usize],
+                            triangles[u as usize],
+                        ) {
                             Meet::No => {}
                             Meet::Cross => out.push((t, u)),
                             found => touches.extend(touch(positions, triangles, t, u, found)),
@@ -206,7 +210,7 @@ pub fn count(
 /// Whether the insides of two triangles have a line or an area in common, beyond the corners that
 /// they share.
 pub fn crosses(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> bool {
-    meet(positions, s, t) != Meet::No
+    triangles_meet(positions, s, t) != Meet::No
 }
 
 fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
@@ -235,7 +239,7 @@ enum Which {
 }
 
 /// How two triangles meet beyond what they share.
-fn meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> Meet {
+fn triangles_meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> Meet {
     let p = |v: u32| positions[v as usize];
     let shared = s.iter().filter(|v| t.contains(v)).count();
     let (ps, pt) = (s.map(p), t.map(p));

@@ -205,7 +205,7 @@ fn undo_goes_back_beyond_memory_and_a_restart_and_branches_stay() {
     s.becomes(hashes[4]);
     s.history.want(Want::Node(here));
     s.becomes(branch);
-    assert!(s.history.sight(here).is_some_and(|png| png.starts_with(b"\x89PNG")));
+    assert!(s.history.thumbnail(here).is_some_and(|png| png.starts_with(b"\x89PNG")));
     let path = s.end();
     assert_eq!(both_ways(&path), (branch, branch));
 

@@ -179,7 +179,8 @@ fn what_is_wrong_is_told_with_its_place() {
             "a.ply",
             b"ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty \
             float y\nproperty float z\nend_header\n0 0 0\n",
-            "byte 115: expected at least 6000000109 bytes for the counts in the header, found the end of the file after 115 bytes",
+            "byte 115: expected at least 6000000109 bytes for the counts in the header, found the \
+                end of the file after 115 bytes",
         ),
         (
             "a.ply",

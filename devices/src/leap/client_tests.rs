@@ -8,7 +8,7 @@ use crate::sim::{Faults, Tracker, TrackerConfig, journal};
 
 const SOON: Duration = Duration::from_secs(60);
 
-struct Rig {
+struct LeapSetup {
     tracker: Tracker,
     handle: LeapHandle,
     rx: Receiver,
@@ -16,7 +16,7 @@ struct Rig {
     got: Vec<Sample>,
 }
 
-fn rig(config: TrackerConfig) -> Rig {
+fn setup(config: TrackerConfig) -> LeapSetup {
     let mut tracker = Tracker::new(journal().hands, config).unwrap();
     tracker.skip_to(6_500_000);
     let (factory, rx) = channel(4096);
@@ -24,10 +24,10 @@ fn rig(config: TrackerConfig) -> Rig {
     let config = LeapConfig { url: tracker.url(), device: DeviceId(5), ..LeapConfig::default() };
     let handle = start(config, clock.clone(), factory.sender()).unwrap();
     assert!(tracker.wait_for_client(SOON));
-    Rig { tracker, handle, rx, clock, got: Vec::new() }
+    LeapSetup { tracker, handle, rx, clock, got: Vec::new() }
 }
 
-impl Rig {
+impl LeapSetup {
     /// Steps the tracker and takes in what it promises.
     fn step(&mut self, us: u64) {
         self.clock.set_us(us);
@@ -40,12 +40,12 @@ impl Rig {
 #[test]
 fn every_frame_of_the_journal_comes_out_as_it_went_in_and_twice_the_same() {
     let run = || {
-        let mut rig = rig(TrackerConfig::default());
-        (0..1200).for_each(|i| rig.step(6_500_000 + i * 8_000));
-        assert_eq!(rig.rx.waiting(), 0);
-        let status = rig.handle.status();
+        let mut setup = setup(TrackerConfig::default());
+        (0..1200).for_each(|i| setup.step(6_500_000 + i * 8_000));
+        assert_eq!(setup.rx.waiting(), 0);
+        let status = setup.handle.status();
         assert_eq!((status.errors, status.stale, status.version), (0, 0, Some(6)), "{status:?}");
-        rig.got
+        setup.got
     };
     let got = run();
     assert_eq!(got, run(), "the same bits");
@@ -88,43 +88,43 @@ fn a_bad_line_costs_frames_and_nothing_else() {
         clock_jump: 0.01,
         unplug: 0.0,
     };
-    let mut rig = rig(TrackerConfig { faults, ..TrackerConfig::default() });
-    (0..1600).for_each(|i| rig.step(6_500_000 + i * 5_000));
-    let status = rig.handle.status();
+    let mut setup = setup(TrackerConfig { faults, ..TrackerConfig::default() });
+    (0..1600).for_each(|i| setup.step(6_500_000 + i * 5_000));
+    let status = setup.handle.status();
     assert!(status.errors > 20 && status.stale > 20, "{status:?}");
-    assert!(rig.got.windows(2).all(|w| w[0].t_us <= w[1].t_us), "time never runs back");
-    assert!(rig.got.iter().all(|s| s.t_us <= rig.clock.now_us()));
-    let count = rig.rx.stats().of(DeviceId(5));
+    assert!(setup.got.windows(2).all(|w| w[0].t_us <= w[1].t_us), "time never runs back");
+    assert!(setup.got.iter().all(|s| s.t_us <= setup.clock.now_us()));
+    let count = setup.rx.stats().of(DeviceId(5));
     assert_eq!((count.sent, count.lost_transition), (count.received, 0));
 }
 
 #[test]
 fn a_server_that_goes_takes_its_hands_along_and_is_found_again() {
-    let mut rig = rig(TrackerConfig::default());
-    rig.tracker.skip_to(9_000_000);
-    rig.step(9_000_000);
-    let Body::Hands(before) = rig.got.last().unwrap().body else { panic!() };
+    let mut setup = setup(TrackerConfig::default());
+    setup.tracker.skip_to(9_000_000);
+    setup.step(9_000_000);
+    let Body::Hands(before) = setup.got.last().unwrap().body else { panic!() };
     assert!(before.count > 0);
-    assert_eq!(rig.tracker.unplug(), 1);
-    let gone = rig.rx.next_within(SOON).unwrap();
+    assert_eq!(setup.tracker.unplug(), 1);
+    let gone = setup.rx.next_within(SOON).unwrap();
     assert!(matches!(gone.body, Body::Hands(h) if h.count == 0));
-    assert!(rig.tracker.wait_for_client(SOON), "it comes back by itself");
-    rig.step(9_100_000);
-    assert_eq!(rig.handle.status().connections, 2);
-    assert!(matches!(rig.got.last().unwrap().body, Body::Hands(h) if h.count > 0));
+    assert!(setup.tracker.wait_for_client(SOON), "it comes back by itself");
+    setup.step(9_100_000);
+    assert_eq!(setup.handle.status().connections, 2);
+    assert!(matches!(setup.got.last().unwrap().body, Body::Hands(h) if h.count > 0));
 }
 
 #[test]
 fn silence_ends_the_hands_and_the_greeting_is_short() {
-    let mut rig = rig(TrackerConfig::default());
-    rig.tracker.skip_to(9_000_000);
-    rig.step(9_000_000);
-    rig.clock.set_us(9_200_000);
-    assert!(rig.rx.next_within(Duration::from_millis(60)).is_none(), "not yet");
-    rig.clock.set_us(9_300_000);
-    assert!(matches!(rig.rx.next_within(SOON).unwrap().body, Body::Hands(h) if h.count == 0));
-    rig.step(9_310_000);
-    let requests = rig.tracker.requests();
+    let mut setup = setup(TrackerConfig::default());
+    setup.tracker.skip_to(9_000_000);
+    setup.step(9_000_000);
+    setup.clock.set_us(9_200_000);
+    assert!(setup.rx.next_within(Duration::from_millis(60)).is_none(), "not yet");
+    setup.clock.set_us(9_300_000);
+    assert!(matches!(setup.rx.next_within(SOON).unwrap().body, Body::Hands(h) if h.count == 0));
+    setup.step(9_310_000);
+    let requests = setup.tracker.requests();
     assert_eq!(
         requests,
         [r#"{"background":true}"#, r#"{"optimizeHMD":false}"#, r#"{"focused":true}"#]

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::{Mat3, Quat, Vec3};
 use serde::Deserialize;
 
-use super::loose::{Scalar, Triple};
+use super::lenient::{Scalar, Triple};
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
 /// Longest message that is looked at, in bytes. Real frames with two hands and all bones have

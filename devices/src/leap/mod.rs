@@ -13,7 +13,7 @@ pub mod client;
 pub mod clock_map;
 pub mod file;
 pub mod frame;
-mod loose;
+mod lenient;
 
 pub use client::{LeapConfig, LeapHandle, LeapStatus, start};
 pub use clock_map::ClockMap;

@@ -10,7 +10,7 @@ const SOON: Duration = Duration::from_secs(60);
 const ALL: [Protocol; 4] =
     [Protocol::Isdv4, Protocol::WacomIv, Protocol::WacomV, Protocol::SummaMm];
 
-struct Rig {
+struct SerialSetup {
     pen: SerialPen,
     handle: SerialHandle,
     rx: Receiver,
@@ -18,7 +18,7 @@ struct Rig {
     got: Vec<Sample>,
 }
 
-fn rig(protocol: Protocol, faults: Faults, rate: f32, known: bool) -> Rig {
+fn setup(protocol: Protocol, faults: Faults, rate: f32, known: bool) -> SerialSetup {
     let Journal { pen, area_mm, .. } = journal();
     let sim = SerialPen::new(
         pen,
@@ -36,10 +36,10 @@ fn rig(protocol: Protocol, faults: Faults, rate: f32, known: bool) -> Rig {
     };
     let handle = start(config, clock.clone(), factory.sender()).unwrap();
     assert!(sim.wait_for_reader(Duration::from_secs(20)), "{protocol:?}: {:?}", handle.status());
-    Rig { pen: sim, handle, rx, clock, got: Vec::new() }
+    SerialSetup { pen: sim, handle, rx, clock, got: Vec::new() }
 }
 
-impl Rig {
+impl SerialSetup {
     fn step(&mut self, us: u64) {
         self.clock.set_us(us);
         for _ in 0..self.pen.advance(us) {
@@ -57,13 +57,13 @@ fn pen(s: &Sample) -> Pen {
 fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
     let script = journal().pen;
     for protocol in ALL {
-        let mut rig = rig(protocol, Faults::default(), 133.0, true);
-        (0..400).for_each(|i| rig.step(i * 20_000));
-        assert_eq!(rig.rx.waiting(), 0);
+        let mut setup = setup(protocol, Faults::default(), 133.0, true);
+        (0..400).for_each(|i| setup.step(i * 20_000));
+        assert_eq!(setup.rx.waiting(), 0);
         let (mut worst, mut contacts, mut erased) = (0.0f32, 0, 0);
         // A sample is stamped with the step in which it was read; the pose is that of one of the
         // packets in it.
-        for s in &rig.got {
+        for s in &setup.got {
             let p = pen(s);
             assert!(p.in_range || !p.tip);
             if !p.in_range {
@@ -75,10 +75,10 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
                 .map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
             worst = worst.max(near.fold(f32::INFINITY, f32::min));
         }
-        let status = rig.handle.status();
+        let status = setup.handle.status();
         println!(
             "{protocol:?}: {} samples, {contacts} in contact, off by {worst:.3} mm at most",
-            rig.got.len()
+            setup.got.len()
         );
         assert!(worst < 0.5 && contacts > 500, "{protocol:?}: {worst}");
         assert!(protocol == Protocol::SummaMm || erased > 50, "{protocol:?}: {erased}");
@@ -86,11 +86,11 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
             status.counts.cut + status.counts.suspect + status.counts.stray + status.counts.broken,
             0
         );
-        assert_eq!(status.samples, rig.got.len() as u64);
+        assert_eq!(status.samples, setup.got.len() as u64);
         assert!(status.rate < 140.0, "{}", status.rate);
         if protocol != Protocol::SummaMm {
-            assert!(rig.got.iter().any(|s| pen(s).pressure.unwrap() > 0.85));
-            let tilted = rig.got.iter().find(|s| pen(s).tip).and_then(|s| pen(s).tilt).unwrap();
+            assert!(setup.got.iter().any(|s| pen(s).pressure.unwrap() > 0.85));
+            let tilted = setup.got.iter().find(|s| pen(s).tip).and_then(|s| pen(s).tilt).unwrap();
             assert!(tilted.distance(glam::vec2(0.3, 0.2)) < 0.02, "{tilted}");
         }
     }
@@ -99,10 +99,14 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
 #[test]
 fn two_runs_give_the_same_bits() {
     let run = || {
-        let mut rig =
-            rig(Protocol::Isdv4, Faults { seed: 5, tear: 0.02, ..Faults::default() }, 133.0, true);
-        (0..300).for_each(|i| rig.step(i * 8_333));
-        rig.got
+        let mut setup = setup(
+            Protocol::Isdv4,
+            Faults { seed: 5, tear: 0.02, ..Faults::default() },
+            133.0,
+            true,
+        );
+        (0..300).for_each(|i| setup.step(i * 8_333));
+        setup.got
     };
     assert_eq!(run(), run());
 }
@@ -119,19 +123,19 @@ fn no_bogus_point_from_a_noisy_line() {
         let script = journal().pen;
         // Many packets a step, so that it takes no time: 2 us apart in the script.
         let rate = 20_000.0;
-        let mut rig = rig(protocol, faults, rate, true);
-        rig.pen.skip_to(300_000);
+        let mut setup = setup(protocol, faults, rate, true);
+        setup.pen.skip_to(300_000);
         let sent = |us: u64| script.at(us).pos_mm;
         let end = 300_000 + packets * 50;
         let mut at = 300_000;
         while at < end.min(script.end_us()) {
             at += 2_500;
-            rig.step(at);
+            setup.step(at);
         }
-        let status = rig.handle.status();
+        let status = setup.handle.status();
         let c = status.counts;
         let (mut bogus, mut last) = (0, 0);
-        for s in rig.got.iter().filter(|s| pen(s).in_range) {
+        for s in setup.got.iter().filter(|s| pen(s).in_range) {
             // One of the fifty packets of its step.
             let from = s.t_us.saturating_sub(2_600);
             let near = (0..=53).any(|k| sent(from + 50 * k).distance(pen(s).pos_mm) < 0.06);
@@ -139,7 +143,7 @@ fn no_bogus_point_from_a_noisy_line() {
             last = last.max(s.t_us);
         }
         let faulty = c.cut + c.suspect;
-        println!("{protocol:?}: {c:?}, {} samples, {bogus} bogus", rig.got.len());
+        println!("{protocol:?}: {c:?}, {} samples, {bogus} bogus", setup.got.len());
         assert_eq!((bogus, c.broken), (0, 0), "{protocol:?}");
         assert!(faulty > packets / 50, "{protocol:?}: {c:?}");
         // Each fault costs its packet and at most one more.
@@ -151,9 +155,9 @@ fn no_bogus_point_from_a_noisy_line() {
 #[test]
 fn a_port_that_may_be_asked_is_asked_until_something_answers() {
     for protocol in [Protocol::WacomIv, Protocol::Isdv4] {
-        let mut rig = rig(protocol, Faults::default(), 133.0, false);
-        rig.step(1_000_000);
-        assert_eq!(rig.handle.status().protocol, Some(protocol));
+        let mut setup = setup(protocol, Faults::default(), 133.0, false);
+        setup.step(1_000_000);
+        assert_eq!(setup.handle.status().protocol, Some(protocol));
     }
     // With nothing named and nothing allowed no port is touched.
     let (factory, _rx) = channel(4);
@@ -163,16 +167,16 @@ fn a_port_that_may_be_asked_is_asked_until_something_answers() {
 
 #[test]
 fn an_unplug_ends_the_visit() {
-    let mut rig = rig(Protocol::Isdv4, Faults::default(), 133.0, true);
-    rig.pen.skip_to(990_000);
-    rig.step(1_000_000);
-    assert!(pen(rig.got.last().unwrap()).tip);
-    assert_eq!(rig.pen.unplug(), 1);
-    let gone = pen(&rig.rx.next_within(SOON).unwrap());
+    let mut setup = setup(Protocol::Isdv4, Faults::default(), 133.0, true);
+    setup.pen.skip_to(990_000);
+    setup.step(1_000_000);
+    assert!(pen(setup.got.last().unwrap()).tip);
+    assert_eq!(setup.pen.unplug(), 1);
+    let gone = pen(&setup.rx.next_within(SOON).unwrap());
     assert!(!gone.tip && !gone.in_range && gone.buttons == 0);
     let (_hold, stop) = crate::device_thread::pair();
     assert!(
-        (0..100).any(|_| !rig.handle.status().connected || stop.wait(Duration::from_millis(20)))
+        (0..100).any(|_| !setup.handle.status().connected || stop.wait(Duration::from_millis(20)))
     );
 }
 

@@ -1,8 +1,8 @@
 //! Density: brings the triangles to the wanted size and evens them along the surface; the form
 //! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]); its own
-//! file turns it on.
+//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]);
+//! its own file turns it on.
 
 use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::relax::RelaxBrush;

@@ -53,8 +53,11 @@ macro_rules! brushes {
         /// Which brush a dab is of.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum BrushKind {
-            $(#[doc = concat!("`", $name, "`: see \
-                `config/brushes/", $name, ".toml`.")] #[serde(rename = $name)] $variant,)*
+            $(
+                #[doc = concat!("`", $name, "`: see `config/brushes/", $name, ".toml`.")]
+                #[serde(rename = $name)]
+                $variant,
+            )*
         }
 
         impl BrushKind {

@@ -1,8 +1,8 @@
 //! Simplify: draws small triangles together to the wanted size, and leaves large ones; the form
 //! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]); its own
-//! file turns it on.
+//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]);
+//! its own file turns it on.
 
 use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::relax::RelaxBrush;

@@ -39,8 +39,7 @@ impl Brush for TextureBrush {
             value: 1.0,
             min: 0.1,
             max: 10.0,
-            about: "width of the alpha, in widths of the brush: below 1 it repeats across the \
-                stroke, above 1 it is cropped",
+            about: "width of the alpha in brush widths: below 1 it repeats, above 1 it is cropped",
         },
     ];
 

@@ -70,10 +70,12 @@ impl Table {
     }
 
     pub(super) fn summary(&self) -> Summary {
-        Summary { devices: self.lines.iter().map(|(id, line)| self.figures(*id, line)).collect() }
+        Summary {
+            devices: self.lines.iter().map(|(id, line)| self.numbers_of(*id, line)).collect(),
+        }
     }
 
-    fn figures(&self, id: DeviceId, line: &Line) -> TickStatistics {
+    fn numbers_of(&self, id: DeviceId, line: &Line) -> TickStatistics {
         let (n, mean, spread) = line.intervals;
         let lost = self.stats.of(id);
         TickStatistics {
@@ -101,7 +103,7 @@ impl Table {
         }
         writeln!(out, "device kind  samples    Hz  jitter  coalesced  lost  now")?;
         for (id, line) in &self.lines {
-            let f = self.figures(*id, line);
+            let f = self.numbers_of(*id, line);
             let lost = f.lost_motion + f.lost_transitions;
             write!(out, "{:>6} {:5} {:>7} {:>5.0} ", f.device, f.kind, f.samples, f.rate_hz)?;
             write!(out, "{:>4.1} ms  {:>9} {lost:>5}  ", f.jitter_ms, f.coalesced)?;

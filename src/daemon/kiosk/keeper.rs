@@ -55,7 +55,7 @@ impl Start {
 
 /// What a screen reads and presses.
 #[derive(Debug, Default)]
-pub struct Desk {
+pub struct KioskDesk {
     pub view: Mutex<Option<View>>,
     /// Something on the screen itself was pressed.
     pub touched: AtomicBool,
@@ -71,7 +71,7 @@ pub struct Desk {
 /// What the window of an installation shows.
 #[derive(Debug, Clone)]
 pub struct Screen {
-    pub desk: Arc<Desk>,
+    pub desk: Arc<KioskDesk>,
     /// Never empty; the first is shown to each new visitor.
     pub words: Vec<Language>,
     /// Staff can leave by a number.
@@ -81,7 +81,7 @@ pub struct Screen {
 /// A running keeper; it ends when `stop` is raised.
 #[derive(Debug)]
 pub struct Keeper {
-    pub desk: Arc<Desk>,
+    pub desk: Arc<KioskDesk>,
     pub thread: JoinHandle<()>,
 }
 
@@ -93,7 +93,7 @@ struct KioskThread {
     sender: Sender,
     clock: Clock,
     stop: Arc<AtomicBool>,
-    desk: Arc<Desk>,
+    desk: Arc<KioskDesk>,
     /// What plays while nobody is there; never empty.
     films: Vec<AttractRecording>,
     film: usize,
@@ -142,7 +142,7 @@ pub fn start(
             Some(share.map_err(|e| format!("share {at}: {e}"))?)
         }
     };
-    let desk = Arc::new(Desk::default());
+    let desk = Arc::new(KioskDesk::default());
     let mut keeping = KioskThread {
         config,
         start,
@@ -182,11 +182,11 @@ impl KioskThread {
             felt = now;
             let done = self.desk.finished.swap(false, Relaxed);
             let act = cycle.step(touched, done);
-            self.obey(act, &cycle);
+            self.carry_out(act, &cycle);
             let typed = self.desk.typed.lock().ok().and_then(|mut t| t.take());
             if let Some(number) = typed {
                 let act = cycle.staff(&number, &self.config.staff_pin);
-                self.obey(act, &cycle);
+                self.carry_out(act, &cycle);
             }
             if cycle.view().stage == Stage::Attract {
                 self.attract();
@@ -200,7 +200,7 @@ impl KioskThread {
         }
     }
 
-    fn obey(&mut self, act: Option<KioskAct>, cycle: &Cycle) {
+    fn carry_out(&mut self, act: Option<KioskAct>, cycle: &Cycle) {
         match act {
             None => {}
             Some(KioskAct::Quit) => self.stop.store(true, Relaxed),

@@ -165,6 +165,7 @@ fn serve(
     };
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: \
+            \
             nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: default-src \
             'none'; style-src 'unsafe-inline'\r\nCache-Control: no-store\r\nConnection: \
             close\r\n\r\n",

@@ -86,7 +86,7 @@ pub fn blob(first: &Acknowledgement) -> Vec<u8> {
 }
 
 /// The newest readable slot of a blob.
-fn newest(blob: &[u8]) -> Option<(u64, Acknowledgement)> {
+fn newest_slot(blob: &[u8]) -> Option<(u64, Acknowledgement)> {
     let slots = blob.get(MAGIC.len()..MAGIC.len() + 2 * SLOT)?;
     slots.chunks_exact(SLOT).filter_map(decode).max_by_key(|s| s.0)
 }
@@ -111,7 +111,7 @@ fn find(file: &File) -> Result<Option<(u64, Option<Slot>)>> {
         }
         let found = window[..have].windows(MAGIC.len()).enumerate().filter(|w| *w.1 == MAGIC);
         for (offset, _) in found {
-            let says = newest(&window[offset..have]);
+            let says = newest_slot(&window[offset..have]);
             let better = best
                 .as_ref()
                 .is_none_or(|b: &(u64, Option<Slot>)| says.map(|s| s.0) > b.1.map(|s| s.0));

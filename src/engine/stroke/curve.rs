@@ -86,7 +86,7 @@ impl Curve {
         self.control = [first, first.lerp(last, 1.0 / 3.0), first.lerp(last, 2.0 / 3.0), last];
         for _ in 0..ROUNDS {
             self.fit(place);
-            self.mend(place);
+            self.close_gaps(place);
         }
         self.control.iter_mut().for_each(|p| p.x /= f64::from(aspect));
     }
@@ -115,7 +115,7 @@ impl Curve {
 
     /// Each point's parameter a Newton step nearer to the foot of its perpendicular; never out of
     /// order.
-    fn mend(&mut self, place: impl Fn(&PenPoint) -> DVec2) {
+    fn close_gaps(&mut self, place: impl Fn(&PenPoint) -> DVec2) {
         let [a, b, c, d] = self.control;
         let mut before = 0.0;
         for (p, t) in self.path.iter().zip(&mut self.at) {

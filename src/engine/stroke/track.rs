@@ -178,7 +178,7 @@ impl PenTrack {
     }
 
     /// The curve that is being laid; empty: none is.
-    pub fn draft(&self) -> &CurveStroke {
+    pub fn curve_stroke(&self) -> &CurveStroke {
         &self.draft
     }
 

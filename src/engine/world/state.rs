@@ -85,7 +85,7 @@ impl World {
 
     /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
     pub fn curve_stroke(&self) -> Option<&CurveStroke> {
-        self.pens.iter().map(|s| s.track.draft()).find(|d| !d.is_empty())
+        self.pens.iter().map(|s| s.track.curve_stroke()).find(|d| !d.is_empty())
     }
 
     /// What the hands hold, and where.

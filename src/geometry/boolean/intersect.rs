@@ -175,7 +175,7 @@ impl Finder<'_> {
                     crossed[i][j] = true;
                     continue;
                 }
-                if let Some(p) = self.crossing(a, b) {
+                if let Some(p) = self.crossing_point(a, b) {
                     crossed[i][j] = true;
                     self.m.edges[a as usize].inner.push(p);
                     self.m.edges[b as usize].inner.push(p);
@@ -194,7 +194,7 @@ impl Finder<'_> {
     }
 
     /// The point where two edges cross, within the tolerance.
-    fn crossing(&mut self, a: u32, b: u32) -> Option<u32> {
+    fn crossing_point(&mut self, a: u32, b: u32) -> Option<u32> {
         let (ea, eb) = (self.m.edges[a as usize].ends, self.m.edges[b as usize].ends);
         if ea.contains(&eb[0]) || ea.contains(&eb[1]) {
             return None;

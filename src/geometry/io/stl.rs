@@ -61,6 +61,7 @@ pub(super) fn parse_binary(
             format!("{need} bytes for the {count} triangles that the header at byte 80 states"),
             format!(
                 "the end of the file after {whole} whole triangles (not text either: it starts with \
+                    \
                     {})",
                 excerpt(bytes)
             ),

@@ -114,7 +114,7 @@ impl CrossedCells<'_> {
     }
 
     /// Where edge `e` of cell `at` is crossed.
-    fn crossing(&self, at: usize, e: usize) -> DVec3 {
+    fn crossing_point(&self, at: usize, e: usize) -> DVec3 {
         let [nx, ny, _] = self.grid.size;
         let (a, b) = ends(e);
         let index = |c: usize| at + (c & 1) + (c >> 1 & 1) * nx + (c >> 2) * nx * ny;
@@ -151,7 +151,7 @@ impl CrossedCells<'_> {
     fn middle_place(&self, key: u64) -> DVec3 {
         let (arc, axis, low) = (key as usize % 2, key as usize / 2 % 3, key as usize / 6);
         let [a, b] = arcs(axis, 1, self.cases[low] as usize)[arc].map(|i| face_edges(axis, 1)[i]);
-        (self.crossing(low, a) + self.crossing(low, b)) * 0.5
+        (self.crossing_point(low, a) + self.crossing_point(low, b)) * 0.5
     }
 }
 
@@ -214,7 +214,7 @@ pub fn extract(
                 for patch in 0..pattern.count {
                     points.clear();
                     let edges = (0..12).filter(|&e| pattern.patch[e] == patch);
-                    points.extend(edges.map(|e| cells.crossing(at as usize, e)));
+                    points.extend(edges.map(|e| cells.crossing_point(at as usize, e)));
                     out.push(place(&points).as_vec3());
                 }
             }

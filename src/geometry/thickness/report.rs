@@ -151,6 +151,7 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
     let _ = write!(
         out,
         "<svg role=img width=520 height=58 viewBox=\"0 0 520 58\" aria-label=\"Colours: dark red is \
+            \
             {low:.3} mm, pale yellow \
          {high:.3} mm and more, blue is no value\">"
     );
@@ -168,6 +169,7 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
         "<rect x=440 y=4 width=24 height=24 fill=\"{}\"/><g font-size=14 \
             font-family=sans-serif><text x=0 y=48>{low:.3} mm</text>\
          <text x=200 y=48 text-anchor=middle>{:.3}</text><text x=400 y=48 text-anchor=end>{high:.3} \
+         \
          mm</text>\
          <text x=470 y=22>none</text></g></svg>",
         hex(NONE),
@@ -326,6 +328,7 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
                 }
                 Correction::Chord => {
                     "Each ray gives the wall's depth along the normal: a chord of the opposite wall \
+                        \
                         stands at right angles to the \
                      sum of the wall's normals at its ends, which removes the bias of slanted and \
                      of bent walls."
@@ -343,10 +346,12 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     let _ = write!(
         out,
         "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that face \
+            \
             the same way.</p>\
          <p>Error bound: 95 % of the values are within {:.4} mm of the surface that the triangles \
          describe. It adds single \
          precision, the uncertainty of the normal, and twice the standard error of the cone's mean. \
+         \
          What the triangles miss of \
          the real part is not in it.</p>\
          <p>Limits: warn below {}, fail below {}, fail above {}; a value fails when it is strictly \

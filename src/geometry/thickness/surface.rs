@@ -105,7 +105,7 @@ impl WeldedSurface {
             s.triangles.push(keep);
             s.face_normals.push(normal);
         }
-        s.meet();
+        s.triangles_that_meet();
         s.drop_duplicates();
         s.find_normals();
         s.edges(crease);
@@ -128,7 +128,7 @@ impl WeldedSurface {
     }
 
     /// Fills `starts` and `around` from the triangles.
-    fn meet(&mut self) {
+    fn triangles_that_meet(&mut self) {
         let n = self.positions.len();
         let mut starts = vec![0u32; n + 1];
         let kept = |t: &&[u32; 3]| t[0] != DROPPED;
@@ -200,7 +200,7 @@ impl WeldedSurface {
             self.triangles[t] = [DROPPED; 3];
             self.face_normals[t] = Vec3::ZERO;
         }
-        self.meet();
+        self.triangles_that_meet();
     }
 
     fn find_normals(&mut self) {

@@ -40,7 +40,7 @@ fn reader(
     let (outbox, found) = cc::bounded(ASKED);
     let read = move || {
         for node in inbox {
-            let picture = history.sight(node).and_then(|png| decode(&png));
+            let picture = history.thumbnail(node).and_then(|png| decode(&png));
             if outbox.send((node, picture)).is_err() {
                 return;
             }

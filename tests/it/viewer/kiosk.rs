@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use sculptd_daemon::kiosk::keeper::{Desk, Screen};
+use sculptd_daemon::kiosk::keeper::{KioskDesk, Screen};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
 use sculptd_window::panels::state::FrameFigures;
@@ -16,7 +16,7 @@ use super::panels::{State, state};
 
 fn screen() -> Screen {
     let words = KioskConfig::default().every_language().expect("three languages");
-    Screen { desk: Arc::new(Desk::default()), words, staff: true }
+    Screen { desk: Arc::new(KioskDesk::default()), words, staff: true }
 }
 
 fn at(screen: &Screen, stage: Stage, visits: u64) {

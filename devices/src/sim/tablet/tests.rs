@@ -10,7 +10,7 @@ use crate::tablet::Family;
 
 const SOON: Duration = Duration::from_secs(5);
 
-struct Rig {
+struct TabletSetup {
     tablet: SimTablet,
     handle: reader::ReaderHandle,
     rx: Receiver,
@@ -18,7 +18,7 @@ struct Rig {
     got: Vec<Sample>,
 }
 
-fn rig(found: &Found, config: TabletConfig) -> Rig {
+fn setup(found: &Found, config: TabletConfig) -> TabletSetup {
     let (tablet, end) = SimTablet::new(found, script(found), config);
     let (factory, rx) = channel(4096);
     let clock = Clock::manual();
@@ -31,7 +31,7 @@ fn rig(found: &Found, config: TabletConfig) -> Rig {
         factory.sender(),
     )
     .unwrap();
-    Rig { tablet, handle, rx, clock, got: Vec::new() }
+    TabletSetup { tablet, handle, rx, clock, got: Vec::new() }
 }
 
 fn script(found: &Found) -> PenScript {
@@ -39,7 +39,7 @@ fn script(found: &Found) -> PenScript {
     journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32))
 }
 
-impl Rig {
+impl TabletSetup {
     fn step(&mut self, us: u64) {
         self.clock.set_us(us);
         for _ in 0..self.tablet.advance(us) {
@@ -65,12 +65,12 @@ fn found(name: &str) -> Found {
 #[test]
 fn the_journal_comes_out_as_it_went_in_and_twice_the_same() {
     let run = || {
-        let mut rig = rig(&found("Wacom PTK-440"), TabletConfig::default());
-        (0..1200).for_each(|i| rig.step(i * 8_000));
-        assert_eq!(rig.rx.waiting(), 0);
-        let status = rig.handle.status();
-        assert_eq!((status.broken, status.samples), (0, rig.got.len() as u64), "{status:?}");
-        rig.got
+        let mut setup = setup(&found("Wacom PTK-440"), TabletConfig::default());
+        (0..1200).for_each(|i| setup.step(i * 8_000));
+        assert_eq!(setup.rx.waiting(), 0);
+        let status = setup.handle.status();
+        assert_eq!((status.broken, status.samples), (0, setup.got.len() as u64), "{status:?}");
+        setup.got
     };
     let got = run();
     assert_eq!(got, run(), "the same bits");
@@ -103,23 +103,23 @@ fn an_unplug_ends_the_visit_and_a_bad_line_no_more_than_that() {
         stall: 0.005,
         ..Faults::default()
     };
-    let mut rig = rig(
+    let mut setup = setup(
         &found("Wacom PTK-440"),
         TabletConfig { faults, keeps: 4096, ..TabletConfig::default() },
     );
-    (0..110).for_each(|i| rig.step(i * 10_000));
-    let status = rig.handle.status();
+    (0..110).for_each(|i| setup.step(i * 10_000));
+    let status = setup.handle.status();
     assert!(status.broken > 0, "{status:?}");
-    assert!(rig.got.iter().map(pen).all(|p| p.in_range || !p.tip));
-    assert!(pen(rig.got.last().unwrap()).tip);
-    assert_eq!(rig.tablet.unplug(), 1);
-    let gone = pen(&rig.rx.next_within(SOON).unwrap());
+    assert!(setup.got.iter().map(pen).all(|p| p.in_range || !p.tip));
+    assert!(pen(setup.got.last().unwrap()).tip);
+    assert_eq!(setup.tablet.unplug(), 1);
+    let gone = pen(&setup.rx.next_within(SOON).unwrap());
     assert!(!gone.tip && !gone.in_range);
     assert!(
-        rig.rx.next_within(Duration::from_secs(1)).is_none(),
+        setup.rx.next_within(Duration::from_secs(1)).is_none(),
         "the reader has ended, and its sender with it"
     );
-    assert!(!rig.handle.status().connected);
+    assert!(!setup.handle.status().connected);
 }
 
 /// Every model that is known, in every way it shows itself: what its simulator writes, its parser

@@ -116,8 +116,8 @@ impl Handle {
     }
 
     /// The picture of a node, PNG.
-    pub fn sight(&self, node: u64) -> Option<Vec<u8>> {
-        Store::read(&self.path).ok()?.sight(node).ok()?
+    pub fn thumbnail(&self, node: u64) -> Option<Vec<u8>> {
+        Store::read(&self.path).ok()?.thumbnail(node).ok()?
     }
 
     /// Whether all that was handed over is written, and no jump is under way.

@@ -295,7 +295,7 @@ impl Store {
     }
 
     /// The small picture of a node, PNG.
-    pub fn sight(&self, node: u64) -> Result<Option<Vec<u8>>, StoreError> {
+    pub fn thumbnail(&self, node: u64) -> Result<Option<Vec<u8>>, StoreError> {
         let found = self
             .db
             .query_row("SELECT png FROM sight WHERE node = ?1", [node as i64], |r| r.get(0))
