@@ -74,10 +74,10 @@ pub struct PageTopology {
     /// How the triangles lie about each own vertex.
     pub kinds: Box<[Ring]>,
     /// The vertices of each leaf of the page's tree. This and what comes after follows from the
-    /// rest: [`PageTopology::index`].
+    /// rest when a page is made or read.
     #[serde(skip)]
     pub leaves: Leaves,
-    /// For each [`BLOCK`] of own vertices the blocks that they and their rings lie in.
+    /// For each 32 own vertices the blocks that they and their rings lie in.
     #[serde(skip)]
     pub ring_blocks: Box<[u32]>,
     /// For each eight leaves of the page's tree the blocks that their vertices lie in.

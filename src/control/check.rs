@@ -37,7 +37,12 @@ fn check(schema: &Value, value: &Value, place: &str) -> Result<(), String> {
     }
     match value {
         Value::Number(n) => {
-            let (min, max) = (schema["minimum"].as_f64(), schema["maximum"].as_f64());
+            let (mut min, mut max) = (schema["minimum"].as_f64(), schema["maximum"].as_f64());
+            if schema["format"] == "float" {
+                // Beyond it a number of single precision is infinite.
+                min = min.or(Some(f64::from(f32::MIN)));
+                max = max.or(Some(f64::from(f32::MAX)));
+            }
             let number = n.as_f64().unwrap_or(f64::NAN);
             bounds(number, min, max).map_err(|range| format!("{place} = {n}: expected {range}"))
         }

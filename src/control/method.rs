@@ -51,7 +51,10 @@ pub struct MethodInfo {
 pub const ALWAYS_ANSWERED: [&str; 2] = [Shutdown::NAME, Cancel::NAME];
 
 macro_rules! methods {
-    ($($(#[doc = $about:literal])+ $name:literal $variant:ident $handler:ident($params:ty) -> $reply:ty;)+) => {
+    ($(
+        $(#[doc = $about:literal])+
+        $name:literal $variant:ident $handler:ident($params:ty) -> $reply:ty;
+    )+) => {
         $(
             $(#[doc = $about])+
             #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,7 +114,9 @@ macro_rules! methods {
             /// Where a parameter has no JSON form (a path that is not UTF-8).
             pub fn envelope(&self, id: u64) -> serde_json::Result<Envelope> {
                 match self {
-                    $(Request::$variant(p) => Ok(Envelope::new(id, $name, serde_json::to_value(p)?)),)+
+                    $(Request::$variant(p) => {
+                        Ok(Envelope::new(id, $name, serde_json::to_value(p)?))
+                    })+
                 }
             }
         }
@@ -129,7 +134,10 @@ macro_rules! methods {
         ///
         /// # Errors
         /// What the handler refuses, and a reply that has no JSON form.
-        pub fn answer<H: Handler + ?Sized>(handler: &H, request: Request) -> Result<Value, RpcError> {
+        pub fn answer<H: Handler + ?Sized>(
+            handler: &H,
+            request: Request,
+        ) -> Result<Value, RpcError> {
             match request {
                 $(Request::$variant(params) => to_value(&handler.$handler(params)?),)+
             }

@@ -211,7 +211,8 @@ fn settings_come_back_as_they_are() {
     let wider = answer(&rig.host, "brush", json!({ "radius": 0.5, "tilt": 1 })).expect("settings");
     assert_eq!((&wider["radius"], &wider["tilt"]), (&json!(0.5), &json!(1.0)));
     for (params, named) in [
-        (json!({ "radius": 1e308 }), "brush.radius"),
+        (json!({ "radius": 1e308 }), "radius = 1e+308"),
+        (json!({ "radius": 2 }), "brush.radius = 2"),
         (json!({ "spacing": 0 }), "brush.spacing"),
         (json!({ "tilt": -3 }), "brush.tilt"),
         (json!({ "colour": [1, 2, 3, 256] }), "256"),

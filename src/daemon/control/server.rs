@@ -122,9 +122,16 @@ fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &Atomic
         let host = host.clone();
         // The last place is the owner's.
         if let Some(place) = ClientPlace::take(&clients, MAX_CLIENTS - 1) {
-            start(place, move || serve(stream, &host, idle));
+            start(place, move |_place| serve(stream, &host, idle));
         } else if let Some(place) = ClientPlace::take(&owner, 1) {
-            start(place, move || serve_owner(&stream, &host));
+            start(place, move |place| {
+                let response = answer_owner(&stream, &host);
+                // Free before the answer is read, so that whoever asks next is not refused.
+                drop(place);
+                if let Some(response) = response {
+                    write_line(&stream, &response);
+                }
+            });
         } else {
             refuse(&stream, TOO_MANY);
         }
@@ -134,12 +141,10 @@ fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &Atomic
 const TOO_MANY: &str = "too many clients at a time; only 'shutdown' and 'cancel' are answered";
 
 /// Serves on a thread of its own, which holds the place.
-fn start(place: ClientPlace, serve: impl FnOnce() + Send + 'static) {
+fn start(place: ClientPlace, serve: impl FnOnce(ClientPlace) + Send + 'static) {
     // Where no thread can be started the closure is dropped, and the place and the stream with it.
-    let _ = std::thread::Builder::new().name("sculptd-client".into()).spawn(move || {
-        let _place = place;
-        serve();
-    });
+    let client = std::thread::Builder::new().name("sculptd-client".into());
+    let _ = client.spawn(move || serve(place));
 }
 
 fn refuse(stream: &UnixStream, why: &str) {
@@ -166,38 +171,33 @@ pub fn permitted(peer: u32, owner: u32) -> bool {
     peer == owner || peer == 0
 }
 
-/// Answers one request while every other place is taken: what ends the daemon, or what holds a
-/// place.
-fn serve_owner(stream: &UnixStream, host: &Host) {
+/// The answer to one request while every other place is taken: to what ends the daemon, or what
+/// holds a place. `None`: no request came in time.
+fn answer_owner(mut stream: &UnixStream, host: &Host) -> Option<Response> {
     let clock = Clock::monotonic();
     let until = clock.now_us() + OWNER_PATIENCE.as_micros() as u64;
     let mut line = Vec::new();
     let mut part = [0; 512];
     // By single reads, so that a client that sends a byte a second takes no longer either.
     while !line.contains(&b'\n') && line.len() <= MAX_MESSAGE {
-        let left = until.saturating_sub(clock.now_us());
-        if left == 0 || stream.set_read_timeout(Some(Duration::from_micros(left))).is_err() {
-            return;
-        }
-        let mut input = stream;
-        match input.read(&mut part) {
-            Ok(n @ 1..) => line.extend_from_slice(&part[..n]),
-            _ => return,
+        let left = until.saturating_sub(clock.now_us()).max(1);
+        stream.set_read_timeout(Some(Duration::from_micros(left))).ok()?;
+        match stream.read(&mut part) {
+            Ok(n @ 1..) if clock.now_us() < until => line.extend_from_slice(&part[..n]),
+            _ => return None,
         }
     }
     let line = line.split(|b| *b == b'\n').next().unwrap_or(&[]);
-    let response = match parse(line.trim_ascii()) {
+    Some(match parse(line.trim_ascii()) {
         Err(e) => Response::new(Value::Null, Err(e)),
         Ok(asked) => {
-            let id = asked.id.unwrap_or(Value::Null);
             let result = match ALWAYS_ANSWERED.contains(&asked.method.as_str()) {
                 true => super::handler::call(host, &asked.method, asked.params),
                 false => Err(RpcError::failed(TOO_MANY)),
             };
-            Response::new(id, result)
+            Response::new(asked.id.unwrap_or(Value::Null), result)
         }
-    };
-    write_line(stream, &response);
+    })
 }
 
 fn serve(stream: UnixStream, host: &Host, idle: Duration) {
@@ -320,7 +320,7 @@ mod tests {
         let place = ClientPlace::take(&taken, 1).expect("free");
         assert!(ClientPlace::take(&taken, 1).is_none());
         let (ended, wait) = crossbeam_channel::bounded::<()>(0);
-        start(place, move || {
+        start(place, move |_place| {
             let _ended = ended;
             panic!("a bug in a method (expected in this test)");
         });

@@ -51,8 +51,10 @@ impl VirtualPen {
         }
         let drawn = self.send_samples(host, &points, shown.camera.aspect);
         if stroke.brush.is_some() {
-            // Whatever came of it: the brush in hand is the person's.
+            // Whatever came of it: the brush in hand is the person's. A stroke that follows finds
+            // it in place.
             host.send(Command::Brush(shown.brush))?;
+            self.await_tick(host)?;
         }
         drawn
     }
@@ -74,9 +76,10 @@ impl VirtualPen {
             pressure: Some(if touches { at.pressure } else { 0.0 }),
             ..Pen::default()
         };
-        let (quiet, Some(last)) = (cc_never(), points.last()) else {
+        let Some(last) = points.last() else {
             return Err(RpcError::bad_params("points is empty"));
         };
+        let quiet = crossbeam_channel::never::<()>();
         for at in points {
             let due = begun + at.t_us;
             while self.clock.now_us() < due && !stopped(host) {
@@ -91,18 +94,29 @@ impl VirtualPen {
         // A stroke always ends, even where the daemon stops in the middle of it.
         self.push(pen(last, false));
         let give_up = self.clock.now_us() + PATIENCE.as_micros() as u64;
-        let mut taken_by = None;
-        loop {
-            if taken_by.is_none() && self.sender.flush() {
-                // The tick under way may have looked into the channel already.
-                taken_by = Some(host.published.load().tick + 2);
+        while !self.sender.flush() {
+            if stopped(host) || self.clock.now_us() > give_up {
+                return Err(not_taken());
             }
+            let _ = quiet.recv_timeout(LOOK);
+        }
+        let tick = self.await_tick(host)?;
+        Ok(StrokeReply { samples: points.len() as u64 + 1, tick })
+    }
+
+    /// Waits until the loop has taken what was handed over before. Returns the tick.
+    fn await_tick(&self, host: &Host) -> Result<u64, RpcError> {
+        let quiet = crossbeam_channel::never::<()>();
+        let give_up = self.clock.now_us() + PATIENCE.as_micros() as u64;
+        // The tick under way may have looked already.
+        let by = host.published.load().tick + 2;
+        loop {
             let tick = host.published.load().tick;
-            if taken_by.is_some_and(|by| tick >= by) {
-                return Ok(StrokeReply { samples: points.len() as u64 + 1, tick });
+            if tick >= by {
+                return Ok(tick);
             }
             if stopped(host) || self.clock.now_us() > give_up {
-                return Err(RpcError::failed("the loop did not take the stroke"));
+                return Err(not_taken());
             }
             let _ = quiet.recv_timeout(LOOK);
         }
@@ -115,9 +129,8 @@ impl VirtualPen {
     }
 }
 
-/// A channel on which nothing ever comes: waiting on it is waiting for time.
-fn cc_never() -> crossbeam_channel::Receiver<()> {
-    crossbeam_channel::never()
+fn not_taken() -> RpcError {
+    RpcError::failed("the loop did not take the stroke")
 }
 
 fn stopped(host: &Host) -> bool {
