@@ -69,7 +69,9 @@ fn reads(c: &mut Criterion) {
 
 criterion_group! {
     name = clay;
-    config = Criterion::default().sample_size(20).measurement_time(std::time::Duration::from_secs(2));
+    config = Criterion::default()
+        .sample_size(20)
+        .measurement_time(std::time::Duration::from_secs(2));
     targets = dabs, reads
 }
 criterion_main!(clay);

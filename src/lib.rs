@@ -109,6 +109,8 @@
 //! * `sculptd-share`, made by `daemon::kiosk::share`: serves a visitor's sculpture for download.
 //!   Waits for: its socket.
 //! * `sculptd-player`, made by `cli::live`: plays recordings as devices. Waits for: the clock.
+//! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for: the
+//!   disk.
 //! * `sculptd-limit`, made by `cli::live`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
@@ -121,7 +123,7 @@
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by
 //!   `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits for: a
 //!   request; a newer one replaces it.
-//! * `sculptd-sights`, made by `window::viewer::history_tree`: reads thumbnails of the history.
+//! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the history.
 //!   Waits for: the disk.
 //!
 //! Long computations outside the tick (Booleans, thickness, repair) also use the threads of rayon's

@@ -87,7 +87,7 @@ struct Phases {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct BenchAnswer {
     vertices: usize,
     triangles: usize,
     affected: usize,
@@ -146,7 +146,7 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
     let affected = dabs.affected / dabs.total.len().max(1);
     let phase = |of: fn(&PhaseTimes) -> u64| spread(dabs.phases.iter().map(of).collect());
     let dab_us = spread(dabs.total.clone());
-    let report = Answer {
+    let report = BenchAnswer {
         vertices,
         triangles,
         affected,

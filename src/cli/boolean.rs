@@ -95,7 +95,7 @@ pub struct BooleanArgs {
 
 /// What `--json` prints.
 #[derive(Debug, Default, Serialize)]
-struct Answer {
+struct BooleanAnswer {
     results: Vec<Made>,
     seconds: f64,
     /// Seconds by phase.
@@ -197,7 +197,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
                 .into(),
         ));
     }
-    let mut out = Answer::default();
+    let mut out = BooleanAnswer::default();
     let mut operands = Vec::new();
     for path in &args.meshes {
         operands.push(operand(path, args, &job, &now, &mut out)?);
@@ -268,7 +268,7 @@ fn join(
     options: &BooleanOptions,
     job: &Job,
     now: &impl Fn() -> f64,
-    out: &mut Answer,
+    out: &mut BooleanAnswer,
 ) -> Result<Vec<(String, BooleanSolid, Origins)>, Fail> {
     let operations = match args.what {
         What::Union => vec![Operation::Union],
@@ -301,7 +301,7 @@ fn join(
 }
 
 /// Each shell in its file.
-fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: Answer, json: bool) -> Outcome {
+fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: BooleanAnswer, json: bool) -> Outcome {
     let job = Job::default();
     for (n, shell) in boolean::shells(mesh).iter().enumerate() {
         let name = (n + 1).to_string();
@@ -313,7 +313,7 @@ fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: Answer, json: bool) -> O
     Ok(())
 }
 
-impl Answer {
+impl BooleanAnswer {
     fn note(&mut self, report: BooleanReport, details: bool) {
         for (name, seconds) in report.phases {
             *self.phases.entry(name.into()).or_default() += seconds;
@@ -355,7 +355,7 @@ impl Made {
 }
 
 /// Says what was made.
-fn told(args: &BooleanArgs, out: &Answer, json: bool) {
+fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
     warn(&args.out, &out.warnings);
     answer(json, out, |w| {
         for r in &out.results {
@@ -381,10 +381,10 @@ fn operand(
     args: &BooleanArgs,
     job: &Job,
     now: &impl Fn() -> f64,
-    out: &mut Answer,
+    out: &mut BooleanAnswer,
 ) -> Result<PolyMesh, Fail> {
     let mut lap = now();
-    let mut phase = |out: &mut Answer, name: &str| {
+    let mut phase = |out: &mut BooleanAnswer, name: &str| {
         let t = now();
         *out.phases.entry(name.into()).or_default() += t - lap;
         lap = t;

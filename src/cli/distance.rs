@@ -45,7 +45,7 @@ pub enum SignArg {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct DistanceAnswer {
     count: usize,
     seconds: f64,
     queries_per_second: f64,
@@ -164,7 +164,7 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
     });
     let cancelled = |e: sculptd_geometry::job::Cancelled| Fail::Input(e.to_string());
     let closed = solid.topology.closed;
-    let mut out = Answer {
+    let mut out = DistanceAnswer {
         count: 0,
         seconds: 0.0,
         queries_per_second: 0.0,

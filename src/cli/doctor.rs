@@ -18,7 +18,7 @@ pub struct DoctorArgs {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct DoctorAnswer {
     good: bool,
     checks: Vec<Check>,
 }
@@ -52,7 +52,7 @@ pub fn run(args: &DoctorArgs, json: bool) -> Outcome {
     });
     checks.extend(doctor::all(&settings, &places));
     let failed = checks.iter().filter(|c| c.verdict == Verdict::Fail).count();
-    let answer_ = Answer { good: failed == 0, checks };
+    let answer_ = DoctorAnswer { good: failed == 0, checks };
     answer(json, &answer_, |out| {
         for c in &answer_.checks {
             let word = match c.verdict {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::distance::{Ready, solid, timed, warn};
-use super::remesh::{How, finish};
+use super::remesh::{RemeshHow, finish};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -20,7 +20,7 @@ pub struct HollowArgs {
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     #[command(flatten)]
-    pub how: How,
+    pub how: RemeshHow,
 }
 
 pub fn run(args: &HollowArgs, json: bool) -> Outcome {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::distance::{Ready, solid, solid_about, timed, warn};
-use super::remesh::{How, finish};
+use super::remesh::{RemeshHow, finish};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -14,7 +14,7 @@ use sculptd_geometry::offset::{offset, smooth_union};
 pub struct OffsetArgs {
     /// The mesh file.
     pub mesh: PathBuf,
-    /// How far to move the surface: out, or in where negative.
+    /// RemeshHow far to move the surface: out, or in where negative.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub distance: Option<f64>,
     /// Instead: unite with the solid in this file, by a fillet of `--radius`.
@@ -27,7 +27,7 @@ pub struct OffsetArgs {
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     #[command(flatten)]
-    pub how: How,
+    pub how: RemeshHow,
 }
 
 pub fn run(args: &OffsetArgs, json: bool) -> Outcome {

@@ -92,7 +92,7 @@ struct Orientations {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct ProjectAnswer {
     method: MethodArg,
     area: f64,
     /// One standard deviation; zero for `exact`.
@@ -113,7 +113,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
     let plane = ProjectionPlane::along(args.direction.as_dvec3(), args.turn.to_radians())
         .ok_or_else(|| Fail::Usage("expected a direction that is not zero".into()))?;
-    let mut out = Answer {
+    let mut out = ProjectAnswer {
         method: args.method,
         area: 0.0,
         standard_error: 0.0,

@@ -20,7 +20,7 @@ pub struct RemeshArgs {
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     #[command(flatten)]
-    pub how: How,
+    pub how: RemeshHow,
     /// Keep sharp edges.
     #[arg(long)]
     pub sharp: bool,
@@ -28,7 +28,7 @@ pub struct RemeshArgs {
 
 /// How fine the field is sampled.
 #[derive(Debug, Clone, clap::Args)]
-pub struct How {
+pub struct RemeshHow {
     /// Samples along the longest side of the box, 8 to 1024.
     #[arg(long, value_name = "N", default_value_t = 256)]
     pub side: usize,
@@ -36,7 +36,7 @@ pub struct How {
 
 /// What came out; the same for every command that makes a mesh from the field.
 #[derive(Debug, Serialize)]
-pub struct Made {
+pub struct RemeshMade {
     pub file: PathBuf,
     pub vertices: usize,
     pub triangles: usize,
@@ -68,7 +68,7 @@ pub fn finish(
     poly.positions.iter_mut().for_each(|p| *p += centre);
     write_mesh(out, &poly)?;
     let m = sculptd_geometry::measure::measures(mesh);
-    let made = Made {
+    let made = RemeshMade {
         file: out.into(),
         vertices: mesh.positions.len(),
         triangles: mesh.triangles.len(),

@@ -47,7 +47,7 @@ pub struct ReplayArgs {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct ReplayAnswer {
     ticks: u64,
     hash: String,
     vertices: u64,
@@ -159,7 +159,7 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
                 be another; --from-checkpoint begins later"
         );
     }
-    let answer_ = Answer {
+    let answer_ = ReplayAnswer {
         ticks: replayed.ticks,
         hash: format!("{:016x}", replayed.world.hash()),
         vertices: replayed.world.mesh().vertex_count() as u64,

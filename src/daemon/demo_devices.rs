@@ -38,13 +38,13 @@ struct DemoDevices {
     tablet: sim::SimTablet,
     serial: sim::SerialPen,
     tracker: sim::Tracker,
-    adaptors: Adaptors,
+    adaptors: DemoAdaptors,
     end_us: u64,
 }
 
 /// The adaptors that read the ghosts; they stop when this is dropped.
 #[derive(Debug)]
-pub struct Adaptors {
+pub struct DemoAdaptors {
     _tablet: hid::reader::ReaderHandle,
     _serial: serial::SerialHandle,
     _leap: leap::LeapHandle,
@@ -98,7 +98,7 @@ fn summon(clock: &Clock, factory: &SenderFactory) -> Result<DemoDevices, DemoErr
     if !tracker.wait_for_client(PATIENCE) {
         return Err(DemoError::NotFound("tracker"));
     }
-    let adaptors = Adaptors { _tablet, _serial, _leap };
+    let adaptors = DemoAdaptors { _tablet, _serial, _leap };
     Ok(DemoDevices {
         tablet,
         serial: pen,
@@ -139,7 +139,7 @@ impl<S> Feed for SimFeed<S> {
 pub fn simulated_feeds(
     clock: &Clock,
     factory: &SenderFactory,
-) -> Result<(Vec<Box<dyn Feed>>, Adaptors), DemoError> {
+) -> Result<(Vec<Box<dyn Feed>>, DemoAdaptors), DemoError> {
     let g = summon(clock, factory)?;
     let feeds: Vec<Box<dyn Feed>> = vec![
         Box::new(SimFeed::new(g.tablet, sim::SimTablet::advance, g.end_us)),
@@ -174,7 +174,7 @@ pub struct Playing {
     _tablet: sim::tablet::PlayingTablet,
     _serial: sim::serial::PlayingPen,
     _tracker: sim::tracker::Playing,
-    _adaptors: Adaptors,
+    _adaptors: DemoAdaptors,
     /// Microseconds on the clock at which the journal is over.
     pub ends_us: u64,
 }

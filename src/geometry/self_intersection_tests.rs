@@ -8,9 +8,9 @@ use super::*;
 type Flat = (Vec<I64Vec3>, Vec<[u32; 3]>);
 
 /// A generator that is the same everywhere (Steele, Lea and Flood's SplitMix, 2014).
-struct Mix(u64);
+struct SplitMix(u64);
 
-impl Mix {
+impl SplitMix {
     fn below(&mut self, n: u64) -> i64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -120,7 +120,7 @@ fn counted(a: &Flat, b: &Flat) -> usize {
 
 #[test]
 fn solids_in_a_small_lattice_cross_where_whole_numbers_say_so() {
-    let mut mix = Mix(7);
+    let mut mix = SplitMix(7);
     let (mut crossed, mut special) = (0, 0);
     let cases = if std::env::var_os("SCULPTD_LONG").is_some() { 2_000_000 } else { 20_000 };
     for case in 0..cases {

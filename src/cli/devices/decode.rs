@@ -13,7 +13,7 @@ use super::{recording_fail, write_text};
 
 /// One sample as a row. Raw axes, tilt (degrees) and distance are the device's own counts.
 #[derive(Debug, Serialize)]
-struct Row {
+struct DecodedRow {
     t_us: u64,
     device: u16,
     /// `pen`, `eraser`, `mouse`, `touch`; `hands` for a tracker's frame, whose position is its
@@ -42,7 +42,7 @@ struct Decoded {
     device: String,
     area_mm: [f32; 2],
     notes: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<DecodedRow>,
 }
 
 pub(super) fn decode(
@@ -87,7 +87,7 @@ pub(super) fn decode(
     Ok(())
 }
 
-fn row(s: &Sample) -> Option<Row> {
+fn row(s: &Sample) -> Option<DecodedRow> {
     let p = match &s.body {
         Body::Pen(p) => p,
         Body::Hands(h) => return Some(hands_row(s, h)),
@@ -95,7 +95,7 @@ fn row(s: &Sample) -> Option<Row> {
     };
     // A thousandth of a degree: radians and back leaves dust that no device means.
     let degrees = |r: f32| (f64::from(r).to_degrees() * 1000.0).round() / 1000.0;
-    Some(Row {
+    Some(DecodedRow {
         t_us: s.t_us,
         device: s.device.0,
         tool: tool(p),
@@ -114,9 +114,9 @@ fn row(s: &Sample) -> Option<Row> {
     })
 }
 
-fn hands_row(s: &Sample, h: &Hands) -> Row {
+fn hands_row(s: &Sample, h: &Hands) -> DecodedRow {
     let palm = h.as_slice().first().map_or(glam::Vec3::ZERO, |hand| hand.palm);
-    Row {
+    DecodedRow {
         t_us: s.t_us,
         device: s.device.0,
         tool: "hands",
@@ -144,7 +144,7 @@ fn tool(p: &Pen) -> &'static str {
     }
 }
 
-impl Row {
+impl DecodedRow {
     fn line(&self, out: &mut String) {
         use std::fmt::Write as _;
         fn or_empty<T: std::fmt::Display>(v: Option<T>) -> String {

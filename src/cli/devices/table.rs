@@ -14,11 +14,11 @@ const PAUSE_US: u64 = 100_000;
 #[derive(Debug)]
 pub(super) struct Table {
     stats: Arc<Stats>,
-    lines: BTreeMap<DeviceId, Line>,
+    lines: BTreeMap<DeviceId, DeviceLine>,
 }
 
 #[derive(Debug, Default)]
-struct Line {
+struct DeviceLine {
     samples: u64,
     contacts: u64,
     last: Option<Sample>,
@@ -75,7 +75,7 @@ impl Table {
         }
     }
 
-    fn numbers_of(&self, id: DeviceId, line: &Line) -> TickStatistics {
+    fn numbers_of(&self, id: DeviceId, line: &DeviceLine) -> TickStatistics {
         let (n, mean, spread) = line.intervals;
         let lost = self.stats.of(id);
         TickStatistics {

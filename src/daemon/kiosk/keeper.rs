@@ -80,7 +80,7 @@ pub struct Screen {
 
 /// A running keeper; it ends when `stop` is raised.
 #[derive(Debug)]
-pub struct Keeper {
+pub struct KioskKeeper {
     pub desk: Arc<KioskDesk>,
     pub thread: JoinHandle<()>,
 }
@@ -114,7 +114,7 @@ pub fn start(
     factory: &SenderFactory,
     clock: Clock,
     stop: Arc<AtomicBool>,
-) -> Result<Keeper, String> {
+) -> Result<KioskKeeper, String> {
     let catalogue = Catalogue::builtin().map_err(|e| e.to_string())?;
     let mut films = Vec::new();
     for (path, id) in config.attract.iter().zip(ATTRACT_IDS.cycle()) {
@@ -166,7 +166,7 @@ pub fn start(
         .name("sculptd-kiosk".into())
         .spawn(run)
         .map_err(|e| e.to_string())?;
-    Ok(Keeper { desk, thread })
+    Ok(KioskKeeper { desk, thread })
 }
 
 impl KioskThread {

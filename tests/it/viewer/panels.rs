@@ -13,12 +13,10 @@ use sculptd_engine::hand::MenuItem;
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::look::Map;
-use sculptd_window::panels::state::Action;
-use sculptd_window::panels::state::FrameFigures;
-use sculptd_window::panels::state::StepPicture;
-use sculptd_window::panels::state::{DistanceSummary, Measured};
-use sculptd_window::panels::state::{ThicknessSummary, ThinSpot, TrialStatus};
-use sculptd_window::panels::state::{Trim, TrimShape};
+use sculptd_window::panels::state::{
+    Action, DistanceSummary, FrameFigures, Measured, StepPicture, ThicknessSummary, ThinSpot,
+    TrialStatus, Trim, TrimShape,
+};
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
 pub(super) struct State {
