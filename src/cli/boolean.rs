@@ -238,7 +238,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         }
         let written = write_checked(&file, &s.mesh, check, &job)?;
         out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
-        let mut made = Made::of(name, file, written);
+        let mut made = Made::of(name, file, &written);
         if args.details {
             let plain = || s.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
             let all = origins.clone().unwrap_or_else(plain);
@@ -307,7 +307,7 @@ fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: BooleanAnswer, json: boo
         let name = (n + 1).to_string();
         let file = named(&args.out, &name);
         let written = write_checked(&file, shell, None, &job)?;
-        out.results.push(Made::of(&name, file, written));
+        out.results.push(Made::of(&name, file, &written));
     }
     told(args, &out, json);
     Ok(())
@@ -336,7 +336,7 @@ impl BooleanAnswer {
 }
 
 impl Made {
-    fn of(name: &str, file: PathBuf, facts: FileFacts) -> Made {
+    fn of(name: &str, file: PathBuf, facts: &FileFacts) -> Made {
         Made {
             name: name.to_owned(),
             file,

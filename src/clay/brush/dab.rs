@@ -273,7 +273,6 @@ pub trait Brush: Copy + Sync {
     }
 
     /// What changes at a vertex within the reach.
-
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange;
 
     /// A faster way for a dab without images that overlap and without options; false: there is

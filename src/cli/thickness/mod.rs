@@ -209,7 +209,7 @@ impl LimitArgs {
                     std::fs::read_to_string(name).map_err(|e| Fail::io(Path::new(name), &e))?;
                 Preset::read(name, &text).map_err(|e| Fail::Config(e.to_string()))?
             } else {
-                presets::named(name).map_err(|e| Fail::Usage(e.to_string()))?
+                presets::named(name).map_err(Fail::Usage)?
             };
             limits = ThicknessLimits::from(&preset);
         }

@@ -57,7 +57,11 @@ pub struct PenTrack {
     /// Motion merged because the queue was full.
     pub merged: u64,
     /// Length of the string by which the brush follows the pen, in heights of the view.
+    #[serde(default)]
     string: f32,
+    /// Where the pen itself is while the brush follows it by the string.
+    #[serde(default)]
+    pen: Option<PenPoint>,
 }
 
 impl Default for PenTrack {
@@ -79,6 +83,7 @@ impl Default for PenTrack {
             seen: None,
             merged: 0,
             string: 0.0,
+            pen: None,
         }
     }
 }
@@ -266,6 +271,7 @@ impl PenTrack {
                 self.spacer = Spacer::new(aspect);
                 (self.from, self.start, self.drawing) = (at, at, false);
                 self.string = on.string(&at);
+                self.pen = None;
                 match on.way() {
                     StrokeMethod::Spaced | StrokeMethod::Each => self.spacer.begin(&at, on),
                     StrokeMethod::Held => on.hold(&at, true),
@@ -279,7 +285,7 @@ impl PenTrack {
             }
             PenEvent::Move(to) => {
                 let to = match on.way() {
-                    StrokeMethod::Spaced => self.pulled(&to, aspect),
+                    StrokeMethod::Spaced => self.pull(&to, aspect),
                     _ => to,
                 };
                 let flow = match on.way() {
@@ -305,6 +311,16 @@ impl PenTrack {
                 flow
             }
             PenEvent::Up => {
+                // The brush comes to where the pen was lifted: a tap leaves its mark, and no stroke
+                // ends a string's length early.
+                if let (true, StrokeMethod::Spaced, Some(pen)) = (self.open, on.way(), self.pen) {
+                    self.share = self.spacer.advance(&self.from, &pen, self.share, on);
+                    if self.share < 1.0 {
+                        walked.paused = true;
+                        return Some(walked);
+                    }
+                    self.pen = None;
+                }
                 if on.way() == StrokeMethod::Line && self.open && !self.draw_line(on) {
                     walked.paused = true;
                     return Some(walked);
@@ -322,12 +338,18 @@ impl PenTrack {
 
     /// Where a pen at `to` pulls the brush by its string (a string pulled by a trembling hand is
     /// drawn out straight, and a loose one moves nothing).
-    fn pulled(&self, to: &PenPoint, aspect: f32) -> PenPoint {
+    fn pull(&mut self, to: &PenPoint, aspect: f32) -> PenPoint {
         let d = (to.view - self.from.view) * Vec2::new(aspect, 1.0);
         let length = d.length();
         if self.string <= 0.0 {
             return *to;
         }
+        // In a stroke that never pulled the string straight, the greatest pressure counts: a pen
+        // touches down and lifts at nearly none.
+        let still = self.from.view == self.start.view;
+        let greatest = self.pen.map_or(self.start.pressure, |p| p.pressure);
+        let pressure = if still { to.pressure.max(greatest) } else { to.pressure };
+        self.pen = Some(PenPoint { pressure, ..*to });
         if length <= self.string {
             return PenPoint { view: self.from.view, ..*to };
         }

@@ -39,10 +39,13 @@ pub(super) struct Stroke {
     /// Ticks that the pen has rested.
     pub(super) rested: u32,
     /// Centre of the last dab on the surface that dabs are measured on.
+    #[serde(default)]
     last_measured: Option<Vec3>,
     /// The direction of the stroke, averaged over [`HEADING`] radii, of any length.
+    #[serde(default)]
     heading: Vec3,
     /// The pressure that counts: it rises no faster than [`ONSET`] allows.
+    #[serde(default)]
     pressure: f32,
 }
 

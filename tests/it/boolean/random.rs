@@ -106,9 +106,11 @@ impl Tally {
             (v[2] + v[1] - va, "A - B, A and B"),
             (v[3] + v[1] - vb, "B - A, A and B"),
         ] {
+            // Places in contact were brought together: the surface moved by no more than that.
+            let contact = report.contact.farthest;
             // What a sum of cut corners' rounding may do on a thin sheet, beside the figure itself.
             let area: f64 = made.iter().map(|m| m.facts.area).sum();
-            if off.abs() > 1e-12 * (va + vb) + 4e-16 * area {
+            if off.abs() > 1e-12 * (va + vb) + (4e-16 + contact) * area {
                 self.faults.push(format!("{name}: {what}: off by {:e}", off / (va + vb)));
             }
         }

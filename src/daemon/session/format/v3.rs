@@ -67,7 +67,7 @@ pub const FIELD_COUNTS: &FieldCounts = &[
     ("Stamp", 5),
     ("Stroke", 6),
     ("TickInput", 3),
-    ("Topology", 4),
+    ("TopologySettings", 4),
     ("Track", 16),
     ("TrackedHand", 7),
     ("TriMesh", 3),
