@@ -32,7 +32,7 @@ fn the_first_minutes_in_a_real_window() {
     s.seen("4-smooth");
     assert_ne!(s.ask("hash", &Value::Null)["hash"], rough);
     let kind = |s: &Stage| s.ask("brush", &json!({}))["kind"].clone();
-    assert_eq!(kind(&s), "gaussian", "Shift lends the brush for one stroke");
+    assert_eq!(kind(&s), "draw", "Shift lends the brush for one stroke");
 
     s.ask("brush", &json!({ "kind": "mask" }));
     s.drive(&["key", "shift+m"]);

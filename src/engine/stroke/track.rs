@@ -313,8 +313,14 @@ impl PenTrack {
             PenEvent::Up => {
                 // The brush comes to where the pen was lifted: a tap leaves its mark, and no stroke
                 // ends a string's length early.
+                let mut flow = Flow::Go;
                 if let (true, StrokeMethod::Spaced, Some(pen)) = (self.open, on.way(), self.pen) {
-                    self.share = self.spacer.advance(&self.from, &pen, self.share, on);
+                    self.share = if self.from.view == self.start.view {
+                        flow = self.spacer.rest(&pen, on);
+                        1.0
+                    } else {
+                        self.spacer.advance(&self.from, &pen, self.share, on)
+                    };
                     if self.share < 1.0 {
                         walked.paused = true;
                         return Some(walked);
@@ -327,7 +333,7 @@ impl PenTrack {
                 }
                 walked.ended = self.open;
                 (self.open, self.drawing) = (false, false);
-                Flow::Go
+                flow
             }
         };
         walked.paused = flow == Flow::Pause;
