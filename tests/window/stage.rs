@@ -52,6 +52,11 @@ fn present(tool: &str) -> bool {
     Command::new(tool).arg("-help").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
+/// Whether the long tests were asked for.
+pub fn long() -> bool {
+    std::env::var_os("SCULPTD_LONG").is_some_and(|v| v == "1")
+}
+
 #[allow(clippy::disallowed_methods)] // A test waits for other processes.
 pub fn pause(ms: u64) {
     std::thread::sleep(Duration::from_millis(ms));
@@ -199,6 +204,18 @@ impl Stage {
     }
 
     /// A drag over the clay, in pixels from its middle.
+    /// Whether it comes to be so within two seconds.
+    pub fn soon(&mut self, mut so: impl FnMut(&mut Stage) -> bool) -> bool {
+        let begun = Instant::now();
+        loop {
+            match so(self) {
+                true => return true,
+                false if begun.elapsed() > Duration::from_secs(2) => return false,
+                false => pause(20),
+            }
+        }
+    }
+
     pub fn drag(&self, from: (i32, i32), to: (i32, i32)) {
         let at = |p: (i32, i32)| [(MIDDLE.0 + p.0).to_string(), (MIDDLE.1 + p.1).to_string()];
         let go = |p: (i32, i32)| {
