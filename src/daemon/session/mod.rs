@@ -9,7 +9,7 @@
 //! * What was written is never rewritten: a group is a row, a row carries its number, its checksum
 //!   and the chain of all before it; what is missing or torn is told in ticks ([`reader`]).
 //! * A file of a session's name is a whole session or none ([`create`]).
-//! * A damaged file is never written to: what can be read goes into a new one ([`salvage`]).
+//! * A damaged file is never written to: what can be read goes into a new one ([`salvage()`]).
 
 pub mod acknowledgement;
 pub mod carve;

@@ -11,7 +11,7 @@
 //! creation number, the identity of its file, and the life of the process that writes it. A copy
 //! of a session has another inode, so opening it never takes the original's log.
 //!
-//! **Bytes**, little-endian: [`MAGIC`], the length of the session's path (4) and the path; then
+//! **Bytes**, little-endian: `MAGIC`, the length of the session's path (4) and the path; then
 //! entries: first tick, last tick, the last tick before (8 each), the chain before (4, see
 //! [`super::format`]), bytes (4), CRC-32 of the creation number, all these and the bytes (4), the
 //! bytes. An entry follows on the file's input exactly where the chain says so.

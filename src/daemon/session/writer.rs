@@ -1,7 +1,7 @@
 //! Writing a session: the tick thread fills recycled buffers, a thread of its own turns them into
 //! rows.
 //!
-//! A full disk does not stop the sculpting: groups are kept in memory up to [`KEPT_BYTES`], the
+//! A full disk does not stop the sculpting: groups are kept in memory up to `KEPT_BYTES`, the
 //! fault is shown, and they are written as soon as there is room.
 
 use std::fs::{File, TryLockError};

@@ -137,7 +137,7 @@ impl Store {
         Ok(Store { db, layout: if found == v3::LAYOUT { "3" } else { "layout" } })
     }
 
-    /// For the keeper: synced by the session's own thread, see [`super::super::syncer`].
+    /// For the keeper: synced by the session's own thread, see `syncer`.
     pub fn write(path: &Path) -> Result<Store, StoreError> {
         let db = Connection::open(path)?;
         db.busy_timeout(std::time::Duration::from_secs(2))?;
