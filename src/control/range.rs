@@ -1,7 +1,7 @@
 //! The range of each number in a request, declared once.
 //!
 //! The constants here are what the types' schema attributes name, so that the schema, the check at
-//! the daemon's door (which reads the schema, see [`crate::check`]), this documentation and a
+//! the daemon's door (which reads the schema, see `check`), this documentation and a
 //! program that draws sliders all use the same values.
 
 /// The least and the greatest value of a number, both allowed.

@@ -1,4 +1,4 @@
-//! What a person sets on a brush. Plain data: it travels in a [`sculptd_engine::command::Command`]
+//! What a person sets on a brush. Plain data: it travels in a command
 //! and is part of the world.
 //!
 //! What each brush begins with is told by [`super::preset`].

@@ -23,7 +23,7 @@ impl Brush for TopologicalBrush {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
     }
 
-    /// The walk says how far it is; see [`Topological::change`].
+    /// The walk says how far it is; see `change`.
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius {
             1.0

@@ -194,7 +194,7 @@ impl Arrangement {
         }
     }
 
-    /// The curve in which the surfaces meet, in polylines; see [`chains`].
+    /// The curve in which the surfaces meet, in polylines; see `chains`.
     pub fn curve(&self) -> Vec<Vec<DVec3>> {
         let mut ends: Vec<(u32, u32)> = self.meeting.curve.keys().copied().collect();
         ends.sort_unstable();
