@@ -34,10 +34,8 @@ impl UseGraph {
         let mut exports: BTreeMap<(ModulePath, String), ModulePath> = BTreeMap::new();
         for (module, text) in &texts {
             for (path, public) in uses(text) {
-                if public {
-                    if let Some((target, Some(name))) = resolve(&files, module, &path) {
-                        exports.insert(((*module).clone(), name), target);
-                    }
+                if public && let Some((target, Some(name))) = resolve(&files, module, &path) {
+                    exports.insert(((*module).clone(), name), target);
                 }
             }
         }

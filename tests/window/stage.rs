@@ -205,6 +205,7 @@ impl Stage {
 
     /// A drag over the clay, in pixels from its middle.
     /// Whether it comes to be so within two seconds.
+    #[allow(clippy::disallowed_methods)] // A test waits for other processes.
     pub fn soon(&mut self, mut so: impl FnMut(&mut Stage) -> bool) -> bool {
         let begun = Instant::now();
         loop {

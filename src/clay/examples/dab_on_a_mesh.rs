@@ -1,5 +1,6 @@
 //! One dab of the Gaussian brush where a ray meets a mesh: `cargo run --release -p sculptd-clay
 //! --example dab_on_a_mesh [IN.obj OUT.obj]`. Without files it is done on a ball.
+#![allow(clippy::print_stdout)] // An example tells what it did.
 
 use std::path::Path;
 

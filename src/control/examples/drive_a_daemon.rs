@@ -3,6 +3,7 @@
 //!
 //! `sculptd run --headless` in one terminal, then
 //! `cargo run -p sculptd-control --example drive_a_daemon [SOCKET]` in another.
+#![allow(clippy::print_stdout)] // An example tells what it did.
 
 use std::error::Error;
 use std::path::PathBuf;

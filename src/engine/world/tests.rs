@@ -59,7 +59,7 @@ fn a_jump_that_was_read_from_bytes_works_where_its_pages_can_be_had() {
     let plain = shapes::sphere_of_about(2000);
     let mut world = world(&plain);
     // The same ball, larger: each of its pages differs.
-    let mut larger = plain.clone();
+    let mut larger = plain;
     larger.positions.iter_mut().for_each(|p| *p *= 1.5);
     let larger = clay(&larger);
     let jump = Jump {

@@ -7,6 +7,7 @@
 //!
 //! Without arguments the operands are a cube and a ball, and the result is written to a temporary
 //! folder.
+#![allow(clippy::print_stdout)] // An example tells what it did.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@
 //! ```
 //!
 //! Without an argument the part is a ring, 2 mm thick.
+#![allow(clippy::print_stdout)] // An example tells what it did.
 
 use std::error::Error;
 use std::path::Path;
