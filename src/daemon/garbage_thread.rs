@@ -90,7 +90,8 @@ mod tests {
         things.into_iter().for_each(|thing| sink.discard(Garbage::Shared(thing)));
         assert!(seen.iter().all(|w| w.strong_count() == 1), "freed by the sender");
         assert_eq!((usual.len(), overflow.len(), thread.overflowed()), (4, 16, 16));
-        drop((usual, overflow));
+        usual.try_iter().for_each(drop);
+        overflow.try_iter().for_each(drop);
         assert!(seen.iter().all(|w| w.strong_count() == 0));
     }
 

@@ -33,9 +33,16 @@ fn the_versions_of_a_session_in_a_real_window() {
     // row up, again and again, until each version was met.
     let here = |s: &Stage| history(s)["here"].as_u64().expect("a version") as usize;
     let mut met = std::collections::BTreeSet::from([here(&s)]);
-    let mut rows = (560..720).rev().step_by(10).cycle();
+    let mut rows = (520..720).rev().step_by(10).cycle();
+    let mut clicks = 0;
     s.until("every version is gone to", |s| {
         let y = rows.next().expect("a row").to_string();
+        // A long tree is scrolled: to its end, and back to its beginning.
+        clicks += 1;
+        if clicks % 20 == 0 {
+            let wheel = if clicks % 40 == 0 { "4" } else { "5" };
+            s.drive(&["mousemove", "120", &y, "click", "--repeat", "10", wheel]);
+        }
         s.drive(&["mousemove", "120", &y, "click", "1", "mousemove", "640", "650"]);
         pause(100);
         met.insert(here(s));
