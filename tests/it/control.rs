@@ -65,7 +65,7 @@ impl Client {
     }
 
     /// The next answer; `None` once the daemon has closed.
-    fn hear(&mut self) -> Option<Value> {
+    fn read_reply(&mut self) -> Option<Value> {
         let mut line = String::new();
         match self.lines.read_line(&mut line) {
             Ok(0) | Err(_) => None,
@@ -75,7 +75,7 @@ impl Client {
 
     fn ask(&mut self, line: &str) -> Option<Value> {
         let _ = self.out.write_all(format!("{line}\n").as_bytes());
-        self.hear()
+        self.read_reply()
     }
 
     fn status(&mut self, params: &Value) -> Value {
@@ -141,7 +141,7 @@ fn an_oversized_message_ends_the_talk_and_deep_nesting_does_not() {
     assert!(client.status(&json!({}))["result"].is_object(), "the talk goes on");
     let refused = client.ask(&"x".repeat(MAX_MESSAGE * 4)).expect("an answer");
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("bytes")), "{refused}");
-    assert_eq!(client.hear(), None, "and is closed");
+    assert_eq!(client.read_reply(), None, "and is closed");
     assert!(Client::new(&path).status(&json!({}))["result"].is_object(), "others are served");
 }
 
@@ -168,7 +168,7 @@ fn requests_and_clients_are_counted() {
     // All at once, so that no slow machine stretches them over more than a second each.
     let line = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"hash\"}\n";
     client.out.write_all(line.repeat(4 * MAX_RATE as usize).as_bytes()).expect("sent");
-    let answers = (0..4 * MAX_RATE).map(|_| client.hear().expect("an answer"));
+    let answers = (0..4 * MAX_RATE).map(|_| client.read_reply().expect("an answer"));
     let slow: Vec<Value> = answers.filter(|a| a["error"]["code"] == -32001).collect();
     assert!(!slow.is_empty(), "a flood was served");
     assert!(slow.iter().all(|a| a["id"] == 1), "an error carries the request's id");
@@ -303,8 +303,8 @@ fn half_open_clients_do_not_lock_the_owner_out() {
     assert_eq!(full["id"], "me");
     assert_eq!(ask("cancel")["result"], json!({ "cancelled": false }));
     // The silent ones are let go in time, and their places are free.
-    assert_eq!(silent[0].hear(), None, "half a line");
-    assert_eq!(silent[2].hear(), None, "nothing");
+    assert_eq!(silent[0].read_reply(), None, "half a line");
+    assert_eq!(silent[2].read_reply(), None, "nothing");
     let served = (0..100).any(|_| ask("status")["result"].is_object());
     assert!(served);
     assert!(silent[1].status(&json!({}))["result"].is_object(), "the subscriber is served");
@@ -340,7 +340,7 @@ fn a_subscriber_hears_each_change_and_answers_still_come_whole() {
     let mut next = (*rig.host.published.load_full()).clone();
     next.undo_steps = 3;
     rig.host.published.store(Arc::new(next.clone()));
-    let event = client.hear().expect("an event");
+    let event = client.read_reply().expect("an event");
     assert_eq!(event["method"], "event");
     assert_eq!(event["params"]["event"], "history");
     assert_eq!(event["params"]["now"], json!({ "undo_steps": 3, "redo_steps": 0 }));
@@ -352,7 +352,7 @@ fn a_subscriber_hears_each_change_and_answers_still_come_whole() {
         rig.host.published.store(Arc::new(next.clone()));
         let mut line = client.ask(r#"{"jsonrpc":"2.0","id":2,"method":"hash"}"#).expect("a line");
         while line["method"] == "event" {
-            line = client.hear().expect("a line");
+            line = client.read_reply().expect("a line");
         }
         answers += usize::from(line["result"]["hash"].is_string());
     }
