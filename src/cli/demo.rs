@@ -4,12 +4,15 @@
 
 use std::path::PathBuf;
 
-use super::live::{self, LiveRun};
+use super::display::{self, Shown};
+use super::ending::{close_journal, export};
+use super::live;
 use super::run::{self, seconds};
-use super::{Fail, Outcome, display};
+use super::{Fail, Outcome};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::demo_devices;
 use sculptd_daemon::live::Journal;
+use sculptd_daemon::live_run::LiveOptions;
 use sculptd_daemon::simulated_loop::{Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup::Begun;
 use sculptd_devices::catalogue::Catalogue;
@@ -50,17 +53,21 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     if !display::wanted(args.headless) {
         return headless(args, &config, begun, json);
     }
-    let live_run = LiveRun {
-        window: true,
-        ghosts: true,
+    let options = LiveOptions {
+        presets: crate::presets().clone(),
+        demo_devices: true,
         devices: true,
         limit_s: args.limit_s,
+        ..Default::default()
+    };
+    let shown = Shown {
+        window: true,
         export: Some(args.export.clone()),
         session: args.session.clone(),
         ..Default::default()
     };
     let catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
-    run::report(&live::run(live_run, &config, begun, catalogue)?, None, json)
+    run::report(&live::run(options, &shown, &config, begun, catalogue)?, None, json)
 }
 
 fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outcome {
@@ -92,8 +99,8 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     let figures = stepped.run(&options).map_err(|e| Fail::Check(e.to_string()))?;
     progress.bar.finish_and_clear();
     drop((adaptors, writer));
-    live::close_journal(thread);
-    let export = run::export(Some(&args.export), &world)?;
+    close_journal(thread);
+    let export = export(Some(&args.export), &world)?;
     run::report(&summary(&figures, &world, &receiver, export), None, json)
 }
 

@@ -1,12 +1,8 @@
 //! Whether there is a screen to show a window on, why not, and showing it.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::path::PathBuf;
 
-use sculptd_daemon::adaptors::Adaptors;
-use sculptd_daemon::live::Live;
-use sculptd_devices::Clock;
-use sculptd_devices::queue::SenderFactory;
+use sculptd_daemon::live_run::LiveRun;
 
 /// `Err` holds the reason, in words for a person.
 pub fn available() -> Result<(), String> {
@@ -35,53 +31,47 @@ pub fn wanted(headless: bool) -> bool {
     }
 }
 
-/// What joins a window to a live run.
-#[derive(Debug)]
-pub struct Wired<'a> {
-    pub live: &'a Live,
-    pub factory: &'a SenderFactory,
-    pub clock: &'a Clock,
-    pub stop: &'a Arc<AtomicBool>,
-    pub adaptors: Arc<Adaptors>,
-    pub session: Option<String>,
-    /// The session's history, and the ticks a second.
-    pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,
-    /// Sessions to offer, the newest first, and the one that a person chose to open next.
-    pub recent: Vec<std::path::PathBuf>,
-    pub open_next: super::library::OpenNext,
-    /// On the clock; 0 without ghosts.
-    pub ghosts_until_us: u64,
+/// What a run shows and leaves behind.
+#[derive(Debug, Default)]
+pub struct Shown {
+    /// Whether there is a window.
+    pub window: bool,
     pub full_screen: bool,
-    /// The screen of an installation, in the place of the panels.
-    pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
+    /// The mesh that is written at the end.
+    pub export: Option<PathBuf>,
+    /// The session's file, for the window's title.
+    pub session: Option<PathBuf>,
+    /// Sessions to offer, the newest first, and the one that a person chose to open next.
+    pub recent: Vec<PathBuf>,
+    pub open_next: super::library::OpenNext,
 }
 
 /// Shows the window until it is closed or the run ends; `Err` says why there is none.
 #[cfg(feature = "viewer")]
-pub fn show(wired: &Wired<'_>) -> Result<(), String> {
-    let adaptors = wired.adaptors.clone();
+pub fn show(run: &LiveRun, shown: &Shown, rate_hz: u32) -> Result<(), String> {
+    let adaptors = run.adaptors.clone();
     let wiring = sculptd_window::viewer::Wiring {
-        commands: wired.live.commands.clone(),
-        published: wired.live.published.clone(),
-        pointer: wired.factory.sender(),
+        commands: run.live.commands.clone(),
+        published: run.live.published.clone(),
+        pointer: run.factory.sender(),
         pointer_id: sculptd_daemon::adaptors::POINTER_ID,
         presets: crate::presets().clone(),
-        clock: wired.clock.clone(),
-        stop: wired.stop.clone(),
+        clock: run.clock.clone(),
+        stop: run.stop.clone(),
         devices: Box::new(move || adaptors.describe()),
-        session: wired.session.clone(),
-        history: wired.history.clone(),
-        recent: wired.recent.clone(),
-        open_next: wired.open_next.clone(),
-        demo_until_us: wired.ghosts_until_us,
-        full_screen: wired.full_screen,
+        session: shown.session.as_ref().map(|p| p.display().to_string()),
+        history: run.history.clone().map(|h| (h, rate_hz)),
+        recent: shown.recent.clone(),
+        open_next: shown.open_next.clone(),
+        demo_until_us: run.demo_ends_us(),
+        full_screen: shown.full_screen,
         thickness_presets: super::thickness::presets::all().map_err(|e| e.to_string())?,
-        kiosk: wired.kiosk.clone(),
+        kiosk: run.kiosk.clone(),
     };
     sculptd_window::viewer::run(wiring).map_err(|e| e.to_string())
 }
 
 #[cfg(not(feature = "viewer"))]
-pub fn show(_: &Wired<'_>) -> Result<(), String> {
+pub fn show(_: &LiveRun, _: &Shown, _: u32) -> Result<(), String> {
     available()
 }

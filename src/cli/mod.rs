@@ -20,6 +20,7 @@ pub mod devices;
 pub mod display;
 pub mod distance;
 pub mod doctor;
+pub mod ending;
 pub mod hollow;
 pub mod info;
 pub mod library;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::run::export;
+use super::ending::export;
 use super::{Fail, Outcome, answer};
 use sculptd_clay::{BuildError, Workers};
 use sculptd_daemon::config::LoopConfig;

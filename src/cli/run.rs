@@ -2,25 +2,25 @@
 //! play and nothing else, a stepped run that gives the same bits every time.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
+use super::display::{self, Shown};
+use super::ending::{close_journal, export};
 use super::library;
-use super::live::{self, LiveRun, close_journal};
-use super::{Fail, Outcome, answer, display};
+use super::live;
+use super::{Fail, Outcome, answer};
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::Summary;
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live::Journal;
+use sculptd_daemon::live_run::LiveOptions;
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
 use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, StartupError};
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
-use sculptd_engine::world::World;
-use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
 
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -132,23 +132,26 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     }
     let open_next = library::OpenNext::default();
     let summary = if window || players.is_empty() || kiosk.is_some() {
-        let run = LiveRun {
-            window,
-            full_screen: args.kiosk,
+        let options = LiveOptions {
+            presets: crate::presets().clone(),
             kiosk,
-            ghosts: false,
+            demo_devices: false,
             devices: true,
             players,
             limit_s: args.limit_s,
-            export: args.export.clone(),
-            session: session.cloned(),
-            recent: library::recent(session.map(PathBuf::as_path)),
-            open_next: open_next.clone(),
             settings: args.config.clone(),
             #[cfg(unix)]
             metrics: args.metrics,
         };
-        live::run(run, &config, begun, catalogue)?
+        let shown = Shown {
+            window,
+            full_screen: args.kiosk,
+            export: args.export.clone(),
+            session: session.cloned(),
+            recent: library::recent(session.map(PathBuf::as_path)),
+            open_next: open_next.clone(),
+        };
+        live::run(options, &shown, &config, begun, catalogue)?
     } else {
         run_stepped(args, &config, begun, players)?
     };
@@ -265,23 +268,6 @@ fn run_stepped(
     close_journal(thread);
     let export = export(args.export.as_deref(), &world)?;
     Ok(summary(&figures, &world, &receiver, export))
-}
-
-/// Set once by SIGINT or SIGTERM.
-pub fn stop_signal() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // A second signal ends the process at once, as a person who presses twice expects.
-        let _ = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone());
-        let _ = signal_hook::flag::register(signal, stop.clone());
-    }
-    stop
-}
-
-pub fn export(path: Option<&Path>, world: &World) -> Result<Option<String>, Fail> {
-    let Some(path) = path else { return Ok(None) };
-    write_mesh(path, &world.mesh().to_tri().to_poly()).map_err(Fail::from)?;
-    Ok(Some(path.display().to_string()))
 }
 
 pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {

@@ -1,8 +1,9 @@
 //! The daemon: the tick loop, its clock, what it publishes, where input comes from, and what
 //! outlives it.
 //!
-//! Read first: [`live`] (the loop with real devices), [`simulated_loop`] (the loop in simulated
-//! time), [`published`] (what others see), [`session`] (what is kept).
+//! Read first: [`live_run`] (a live run put together), [`live`] (its loop, with real devices),
+//! [`simulated_loop`] (the loop in simulated time), [`published`] (what others see), [`session`]
+//! (what is kept).
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod adaptors;
@@ -16,6 +17,7 @@ pub mod doctor;
 pub mod garbage_thread;
 pub mod kiosk;
 pub mod live;
+pub mod live_run;
 #[cfg(unix)]
 pub mod metrics;
 pub mod pacer;

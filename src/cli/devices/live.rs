@@ -15,7 +15,7 @@ use sculptd_devices::recording::raw::Recorder;
 use sculptd_devices::{Clock, DeviceId};
 use serde::Serialize;
 
-use super::super::run::stop_signal;
+use super::super::ending::stop_signal;
 use super::super::{Fail, Outcome, answer};
 use super::table::Table;
 use super::{catalogue, hid_config, recording_fail};

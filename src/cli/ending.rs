@@ -1,0 +1,39 @@
+//! How a run ends: by a signal, with a mesh that is written, with a session that is closed.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::Fail;
+use sculptd_daemon::session::writer::WriterThread;
+use sculptd_engine::world::World;
+use sculptd_geometry::io::write_mesh;
+
+/// Set once by SIGINT or SIGTERM.
+pub fn stop_signal() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // A second signal ends the process at once, as a person who presses twice expects.
+        let _ = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone());
+        let _ = signal_hook::flag::register(signal, stop.clone());
+    }
+    stop
+}
+
+pub fn export(path: Option<&Path>, world: &World) -> Result<Option<String>, Fail> {
+    let Some(path) = path else { return Ok(None) };
+    write_mesh(path, &world.mesh().to_tri().to_poly()).map_err(Fail::from)?;
+    Ok(Some(path.display().to_string()))
+}
+
+/// Waits for the session's last group, and says so if the disk did not take it.
+pub fn close_journal(thread: Option<WriterThread>) {
+    warn_of_fault(thread.and_then(WriterThread::finish));
+}
+
+/// Says what the disk did not take.
+pub fn warn_of_fault(fault: Option<String>) {
+    if let Some(fault) = fault {
+        eprintln!("sculptd: warning: {fault}");
+    }
+}

@@ -1,0 +1,336 @@
+//! A live run put together: the loop on the wall's clock, the devices that feed it, the session,
+//! the control socket, the figures for others, the kiosk. The command line says what is wanted and
+//! shows what there is; what belongs together is decided here.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+#[cfg(unix)]
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
+
+use crate::adaptors::{self, Adaptors};
+use crate::config::{Config, DevicesConfig};
+use crate::demo_devices::{self, DemoError, Playing};
+use crate::kiosk::{KioskConfig, keeper};
+use crate::live::{Journal, Live, LiveError};
+use crate::session::Health;
+use crate::session::history::Handle;
+use crate::session::writer::WriterThread;
+use crate::simulated_loop::{Feed, summary};
+use crate::startup::{Area, Begun, RecordingFeed};
+use crate::tick_statistics::Summary;
+use sculptd_clay::brush::Presets;
+use sculptd_devices::Clock;
+use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::queue::{self, SenderFactory};
+use sculptd_devices::recording::Player;
+use sculptd_engine::world::World;
+
+/// What makes one live run different from another.
+#[derive(Debug, Default)]
+pub struct LiveOptions {
+    /// What each brush begins with.
+    pub presets: Presets,
+    /// Visitors come and go.
+    pub kiosk: Option<KioskConfig>,
+    /// Simulated devices perform the demo.
+    pub demo_devices: bool,
+    /// Real devices are listened to.
+    pub devices: bool,
+    /// Recordings that are played at their own speed, and the part of the tablet that each uses.
+    pub players: Vec<(Player, Option<Area>)>,
+    /// The run ends after so many seconds.
+    pub limit_s: Option<f64>,
+    /// The file of `--config`, for reading it again on SIGHUP.
+    pub settings: Option<PathBuf>,
+    /// Where the figures are served, if anywhere.
+    #[cfg(unix)]
+    pub metrics: Option<std::net::SocketAddr>,
+}
+
+/// Why a live run could not be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum LiveRunError {
+    #[error(transparent)]
+    Loop(#[from] LiveError),
+    #[error("{what}: {source}")]
+    Service { what: String, source: std::io::Error },
+    #[cfg(unix)]
+    #[error(transparent)]
+    Control(#[from] crate::control::server::ServeError),
+    #[error(transparent)]
+    DemoDevices(#[from] DemoError),
+    #[error("{0}")]
+    Kiosk(String),
+}
+
+/// A live run. Its devices stop when it is finished or dropped.
+#[derive(Debug)]
+pub struct LiveRun {
+    pub live: Live,
+    pub clock: Clock,
+    pub adaptors: Arc<Adaptors>,
+    /// Makes senders for more devices: a window's pointer.
+    pub factory: SenderFactory,
+    /// Raised by a signal, a closed window, `shutdown`, or the end of the time that was given.
+    pub stop: Arc<AtomicBool>,
+    /// The session's history, if one is kept.
+    pub history: Option<Handle>,
+    /// The screen of an installation, in the place of the panels.
+    pub kiosk: Option<keeper::Screen>,
+    /// One sentence each: what a person should know of how the run began.
+    pub notices: Vec<String>,
+    demo: Option<Playing>,
+    writing: Option<WriterThread>,
+    #[cfg(unix)]
+    _served: Served,
+}
+
+/// A live run that has ended.
+#[derive(Debug)]
+pub struct FinishedRun {
+    pub world: World,
+    /// Without the name of a file: nothing was written yet.
+    pub summary: Summary,
+    writing: Option<WriterThread>,
+    /// Others are answered until the session is closed.
+    #[cfg(unix)]
+    _served: Served,
+}
+
+impl FinishedRun {
+    /// Waits for the session's last group. `Some`: the disk did not take it, and why.
+    pub fn close_session(self) -> Option<String> {
+        // What the world holds is freed before the last wait.
+        drop(self.world);
+        self.writing.and_then(WriterThread::finish)
+    }
+}
+
+/// How often a run looks whether it should end: a signal's handler may only raise a flag.
+const LOOK: Duration = Duration::from_millis(20);
+/// How often recordings are looked at.
+const PLAY: Duration = Duration::from_millis(2);
+
+impl LiveRun {
+    /// Starts everything. `stop`: raised by whoever wants the run to end.
+    ///
+    /// # Errors
+    /// Where a thread, a socket or a port cannot be had, and where the installation's settings
+    /// cannot be used. A device that cannot be opened is no error: [`Adaptors::describe`] tells.
+    pub fn start(
+        options: LiveOptions,
+        config: &Config,
+        begun: Begun,
+        catalogue: Catalogue,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Self, LiveRunError> {
+        let clock = Clock::monotonic();
+        let (factory, receiver) = queue::channel(config.channel.capacity);
+        let none = DevicesConfig { hid: false, ..Default::default() };
+        let devices = if options.devices { &config.devices } else { &none };
+        let adaptors = Arc::new(adaptors::start(devices, catalogue, &clock, &factory));
+        // As the world is now, so every visitor finds it.
+        let first = options.kiosk.is_some().then(|| keeper::Start {
+            plain: Arc::new(begun.world.mesh().to_tri()),
+            camera: config.camera.camera(),
+            brush: *begun.world.brush(),
+        });
+        let (writer, writing) = begun.journal.unzip();
+        let health = writing.as_ref().map(|t| t.health.clone());
+        let history = writing.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
+        let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
+        let drain = config.channel.drain_per_tick;
+        let live =
+            Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)?;
+        if let Some(history) = &history {
+            history.connect(live.commands.clone());
+        }
+        let mut notices = Vec::new();
+        #[cfg(unix)]
+        let _served = {
+            let pen = crate::control::stroke::VirtualPen::new(&factory, clock.clone());
+            let host = crate::control::Host {
+                stop: stop.clone(),
+                journal: health.clone(),
+                history: history.clone(),
+                pen: Some(Arc::new(Mutex::new(pen))),
+                ..crate::control::Host::new(
+                    live.commands.clone(),
+                    live.published.clone(),
+                    options.presets.clone(),
+                )
+            };
+            Served::start(&options, config, host, health, &mut notices)?
+        };
+        #[cfg(not(unix))]
+        let _: Option<Health> = health;
+        let demo = match options.demo_devices {
+            true => Some(demo_devices::playing(&clock, &factory)?),
+            false => None,
+        };
+        play(options.players, &clock, &factory, &stop)?;
+        let kiosk = match options.kiosk.zip(first) {
+            Some((kiosk, first)) => Some(screen(kiosk, first, &live, &factory, &clock, &stop)?),
+            None => None,
+        };
+        if let Some(seconds) = options.limit_s {
+            end_after(seconds, &stop)?;
+        }
+        Ok(LiveRun {
+            live,
+            clock,
+            adaptors,
+            factory,
+            stop,
+            history,
+            kiosk,
+            notices,
+            demo,
+            writing,
+            #[cfg(unix)]
+            _served,
+        })
+    }
+
+    /// When the demo's devices end, on the clock; 0 without them.
+    pub fn demo_ends_us(&self) -> u64 {
+        self.demo.as_ref().map_or(0, |d| d.ends_us)
+    }
+
+    /// Waits until something raises `stop`, or the loop ends.
+    pub fn wait(&self) {
+        let quiet = crossbeam_channel::never::<()>();
+        while self.live.is_running() && !self.stop.load(Relaxed) {
+            let _ = quiet.recv_timeout(LOOK);
+        }
+    }
+
+    /// Stops the devices, then the loop, and gives what was sculpted.
+    ///
+    /// # Errors
+    /// Where the tick thread ended by a bug.
+    pub fn finish(self) -> Result<FinishedRun, LiveError> {
+        drop((self.demo, self.adaptors));
+        let ended = self.live.stop()?;
+        let summary = summary(&ended.figures, &ended.world, &ended.receiver, None);
+        Ok(FinishedRun {
+            world: ended.world,
+            summary,
+            writing: self.writing,
+            #[cfg(unix)]
+            _served: self._served,
+        })
+    }
+}
+
+/// What others reach the run by; closed when dropped.
+#[cfg(unix)]
+#[derive(Debug)]
+struct Served {
+    _control: Option<crate::control::Server>,
+    _metrics: Option<crate::metrics::Metrics>,
+    _service: crate::service::Service,
+}
+
+#[cfg(unix)]
+impl Served {
+    fn start(
+        options: &LiveOptions,
+        config: &Config,
+        host: crate::control::Host,
+        journal: Option<Health>,
+        notices: &mut Vec<String>,
+    ) -> Result<Self, LiveRunError> {
+        use crate::control::server::ServeError;
+        use crate::metrics::Metrics;
+        use crate::service::{Reload, Service};
+        let watched = crate::systemd::Watched { published: host.published.clone(), journal };
+        let commands = host.commands.clone();
+        let control = match crate::control::Server::start(&crate::control::default_path(), host) {
+            Ok(server) => Some(server),
+            // A second daemon sculpts all the same; `sculptd ctl` talks to the first.
+            Err(e @ ServeError::Taken { .. }) => {
+                notices.push(format!("no control socket: {e}"));
+                None
+            }
+            Err(e) => return Err(e.into()),
+        };
+        let failed = |what: String| move |source| LiveRunError::Service { what, source };
+        let metrics = match options.metrics {
+            None => None,
+            Some(at) => {
+                let page = Metrics::start(at, watched.clone());
+                let page = page.map_err(failed(format!("metrics on {at}")))?;
+                notices.push(format!("figures at http://{}/metrics", page.address()));
+                Some(page)
+            }
+        };
+        let reload = Reload { extra: options.settings.clone(), now: config.clone(), commands };
+        let service = Service::start(watched, reload).map_err(failed("SIGHUP".into()))?;
+        Ok(Served { _control: control, _metrics: metrics, _service: service })
+    }
+}
+
+/// Starts the keeper of an installation.
+fn screen(
+    kiosk: KioskConfig,
+    first: keeper::Start,
+    live: &Live,
+    factory: &SenderFactory,
+    clock: &Clock,
+    stop: &Arc<AtomicBool>,
+) -> Result<keeper::Screen, LiveRunError> {
+    let words = kiosk.every_language().map_err(LiveRunError::Kiosk)?;
+    let staff = !kiosk.staff_pin.is_empty();
+    let (published, commands) = (live.published.clone(), live.commands.clone());
+    let (clock, stop) = (clock.clone(), stop.clone());
+    let keeper = keeper::start(kiosk, first, published, commands, factory, clock, stop)
+        .map_err(LiveRunError::Kiosk)?;
+    Ok(keeper::Screen { desk: keeper.desk, words, staff })
+}
+
+/// Plays recordings at their own speed on a thread of their own, from now on.
+fn play(
+    players: Vec<(Player, Option<Area>)>,
+    clock: &Clock,
+    factory: &SenderFactory,
+    stop: &Arc<AtomicBool>,
+) -> Result<(), LiveRunError> {
+    if players.is_empty() {
+        return Ok(());
+    }
+    let start = clock.now_us();
+    let feed = |(mut player, area): (Player, Option<Area>)| {
+        player.start_at(start);
+        RecordingFeed::new(player, factory.sender(), area)
+    };
+    let mut feeds: Vec<RecordingFeed> = players.into_iter().map(feed).collect();
+    let (clock, stop) = (clock.clone(), stop.clone());
+    spawn("sculptd-player", move || {
+        let quiet = crossbeam_channel::never::<()>();
+        while !stop.load(Relaxed) && !feeds.iter().all(|f| f.finished()) {
+            let now = clock.now_us();
+            for feed in &mut feeds {
+                feed.advance(now);
+            }
+            let _ = quiet.recv_timeout(PLAY);
+        }
+    })
+}
+
+/// Raises `stop` after so many seconds.
+fn end_after(seconds: f64, stop: &Arc<AtomicBool>) -> Result<(), LiveRunError> {
+    let stop = stop.clone();
+    let wait = Duration::from_secs_f64(seconds);
+    spawn("sculptd-limit", move || {
+        let _ = crossbeam_channel::never::<()>().recv_timeout(wait);
+        stop.store(true, Relaxed);
+    })
+}
+
+fn spawn(name: &str, run: impl FnOnce() + Send + 'static) -> Result<(), LiveRunError> {
+    let thread = std::thread::Builder::new().name(name.into()).spawn(run);
+    thread.map(drop).map_err(|source| LiveRunError::Service { what: name.into(), source })
+}
