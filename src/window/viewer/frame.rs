@@ -229,14 +229,19 @@ impl WindowState {
         let context = self.egui.egui_ctx().clone();
         self.drawn_demo = view.demo_runs;
         let mut free = egui::Rect::NOTHING;
-        let out = context.run_ui(input, |ui| match &wiring.kiosk {
+        let mut show = |ui: &mut egui::Ui| match &wiring.kiosk {
             Some(screen) => {
                 free = ui.ctx().content_rect();
                 panels::kiosk::ui(ui, &view, screen, ui_state, &mut requests);
                 panels::hand_menu::ui(ui.ctx(), &view, free);
             }
             None => free = panels::all(ui, &view, ui_state, &mut requests),
-        });
+        };
+        let mut passes = by_press(input).into_iter();
+        let mut out = context.run_ui(passes.next().unwrap_or_default(), &mut show);
+        for input in passes {
+            out.append(context.run_ui(input, &mut show));
+        }
         if self.free != Some(free) {
             self.free = Some(free);
             self.pacing.want();
@@ -279,6 +284,24 @@ impl WindowState {
     }
 }
 
+/// The events of a frame, cut after each press and each release. What is under the pointer is
+/// looked up once a pass, at the last place of that pass: a press, and a pointer that is elsewhere
+/// before the frame is drawn, would go to the second place.
+fn by_press(mut input: egui::RawInput) -> Vec<egui::RawInput> {
+    let pressed = |e: &egui::Event| matches!(e, egui::Event::PointerButton { .. });
+    let mut events = std::mem::take(&mut input.events);
+    let mut passes = Vec::new();
+    while let Some(end) = events.iter().position(pressed).filter(|i| i + 1 < events.len()) {
+        let rest = events.split_off(end + 1);
+        passes.push(egui::RawInput { events, ..input.clone() });
+        // What was dropped is dropped once.
+        input.dropped_files.clear();
+        events = rest;
+    }
+    passes.push(egui::RawInput { events, ..input });
+    passes
+}
+
 /// The values of the map that is shown.
 pub(super) fn shown<'a>(
     ui_state: &UiState,
@@ -286,4 +309,29 @@ pub(super) fn shown<'a>(
     distances: &'a Option<MapValues>,
 ) -> Option<&'a MapValues> {
     if ui_state.look.map == Map::Distance { distances.as_ref() } else { thickness.as_ref() }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Event, Modifiers, PointerButton, RawInput, pos2};
+
+    use super::by_press;
+
+    #[test]
+    fn each_press_is_seen_where_it_was() {
+        let button = |x: f32, pressed| Event::PointerButton {
+            pos: pos2(x, 0.0),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let to = |x: f32| Event::PointerMoved(pos2(x, 0.0));
+        let events =
+            vec![to(1.0), button(1.0, true), button(1.0, false), to(2.0), button(2.0, true), to(3.0)];
+        let passes = by_press(RawInput { events: events.clone(), ..Default::default() });
+        assert_eq!(passes.iter().map(|p| p.events.len()).collect::<Vec<_>>(), [2, 1, 2, 1]);
+        let all: Vec<Event> = passes.into_iter().flat_map(|p| p.events).collect();
+        assert_eq!(all, events);
+        assert_eq!(by_press(RawInput::default()).len(), 1);
+    }
 }
