@@ -37,6 +37,8 @@ pub struct Published {
     /// The tracked volume over the work.
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
+    /// Where on its own tablet each pen in range is: shares of the tablet's area.
+    pub tablets: [Option<(DeviceId, glam::Vec2)>; SHOWN_PENS],
     /// The curve that a pen has laid; empty: none.
     pub draft: CurveStroke,
     pub hands: Option<Hands>,
@@ -84,6 +86,10 @@ impl Published {
         for (slot, pen) in pens.iter_mut().zip(world.pens()) {
             *slot = Some(pen);
         }
+        let mut tablets = [None; SHOWN_PENS];
+        for (slot, tablet) in tablets.iter_mut().zip(world.tablets()) {
+            *slot = Some(tablet);
+        }
         let mut poses = [None; MAX_HANDS];
         let mut hand_devices = [None; MAX_HANDS];
         for ((pose, by), (device, _, now)) in
@@ -103,6 +109,7 @@ impl Published {
             middle: world.middle(),
             volume: *world.volume(),
             pens,
+            tablets,
             draft: world.curve_stroke().cloned().unwrap_or_default(),
             hands: world.hands().copied(),
             poses,

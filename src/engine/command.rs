@@ -12,6 +12,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
+use crate::desk::Desk;
 use crate::hand::{ReachBox, Similarity};
 use crate::payload::PayloadId;
 use crate::stroke::CurveAction;
@@ -61,6 +62,9 @@ pub enum Command {
     ReplaceMasked(NewClay, Arc<Vec<f32>>),
     /// To the curve that a pen has laid with the method `curve`: drawn, put away, a handle less.
     CurveStroke(CurveAction),
+    /// Where the tablets' pens are in the view, as a window has learned it, and what lies over the
+    /// view. A desk with values that are not finite is ignored.
+    Desk(Desk),
 }
 
 impl Command {
@@ -86,7 +90,8 @@ impl Command {
             | Command::Reach(_)
             | Command::Place(_)
             | Command::Reopened
-            | Command::CurveStroke(_) => false,
+            | Command::CurveStroke(_)
+            | Command::Desk(_) => false,
         }
     }
 

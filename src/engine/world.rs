@@ -19,6 +19,7 @@ pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SideData};
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
+use crate::desk::Desk;
 use crate::hand::{Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity};
 use crate::payload::{Payload, PayloadStore};
 use crate::replaced::ReplacedClay;
@@ -92,6 +93,8 @@ pub struct World {
     middle: Vec3,
     extent: f32,
     pens: Vec<PenSlot>,
+    /// Where the pens are in the view, and where they may begin.
+    desk: Desk,
     scratch: Scratch,
     /// Strokes begun.
     strokes: u32,
@@ -133,6 +136,7 @@ impl World {
             middle: Vec3::ZERO,
             extent: 1.0,
             pens: Vec::with_capacity(MAX_PENS),
+            desk: Desk::default(),
             scratch: Scratch::default(),
             strokes: 0,
             hands: HandTools::new(options.hands),
@@ -219,6 +223,11 @@ impl World {
                     self.camera = *camera;
                 }
             }
+            Command::Desk(desk) => {
+                if desk.is_sane() {
+                    self.desk = *desk;
+                }
+            }
             Command::Undo => {
                 self.lift_all();
                 match self.mesh.undo() || self.works.back(&mut self.mesh) {
@@ -256,6 +265,7 @@ impl World {
                     self.lineages = old.lineages + 1;
                     self.mesh.set_object_id(self.lineages);
                     self.moments = old.moments.take();
+                    self.desk = old.desk;
                     self.tick = old.tick;
                     self.report = old.report;
                     std::mem::swap(&mut self.payloads, &mut old.payloads);
@@ -415,7 +425,11 @@ impl World {
                         })
                     });
                 match index {
-                    Some(i) => self.pens[i].track.take(pen, &self.brush.path, self.camera.aspect),
+                    Some(i) => {
+                        let on = (&self.desk, self.desk.place(sample.device));
+                        let (path, aspect) = (&self.brush.path, self.camera.aspect);
+                        self.pens[i].track.take(pen, path, aspect, on);
+                    }
                     None => self.report.ignored += 1,
                 }
             }

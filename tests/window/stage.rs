@@ -99,7 +99,7 @@ fn screen(dir: &Path) -> (Ended, String) {
 
 /// What a condition gives once it gives something.
 #[allow(clippy::disallowed_methods)] // A test waits for other processes.
-fn wait<T>(what: &str, mut so: impl FnMut() -> Option<T>) -> T {
+pub fn wait<T>(what: &str, mut so: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
         if let Some(found) = so() {
@@ -123,6 +123,29 @@ impl Stage {
         let dir = tempfile::tempdir().expect("a folder");
         let (screen, display) = screen(dir.path());
         let daemon = start(dir.path(), &display, args);
+        let mut stage = Stage { dir, display, daemon, screen, last: None, _alone: alone };
+        stage.shown().then_some(stage)
+    }
+
+    /// The same on a screen of the caller's own, with these settings; `None`, and why, where there
+    /// is no such screen.
+    pub fn on(
+        screen: impl FnOnce(&Path) -> Result<(Ended, String), String>,
+        settings: &str,
+    ) -> Option<Stage> {
+        let alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let dir = tempfile::tempdir().expect("a folder");
+        let (screen, display) = match screen(dir.path()) {
+            Ok(screen) => screen,
+            Err(why) => {
+                println!("skipped: {why}");
+                return None;
+            }
+        };
+        let file = dir.path().join("settings.toml");
+        #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+        std::fs::write(&file, settings).expect("written");
+        let daemon = start(dir.path(), &display, &["--config", &file.display().to_string()]);
         let mut stage = Stage { dir, display, daemon, screen, last: None, _alone: alone };
         stage.shown().then_some(stage)
     }
@@ -203,7 +226,6 @@ impl Stage {
         }
     }
 
-    /// A drag over the clay, in pixels from its middle.
     /// Whether it comes to be so within two seconds.
     #[allow(clippy::disallowed_methods)] // A test waits for other processes.
     pub fn soon(&mut self, mut so: impl FnMut(&mut Stage) -> bool) -> bool {
@@ -217,6 +239,7 @@ impl Stage {
         }
     }
 
+    /// A drag over the clay, in pixels from its middle.
     pub fn drag(&self, from: (i32, i32), to: (i32, i32)) {
         let at = |p: (i32, i32)| [(MIDDLE.0 + p.0).to_string(), (MIDDLE.1 + p.1).to_string()];
         let go = |p: (i32, i32)| {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::curve::Curve;
 use super::spacer::Spacer;
 use super::surface::{Flow, PenPoint, StrokeMethod, Surface};
+use crate::desk::{Desk, PenPlace};
 use crate::stroke::curve_stroke::CurveStroke;
 use crate::stroke::stabilizer::Stabilizer;
 use sculptd_clay::brush::PathSettings;
@@ -62,6 +63,12 @@ pub struct PenTrack {
     /// Where the pen itself is while the brush follows it by the string.
     #[serde(default)]
     pen: Option<PenPoint>,
+    /// Where on its own tablet the pen is while in range: shares of the tablet's area.
+    #[serde(default)]
+    pub on_tablet: Option<Vec2>,
+    /// The pen came down where no stroke may begin: it does nothing until it is lifted.
+    #[serde(default)]
+    refused: bool,
 }
 
 impl Default for PenTrack {
@@ -84,6 +91,8 @@ impl Default for PenTrack {
             merged: 0,
             string: 0.0,
             pen: None,
+            on_tablet: None,
+            refused: false,
         }
     }
 }
@@ -107,19 +116,29 @@ pub struct Walked {
 }
 
 impl PenTrack {
-    /// Takes one pen sample.
-    pub fn take(&mut self, pen: &Pen, path: &PathSettings, aspect: f32) {
-        let area = pen.area_mm.max(Vec2::splat(1e-3));
+    /// Takes one pen sample of a tablet whose place on the desk is `place`.
+    pub fn take(
+        &mut self,
+        pen: &Pen,
+        path: &PathSettings,
+        aspect: f32,
+        (desk, place): (&Desk, Option<PenPlace>),
+    ) {
+        let share = pen.pos_mm / pen.area_mm.max(Vec2::splat(1e-3));
         let at = PenPoint {
-            // Beyond the view by at most its own size: there is nothing to hit, and nothing to
-            // overflow.
-            view: (pen.pos_mm / area).clamp(Vec2::splat(-1.0), Vec2::splat(2.0)),
+            view: place.unwrap_or_default().view(share),
             pressure: pen.pressure.unwrap_or(1.0),
             tilt: pen.tilt,
             inverted: pen.tool == Tool::Eraser,
         };
-        self.seen = pen.in_range.then_some(at);
-        match (self.down, pen.tip && pen.in_range) {
+        let mut touches = pen.tip && pen.in_range;
+        let free = desk.is_free(place, at.view);
+        self.refused = touches && !self.down && (self.refused || !free);
+        touches &= !self.refused;
+        self.on_tablet = pen.in_range.then_some(share);
+        // Where it can do nothing, it is the desktop's pointer and has no ring.
+        self.seen = (pen.in_range && (touches || free && !self.refused)).then_some(at);
+        match (self.down, touches) {
             (false, true) => {
                 self.steady.begin(&at);
                 self.push(PenEvent::Down(at));
@@ -132,7 +151,7 @@ impl PenTrack {
             (true, false) => self.up(path),
             (false, false) => {}
         }
-        self.down = pen.tip && pen.in_range;
+        self.down = touches;
     }
 
     fn up(&mut self, path: &PathSettings) {
@@ -148,7 +167,7 @@ impl PenTrack {
             self.up(path);
             self.down = false;
         }
-        self.seen = None;
+        (self.seen, self.on_tablet) = (None, None);
     }
 
     fn push(&mut self, event: PenEvent) {

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::Jump;
+use crate::desk::Desk;
 use crate::hand::{HandTools, HeldObject, Similarity};
 use crate::old_layout::{FieldCounts, from_bytes};
 use crate::payload::Payload;
@@ -102,6 +103,7 @@ struct CoreRef<'a> {
     last_hands: &'a Option<Hands>,
     place: Option<Similarity>,
     lineages: u32,
+    desk: &'a Desk,
 }
 
 #[derive(Deserialize)]
@@ -116,6 +118,8 @@ struct Core {
     last_hands: Option<Hands>,
     place: Option<Similarity>,
     lineages: u32,
+    #[serde(default)]
+    desk: Desk,
 }
 
 impl World {
@@ -202,6 +206,7 @@ impl World {
             last_hands: &self.last_hands,
             place: self.thing.as_ref().map(|t| t.place),
             lineages: self.lineages,
+            desk: &self.desk,
         };
         Some(Saved {
             tick: self.tick,
@@ -241,6 +246,7 @@ impl World {
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
+        world.desk = core.desk;
         Ok(world)
     }
 }

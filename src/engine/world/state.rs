@@ -83,6 +83,11 @@ impl World {
         self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
     }
 
+    /// Where on its own tablet each pen is while in range: shares of the tablet's area.
+    pub fn tablets(&self) -> impl Iterator<Item = (DeviceId, glam::Vec2)> + '_ {
+        self.pens.iter().filter_map(|s| s.track.on_tablet.map(|at| (s.device, at)))
+    }
+
     /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
     pub fn curve_stroke(&self) -> Option<&CurveStroke> {
         self.pens.iter().map(|s| s.track.curve_stroke()).find(|d| !d.is_empty())

@@ -103,7 +103,11 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                 events.exit();
             }
             WindowEvent::Resized(size) => open.resize(size.width, size.height, wiring),
-            WindowEvent::ModifiersChanged(m) => open.mods = m.state(),
+            WindowEvent::ModifiersChanged(m) => {
+                open.mods = m.state();
+                open.lend_to_pens(wiring);
+            }
+            WindowEvent::Focused(focused) => open.tablets.unfocused = !focused,
             WindowEvent::CursorMoved { position, .. } => {
                 open.moved(Vec2::new(position.x as f32, position.y as f32), wiring);
             }

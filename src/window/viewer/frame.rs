@@ -17,7 +17,7 @@ use sculptd_engine::camera::Camera;
 impl WindowState {
     /// The ring under the pointer and under every other pen, their mirror images, the tracked
     /// hands.
-    fn lines(&self, state: &Published) -> (Vec<LineEnd>, Option<(Vec3, f32)>) {
+    fn lines(&self, state: &Published, wiring: &Wiring) -> (Vec<LineEnd>, Option<(Vec3, f32)>) {
         let mut lines = Vec::new();
         let mut brush = None;
         if self.ui_state.look.grid {
@@ -46,10 +46,13 @@ impl WindowState {
         let p = &self.pointer;
         let scale = self.egui.egui_ctx().pixels_per_point();
         let over_panel = self.over_panel(self.pointer.at);
+        let follows = self.pointer_is_a_pen(wiring);
         if let Some(modal) = &self.ui_state.modal {
             let at = Vec2::new(modal.from.x, modal.from.y) * scale;
             ring_at(self.view_point(at), 1.0, None, false);
-        } else if p.inside && (p.drag == Drag::Sculpt || (p.drag == Drag::None && !over_panel)) {
+        } else if p.inside
+            && (p.drag == Drag::Sculpt || (p.drag == Drag::None && !over_panel && !follows))
+        {
             let felt = state
                 .pens
                 .iter()
@@ -111,7 +114,7 @@ impl WindowState {
         }
         self.update_overlay_mesh(&state);
         self.shots(&state);
-        let (lines, brush) = self.lines(&state);
+        let (lines, brush) = self.lines(&state, wiring);
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.draw_clay(&state, (&lines, brush), &mut encoder, &texture.texture);
@@ -326,8 +329,14 @@ mod tests {
             modifiers: Modifiers::NONE,
         };
         let to = |x: f32| Event::PointerMoved(pos2(x, 0.0));
-        let events =
-            vec![to(1.0), button(1.0, true), button(1.0, false), to(2.0), button(2.0, true), to(3.0)];
+        let events = vec![
+            to(1.0),
+            button(1.0, true),
+            button(1.0, false),
+            to(2.0),
+            button(2.0, true),
+            to(3.0),
+        ];
         let passes = by_press(RawInput { events: events.clone(), ..Default::default() });
         assert_eq!(passes.iter().map(|p| p.events.len()).collect::<Vec<_>>(), [2, 1, 2, 1]);
         let all: Vec<Event> = passes.into_iter().flat_map(|p| p.events).collect();

@@ -25,7 +25,9 @@ impl WindowState {
         let pen = Pen {
             tool: Tool::Touch,
             // Over a panel it is as far from the clay as a pen beside its tablet.
-            in_range: self.pointer.inside && (tip || !self.over_panel(self.pointer.at)),
+            // And where it is a tablet's own pen, that pen is in range.
+            in_range: self.pointer.inside
+                && (tip || !self.over_panel(self.pointer.at) && !self.pointer_is_a_pen(wiring)),
             tip,
             pos_mm: self.pointer.at - corner,
             area_mm: size,
@@ -133,6 +135,8 @@ impl WindowState {
             return;
         }
         self.pointer.drag = match button {
+            // The pen's own samples sculpt.
+            MouseButton::Left if on_clay() && self.pointer_is_a_pen(wiring) => Drag::None,
             MouseButton::Left if on_clay() => Drag::Sculpt,
             MouseButton::Left => Drag::Orbit,
             MouseButton::Right if self.mods.shift_key() => Drag::Pan,

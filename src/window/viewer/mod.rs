@@ -28,6 +28,8 @@ mod ssao;
 mod state;
 mod step_picture_jobs;
 mod step_pictures;
+mod tablet_map;
+mod tablets;
 pub mod tasks;
 pub mod timelapse;
 mod turntable;

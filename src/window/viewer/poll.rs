@@ -39,13 +39,15 @@ impl WindowState {
     pub(super) fn poll(&mut self, wiring: &Wiring) {
         let state = wiring.published.load_full();
         let now = wiring.clock.now_us();
+        self.follow_tablets(&state, wiring);
         let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
         changed |= self.drawn_demo != (now < wiring.demo_until_us);
         changed |= self.camera_animation.is_some() || self.turning.is_some();
         changed |= self.take_reports(&state, wiring);
         changed |= self.follow(&state, wiring);
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
-            let devices = (wiring.devices)();
+            let mut devices = (wiring.devices)();
+            devices.extend(self.tablet_lines());
             changed |= self.ui_state.tab == Tab::Devices && devices != self.devices;
             changed |= self.ui_state.tab == Tab::Loop && !self.ui_state.hidden;
             (self.devices, self.listed_us) = (devices, now);

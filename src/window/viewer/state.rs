@@ -19,6 +19,7 @@ use super::preview::Preview;
 use super::renderer::Renderer;
 use super::snapshot_workers::SnapshotWorkers;
 use super::step_pictures::StepPictures;
+use super::tablets::Tablets;
 use super::tasks::Tasks;
 use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;
@@ -98,6 +99,7 @@ pub(super) struct WindowState {
     pub(super) clay_picture: Option<wgpu::Texture>,
     /// Buttons and fingers that went down on a panel and are still down.
     pub(super) held_on_panels: u32,
+    pub(super) tablets: Tablets,
 }
 
 impl WindowState {
@@ -229,6 +231,7 @@ impl WindowState {
             free: None,
             clay_picture: None,
             held_on_panels: 0,
+            tablets: Tablets::default(),
         };
         open.send_camera(wiring);
         Ok(open)

@@ -1,0 +1,330 @@
+//! Where on the screen a desktop puts the pen of a tablet, learned from pairs: a share of the
+//! tablet's area, and the desktop's pointer at that time.
+//!
+//! The desktop's map is affine (an area that is cropped, turned, laid over one screen or several),
+//! so it is fitted by least squares. Two things make a pair worth less: the pointer follows the pen
+//! some milliseconds later, which matters the more the faster the pen is, and a mouse may have moved
+//! the pointer. The delay is found by trying several; pairs far from the map are left out of a
+//! second fit (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987, reweighting).
+
+use std::collections::VecDeque;
+
+use glam::{DMat3, DVec2, DVec3};
+
+/// Pairs that are remembered: a few seconds of motion.
+const PAIRS: usize = 256;
+/// Pairs with which a first map is tried.
+const LEAST: usize = 12;
+/// Places of the pen that are remembered, for looking back by the delay.
+const TRAIL: usize = 512;
+/// Delays of the pointer behind the pen that are tried, microseconds.
+const DELAYS_US: [u64; 7] = [0, 8_000, 16_000, 25_000, 35_000, 50_000, 70_000];
+/// A map is believed while its pairs lie within so many pixels of it, in the median.
+const BELIEVED: f64 = 3.0;
+/// No map fits: the pointer does not follow the pen.
+const WILD: f64 = 24.0;
+/// Pairs beyond so many medians are not the pen's.
+const OUTLIER: f64 = 4.0;
+/// The part of the tablet, in shares, that the pairs must span in both directions: over less, the
+/// map's far corners would be guessed.
+const LEAST_SPAN: f64 = 0.02;
+/// A pen's pointer may be this far from where the map puts it, pixels: beyond, it is a mouse's.
+const NEAR: f64 = 32.0;
+/// So long may the pointer's events lie behind the pen, microseconds.
+const LATE_US: u64 = 250_000;
+
+/// From shares of a tablet's area to pixels of the whole desktop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScreenMap {
+    /// Where the area's top left corner lies.
+    pub origin: DVec2,
+    /// The area's upper edge, from left to right.
+    pub across: DVec2,
+    /// The area's left edge, from top to bottom.
+    pub down: DVec2,
+}
+
+impl ScreenMap {
+    /// Where a share of the area lies, pixels.
+    pub fn at(&self, share: DVec2) -> DVec2 {
+        self.origin + self.across * share.x + self.down * share.y
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    t_us: u64,
+    pointer: DVec2,
+}
+
+/// What is known of one tablet.
+#[derive(Debug, Default)]
+pub struct TabletMap {
+    /// Where the pen was, and when.
+    trail: VecDeque<(u64, DVec2)>,
+    pairs: VecDeque<Pair>,
+    /// Pairs taken since the last fit.
+    fresh: usize,
+    map: Option<ScreenMap>,
+    /// The delay of the pointer behind the pen, microseconds, and the median distance of the pairs
+    /// from the map, pixels.
+    fit: (u64, f64),
+    /// The pointer has moved while the pen was in range, in this visit.
+    together: bool,
+    /// The pointer goes where the pen does not: it is a mouse's.
+    apart: bool,
+}
+
+impl TabletMap {
+    /// The pen is here, in shares of its tablet's area.
+    pub fn pen(&mut self, t_us: u64, share: DVec2) {
+        if self.trail.back().is_none_or(|last| last.0 < t_us) {
+            self.trail.push_back((t_us, share));
+            if self.trail.len() > TRAIL {
+                self.trail.pop_front();
+            }
+        }
+    }
+
+    /// The pen has left its tablet: what came before is no trail of what comes.
+    pub fn left(&mut self) {
+        self.trail.clear();
+        (self.together, self.apart) = (false, false);
+    }
+
+    /// The pointer has moved here, in pixels of the whole desktop, while the pen was in range.
+    pub fn pointer(&mut self, t_us: u64, at: DVec2) {
+        if self.trail.is_empty() {
+            return;
+        }
+        self.together = true;
+        self.pairs.push_back(Pair { t_us, pointer: at });
+        if self.pairs.len() > PAIRS {
+            self.pairs.pop_front();
+        }
+        self.fresh += 1;
+        if self.fresh >= LEAST / 2 && self.pairs.len() >= LEAST {
+            self.fresh = 0;
+            self.learn();
+        }
+    }
+
+    /// The map, once it is known.
+    pub fn map(&self) -> Option<&ScreenMap> {
+        self.map.as_ref()
+    }
+
+    /// The pointer's delay behind the pen, microseconds, and how far the pairs lie from the map,
+    /// pixels, in the median.
+    pub fn fit(&self) -> (u64, f64) {
+        self.fit
+    }
+
+    /// Whether the pointer moves in this visit and nothing is known yet of why.
+    pub fn is_undecided(&self) -> bool {
+        self.map.is_none() && self.together && !self.apart
+    }
+
+    /// Whether a pointer at this pixel is this pen's.
+    pub fn owns(&self, now_us: u64, pointer: DVec2) -> bool {
+        let Some(map) = &self.map else { return false };
+        let recent = self.trail.iter().rev().take_while(|t| now_us.saturating_sub(t.0) <= LATE_US);
+        // A pen that rests sends nothing: its last place holds for as long as it is in range.
+        let resting = self.trail.back().into_iter();
+        recent.chain(resting).any(|t| map.at(t.1).distance(pointer) <= NEAR)
+    }
+
+    /// Where the pen was at a time, between two places; `None` before the trail.
+    fn share_at(&self, t_us: u64) -> Option<DVec2> {
+        let after = self.trail.partition_point(|p| p.0 <= t_us);
+        let before = self.trail.get(after.checked_sub(1)?)?;
+        Some(match self.trail.get(after) {
+            Some(next) => {
+                let part = (t_us - before.0) as f64 / (next.0 - before.0) as f64;
+                before.1.lerp(next.1, part)
+            }
+            None => before.1,
+        })
+    }
+
+    fn learn(&mut self) {
+        // Pairs older than the trail are of an earlier visit: they have done their part.
+        let oldest = self.trail.front().map_or(0, |t| t.0);
+        self.pairs.retain(|p| p.t_us >= oldest);
+        let best = DELAYS_US
+            .iter()
+            .filter_map(|&delay| self.try_delay(delay))
+            .min_by(|a, b| a.2.total_cmp(&b.2));
+        let Some((delay, map, error)) = best else { return };
+        if error <= BELIEVED {
+            (self.map, self.fit, self.apart) = (Some(map), (delay, error), false);
+        } else if self.pairs.len() >= 2 * LEAST && error > WILD {
+            // A mouse moves the pointer, or the desktop has another map than before: the old one
+            // goes only when it is contradicted for long.
+            self.apart = true;
+            let off = self.map.and_then(|known| self.median(&known, self.fit.0));
+            if self.pairs.len() >= PAIRS / 2 && off.is_some_and(|e| e > WILD) {
+                self.map = None;
+            }
+        }
+    }
+
+    fn samples(&self, delay_us: u64) -> Vec<(DVec2, DVec2, f64)> {
+        let step = 8_000;
+        self.pairs
+            .iter()
+            .filter_map(|p| {
+                let t = p.t_us.checked_sub(delay_us)?;
+                let share = self.share_at(t)?;
+                let speed = share.distance(self.share_at(t.saturating_sub(step)).unwrap_or(share));
+                // A pixel is a thousandth of a tablet, more or less: a pen that moves by that in
+                // a tick counts half.
+                Some((share, p.pointer, 1.0 / (1.0 + (speed * 1000.0).powi(2))))
+            })
+            .collect()
+    }
+
+    fn median(&self, map: &ScreenMap, delay_us: u64) -> Option<f64> {
+        median(self.samples(delay_us).iter().map(|s| map.at(s.0).distance(s.1)).collect())
+    }
+
+    /// The map with this delay, and the median distance of the pairs from it.
+    fn try_delay(&self, delay_us: u64) -> Option<(u64, ScreenMap, f64)> {
+        let all = self.samples(delay_us);
+        let first = least_squares(&all)?;
+        let middle = median(all.iter().map(|s| first.at(s.0).distance(s.1)).collect())?;
+        let limit = (middle * OUTLIER).max(1.0);
+        let kept: Vec<_> =
+            all.into_iter().filter(|s| first.at(s.0).distance(s.1) <= limit).collect();
+        let map = least_squares(&kept)?;
+        let error = median(kept.iter().map(|s| map.at(s.0).distance(s.1)).collect())?;
+        Some((delay_us, map, error))
+    }
+}
+
+fn median(mut all: Vec<f64>) -> Option<f64> {
+    let middle = all.len() / 2;
+    (!all.is_empty()).then(|| *all.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// The affine map with the least sum of weighted squares; `None` where the places span too little.
+fn least_squares(all: &[(DVec2, DVec2, f64)]) -> Option<ScreenMap> {
+    if all.len() < LEAST {
+        return None;
+    }
+    let lo = all.iter().fold(DVec2::INFINITY, |m, s| m.min(s.0));
+    let hi = all.iter().fold(DVec2::NEG_INFINITY, |m, s| m.max(s.0));
+    if (hi - lo).min_element() < LEAST_SPAN {
+        return None;
+    }
+    let middle = (lo + hi) * 0.5;
+    let (mut normal, mut x, mut y) = (DMat3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    for (share, pointer, weight) in all {
+        let row = (*share - middle).extend(1.0);
+        normal += DMat3::from_cols(row * row.x, row * row.y, row * row.z) * *weight;
+        x += row * (pointer.x * weight);
+        y += row * (pointer.y * weight);
+    }
+    let inverse = normal.inverse();
+    if !inverse.is_finite() {
+        return None;
+    }
+    let (x, y) = (inverse * x, inverse * y);
+    let (across, down) = (DVec2::new(x.x, y.x), DVec2::new(x.y, y.y));
+    let origin = DVec2::new(x.z, y.z) - across * middle.x - down * middle.y;
+    Some(ScreenMap { origin, across, down })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The greatest distance between the corners of two maps, pixels.
+    fn differs(a: &ScreenMap, b: &ScreenMap) -> f64 {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+        corners.into_iter().map(|c| a.at(c).distance(b.at(c))).fold(0.0, f64::max)
+    }
+
+    /// A pen that wanders over its tablet for a second at 133 Hz, and a desktop that follows it
+    /// `delay_us` later in whole pixels.
+    fn hover(truth: &ScreenMap, delay_us: u64, mouse: bool) -> TabletMap {
+        let place = |t_us: u64| {
+            let t = t_us as f64 * 1e-6;
+            DVec2::new(0.4 + 0.15 * (2.1 * t).sin(), 0.5 + 0.12 * (3.3 * t + 0.4).cos())
+        };
+        let mut map = TabletMap::default();
+        for i in 0..133u64 {
+            let t_us = 1_000_000 + i * 7_500;
+            map.pen(t_us, place(t_us));
+            let mut at = truth.at(place(t_us - delay_us)).round();
+            if mouse && i % 9 == 0 {
+                at += DVec2::new(300.0, -120.0);
+            }
+            map.pointer(t_us, at);
+        }
+        map
+    }
+
+    #[test]
+    fn the_map_is_right_to_two_pixels_after_a_second() {
+        let plain = ScreenMap {
+            origin: DVec2::ZERO,
+            across: DVec2::new(1920.0, 0.0),
+            down: DVec2::new(0.0, 1080.0),
+        };
+        // The right one of two screens, and a tablet that lies upside down.
+        let turned = ScreenMap {
+            origin: DVec2::new(3840.0, 1080.0),
+            across: DVec2::new(-1920.0, 0.0),
+            down: DVec2::new(0.0, -1080.0),
+        };
+        let portrait = ScreenMap {
+            origin: DVec2::new(1200.0, 30.0),
+            across: DVec2::new(0.0, 700.0),
+            down: DVec2::new(-900.0, 0.0),
+        };
+        for truth in [plain, turned, portrait] {
+            for delay_us in [0, 5_000, 16_000, 40_000] {
+                for mouse in [false, true] {
+                    let learned = hover(&truth, delay_us, mouse);
+                    let map = learned.map().expect("a map");
+                    // Where the pen has been; and the far corners, which it has not seen.
+                    for share in [DVec2::new(0.3, 0.4), DVec2::new(0.55, 0.6)] {
+                        let off = map.at(share).distance(truth.at(share));
+                        assert!(off < 2.0, "{off} pixels with {delay_us} us, mouse {mouse}");
+                    }
+                    let far = differs(map, &truth);
+                    assert!(far < 12.0, "{far} pixels at the corners");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_mouse_beside_a_pen_teaches_nothing_and_is_not_the_pen() {
+        let mut map = TabletMap::default();
+        for i in 0..200u64 {
+            let t = i as f64 * 0.03;
+            map.pen(i * 8_000, DVec2::new(0.5 + 0.2 * t.sin(), 0.5 + 0.2 * t.cos()));
+            let mouse = DVec2::new((i * 37 % 900) as f64, (i * 61 % 700) as f64);
+            map.pointer(i * 8_000, mouse);
+        }
+        assert!(map.map().is_none() && !map.is_undecided(), "{:?}", map.fit());
+        assert!(!map.owns(1_600_000, DVec2::new(500.0, 400.0)));
+    }
+
+    #[test]
+    fn the_pointer_is_the_pens_only_near_where_the_map_puts_it() {
+        let truth = ScreenMap {
+            origin: DVec2::new(10.0, 20.0),
+            across: DVec2::new(1500.0, 0.0),
+            down: DVec2::new(0.0, 900.0),
+        };
+        let map = hover(&truth, 8_000, false);
+        let (now, last) = *map.trail.back().expect("it has moved");
+        assert!(map.owns(now, truth.at(last) + DVec2::new(5.0, 5.0)));
+        // It rests for a minute and is still there.
+        assert!(map.owns(now + 60_000_000, truth.at(last)));
+        assert!(!map.owns(now, truth.at(last) + DVec2::new(400.0, 0.0)));
+    }
+}

@@ -1,0 +1,192 @@
+//! One pen, one stroke: a desktop moves its pointer by the pen that the daemon reads as well.
+//!
+//! Laws kept here:
+//! * A pointer that follows a tablet's pen is not a second pen: the tablet's own samples sculpt, at
+//!   the place where the desktop has the pointer, and with their pressure and tilt.
+//! * Over a panel, behind another window, and until the map is known, the pen is the pointer alone.
+//! * A mouse that is used meanwhile is a pen of its own.
+
+use std::sync::Arc;
+
+use glam::{DVec2, Vec2};
+
+use super::pointer::{Drag, lent};
+use super::state::WindowState;
+use super::tablet_map::TabletMap;
+use super::wiring::Wiring;
+use sculptd_daemon::Published;
+use sculptd_devices::DeviceId;
+use sculptd_engine::command::Command;
+use sculptd_engine::desk::{Desk, MAX_COVERS, MAX_TABLETS, PenPlace};
+
+/// Ids of tablets and serial pens; the others are no devices of a desktop.
+const TABLETS: std::ops::Range<u16> = 0..200;
+/// A map is sent again when it has moved by this share of the view: a third of a pixel.
+const MOVED: f32 = 2e-4;
+
+/// What the window knows of the tablets.
+#[derive(Debug, Default)]
+pub(super) struct Tablets {
+    known: Vec<(DeviceId, TabletMap)>,
+    /// Those whose pen is in range.
+    in_range: Vec<DeviceId>,
+    /// Where the pointer was when it was last paired with the pens.
+    paired: Option<Vec2>,
+    sent: Desk,
+    /// Another window has the keyboard.
+    pub(super) unfocused: bool,
+}
+
+impl WindowState {
+    /// A pixel of this window as one of the whole desktop.
+    fn on_screen(&self, at: Vec2) -> DVec2 {
+        // Wayland tells no window where it is: the map is then one to the window itself.
+        let corner = self.window.inner_position().unwrap_or_default();
+        at.as_dvec2() + DVec2::new(f64::from(corner.x), f64::from(corner.y))
+    }
+
+    /// Whether the pointer, where it is now, follows the pen of a tablet in range.
+    pub(super) fn pointer_is_a_pen(&self, wiring: &Wiring) -> bool {
+        let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
+        let in_range = |id: &DeviceId| self.tablets.in_range.contains(id);
+        self.tablets.known.iter().any(|(id, map)| in_range(id) && map.owns(now, at))
+    }
+
+    /// Looks at where pens and pointer are, learns, and tells the daemon what has changed.
+    pub(super) fn follow_tablets(&mut self, state: &Arc<Published>, wiring: &Wiring) {
+        let now = wiring.clock.now_us();
+        let tablets = &mut self.tablets;
+        let before = std::mem::take(&mut tablets.in_range);
+        for (id, share) in state.tablets.iter().flatten().filter(|t| TABLETS.contains(&t.0.0)) {
+            tablets.in_range.push(*id);
+            let at = tablets.known.iter().position(|t| t.0 == *id);
+            if at.is_none() && tablets.known.len() >= MAX_TABLETS {
+                continue;
+            }
+            let at = at.unwrap_or_else(|| {
+                tablets.known.push((*id, TabletMap::default()));
+                tablets.known.len() - 1
+            });
+            tablets.known[at].1.pen(state.figures.newest_us.min(now), share.as_dvec2());
+        }
+        for (id, map) in &mut tablets.known {
+            if before.contains(id) && !tablets.in_range.contains(id) {
+                map.left();
+            }
+        }
+        if self.pointer.inside && self.tablets.paired != Some(self.pointer.at) {
+            let moved = self.tablets.paired.replace(self.pointer.at).is_some();
+            let at = self.on_screen(self.pointer.at);
+            let Tablets { known, in_range, .. } = &mut self.tablets;
+            for (_, map) in known.iter_mut().filter(|t| moved && in_range.contains(&t.0)) {
+                map.pointer(now, at);
+            }
+        }
+        let desk = self.desk(wiring);
+        if differs(&desk, &self.tablets.sent) {
+            self.tablets.sent = desk;
+            let _ = wiring.commands.try_send(Command::Desk(desk));
+        }
+    }
+
+    fn desk(&self, wiring: &Wiring) -> Desk {
+        let mut desk = Desk::default();
+        let (corner, size) = self.view_rect();
+        let zero = self.on_screen(corner);
+        let view = |v: DVec2| v.as_vec2() / size;
+        for (slot, (id, map)) in desk.tablets.iter_mut().zip(&self.tablets.known) {
+            let place = match map.map() {
+                Some(map) => PenPlace::Mapped {
+                    origin: view(map.origin - zero),
+                    across: view(map.across),
+                    down: view(map.down),
+                },
+                None if map.is_undecided() => PenPlace::Unknown,
+                None => continue,
+            };
+            *slot = Some((*id, place));
+        }
+        // An installation has the whole screen, and nothing lies before it.
+        if wiring.kiosk.is_none() && desk.tablets.iter().any(Option::is_some) {
+            desk.away = self.tablets.unfocused || !self.pointer.inside;
+            for (slot, cover) in desk.covers.iter_mut().zip(self.covers()) {
+                *slot = Some(cover.map(|at| (at - corner) / size));
+            }
+        }
+        desk
+    }
+
+    /// What lies over the view and takes presses: least and greatest corner, pixels.
+    fn covers(&self) -> Vec<[Vec2; 2]> {
+        let context = self.egui.egui_ctx();
+        let scale = context.pixels_per_point();
+        let above = |layer: egui::LayerId| layer.order != egui::Order::Background;
+        let mut layers: Vec<egui::LayerId> =
+            context.memory(|m| m.areas().visible_layer_ids()).into_iter().collect();
+        layers.sort_unstable_by_key(|l| (l.order, l.id.value()));
+        let takes_presses =
+            |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(above);
+        layers
+            .into_iter()
+            .filter(|l| above(*l))
+            .filter_map(|l| context.memory(|m| m.area_rect(l.id)))
+            .filter(takes_presses)
+            .map(|r| [Vec2::new(r.min.x, r.min.y) * scale, Vec2::new(r.max.x, r.max.y) * scale])
+            .take(MAX_COVERS)
+            .collect()
+    }
+
+    /// Shift and Ctrl change the brush of a pen before it touches: its first sample comes to the
+    /// daemon sooner than the window hears of the press.
+    pub(super) fn lend_to_pens(&mut self, wiring: &Wiring) {
+        let busy = self.ui_state.modal.is_some() || self.ui_state.radial.is_some();
+        if busy || self.pointer.drag != Drag::None || self.tablets.in_range.is_empty() {
+            return;
+        }
+        let brush = self.pointer.lent.unwrap_or(wiring.published.load().brush);
+        let now = lent(brush, self.mods, &wiring.presets);
+        let before = self.pointer.lent;
+        self.pointer.lent = (now != brush).then_some(brush);
+        if self.pointer.lent != before {
+            let _ = wiring.commands.try_send(Command::Brush(now));
+        }
+    }
+
+    /// One line for each tablet that the pointer follows.
+    pub(super) fn tablet_lines(&self) -> Vec<String> {
+        let line = |(id, map): &(DeviceId, TabletMap)| {
+            let found = map.map()?;
+            let (delay_us, off) = map.fit();
+            let (w, h) = (found.across.length(), found.down.length());
+            let turn = found.across.y.atan2(found.across.x).to_degrees();
+            Some(format!(
+                "tablet {}: its area covers {w:.0} x {h:.0} pixels of the desktop from {:.0}, {:.0}, \
+                 turned by {turn:.0} degrees (found by itself, {off:.1} pixels off, the pointer \
+                 {} ms later)",
+                id.0,
+                found.origin.x,
+                found.origin.y,
+                delay_us / 1000
+            ))
+        };
+        self.tablets.known.iter().filter_map(line).collect()
+    }
+}
+
+/// Whether the daemon must hear of it.
+fn differs(a: &Desk, b: &Desk) -> bool {
+    let near = |a: Vec2, b: Vec2| (a - b).abs().max_element() <= MOVED;
+    let same = |pair: (&Option<(DeviceId, PenPlace)>, &Option<(DeviceId, PenPlace)>)| match pair {
+        (
+            Some((i, PenPlace::Mapped { origin, across, down })),
+            Some((j, PenPlace::Mapped { .. })),
+        ) => {
+            let Some((_, PenPlace::Mapped { origin: o, across: x, down: y })) = pair.1 else {
+                return false;
+            };
+            i == j && near(*origin, *o) && near(*across, *x) && near(*down, *y)
+        }
+        (a, b) => a == b,
+    };
+    a.away != b.away || a.covers != b.covers || !a.tablets.iter().zip(&b.tablets).all(same)
+}
