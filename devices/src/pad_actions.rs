@@ -168,7 +168,6 @@ impl ActionTable {
         let controls = BTreeMap::from([
             (Control::Barrel(1), hold("view.turn")),
             (Control::Barrel(2), hold("brush.radius-and-strength")),
-            (Control::Eraser, hold("brush.smooth")),
             (Control::Key(1), press("undo")),
             (Control::Key(2), press("redo")),
             (Control::Key(3), hold("brush.invert")),

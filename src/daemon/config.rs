@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_devices::calibration::Calibrations;
+use sculptd_devices::pad_actions::ActionTable;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::HandSettings;
 
@@ -127,6 +128,7 @@ pub struct DevicesConfig {
     pub models: BTreeMap<String, String>,
     pub ignore: Vec<String>,
     pub calibration: Calibrations,
+    pub actions: ActionTable,
 }
 
 impl Default for DevicesConfig {
@@ -139,6 +141,7 @@ impl Default for DevicesConfig {
             models: BTreeMap::new(),
             ignore: vec![],
             calibration: Calibrations::new(),
+            actions: ActionTable::default(),
         }
     }
 }
@@ -312,6 +315,7 @@ impl Config {
         for (name, calibration) in &self.devices.calibration {
             calibration.check().map_err(|e| format!("devices.calibration.\"{name}\".{e}"))?;
         }
+        crate::tablet_actions::check(&self.devices.actions).map_err(|e| format!("devices.{e}"))?;
         let h = &self.hand;
         within("hand.steady.min_cutoff", h.steady.min_cutoff, 0.05, 50.0)?;
         within("hand.steady.beta", h.steady.beta, 0.0, 10.0)?;

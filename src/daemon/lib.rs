@@ -29,6 +29,7 @@ pub mod simulated_loop;
 pub mod startup;
 #[cfg(unix)]
 pub mod systemd;
+pub mod tablet_actions;
 pub mod tick_statistics;
 pub mod trim;
 

@@ -18,6 +18,7 @@ use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::simulated_loop::{in_order_of_time, published_figures};
+use crate::tablet_actions::TabletActions;
 use crate::tick_statistics::TickStatistics;
 use sculptd_clay::Grafted;
 use sculptd_devices::queue::Receiver;
@@ -65,11 +66,26 @@ pub enum LiveError {
 
 impl Live {
     pub fn start(
-        mut world: World,
+        world: World,
         receiver: Receiver,
         clock: Clock,
         config: LoopConfig,
         drain_per_tick: usize,
+        journal: Option<Box<dyn Journal>>,
+    ) -> Result<Self, LiveError> {
+        Live::start_with(world, receiver, clock, config, (drain_per_tick, None), journal)
+    }
+
+    /// As [`Live::start`], with the controls of tablets at work.
+    ///
+    /// # Errors
+    /// Where a thread cannot be started.
+    pub fn start_with(
+        mut world: World,
+        receiver: Receiver,
+        clock: Clock,
+        config: LoopConfig,
+        (drain_per_tick, actions): (usize, Option<TabletActions>),
         journal: Option<Box<dyn Journal>>,
     ) -> Result<Self, LiveError> {
         let (commands, inbox) = command_queue(COMMANDS);
@@ -87,6 +103,7 @@ impl Live {
             stop: stop.clone(),
             rate_hz: config.rate_hz,
             drain_per_tick,
+            actions,
             journal,
             garbage,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
@@ -119,6 +136,7 @@ struct Ticking {
     stop: Arc<AtomicBool>,
     rate_hz: u32,
     drain_per_tick: usize,
+    actions: Option<TabletActions>,
     journal: Option<Box<dyn Journal>>,
     joiner: Option<BooleanJobs>,
     garbage: GarbageThread,
@@ -151,6 +169,9 @@ impl Ticking {
                     results.push(result);
                 }
                 commands.push(command);
+            }
+            if let Some(actions) = &mut self.actions {
+                actions.take(&mut samples, &self.world, &mut commands);
             }
             let begun = self.clock.now_ns();
             let report = *self.world.step(tick, &samples, &commands);

@@ -19,6 +19,7 @@ use crate::session::history::Handle;
 use crate::session::writer::WriterThread;
 use crate::simulated_loop::{Feed, summary};
 use crate::startup::{Area, Begun, RecordingFeed};
+use crate::tablet_actions::TabletActions;
 use crate::tick_statistics::Summary;
 use sculptd_clay::brush::Presets;
 use sculptd_devices::Clock;
@@ -141,9 +142,10 @@ impl LiveRun {
         let health = writing.as_ref().map(|t| t.health.clone());
         let history = writing.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
         let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
-        let drain = config.channel.drain_per_tick;
+        let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone());
+        let drain = (config.channel.drain_per_tick, Some(actions));
         let live =
-            Live::start(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)?;
+            Live::start_with(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)?;
         if let Some(history) = &history {
             history.connect(live.commands.clone());
         }

@@ -164,7 +164,8 @@ fn defaults_fill_what_a_table_leaves_out_and_nothing_takes_one_away() {
     let state = state();
     let of = |c| state.table.binding(c, 0).cloned();
     assert_eq!(of(Control::Barrel(1)), None);
-    assert_eq!(of(Control::Eraser), Some(Binding::Hold("brush.smooth".into())));
+    // The eraser carves by itself.
+    assert_eq!(of(Control::Eraser), None);
     assert!(matches!(of(Control::Key(3)), Some(Binding::Turn { .. })));
     ActionTable::defaults().check().unwrap();
 }

@@ -135,8 +135,9 @@ impl WindowState {
             return;
         }
         self.pointer.drag = match button {
-            // The pen's own samples sculpt.
+            // The pen's own samples sculpt, and its buttons have actions of their own.
             MouseButton::Left if on_clay() && self.pointer_is_a_pen(wiring) => Drag::None,
+            MouseButton::Right | MouseButton::Middle if self.pointer_is_a_pen(wiring) => Drag::None,
             MouseButton::Left if on_clay() => Drag::Sculpt,
             MouseButton::Left => Drag::Orbit,
             MouseButton::Right if self.mods.shift_key() => Drag::Pan,

@@ -1,0 +1,375 @@
+//! What the keys, wheels and barrel buttons of tablets do to the work: their changes become
+//! commands of the tick in which they came.
+//!
+//! Laws kept here:
+//! * The commands go into the journal as any others, and samples are changed before the world and
+//!   the journal see them: a replay needs neither the table nor this module.
+//! * A pen whose held button moves the view or a setting does not sculpt with the same motion.
+
+use glam::Vec2;
+
+use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
+use sculptd_devices::pad_actions::{
+    ActionEvent, ActionState, ActionTable, Binding, Control, TouchShape,
+};
+use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::world::World;
+
+/// Ids of tablets, serial pens and recordings of such; a pointer has its own buttons.
+const TABLETS: [std::ops::Range<u16>; 2] = [0..200, 300..400];
+/// Tablets whose controls are followed.
+const MOST: usize = 16;
+/// The radius grows by this power of e, and the strength by this much, over the tablet's width and
+/// height.
+const DRAG: f32 = 3.0;
+
+/// What a name in a table means here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Meaning {
+    Undo,
+    Redo,
+    Fit,
+    /// While held: the pen turns, slides or zooms the view.
+    Turn,
+    Slide,
+    Zoom,
+    /// While held: the pen drags the brush's radius (sideways) and strength (up and down).
+    RadiusAndStrength,
+    /// Carves where it would add, and the other way round; while held, or from now on.
+    Invert,
+    /// Another brush; while held, or from now on.
+    Brush(BrushKind),
+    /// Values.
+    Radius,
+    Strength,
+}
+
+/// The names that a table may use, for messages.
+pub const NAMES: &str = "undo, redo, view.fit, view.turn, view.slide, view.zoom, brush.radius, \
+    brush.strength, brush.radius-and-strength, brush.invert, or brush. and the name of a brush";
+
+fn meaning(name: &str) -> Option<Meaning> {
+    Some(match name {
+        "undo" => Meaning::Undo,
+        "redo" => Meaning::Redo,
+        "view.fit" => Meaning::Fit,
+        "view.turn" => Meaning::Turn,
+        "view.slide" => Meaning::Slide,
+        "view.zoom" => Meaning::Zoom,
+        "brush.radius-and-strength" => Meaning::RadiusAndStrength,
+        "brush.invert" => Meaning::Invert,
+        "brush.radius" => Meaning::Radius,
+        "brush.strength" => Meaning::Strength,
+        other => Meaning::Brush(other.strip_prefix("brush.")?.parse().ok()?),
+    })
+}
+
+/// Whether every name of a table is one that this program knows.
+///
+/// # Errors
+/// The control, the name that is not known, and those that are.
+pub fn check(table: &ActionTable) -> Result<(), String> {
+    table.check()?;
+    for (control, binding) in table.controls.iter().chain(table.modes.iter().flatten()) {
+        if let Binding::Press(name) | Binding::Hold(name) | Binding::Turn { value: name, .. } =
+            binding
+            && meaning(name).is_none()
+        {
+            return Err(format!("actions: {control}: '{name}': expected one of {NAMES}"));
+        }
+    }
+    Ok(())
+}
+
+/// One tablet's controls.
+#[derive(Debug)]
+struct Tablet {
+    id: DeviceId,
+    state: ActionState,
+    /// What its pen's motion does while a button is held.
+    held: Vec<Meaning>,
+    /// Where its pen was, shares of its area.
+    last: Option<Vec2>,
+    /// It is in the middle of a stroke, which a button does not break.
+    sculpts: bool,
+}
+
+/// The controls of all tablets.
+#[derive(Debug)]
+pub struct TabletActions {
+    table: ActionTable,
+    presets: Presets,
+    tablets: Vec<Tablet>,
+    /// The brush as it was before a held button changed it.
+    before: Option<BrushSettings>,
+}
+
+/// The commands of a tick as they grow: the second change goes on from the first.
+struct Asked<'a> {
+    brush: BrushSettings,
+    camera: Camera,
+    world: &'a World,
+    out: &'a mut Vec<Command>,
+}
+
+impl Asked<'_> {
+    fn brush(&mut self, brush: BrushSettings) {
+        self.brush = brush.clamped();
+        self.out.push(Command::Brush(self.brush));
+    }
+}
+
+impl TabletActions {
+    /// The table's own bindings over the defaults. A tablet with an eraser carves with it where the
+    /// table says nothing.
+    pub fn new(table: ActionTable, presets: Presets) -> Self {
+        let mut table = table.over(ActionTable::defaults());
+        // Which entry is a ring is not known of every tablet: a strip's binding serves both.
+        for n in 1..=2 {
+            if let Some(binding) = table.controls.get(&Control::Strip(n)).cloned() {
+                table.controls.entry(Control::Ring(n)).or_insert(binding);
+            }
+        }
+        TabletActions { table, presets, tablets: Vec::new(), before: None }
+    }
+
+    /// Takes the samples of a tick; what their controls ask for is added to the tick's commands.
+    pub fn take(&mut self, samples: &mut [Sample], world: &World, out: &mut Vec<Command>) {
+        let newest_brush = out.iter().rev().find_map(|c| match c {
+            Command::Brush(b) => Some(*b),
+            _ => None,
+        });
+        let newest_camera = out.iter().rev().find_map(|c| match c {
+            Command::Camera(c) => Some(*c),
+            _ => None,
+        });
+        let mut asked = Asked {
+            brush: newest_brush.unwrap_or(*world.brush()),
+            camera: newest_camera.unwrap_or(*world.camera()),
+            world,
+            out,
+        };
+        for sample in samples.iter_mut().filter(|s| TABLETS.iter().any(|t| t.contains(&s.device.0)))
+        {
+            let Some(i) = self.tablet(sample.device) else { continue };
+            let mut events = Vec::new();
+            let state = &mut self.tablets[i].state;
+            match &sample.body {
+                Body::Pad(pad) => state.pad(pad, &mut |e| events.push(e)),
+                Body::Pen(pen) => state.pen(pen, &mut |e| events.push(e)),
+                Body::Hands(_) => {}
+            }
+            events.into_iter().for_each(|e| self.apply(i, &e, &mut asked));
+            if let Body::Pen(pen) = &mut sample.body {
+                drag(&mut self.tablets[i], pen, &mut asked);
+            }
+        }
+    }
+
+    fn tablet(&mut self, id: DeviceId) -> Option<usize> {
+        let at = self.tablets.iter().position(|t| t.id == id);
+        if at.is_none() && self.tablets.len() < MOST {
+            // A ring's shorter way round is also right for a strip, where no finger jumps by half.
+            let state = ActionState::new(self.table.clone(), [TouchShape::Ring; 2]);
+            let (held, last) = (Vec::new(), None);
+            self.tablets.push(Tablet { id, state, held, last, sculpts: false });
+            return Some(self.tablets.len() - 1);
+        }
+        at
+    }
+
+    fn apply(&mut self, tablet: usize, event: &ActionEvent, asked: &mut Asked<'_>) {
+        match event {
+            ActionEvent::Pressed { action, held } => {
+                let Some(what) = meaning(action) else { return };
+                self.begin(tablet, what, *held, asked);
+            }
+            ActionEvent::Released { action } => {
+                let what = meaning(action);
+                self.tablets[tablet].held.retain(|m| Some(*m) != what);
+                let lends = matches!(what, Some(Meaning::Brush(_) | Meaning::Invert));
+                if let Some(before) = self.before.take_if(|_| lends) {
+                    asked.brush(before);
+                }
+            }
+            ActionEvent::Turned { value, amount } => match meaning(value) {
+                Some(Meaning::Radius) => {
+                    let radius = asked.brush.radius * (1.0 + amount.clamp(-0.9, 9.0));
+                    asked.brush(BrushSettings { radius, ..asked.brush });
+                }
+                Some(Meaning::Strength) => {
+                    let strength = asked.brush.strength + amount;
+                    asked.brush(BrushSettings { strength, ..asked.brush });
+                }
+                _ => {}
+            },
+            ActionEvent::Mode(_) => {}
+        }
+    }
+
+    fn begin(&mut self, tablet: usize, what: Meaning, held: bool, asked: &mut Asked<'_>) {
+        match what {
+            Meaning::Undo => asked.out.push(Command::Undo),
+            Meaning::Redo => asked.out.push(Command::Redo),
+            Meaning::Fit => {
+                let (lo, hi) = asked.world.mesh().bounds();
+                if lo.cmple(hi).all() {
+                    asked.camera.frame(lo, hi);
+                    asked.out.push(Command::Camera(asked.camera));
+                }
+            }
+            Meaning::Invert | Meaning::Brush(_) => {
+                if held {
+                    self.before.get_or_insert(asked.brush);
+                }
+                asked.brush(match what {
+                    Meaning::Brush(kind) => self.presets.switched(&asked.brush, kind),
+                    _ => BrushSettings { negative: !asked.brush.negative, ..asked.brush },
+                });
+            }
+            Meaning::Turn | Meaning::Slide | Meaning::Zoom | Meaning::RadiusAndStrength => {
+                self.tablets[tablet].held.push(what);
+            }
+            Meaning::Radius | Meaning::Strength => {}
+        }
+    }
+}
+
+/// The pen's motion, where a held button takes it: then its tip touches nothing.
+fn drag(tablet: &mut Tablet, pen: &mut Pen, asked: &mut Asked<'_>) {
+    let at = pen.pos_mm / pen.area_mm.max(Vec2::splat(1e-3));
+    let last = tablet.last.replace(at);
+    if !pen.in_range {
+        tablet.last = None;
+    }
+    let taken = tablet.held.last().copied().filter(|_| !tablet.sculpts);
+    tablet.sculpts = pen.tip && pen.in_range && taken.is_none();
+    let Some(what) = taken else { return };
+    pen.tip = false;
+    let Some(by) = last.map(|last| at - last).filter(|by| *by != Vec2::ZERO && pen.in_range) else {
+        return;
+    };
+    match what {
+        Meaning::Turn => asked.camera.orbit(by),
+        Meaning::Slide => asked.camera.pan(by),
+        Meaning::Zoom => asked.camera.zoom((-2.0 * by.y).exp()),
+        _ => {
+            let radius = asked.brush.radius * (DRAG * by.x).exp();
+            let strength = asked.brush.strength - by.y;
+            asked.brush(BrushSettings { radius, strength, ..asked.brush });
+            return;
+        }
+    }
+    asked.out.push(Command::Camera(asked.camera));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_clay::{Clay, Workers};
+    use sculptd_devices::Pad;
+    use sculptd_engine::world::WorldOptions;
+    use sculptd_geometry::shapes;
+
+    fn world() -> World {
+        let (ball, _) = shapes::uv_sphere(1.0, 12, 24).triangulate();
+        let mesh = Clay::build(&ball, &Default::default()).expect("a ball");
+        let brush = Presets::default().of(BrushKind::Draw);
+        let options =
+            WorldOptions { dab_budget: 1 << 20, undo_bytes: 1 << 20, hands: Default::default() };
+        World::new(mesh, Camera::default(), brush, Workers::new(1), options)
+    }
+
+    fn sample(body: Body) -> Sample {
+        Sample { device: DeviceId(3), t_us: 0, device_t_us: None, body }
+    }
+
+    fn pen(x: f32, buttons: u32, tip: bool) -> Sample {
+        sample(Body::Pen(Pen {
+            in_range: true,
+            tip,
+            buttons,
+            pos_mm: Vec2::new(x, 50.0),
+            area_mm: Vec2::splat(100.0),
+            ..Default::default()
+        }))
+    }
+
+    fn pad(keys: u32, wheel: i32) -> Sample {
+        sample(Body::Pad(Pad { keys, wheels: [wheel, 0], ..Default::default() }))
+    }
+
+    /// Steps the world by these samples; what was asked of it, and the samples as it took them.
+    fn step(
+        actions: &mut TabletActions,
+        world: &mut World,
+        mut samples: Vec<Sample>,
+    ) -> (Vec<Command>, Vec<Sample>) {
+        let mut commands = Vec::new();
+        actions.take(&mut samples, world, &mut commands);
+        world.step(world.tick() + 1, &samples, &commands);
+        (commands, samples)
+    }
+
+    fn actions() -> TabletActions {
+        TabletActions::new(ActionTable::default(), Presets::default())
+    }
+
+    #[test]
+    fn keys_undo_and_a_wheel_turns_the_radius() {
+        let (mut actions, mut world) = (actions(), world());
+        let (asked, _) = step(&mut actions, &mut world, vec![pad(1, 0)]);
+        assert!(matches!(asked[..], [Command::Undo]));
+        assert!(step(&mut actions, &mut world, vec![pad(1, 0)]).0.is_empty(), "once a press");
+        let before = world.brush().radius;
+        step(&mut actions, &mut world, vec![pad(0, 1), pad(0, 2)]);
+        let grown = world.brush().radius / before;
+        assert!((grown - 1.05 * 1.05).abs() < 1e-5, "two steps of five percent: {grown}");
+    }
+
+    #[test]
+    fn a_held_key_lends_a_brush_and_gives_back_the_one_before() {
+        let (mut actions, mut world) = (actions(), world());
+        let before = *world.brush();
+        step(&mut actions, &mut world, vec![pad(0b1000, 0)]);
+        assert_eq!(world.brush().kind, BrushKind::Smooth);
+        step(&mut actions, &mut world, vec![pad(0, 0)]);
+        assert_eq!(*world.brush(), before);
+    }
+
+    #[test]
+    fn a_barrel_button_turns_the_view_and_does_not_sculpt() {
+        let (mut actions, mut world) = (actions(), world());
+        let yaw = world.camera().yaw;
+        let (_, seen) = step(
+            &mut actions,
+            &mut world,
+            vec![pen(40.0, 1, false), pen(45.0, 1, true), pen(50.0, 1, true)],
+        );
+        assert!((world.camera().yaw - yaw).abs() > 0.1);
+        let tip = |s: &Sample| matches!(s.body, Body::Pen(p) if p.tip);
+        assert!(!seen.iter().any(tip));
+        // Released: the same pen sculpts, and a button in the middle of a stroke breaks nothing.
+        let (asked, seen) = step(
+            &mut actions,
+            &mut world,
+            vec![pen(50.0, 0, false), pen(50.0, 0, true), pen(51.0, 1, true), pen(52.0, 1, true)],
+        );
+        assert!(asked.is_empty());
+        assert_eq!(seen.iter().filter(|s| tip(s)).count(), 3);
+    }
+
+    #[test]
+    fn a_name_that_nobody_knows_is_refused_with_its_control() {
+        let table: ActionTable =
+            toml::from_str("[controls]\nkey-2 = { press = \"brush.clay\" }\n").expect("parses");
+        assert_eq!(check(&table), Ok(()));
+        let wrong: ActionTable =
+            toml::from_str("[controls]\nkey-2 = { press = \"fly\" }\n").expect("parses");
+        let said = check(&wrong).expect_err("refused");
+        assert!(said.contains("key-2") && said.contains("'fly'"), "{said}");
+        assert_eq!(check(&ActionTable::defaults()), Ok(()));
+    }
+}
