@@ -12,7 +12,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
-use crate::desk::Desk;
+use crate::desktop_layout::DesktopLayout;
 use crate::hand::{ReachBox, Similarity};
 use crate::payload::PayloadId;
 use crate::stroke::CurveAction;
@@ -63,8 +63,8 @@ pub enum Command {
     /// To the curve that a pen has laid with the method `curve`: drawn, put away, a handle less.
     CurveStroke(CurveAction),
     /// Where the tablets' pens are in the view, as a window has learned it, and what lies over the
-    /// view. A desk with values that are not finite is ignored.
-    Desk(Desk),
+    /// view. A desktop with values that are not finite is ignored.
+    DesktopLayout(DesktopLayout),
 }
 
 impl Command {
@@ -91,7 +91,7 @@ impl Command {
             | Command::Place(_)
             | Command::Reopened
             | Command::CurveStroke(_)
-            | Command::Desk(_) => false,
+            | Command::DesktopLayout(_) => false,
         }
     }
 

@@ -13,7 +13,7 @@
 
 pub mod camera;
 pub mod command;
-pub mod desk;
+pub mod desktop_layout;
 pub mod hand;
 pub mod old_layout;
 pub mod payload;

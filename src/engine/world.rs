@@ -19,7 +19,7 @@ pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SideData};
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
-use crate::desk::Desk;
+use crate::desktop_layout::DesktopLayout;
 use crate::hand::{Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity};
 use crate::payload::{Payload, PayloadStore};
 use crate::replaced::ReplacedClay;
@@ -94,7 +94,7 @@ pub struct World {
     extent: f32,
     pens: Vec<PenSlot>,
     /// Where the pens are in the view, and where they may begin.
-    desk: Desk,
+    desktop: DesktopLayout,
     scratch: Scratch,
     /// Strokes begun.
     strokes: u32,
@@ -136,7 +136,7 @@ impl World {
             middle: Vec3::ZERO,
             extent: 1.0,
             pens: Vec::with_capacity(MAX_PENS),
-            desk: Desk::default(),
+            desktop: DesktopLayout::default(),
             scratch: Scratch::default(),
             strokes: 0,
             hands: HandTools::new(options.hands),
@@ -223,9 +223,9 @@ impl World {
                     self.camera = *camera;
                 }
             }
-            Command::Desk(desk) => {
-                if desk.is_sane() {
-                    self.desk = *desk;
+            Command::DesktopLayout(desktop) => {
+                if desktop.is_sane() {
+                    self.desktop = *desktop;
                 }
             }
             Command::Undo => {
@@ -265,7 +265,7 @@ impl World {
                     self.lineages = old.lineages + 1;
                     self.mesh.set_object_id(self.lineages);
                     self.moments = old.moments.take();
-                    self.desk = old.desk;
+                    self.desktop = old.desktop;
                     self.tick = old.tick;
                     self.report = old.report;
                     std::mem::swap(&mut self.payloads, &mut old.payloads);
@@ -426,7 +426,7 @@ impl World {
                     });
                 match index {
                     Some(i) => {
-                        let on = (&self.desk, self.desk.place(sample.device));
+                        let on = (&self.desktop, self.desktop.place(sample.device));
                         let (path, aspect) = (&self.brush.path, self.camera.aspect);
                         self.pens[i].track.take(pen, path, aspect, on);
                     }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::curve::Curve;
 use super::spacer::Spacer;
 use super::surface::{Flow, PenPoint, StrokeMethod, Surface};
-use crate::desk::{Desk, PenPlace};
+use crate::desktop_layout::{DesktopLayout, PenPlace};
 use crate::stroke::curve_stroke::CurveStroke;
 use crate::stroke::stabilizer::Stabilizer;
 use sculptd_clay::brush::PathSettings;
@@ -116,13 +116,13 @@ pub struct Walked {
 }
 
 impl PenTrack {
-    /// Takes one pen sample of a tablet whose place on the desk is `place`.
+    /// Takes one pen sample of a tablet whose place on the desktop is `place`.
     pub fn take(
         &mut self,
         pen: &Pen,
         path: &PathSettings,
         aspect: f32,
-        (desk, place): (&Desk, Option<PenPlace>),
+        (desktop, place): (&DesktopLayout, Option<PenPlace>),
     ) {
         let share = pen.pos_mm / pen.area_mm.max(Vec2::splat(1e-3));
         let at = PenPoint {
@@ -132,7 +132,7 @@ impl PenTrack {
             inverted: pen.tool == Tool::Eraser,
         };
         let mut touches = pen.tip && pen.in_range;
-        let free = desk.is_free(place, at.view);
+        let free = desktop.is_free(place, at.view);
         self.refused = touches && !self.down && (self.refused || !free);
         touches &= !self.refused;
         self.on_tablet = pen.in_range.then_some(share);

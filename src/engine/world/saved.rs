@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::Jump;
-use crate::desk::Desk;
+use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandTools, HeldObject, Similarity};
 use crate::old_layout::{FieldCounts, from_bytes};
 use crate::payload::Payload;
@@ -103,7 +103,7 @@ struct CoreRef<'a> {
     last_hands: &'a Option<Hands>,
     place: Option<Similarity>,
     lineages: u32,
-    desk: &'a Desk,
+    desktop: &'a DesktopLayout,
 }
 
 #[derive(Deserialize)]
@@ -119,7 +119,7 @@ struct Core {
     place: Option<Similarity>,
     lineages: u32,
     #[serde(default)]
-    desk: Desk,
+    desktop: DesktopLayout,
 }
 
 impl World {
@@ -206,7 +206,7 @@ impl World {
             last_hands: &self.last_hands,
             place: self.thing.as_ref().map(|t| t.place),
             lineages: self.lineages,
-            desk: &self.desk,
+            desktop: &self.desktop,
         };
         Some(Saved {
             tick: self.tick,
@@ -246,7 +246,7 @@ impl World {
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
-        world.desk = core.desk;
+        world.desktop = core.desktop;
         Ok(world)
     }
 }

@@ -19,7 +19,7 @@ use super::preview::Preview;
 use super::renderer::Renderer;
 use super::snapshot_workers::SnapshotWorkers;
 use super::step_pictures::StepPictures;
-use super::tablets::Tablets;
+use super::tablet_map::Tablets;
 use super::tasks::Tasks;
 use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;

@@ -9,7 +9,10 @@
 
 use std::collections::VecDeque;
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, Vec2};
+
+use sculptd_devices::DeviceId;
+use sculptd_engine::desktop_layout::DesktopLayout;
 
 /// Pairs that are remembered: a few seconds of motion.
 const PAIRS: usize = 256;
@@ -73,6 +76,19 @@ pub struct TabletMap {
     together: bool,
     /// The pointer goes where the pen does not: it is a mouse's.
     apart: bool,
+}
+
+/// What the window knows of the tablets.
+#[derive(Debug, Default)]
+pub(super) struct Tablets {
+    pub(super) known: Vec<(DeviceId, TabletMap)>,
+    /// Those whose pen is in range.
+    pub(super) in_range: Vec<DeviceId>,
+    /// Where the pointer was when it was last paired with the pens.
+    pub(super) paired: Option<Vec2>,
+    pub(super) sent: DesktopLayout,
+    /// Another window has the keyboard.
+    pub(super) unfocused: bool,
 }
 
 impl TabletMap {

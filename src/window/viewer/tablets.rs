@@ -12,30 +12,17 @@ use glam::{DVec2, Vec2};
 
 use super::pointer::{Drag, lent};
 use super::state::WindowState;
-use super::tablet_map::TabletMap;
+use super::tablet_map::{TabletMap, Tablets};
 use super::wiring::Wiring;
 use sculptd_daemon::Published;
 use sculptd_devices::DeviceId;
 use sculptd_engine::command::Command;
-use sculptd_engine::desk::{Desk, MAX_COVERS, MAX_TABLETS, PenPlace};
+use sculptd_engine::desktop_layout::{DesktopLayout, MAX_COVERS, MAX_TABLETS, PenPlace};
 
 /// Ids of tablets and serial pens; the others are no devices of a desktop.
 const TABLETS: std::ops::Range<u16> = 0..200;
 /// A map is sent again when it has moved by this share of the view: a third of a pixel.
 const MOVED: f32 = 2e-4;
-
-/// What the window knows of the tablets.
-#[derive(Debug, Default)]
-pub(super) struct Tablets {
-    known: Vec<(DeviceId, TabletMap)>,
-    /// Those whose pen is in range.
-    in_range: Vec<DeviceId>,
-    /// Where the pointer was when it was last paired with the pens.
-    paired: Option<Vec2>,
-    sent: Desk,
-    /// Another window has the keyboard.
-    pub(super) unfocused: bool,
-}
 
 impl WindowState {
     /// A pixel of this window as one of the whole desktop.
@@ -82,19 +69,19 @@ impl WindowState {
                 map.pointer(now, at);
             }
         }
-        let desk = self.desk(wiring);
-        if differs(&desk, &self.tablets.sent) {
-            self.tablets.sent = desk;
-            let _ = wiring.commands.try_send(Command::Desk(desk));
+        let desktop = self.desktop(wiring);
+        if differs(&desktop, &self.tablets.sent) {
+            self.tablets.sent = desktop;
+            let _ = wiring.commands.try_send(Command::DesktopLayout(desktop));
         }
     }
 
-    fn desk(&self, wiring: &Wiring) -> Desk {
-        let mut desk = Desk::default();
+    fn desktop(&self, wiring: &Wiring) -> DesktopLayout {
+        let mut desktop = DesktopLayout::default();
         let (corner, size) = self.view_rect();
         let zero = self.on_screen(corner);
         let view = |v: DVec2| v.as_vec2() / size;
-        for (slot, (id, map)) in desk.tablets.iter_mut().zip(&self.tablets.known) {
+        for (slot, (id, map)) in desktop.tablets.iter_mut().zip(&self.tablets.known) {
             let place = match map.map() {
                 Some(map) => PenPlace::Mapped {
                     origin: view(map.origin - zero),
@@ -107,13 +94,13 @@ impl WindowState {
             *slot = Some((*id, place));
         }
         // An installation has the whole screen, and nothing lies before it.
-        if wiring.kiosk.is_none() && desk.tablets.iter().any(Option::is_some) {
-            desk.away = self.tablets.unfocused || !self.pointer.inside;
-            for (slot, cover) in desk.covers.iter_mut().zip(self.covers()) {
+        if wiring.kiosk.is_none() && desktop.tablets.iter().any(Option::is_some) {
+            desktop.away = self.tablets.unfocused || !self.pointer.inside;
+            for (slot, cover) in desktop.covers.iter_mut().zip(self.covers()) {
                 *slot = Some(cover.map(|at| (at - corner) / size));
             }
         }
-        desk
+        desktop
     }
 
     /// What lies over the view and takes presses: least and greatest corner, pixels.
@@ -174,7 +161,7 @@ impl WindowState {
 }
 
 /// Whether the daemon must hear of it.
-fn differs(a: &Desk, b: &Desk) -> bool {
+fn differs(a: &DesktopLayout, b: &DesktopLayout) -> bool {
     let near = |a: Vec2, b: Vec2| (a - b).abs().max_element() <= MOVED;
     let same = |pair: (&Option<(DeviceId, PenPlace)>, &Option<(DeviceId, PenPlace)>)| match pair {
         (

@@ -2,19 +2,19 @@
 //!
 //! A desktop moves its pointer by the same pen that the daemon reads, over whatever part of its
 //! screens it likes, and other things than the view lie under that pointer. A window learns the map
-//! and says it with [`crate::command::Command::Desk`]. Laws kept here:
-//! * The desk is plain data and part of the input, so a replay finds every pen where it was.
+//! and says it with [`crate::command::Command::DesktopLayout`]. Laws kept here:
+//! * The desktop is plain data and part of the input, so a replay finds every pen where it was.
 //! * Without a window's word a pen covers the view with its whole area and may begin a stroke
-//!   anywhere: a headless daemon has no desk.
+//!   anywhere: a headless daemon has no desktop.
 
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 use sculptd_devices::DeviceId;
 
-/// Tablets that a desk knows.
+/// Tablets that a desktop knows.
 pub const MAX_TABLETS: usize = 4;
-/// Surfaces over the view that a desk knows: menus, dialogs, floating panels.
+/// Surfaces over the view that a desktop knows: menus, dialogs, floating panels.
 pub const MAX_COVERS: usize = 8;
 /// Beyond the view by at most its own size: there is nothing to hit, and nothing to overflow.
 const FARTHEST: (f32, f32) = (-1.0, 2.0);
@@ -42,7 +42,7 @@ pub enum PenPlace {
 
 /// The places of all tablets, and what is free for them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Desk {
+pub struct DesktopLayout {
     /// The tablets that a desktop's pointer follows.
     pub tablets: [Option<(DeviceId, PenPlace)>; MAX_TABLETS],
     /// What lies over the view and takes presses: least and greatest corner, shares of the view.
@@ -76,7 +76,7 @@ impl PenPlace {
     }
 }
 
-impl Desk {
+impl DesktopLayout {
     /// What is known of one pen; `None`: no desktop follows it.
     pub fn place(&self, device: DeviceId) -> Option<PenPlace> {
         self.tablets.iter().flatten().find(|t| t.0 == device).map(|t| t.1)
@@ -114,22 +114,25 @@ mod tests {
             across: Vec2::new(2.0, 0.0),
             down: Vec2::new(0.0, 2.0),
         };
-        let desk = Desk {
+        let desktop = DesktopLayout {
             tablets: [Some((DeviceId(3), place)), None, None, None],
             covers: [Some([Vec2::splat(0.4), Vec2::splat(0.6)]); MAX_COVERS],
             away: false,
         };
-        assert!(desk.is_sane());
+        assert!(desktop.is_sane());
         assert_eq!(place.view(Vec2::splat(0.5)), Vec2::splat(0.5));
         assert_eq!(place.view(Vec2::ZERO), Vec2::splat(-0.5));
-        let known = desk.place(DeviceId(3));
-        assert!(desk.is_free(known, Vec2::splat(0.2)));
-        assert!(!desk.is_free(known, Vec2::splat(0.5)), "under a menu");
-        assert!(!desk.is_free(known, place.view(Vec2::ZERO)), "on a panel beside the view");
-        assert!(!Desk { away: true, ..desk }.is_free(known, Vec2::splat(0.2)));
-        assert!(desk.is_free(desk.place(DeviceId(4)), Vec2::splat(0.5)), "no desktop follows it");
+        let known = desktop.place(DeviceId(3));
+        assert!(desktop.is_free(known, Vec2::splat(0.2)));
+        assert!(!desktop.is_free(known, Vec2::splat(0.5)), "under a menu");
+        assert!(!desktop.is_free(known, place.view(Vec2::ZERO)), "on a panel beside the view");
+        assert!(!DesktopLayout { away: true, ..desktop }.is_free(known, Vec2::splat(0.2)));
+        assert!(
+            desktop.is_free(desktop.place(DeviceId(4)), Vec2::splat(0.5)),
+            "no desktop follows it"
+        );
         let wild = PenPlace::Mapped { origin: Vec2::NAN, across: Vec2::X, down: Vec2::Y };
-        let wild = Desk { tablets: [Some((DeviceId(3), wild)); MAX_TABLETS], ..desk };
+        let wild = DesktopLayout { tablets: [Some((DeviceId(3), wild)); MAX_TABLETS], ..desktop };
         assert!(!wild.is_sane());
     }
 }
