@@ -8,14 +8,16 @@ use std::time::Duration;
 
 use super::run::{export, stop_signal};
 use super::{Fail, display};
+use crate::settings::LANGUAGES;
 use sculptd_daemon::config::Config;
 use sculptd_daemon::kiosk::{KioskConfig, keeper};
-use sculptd_daemon::live::{Journal, Live};
+use sculptd_daemon::live::Live;
 use sculptd_daemon::session::Health;
 use sculptd_daemon::session::history::Handle;
 use sculptd_daemon::session::writer::WriterThread;
 use sculptd_daemon::simulated_loop::{Feed, summary};
 use sculptd_daemon::startup::{Area, Begun, RecordingFeed};
+use sculptd_daemon::tick::Journal;
 use sculptd_daemon::{Summary, adaptors, demo_devices};
 use sculptd_devices::Clock;
 use sculptd_devices::catalogue::Catalogue;
@@ -95,8 +97,8 @@ pub fn run(
     let keeper = match run.kiosk.zip(start) {
         None => None,
         Some((kiosk, start)) => {
-            let (words, staff) =
-                (kiosk.every_language().map_err(Fail::Config)?, !kiosk.staff_pin.is_empty());
+            let words = kiosk.every_language(LANGUAGES).map_err(Fail::Config)?;
+            let staff = !kiosk.staff_pin.is_empty();
             let (published, commands) = (live.published.clone(), live.commands.clone());
             let keeper = keeper::start(
                 kiosk,

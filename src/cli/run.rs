@@ -8,14 +8,15 @@ use std::sync::atomic::AtomicBool;
 use super::library;
 use super::live::{self, LiveRun, close_journal};
 use super::{Fail, Outcome, answer, display};
+use crate::settings::LANGUAGES;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::Summary;
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
-use sculptd_daemon::live::Journal;
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
 use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, StartupError};
+use sculptd_daemon::tick::Journal;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
@@ -104,6 +105,12 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             "a session that exists brings its own mesh: leave out --mesh, or name another session";
         return Err(Fail::Usage(text.into()));
     }
+    #[cfg(unix)]
+    if args.metrics.is_some() && !runs_live(args) {
+        let text = "--metrics needs a run on the wall's clock, and a recording that is played \
+                    headless runs on a simulated one: leave out --metrics, or --headless";
+        return Err(Fail::Usage(text.into()));
+    }
     let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     for dir in &config.devices.tablets {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
@@ -123,7 +130,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(kiosk) =
         kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
     {
-        let words = kiosk.words().map_err(Fail::Config)?;
+        let words = kiosk.words(LANGUAGES).map_err(Fail::Config)?;
         let (most, found) = (kiosk.max_triangles, begun.world.mesh().triangle_count());
         return Err(Fail::Input(format!(
             "{}: {found} triangles, at most {most} (max_triangles)",
@@ -131,7 +138,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         )));
     }
     let open_next = library::OpenNext::default();
-    let summary = if window || players.is_empty() || kiosk.is_some() {
+    let summary = if runs_live(args) {
         let run = LiveRun {
             window,
             full_screen: args.kiosk,
@@ -150,6 +157,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         };
         live::run(run, &config, begun, catalogue)?
     } else {
+        eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
         run_stepped(args, &config, begun, players)?
     };
     if let Some(own) = &own {
@@ -159,6 +167,12 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         return library::open(&next, args.config.as_deref());
     }
     report(&summary, args.stats.as_deref(), json)
+}
+
+/// Whether the run is on the wall's clock. Recordings that are played without a window and without
+/// visitors are stepped, so that they give the same bits every time.
+fn runs_live(args: &RunArgs) -> bool {
+    display::wanted(args.headless) || args.play_device.is_empty() || args.kiosk
 }
 
 /// The installation's settings, if it is one; what cannot be shown to visitors is said before any
@@ -171,7 +185,7 @@ fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
         Some(path) => KioskConfig::load(path).map_err(Fail::Config)?,
         None => KioskConfig::default(),
     };
-    config.words().map_err(Fail::Config)?;
+    config.words(LANGUAGES).map_err(Fail::Config)?;
     Ok(Some(config))
 }
 

@@ -14,6 +14,8 @@ pub mod control;
 pub mod demo_devices;
 pub mod doctor;
 pub mod garbage_thread;
+#[cfg(unix)]
+pub mod http;
 pub mod kiosk;
 pub mod live;
 #[cfg(unix)]
@@ -27,6 +29,7 @@ pub mod simulated_loop;
 pub mod startup;
 #[cfg(unix)]
 pub mod systemd;
+pub mod tick;
 pub mod tick_statistics;
 pub mod trim;
 
