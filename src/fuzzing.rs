@@ -67,6 +67,6 @@ pub fn session_bytes(folder: &Path, data: &[u8]) {
     if let Ok(opened) = opened {
         let workers = sculptd_clay::Workers::new(1);
         let _ = session::replay::replay(&opened, Some(400), workers, &Job::default());
-        let _ = session::history::reopen(&opened.path, &opened, Some(400), 1, &Job::default());
+        let _ = session::reopen(&opened.path, &opened, Some(400), 1, &Job::default());
     }
 }

@@ -98,16 +98,14 @@
 //!   that client.
 //! * `sculptd-events`, made by `daemon::control::events`: sends events to one client. Waits for:
 //!   the published state.
-//! * `sculptd-metrics`, made by `daemon::metrics`: answers requests for metrics. Waits for: its
-//!   socket.
+//! * `sculptd-metrics`, `sculptd-share`, made by `daemon::http`: serve metrics, and a visitor's
+//!   sculpture for download, each to many clients. Wait for: their socket, time.
 //! * `sculptd-service`, made by `daemon::service`: the watchdog of systemd, reload on SIGHUP. Waits
 //!   for: time, a signal.
 //! * `sculptd-kiosk`, made by `daemon::kiosk::keeper`: the cycle of an installation: attract,
 //!   sculpt, reset. Waits for: time, the published state.
 //! * `sculptd-gallery`, made by `daemon::kiosk::spool`: brings finished sculptures to their place.
 //!   Waits for: the disk, the network.
-//! * `sculptd-share`, made by `daemon::kiosk::share`: serves a visitor's sculpture for download.
-//!   Waits for: its socket.
 //! * `sculptd-player`, made by `cli::live`: plays recordings as devices. Waits for: the clock.
 //! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for: the
 //!   disk.
@@ -139,5 +137,6 @@ pub mod cli;
 #[doc(hidden)]
 pub mod fuzzing;
 mod presets;
+pub mod settings;
 
 pub use presets::presets;

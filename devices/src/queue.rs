@@ -237,6 +237,14 @@ impl Sender {
         self.keep(Kept { sample, motion });
     }
 
+    /// Counts a sample of motion that the adaptor itself replaced by a newer one, because more came
+    /// than its rate allows.
+    pub fn count_coalesced(&self, device: DeviceId) {
+        let counters = self.stats.device(device);
+        counters.sent.fetch_add(1, Relaxed);
+        counters.coalesced.fetch_add(1, Relaxed);
+    }
+
     /// Sends the kept samples, as far as there is room. True when nothing is left. An
     /// adaptor calls it whenever its device is silent.
     pub fn flush(&mut self) -> bool {

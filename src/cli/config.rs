@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::{Fail, Outcome, answer};
-use sculptd_daemon::config::{ConfigError, DEFAULTS, Resolved, usual_files};
+use crate::settings;
+use sculptd_daemon::config::{ConfigError, Resolved, usual_files};
 
 #[derive(Debug, clap::Subcommand)]
 pub enum ConfigCommand {
@@ -87,7 +88,9 @@ pub fn run(command: &ConfigCommand, as_json: bool) -> Outcome {
             });
         }
         ConfigCommand::Schema => {
-            answer(as_json, &json!({ "toml": DEFAULTS }), |out| out.write_all(DEFAULTS.as_bytes()));
+            answer(as_json, &json!({ "toml": settings::DAEMON }), |out| {
+                out.write_all(settings::DAEMON.as_bytes())
+            });
         }
     }
     Ok(())

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use sculptd_daemon::session::catalog::{self, ENDING};
 use sculptd_daemon::session::history::listing;
+use sculptd_daemon::session::in_use;
 
 use super::{Fail, Outcome};
 
@@ -152,7 +153,7 @@ pub fn prune(folder: &Path, now_s: u64, limits: &LibraryLimits) -> Vec<PathBuf> 
     for (i, entry) in entries(folder).into_iter().enumerate() {
         total += entry.bytes;
         let old = now_s.saturating_sub(entry.written_s) > limits.age_s;
-        if i < limits.keep || (!old && total <= limits.bytes) || catalog::in_use(&entry.path) {
+        if i < limits.keep || (!old && total <= limits.bytes) || in_use(&entry.path) {
             continue;
         }
         let whole = catalog::look(&entry.path).is_ok_and(|e| e.damage.is_none());
@@ -167,7 +168,7 @@ pub fn prune(folder: &Path, now_s: u64, limits: &LibraryLimits) -> Vec<PathBuf> 
 /// Removes a session in which nothing was done: its history is its start. Whether it went.
 pub fn remove_untouched(path: &Path) -> bool {
     let untouched = listing::read(path).is_ok_and(|h| h.places.len() == 1);
-    untouched && !catalog::in_use(path) && catalog::remove(path).is_ok()
+    untouched && !in_use(path) && catalog::remove(path).is_ok()
 }
 
 #[cfg(test)]

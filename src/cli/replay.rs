@@ -11,7 +11,7 @@ use sculptd_clay::{BuildError, Workers};
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::session;
 use sculptd_daemon::session::film::ReplayFrames;
-use sculptd_daemon::session::history::reopen;
+use sculptd_daemon::session::reopen;
 use sculptd_daemon::session::replay::{Replayed, replay_seen};
 use sculptd_daemon::session::{OpenError, Opened};
 use sculptd_engine::world::World;

@@ -8,15 +8,16 @@ use super::ending::{close_journal, export};
 use super::library;
 use super::live;
 use super::{Fail, Outcome, answer};
+use crate::settings::LANGUAGES;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::Summary;
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
-use sculptd_daemon::live::Journal;
 use sculptd_daemon::live_run::LiveOptions;
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
 use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, StartupError};
+use sculptd_daemon::tick::Journal;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
@@ -104,6 +105,16 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             "a session that exists brings its own mesh: leave out --mesh, or name another session";
         return Err(Fail::Usage(text.into()));
     }
+    let window = display::wanted(args.headless);
+    // Recordings that are played without a window and without visitors are stepped, so that they
+    // give the same bits every time.
+    let on_the_wall_clock = window || args.play_device.is_empty() || args.kiosk;
+    #[cfg(unix)]
+    if args.metrics.is_some() && !on_the_wall_clock {
+        let text = "--metrics needs a run on the wall's clock, and a recording that is played \
+                    headless runs on a simulated one: leave out --metrics, or --headless";
+        return Err(Fail::Usage(text.into()));
+    }
     let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     for dir in &config.devices.tablets {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
@@ -113,7 +124,6 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(kiosk) = &kiosk {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
-    let window = display::wanted(args.headless);
     // In a window a session is always on.
     let own = (window && args.session.is_none() && kiosk.is_none() && players.is_empty())
         .then(|| library::begin(args.mesh.as_deref()))
@@ -123,7 +133,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(kiosk) =
         kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
     {
-        let words = kiosk.words().map_err(Fail::Config)?;
+        let words = kiosk.words(LANGUAGES).map_err(Fail::Config)?;
         let (most, found) = (kiosk.max_triangles, begun.world.mesh().triangle_count());
         return Err(Fail::Input(format!(
             "{}: {found} triangles, at most {most} (max_triangles)",
@@ -131,9 +141,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         )));
     }
     let open_next = library::OpenNext::default();
-    let summary = if window || players.is_empty() || kiosk.is_some() {
+    let summary = if on_the_wall_clock {
         let options = LiveOptions {
             presets: crate::presets().clone(),
+            languages: LANGUAGES,
             kiosk,
             demo_devices: false,
             devices: true,
@@ -153,6 +164,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         };
         live::run(options, &shown, &config, begun, catalogue)?
     } else {
+        eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
         run_stepped(args, &config, begun, players)?
     };
     if let Some(own) = &own {
@@ -174,7 +186,7 @@ fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
         Some(path) => KioskConfig::load(path).map_err(Fail::Config)?,
         None => KioskConfig::default(),
     };
-    config.words().map_err(Fail::Config)?;
+    config.words(LANGUAGES).map_err(Fail::Config)?;
     Ok(Some(config))
 }
 

@@ -11,6 +11,7 @@ use sculptd_daemon::session::catalog;
 use sculptd_daemon::session::catalog::SessionEntry;
 use sculptd_daemon::session::history::retention::Freed;
 use sculptd_daemon::session::history::{Store, StoreError, listing};
+use sculptd_daemon::session::in_use;
 use sculptd_daemon::session::salvage::{SalvageError, salvage};
 use sculptd_geometry::io::write_beside;
 
@@ -118,7 +119,7 @@ fn prune(folder: &Path, keep: usize, history_mib: Option<u64>, yes: bool, json: 
             all.iter().filter(|e| e.damage.is_none() && !spare.iter().any(|s| s.path == e.path))
         {
             let bytes = e.history.as_ref().map_or(0, |h| h.total_bytes);
-            if bytes <= most || catalog::in_use(&e.path) {
+            if bytes <= most || in_use(&e.path) {
                 continue;
             }
             let fail = |why: StoreError| Fail::Input(format!("{}: {why}", e.path.display()));

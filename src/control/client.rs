@@ -26,6 +26,15 @@ pub enum ClientError {
         /// The socket.
         path: PathBuf,
     },
+    /// The socket lies in a folder of the temporary directory that is not this user's alone: what
+    /// listens there may be anybody.
+    #[error("{}: {why}", path.display())]
+    Foreign {
+        /// The socket.
+        path: PathBuf,
+        /// What is wrong with the folder.
+        why: String,
+    },
     /// The daemon did not answer in time, or closed the connection.
     #[error("{}: the daemon did not answer: {source}", path.display())]
     Silent {
@@ -67,8 +76,12 @@ impl Client {
     /// Connects. `patience` bounds each read and each write.
     ///
     /// # Errors
-    /// [`ClientError::Absent`] where nothing listens.
+    /// [`ClientError::Absent`] where nothing listens, [`ClientError::Foreign`] where another user
+    /// may.
     pub fn connect(path: &Path, patience: Duration) -> Result<Self, ClientError> {
+        if let Some(why) = foreign_folder(path) {
+            return Err(ClientError::Foreign { path: path.into(), why });
+        }
         let stream =
             UnixStream::connect(path).map_err(|_| ClientError::Absent { path: path.into() })?;
         let silent = |source| ClientError::Silent { path: path.into(), source };
@@ -206,6 +219,24 @@ pub fn default_path() -> PathBuf {
         Some(dir) if !dir.is_empty() => PathBuf::from(dir).join("sculptd.sock"),
         _ => std::env::temp_dir().join(format!("sculptd-{}", user_id())).join("sculptd.sock"),
     }
+}
+
+/// What is wrong with the fallback folder in the temporary directory, if the socket lies in it:
+/// another user may have made it, or may put a socket of their own into it.
+pub fn foreign_folder(path: &Path) -> Option<String> {
+    use std::os::unix::fs::MetadataExt;
+    let folder = path.parent()?;
+    let own = format!("sculptd-{}", user_id());
+    if folder.parent() != Some(&std::env::temp_dir()) || folder.file_name()? != own.as_str() {
+        return None;
+    }
+    // Where it is missing, nobody has made it.
+    let about = std::fs::symlink_metadata(folder).ok()?;
+    let remedy = "set XDG_RUNTIME_DIR to a folder of your own";
+    if !about.is_dir() || about.uid() != user_id() {
+        return Some(format!("the folder belongs to another user; {remedy}"));
+    }
+    (about.mode() & 0o077 != 0).then(|| format!("the folder is open to others; {remedy}"))
 }
 
 /// The user that this process runs as, from `/proc/self/status`, which needs no system call that

@@ -33,6 +33,14 @@ impl EventName {
     ];
 }
 
+/// Reply of `subscribe`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SubscribeReply {
+    /// The events that follow from now on.
+    pub events: Vec<EventName>,
+}
+
 /// The `params` of a line `{"jsonrpc": "2.0", "method": "event", "params": ...}`.
 ///
 /// ```

@@ -19,9 +19,10 @@ use crate::edit::{
     JumpParams, LevelParams, LevelReply, LoadReply, ProgressReply, TakeUpReply, ThicknessParams,
     ThicknessReply, TrimParams,
 };
+use crate::event::SubscribeReply;
 use crate::status::{
     HelloParams, HelloReply, MethodsReply, NoParams, SentReply, ShutdownReply, StatusParams,
-    StatusReply, SubscribeReply,
+    StatusReply,
 };
 use crate::view::{CameraSettings, ReachParams, ReachReply};
 use crate::wire::{Code, Envelope, RpcError};

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::brush::BrushSettings;
-use crate::event::EventName;
 
 /// The newest version of the protocol that these types describe.
 ///
@@ -158,14 +157,6 @@ pub struct JournalStatus {
     pub lost: u64,
     /// Why nothing can be written at present.
     pub fault: Option<String>,
-}
-
-/// Reply of `subscribe`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SubscribeReply {
-    /// The events that follow from now on.
-    pub events: Vec<EventName>,
 }
 
 /// Reply of `shutdown`.

@@ -1,6 +1,6 @@
 //! What was written -> what it means, resolved once, with the origin of every value.
 //!
-//! Layers, weakest first: the embedded defaults, the system's file, the user's file, `--config`,
+//! Layers, weakest first: the defaults of the code, the system's file, the user's file, `--config`,
 //! the command line. A layer is checked alone and strictly (an unknown key, a value out of range
 //! and a wrong type each name file and line) before it is laid over the others.
 
@@ -14,9 +14,6 @@ use sculptd_devices::calibration::Calibrations;
 use sculptd_devices::pad_actions::ActionTable;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::HandSettings;
-
-/// The embedded defaults, which are also the documentation of every key.
-pub const DEFAULTS: &str = include_str!("../../config/sculptd.toml");
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -220,9 +217,9 @@ impl Resolver {
             origins: BTreeMap::new(),
             presets: presets.clone(),
         };
-        // The embedded file is checked by a test; a build with a broken one falls back to the same
-        // values in code.
-        if let Ok(table) = DEFAULTS.parse() {
+        // As text, so that a number of 32 bits has the digits that a person would write.
+        let defaults = toml::to_string(&Config::default()).unwrap_or_default();
+        if let Ok(table) = defaults.parse() {
             resolver.lay(table, "default");
         }
         resolver
@@ -359,20 +356,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_embedded_file_is_the_code_s_own_defaults_and_names_every_key() {
-        let written: Config = toml::from_str(DEFAULTS).expect("the embedded defaults parse");
-        assert_eq!(written, Config::default());
-        let keys = |v: &toml::Value| -> Vec<String> {
-            let table = v.as_table().expect("a table");
-            table
-                .iter()
-                .flat_map(|(s, t)| {
-                    t.as_table().expect("sections").keys().map(move |k| format!("{s}.{k}"))
-                })
-                .collect()
-        };
-        let in_code = toml::Value::try_from(Config::default()).expect("serialises");
-        assert_eq!(keys(&DEFAULTS.parse::<toml::Table>().expect("parses").into()), keys(&in_code));
+    fn the_defaults_have_an_origin_and_the_values_of_the_code() {
+        let resolved = Resolved::defaults(&Presets::default());
+        let in_code = toml::Table::try_from(Config::default()).expect("it serialises");
+        for (section, keys) in &in_code {
+            for key in keys.as_table().expect("sections").keys() {
+                let origin = &resolved.origins[&format!("{section}.{key}")];
+                assert!(origin == "default" || section == "brush", "{section}.{key}: {origin}");
+            }
+        }
+        assert_eq!(resolved.config.hand, Config::default().hand);
+        assert_eq!(resolved.config.undo, Config::default().undo);
     }
 
     #[test]

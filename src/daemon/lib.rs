@@ -15,6 +15,8 @@ pub mod control;
 pub mod demo_devices;
 pub mod doctor;
 pub mod garbage_thread;
+#[cfg(unix)]
+pub mod http;
 pub mod kiosk;
 pub mod live;
 pub mod live_run;
@@ -30,6 +32,7 @@ pub mod startup;
 #[cfg(unix)]
 pub mod systemd;
 pub mod tablet_actions;
+pub mod tick;
 pub mod tick_statistics;
 pub mod trim;
 

@@ -17,8 +17,8 @@ use crate::boolean_jobs::BooleanJobs;
 use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
-use crate::simulated_loop::{in_order_of_time, published_figures};
 use crate::tablet_actions::TabletActions;
+use crate::tick::{Journal, in_order_of_time, published_figures};
 use crate::tick_statistics::TickStatistics;
 use sculptd_clay::Grafted;
 use sculptd_devices::queue::Receiver;
@@ -31,12 +31,8 @@ use sculptd_engine::world::World;
 pub const COMMANDS: usize = 1024;
 /// Commands taken a tick: the store beside the world has room for the payload of each.
 const COMMANDS_PER_TICK: usize = PayloadStore::CAPACITY;
-
-/// What a tick gave, for the journal: everything that changed the world.
-pub trait Journal: Send {
-    /// Called on the tick thread after every tick that had input; must not wait.
-    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &World);
-}
+/// Ticks after the stop for what the adaptors sent before it.
+const LAST_TICKS: u32 = 8;
 
 /// A running loop.
 #[derive(Debug)]
@@ -156,7 +152,11 @@ impl Ticking {
             Vec::with_capacity(COMMANDS_PER_TICK);
         let mut tick = self.world.tick();
         let mut newest = (0, 0, 0.0);
-        while !self.stop.load(Relaxed) {
+        let mut last = LAST_TICKS;
+        while !self.stop.load(Relaxed) || (last > 0 && self.receiver.waiting() > 0) {
+            if self.stop.load(Relaxed) {
+                last -= 1;
+            }
             pacer.wait(&self.clock, &sleeper);
             tick += 1;
             samples.clear();

@@ -12,14 +12,16 @@ use std::time::Duration;
 use crate::adaptors::{self, Adaptors};
 use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
+use crate::kiosk::settings::LanguageTexts;
 use crate::kiosk::{KioskConfig, keeper};
-use crate::live::{Journal, Live, LiveError};
+use crate::live::{Live, LiveError};
 use crate::session::Health;
 use crate::session::history::Handle;
 use crate::session::writer::WriterThread;
 use crate::simulated_loop::{Feed, summary};
 use crate::startup::{Area, Begun, RecordingFeed};
 use crate::tablet_actions::TabletActions;
+use crate::tick::Journal;
 use crate::tick_statistics::Summary;
 use sculptd_clay::brush::Presets;
 use sculptd_devices::Clock;
@@ -33,6 +35,8 @@ use sculptd_engine::world::World;
 pub struct LiveOptions {
     /// What each brush begins with.
     pub presets: Presets,
+    /// What the screen of an installation says, by the language's code.
+    pub languages: LanguageTexts<'static>,
     /// Visitors come and go.
     pub kiosk: Option<KioskConfig>,
     /// Simulated devices perform the demo.
@@ -174,7 +178,9 @@ impl LiveRun {
         };
         play(options.players, &clock, &factory, &stop)?;
         let kiosk = match options.kiosk.zip(first) {
-            Some((kiosk, first)) => Some(screen(kiosk, first, &live, &factory, &clock, &stop)?),
+            Some((kiosk, first)) => {
+                Some(screen((kiosk, options.languages), first, &live, &factory, &clock, &stop)?)
+            }
             None => None,
         };
         if let Some(seconds) = options.limit_s {
@@ -277,14 +283,14 @@ impl Served {
 
 /// Starts the keeper of an installation.
 fn screen(
-    kiosk: KioskConfig,
+    (kiosk, languages): (KioskConfig, LanguageTexts<'_>),
     first: keeper::Start,
     live: &Live,
     factory: &SenderFactory,
     clock: &Clock,
     stop: &Arc<AtomicBool>,
 ) -> Result<keeper::Screen, LiveRunError> {
-    let words = kiosk.every_language().map_err(LiveRunError::Kiosk)?;
+    let words = kiosk.every_language(languages).map_err(LiveRunError::Kiosk)?;
     let staff = !kiosk.staff_pin.is_empty();
     let (published, commands) = (live.published.clone(), live.commands.clone());
     let (clock, stop) = (clock.clone(), stop.clone());

@@ -8,11 +8,11 @@
 
 use std::time::Duration;
 
-use super::live::Journal;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs;
 use crate::command_queue::QueuedCommand;
+use crate::tick::{Journal, in_order_of_time};
 use crate::tick_statistics::{Losses, Summary, TickStatistics};
 use sculptd_clay::GarbageSink;
 use sculptd_devices::queue::Receiver;
@@ -190,20 +190,6 @@ fn await_arrival(
     }
 }
 
-/// By time, ties by device, equal ones as they came. Samples arrive nearly sorted, so an insertion
-/// sort is the quick one, and it needs no memory.
-pub fn in_order_of_time(samples: &mut [Sample]) {
-    for i in 1..samples.len() {
-        let mut j = i;
-        while j > 0
-            && (samples[j - 1].t_us, samples[j - 1].device) > (samples[j].t_us, samples[j].device)
-        {
-            samples.swap(j - 1, j);
-            j -= 1;
-        }
-    }
-}
-
 /// What a finished run says of itself.
 pub fn summary(
     figures: &TickStatistics,
@@ -226,29 +212,6 @@ pub fn summary(
         triangles: world.mesh().triangle_count() as u64,
         hash: format!("{:016x}", world.hash()),
         export,
-    }
-}
-
-/// The figures as a viewer sees them.
-pub fn published_figures(
-    figures: &TickStatistics,
-    receiver: &Receiver,
-    last_tick_ns: u64,
-) -> PublishedFigures {
-    let count = receiver.stats().total();
-    PublishedFigures {
-        ticks: figures.ticks,
-        samples: figures.samples,
-        dabs: figures.dabs,
-        vertices_moved: figures.vertices_moved,
-        overruns: figures.overruns,
-        tick_ms: figures.tick_ms(),
-        losses: Losses { motion: count.lost_motion, transition: count.lost_transition },
-        last_tick_ms: last_tick_ns as f64 / 1e6,
-        garbage_overflows: 0,
-        newest_us: 0,
-        newest_tick: 0,
-        input_to_snapshot_ms: 0.0,
     }
 }
 

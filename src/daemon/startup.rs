@@ -15,11 +15,12 @@ use sculptd_geometry::io::{MAX_FILE, ReadError, read_mesh_within};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
-use super::live::Journal;
+use super::session::CreateError;
 use super::session::format::Settings;
 use super::session::history::{StoreError, keeper::Keeper};
-use super::session::writer::{CreateError, WriterThread};
+use super::session::writer::WriterThread;
 use super::session::{self, OpenError, Opened, SessionWriter};
+use super::tick::Journal;
 use crate::simulated_loop::Feed;
 
 /// The work that one starts with: a ball of this many vertices, fine enough for detail, light on
@@ -138,23 +139,22 @@ pub fn begin(
         }
         let opened = opened?;
         let count = config.r#loop.worker_count();
-        let (mut replayed, purge, node) =
-            match session::history::reopen(&path, &opened, None, count, job) {
-                Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
-                None if opened.replay_from.is_some() => {
-                    let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
-                    let path = path.display().to_string();
-                    return Err(OpenError::NoCheckpoint { path, why }.into());
-                }
-                None => {
-                    let replayed =
-                        session::replay::replay(&opened, None, workers, job).map_err(|source| {
-                            StartupError::Build { path: path.display().to_string(), source }
-                        })?;
-                    let ticks = replayed.ticks;
-                    (replayed, ticks, None)
-                }
-            };
+        let (mut replayed, purge, node) = match session::reopen(&path, &opened, None, count, job) {
+            Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
+            None if opened.replay_from.is_some() => {
+                let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
+                let path = path.display().to_string();
+                return Err(OpenError::NoCheckpoint { path, why }.into());
+            }
+            None => {
+                let replayed =
+                    session::replay::replay(&opened, None, workers, job).map_err(|source| {
+                        StartupError::Build { path: path.display().to_string(), source }
+                    })?;
+                let ticks = replayed.ticks;
+                (replayed, ticks, None)
+            }
+        };
         if replayed.jumps_missed > 0 {
             warnings.push(format!(
                 "{}: {} jumps within the history could not be made again",

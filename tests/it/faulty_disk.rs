@@ -1,5 +1,6 @@
 //! A disk that fails at the n-th call, for every n of a short day: a session is begun, sculpted
-//! into, closed, and opened again. Every file access of the program and of SQLite goes through the
+//! into, closed, and opened again; sculptures of visitors are kept, listed and sent on. Every file
+//! access of the program and of SQLite goes through the
 //! C library, where `disk/faulty_disk.c` counts it and lets one fail.
 
 use std::path::{Path, PathBuf};
@@ -132,4 +133,170 @@ fn a_disk_that_fails_at_any_call_loses_nothing_in_silence() {
          that were refused at the start"
     );
     assert!(whole > 0);
+}
+
+/// A session that is read from a disk whose bits rot: what is shown is right, or it is told.
+#[test]
+fn bit_rot_at_any_read_of_a_session_is_never_shown_as_the_sculpture() {
+    let home = tempfile::tempdir().expect("a folder");
+    let Some(library) = shim(home.path()) else { return };
+    ball(home.path());
+    let (out, _) = day(&library, home.path(), None);
+    let good: Value = serde_json::from_slice(&out.stdout).expect("one JSON object");
+    let session = home.path().join("day.sculpt");
+    let replay = |at: Option<u64>| {
+        let count = home.path().join("reads");
+        let mut run = Command::new(env!("CARGO_BIN_EXE_sculptd"));
+        run.args(["replay", "--json"])
+            .arg(&session)
+            .env("LD_PRELOAD", &library)
+            .env("FAULTY_PATH", "day.sculpt")
+            .env("FAULTY_READS", "1")
+            .env("FAULTY_COUNT", &count);
+        if let Some(n) = at {
+            run.env("FAULTY_AT", n.to_string()).env("FAULTY_KIND", "rot");
+        }
+        let out = run.output().expect("runs");
+        let reads = std::fs::read_to_string(&count).ok().and_then(|t| t.parse().ok()).unwrap_or(0);
+        (out, reads)
+    };
+    let (out, reads) = replay(None);
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    assert!(reads > 20, "{reads} reads were counted");
+    let long = std::env::var_os("SCULPTD_LONG").is_some();
+    let step = if long { 1 } else { (reads / 25).max(1) };
+    let (mut right, mut told) = (0, 0);
+    for n in (1..=reads).step_by(step as usize) {
+        let (out, _) = replay(Some(n));
+        let said = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert!(!said.contains("panicked") && out.status.code().is_some(), "read {n}: {said}");
+        let shown: Value = serde_json::from_slice(&out.stdout).unwrap_or_default();
+        if out.status.success() && shown["loss"].is_null() {
+            assert_eq!(shown["hash"], good["hash"], "read {n} of {reads}: another sculpture");
+            right += 1;
+        } else {
+            told += 1;
+        }
+    }
+    println!("{} reads rotten of {reads}: {right} without effect, {told} told", right + told);
+    assert!(told > 0);
+}
+
+/// The folder of [`gallery_day`]; unset where nobody runs it.
+const GALLERY_DAY: &str = "SCULPTD_GALLERY_DAY";
+
+/// The sculpture of visitor `n`.
+fn visitor(n: u32) -> sculptd_geometry::PolyMesh {
+    sculptd_geometry::shapes::uv_sphere(1.0, 4 + n as u32, 8)
+}
+
+/// Three visitors' sculptures are kept, marked and sent, each told of on standard output. Run by
+/// the test below in a process of its own, whose disk fails.
+#[test]
+fn gallery_day() {
+    use sculptd_daemon::kiosk::{gallery, spool::Spool};
+    let Some(folder) = std::env::var_os(GALLERY_DAY).map(PathBuf::from) else {
+        println!("skipped: it is run with a disk that fails");
+        return;
+    };
+    let (here, there) = (folder.join("works"), folder.join("store"));
+    let place = there.display().to_string();
+    let spool = Spool::start(&here, &place);
+    for n in 1..=3 {
+        match gallery::keep(&here, &visitor(n)) {
+            Ok(path) => {
+                let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
+                println!("kept {n} {name}");
+                if let Ok(spool) = &spool {
+                    let _ = spool.offer(&name);
+                }
+            }
+            Err(e) => println!("refused {n}: {e}"),
+        }
+        if let Err(e) = gallery::audit(&folder.join("works/audit.jsonl"), 1, 2, 3, true) {
+            println!("no audit: {e}");
+        }
+    }
+    let quiet = crossbeam_channel::never::<()>();
+    for _ in 0..20 {
+        if sculptd_daemon::kiosk::spool::waiting(&here).is_empty() {
+            break;
+        }
+        let _ = quiet.recv_timeout(std::time::Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn a_gallery_on_a_disk_that_fails_at_any_call_keeps_what_it_said_it_kept() {
+    use sculptd_daemon::kiosk::{gallery, spool, spool::Spool};
+    let home = tempfile::tempdir().expect("a folder");
+    let Some(library) = shim(home.path()) else { return };
+    let run = |folder: &Path, at: Option<(u64, &str, bool)>| {
+        let count = home.path().join("calls");
+        let _ = std::fs::remove_file(&count);
+        let mut run = Command::new(std::env::current_exe().expect("this program"));
+        run.args(["--exact", "faulty_disk::gallery_day", "--nocapture", "--test-threads", "1"])
+            .env(GALLERY_DAY, folder)
+            .env("LD_PRELOAD", &library)
+            .env("FAULTY_PATH", "works")
+            .env("FAULTY_COUNT", &count);
+        if let Some((n, kind, ever)) = at {
+            run.env("FAULTY_AT", n.to_string()).env("FAULTY_KIND", kind);
+            if ever {
+                run.env("FAULTY_FOR", "ever");
+            }
+        }
+        let out = run.output().expect("runs");
+        let calls = std::fs::read_to_string(&count).ok().and_then(|t| t.parse().ok()).unwrap_or(0);
+        (out, calls)
+    };
+    let expected: Vec<Vec<u8>> = (1..=3)
+        .map(|n| {
+            let path = home.path().join(format!("{n}.glb"));
+            sculptd_geometry::io::write_mesh(&path, &visitor(n)).expect("written");
+            std::fs::read(path).expect("read")
+        })
+        .collect();
+    let dir = tempfile::tempdir().expect("a folder");
+    let (out, calls): (_, u64) = run(dir.path(), None);
+    assert!(out.status.success() && calls > 20, "{calls} calls");
+    let long = std::env::var_os("SCULPTD_LONG").is_some();
+    let step = if long { 1 } else { (calls / 12).max(1) };
+    let (mut days, mut kept, mut refused) = (0, 0, 0);
+    for (kind, ever) in [("eio", false), ("enospc", true), ("short", false)] {
+        for n in (1..=calls).step_by(step as usize) {
+            let case = format!("{kind} at call {n} of {calls}");
+            let dir = tempfile::tempdir().expect("a folder");
+            let (out, _) = run(dir.path(), Some((n, kind, ever)));
+            let said = String::from_utf8_lossy(&out.stdout).into_owned();
+            assert!(out.status.success(), "{case}: {said}");
+            days += 1;
+            let (here, there) = (dir.path().join("works"), dir.path().join("store"));
+            // The disk is well again, and the program starts anew.
+            let spool = Spool::start(&here, &there.display().to_string());
+            let spool = spool.unwrap_or_else(|e| panic!("{case}: {e}"));
+            crate::hostile::until("all is sent", || spool::waiting(&here).is_empty());
+            drop(spool);
+            for line in said.lines().filter(|l| l.contains("refused ")) {
+                refused += 1;
+                assert!(line.contains(": "), "{case}: {line}");
+            }
+            for line in said.lines().filter_map(|l| l.split("kept ").nth(1)) {
+                let (n, name) = line.split_once(' ').expect("a number and a name");
+                let content = &expected[n.parse::<usize>().expect("a number") - 1];
+                for folder in [&here, &there] {
+                    let found = std::fs::read(folder.join(name));
+                    assert!(found.is_ok_and(|f| f == *content), "{case}: {name} is not whole");
+                }
+                kept += 1;
+            }
+            // Whatever has a sculpture's name is a whole one.
+            for name in gallery::works(&here).expect("listed") {
+                let found = std::fs::read(here.join(&name)).expect("read");
+                assert!(expected.contains(&found), "{case}: {name} is torn");
+            }
+        }
+    }
+    println!("{days} days of {calls} calls: {kept} sculptures kept, {refused} refused");
+    assert!(kept > 0 && refused > 0);
 }

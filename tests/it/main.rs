@@ -16,6 +16,14 @@ mod gallery;
 mod golden;
 mod hands;
 mod history;
+#[cfg(target_os = "linux")]
+mod hostile;
+#[cfg(target_os = "linux")]
+mod hostile_files;
+#[cfg(target_os = "linux")]
+mod hostile_trackers;
+#[cfg(target_os = "linux")]
+mod http_server;
 mod io;
 mod io_files;
 mod kiosk;
@@ -33,6 +41,8 @@ use std::path::PathBuf;
 mod thickness;
 mod thickness_live;
 mod thickness_shapes;
+#[cfg(target_os = "linux")]
+mod time;
 mod tree;
 #[cfg(feature = "viewer")]
 mod viewer;

@@ -8,8 +8,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use sculptd::fuzzing;
-use sculptd_daemon::live::Journal;
 use sculptd_daemon::session;
+use sculptd_daemon::tick::Journal;
 use sculptd_devices::Clock;
 use sculptd_devices::sim::faults::Rng;
 use sculptd_geometry::io::encode;
@@ -160,7 +160,7 @@ fn json_rpc() {
 
 #[test]
 fn config() {
-    let mut seeds = vec![sculptd_daemon::config::DEFAULTS.as_bytes().to_vec()];
+    let mut seeds = vec![sculptd::settings::DAEMON.as_bytes().to_vec()];
     seeds.extend(
         [
             "[loop]\nrate_hz = 60\n",

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use sculptd_clay::{Clay, GarbageSink, Workers};
 use sculptd_daemon::config::Resolved;
-use sculptd_daemon::live::Journal;
 use sculptd_daemon::published::{Published, PublishedFigures, Publisher};
 use sculptd_daemon::session::format::Settings;
+use sculptd_daemon::tick::Journal;
 use sculptd_daemon::{session, startup};
 use sculptd_devices::serial::{Protocol, SerialDecoder};
 use sculptd_devices::sim::faults::Rng;
@@ -195,7 +195,7 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
         tick += 1;
         samples.clear();
         receiver.drain(4096, &mut samples);
-        sculptd_daemon::simulated_loop::in_order_of_time(&mut samples);
+        sculptd_daemon::tick::in_order_of_time(&mut samples);
         let commands = match rng.below(400) {
             0 => vec![Command::Undo],
             1 => vec![Command::Redo],

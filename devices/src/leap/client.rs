@@ -9,6 +9,7 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error as WsError, Message as WsMessage, WebSocket};
 
+use super::bounded_stream::{BoundedStream, SLICE};
 use super::clock_map::ClockMap;
 use super::frame::{Frame, MAX_MESSAGE, Message, parse_message};
 use crate::clock::Clock;
@@ -16,11 +17,8 @@ use crate::device_thread::{self, DeviceThread, StopToken};
 use crate::queue::Sender;
 use crate::sample::{Body, DeviceId, Hands, Sample};
 
-/// How long one read waits. Short: between reads, samples that are kept back go out and the stop
-/// flag is looked at.
-const READ_SLICE: Duration = Duration::from_millis(10);
-/// For the connection, and for each read of the handshake.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// For the connection.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// Silence, on our clock, after which the hands are taken to have left. A tracker that
 /// works sends a frame at least each 52 ms (the longest gap in real recordings).
 const SILENCE_US: u64 = 300_000;
@@ -28,8 +26,17 @@ const SILENCE_US: u64 = 300_000;
 const PING_US: u64 = 3_000_000;
 /// First and longest wait before another attempt to connect; it doubles in between.
 const BACK_OFF: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(8));
+/// Life of a connection after which the first wait is the shortest again: a server that sends one
+/// good frame and then breaks the rules is not asked four times a second.
+const GOOD_LIFE_US: u64 = 5_000_000;
 /// Frames that may come at once, before the rate is held to its cap.
 const BURST: f64 = 100.0;
+/// Messages a second of the machine's time, of whatever kind, and how many may come at once. Beyond
+/// it the connection is read more slowly, and the server's sends wait.
+const MESSAGES_PER_SECOND: u64 = 5_000;
+const MESSAGES_AT_ONCE: u64 = 5_000;
+/// Most bytes that wait to be sent to the server.
+const WRITE_BYTES: usize = 64 << 10;
 
 /// Where the tracker's service is, and what it is asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -43,7 +50,7 @@ pub struct LeapConfig {
     pub background: bool,
     /// The tracker is worn on the head and looks down the fingers.
     pub optimize_hmd: bool,
-    /// Frames a second beyond which motion is dropped and counted; transitions never are. The
+    /// Frames a second beyond which motion is coalesced and counted; transitions never are. The
     /// fastest tracker known gives 200.
     pub max_rate: f32,
     /// Under which id its samples go out.
@@ -84,7 +91,7 @@ pub struct LeapStatus {
     pub repaired: u64,
     /// Frames that repeated or preceded one that was already here.
     pub stale: u64,
-    /// Frames over the rate cap.
+    /// Frames over the rate cap; the channel counts them as coalesced.
     pub over_rate: u64,
     /// Hands left out of frames.
     pub dropped_hands: u64,
@@ -135,6 +142,11 @@ struct Client {
     map: ClockMap,
     /// The newest sample of this connection.
     last: Option<Sample>,
+    /// Motion over the rate cap: replaced by the next motion, sent before anything else and when
+    /// the rate allows it. So the last of a flood arrives, and every frame is counted.
+    held: Option<Sample>,
+    /// When the last frame came, on our clock.
+    framed_us: u64,
     tokens: f64,
     tokens_at_us: u64,
 }
@@ -154,6 +166,8 @@ impl Client {
             status,
             map: ClockMap::default(),
             last: None,
+            held: None,
+            framed_us: 0,
             tokens: BURST,
             tokens_at_us,
         }
@@ -166,7 +180,8 @@ impl Client {
     fn run(&mut self, stop: &StopToken) {
         let mut wait = BACK_OFF.0;
         while !stop.stopped() {
-            let why = match connect(&self.config) {
+            let begun = self.clock.now_us();
+            let why = match connect(&self.config, stop) {
                 Ok(socket) => {
                     self.note(|s| {
                         s.connected = true;
@@ -175,7 +190,8 @@ impl Client {
                     });
                     let before = self.frames();
                     let why = self.serve(socket, stop);
-                    if self.frames() > before {
+                    let lived = self.clock.now_us().saturating_sub(begun);
+                    if self.frames() > before && lived >= GOOD_LIFE_US {
                         wait = BACK_OFF.0;
                     }
                     why
@@ -190,10 +206,10 @@ impl Client {
                 s.last_error = Some(why);
             });
             // Kept samples are sent while there is nothing to read.
-            let slices = (wait.as_millis() / READ_SLICE.as_millis()) as u32;
+            let slices = (wait.as_millis() / SLICE.as_millis()) as u32;
             for _ in 0..slices {
                 self.sender.flush();
-                if stop.wait(READ_SLICE) {
+                if stop.wait(SLICE) {
                     return;
                 }
             }
@@ -207,11 +223,24 @@ impl Client {
     }
 
     /// Greets, then reads until something ends the connection; returns what did.
-    fn serve(&mut self, mut socket: WebSocket<TcpStream>, stop: &StopToken) -> String {
+    fn serve(&mut self, mut socket: TrackerSocket, stop: &StopToken) -> String {
         self.map = ClockMap::default();
         let (mut heard, mut pinged, mut greeted) = (self.clock.now_us(), false, false);
+        let mut rate = MessageRate::begin();
+        let mut whole = false;
         while !stop.stopped() {
-            match socket.read() {
+            if rate.exceeded() {
+                self.sender.flush();
+                stop.wait(SLICE);
+                continue;
+            }
+            socket.get_mut().begin_read(whole);
+            let read = socket.read();
+            whole = read.is_ok();
+            if whole {
+                rate.count();
+            }
+            match read {
                 Ok(WsMessage::Text(text)) => {
                     (heard, pinged) = (self.clock.now_us(), false);
                     if let Err(why) = self.message(&text) {
@@ -224,10 +253,8 @@ impl Client {
                 Ok(_) => (heard, pinged) = (self.clock.now_us(), false),
                 Err(WsError::Io(e)) if waited(&e) => {
                     self.sender.flush();
+                    self.send_held();
                     let silence = self.clock.now_us().saturating_sub(heard);
-                    if silence >= SILENCE_US {
-                        self.hands_gone();
-                    }
                     if silence >= 2 * PING_US {
                         return "the server fell silent".into();
                     }
@@ -237,6 +264,10 @@ impl Client {
                     }
                 }
                 Err(e) => return e.to_string(),
+            }
+            // Whatever else the server sends meanwhile: without frames there are no hands.
+            if self.clock.now_us().saturating_sub(self.framed_us) >= SILENCE_US {
+                self.hands_gone();
             }
             if !greeted && (self.last.is_some() || self.version().is_some()) {
                 greeted = true;
@@ -256,7 +287,7 @@ impl Client {
 
     /// One setting a message, each under 32 bytes: one known server copies them into a buffer of
     /// that size.
-    fn greet(&self, socket: &mut WebSocket<TcpStream>) -> Result<(), WsError> {
+    fn greet(&self, socket: &mut TrackerSocket) -> Result<(), WsError> {
         let (background, hmd) = (self.config.background, self.config.optimize_hmd);
         for wish in [
             format!(r#"{{"background":{background}}}"#),
@@ -300,6 +331,7 @@ impl Client {
 
     fn frame(&mut self, frame: &Frame) {
         let now = self.clock.now_us();
+        self.framed_us = now;
         if self.is_stale(frame) {
             return self.note(|s| s.stale += 1);
         }
@@ -310,11 +342,20 @@ impl Client {
             device_t_us: frame.device_t_us,
             body: Body::Hands(frame.hands),
         };
-        if !self.within_rate(now) && self.last.is_some_and(|l| sample.only_moved_since(&l)) {
-            return self.note(|s| s.over_rate += 1);
-        }
+        let moved = self.last.is_some_and(|l| sample.only_moved_since(&l));
         let since = self.last.map(|l| t_us.saturating_sub(l.t_us));
         self.last = Some(sample);
+        let within = self.within_rate(now);
+        if moved && self.held.take().is_some() {
+            self.sender.count_coalesced(sample.device);
+        }
+        if moved && !within {
+            self.held = Some(sample);
+            return self.note(|s| s.over_rate += 1);
+        }
+        if let Some(before) = self.held.take() {
+            self.sender.push(before);
+        }
         self.sender.push(sample);
         let delay = self.map.delay_us(now);
         self.note(|s| {
@@ -352,8 +393,21 @@ impl Client {
         within
     }
 
+    /// Sends the motion that was over the rate, as soon as the rate allows it.
+    fn send_held(&mut self) {
+        if self.held.is_some()
+            && self.within_rate(self.clock.now_us())
+            && let Some(sample) = self.held.take()
+        {
+            self.sender.push(sample);
+        }
+    }
+
     /// Sends a sample without hands if the last one had any.
     fn hands_gone(&mut self) {
+        if let Some(sample) = self.held.take() {
+            self.sender.push(sample);
+        }
         let Some(Sample { body: Body::Hands(last), .. }) = self.last else { return };
         self.last = None;
         if last.count > 0 {
@@ -376,8 +430,34 @@ fn waited(e: &std::io::Error) -> bool {
     )
 }
 
-/// Connects and shakes hands, every step with a time-out.
-fn connect(config: &LeapConfig) -> Result<WebSocket<TcpStream>, String> {
+/// A connection to a tracker's service.
+type TrackerSocket = WebSocket<BoundedStream>;
+
+/// Messages of one connection over the machine's time.
+#[derive(Debug)]
+struct MessageRate {
+    clock: Clock,
+    /// Time up to which the messages that came have used the rate, microseconds.
+    used_us: u64,
+}
+
+impl MessageRate {
+    fn begin() -> Self {
+        MessageRate { clock: Clock::monotonic(), used_us: 0 }
+    }
+
+    fn count(&mut self) {
+        self.used_us = self.used_us.max(self.clock.now_us()) + 1_000_000 / MESSAGES_PER_SECOND;
+    }
+
+    fn exceeded(&self) -> bool {
+        let ahead = MESSAGES_AT_ONCE * 1_000_000 / MESSAGES_PER_SECOND;
+        self.used_us > self.clock.now_us() + ahead
+    }
+}
+
+/// Connects and shakes hands, every step with a time-out; `stop` ends it too.
+fn connect(config: &LeapConfig, stop: &StopToken) -> Result<TrackerSocket, String> {
     let request =
         config.url.as_str().into_client_request().map_err(|e| format!("{}: {e}", config.url))?;
     if request.uri().scheme_str() != Some("ws") {
@@ -393,19 +473,15 @@ fn connect(config: &LeapConfig) -> Result<WebSocket<TcpStream>, String> {
         .ok_or_else(|| format!("{host} is another machine; set allow_remote to use it"))?;
     let stream =
         TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
-    let prepare =
-        |wait| stream.set_nodelay(true).and_then(|()| stream.set_read_timeout(Some(wait)));
-    prepare(PATIENCE)
-        .and_then(|()| stream.set_write_timeout(Some(PATIENCE)))
-        .map_err(|e| e.to_string())?;
     let limits = WebSocketConfig::default()
         .max_message_size(Some(MAX_MESSAGE))
         .max_frame_size(Some(MAX_MESSAGE))
-        .read_buffer_size(32 * 1024);
-    let reader = stream.try_clone().map_err(|e| e.to_string())?;
-    let (socket, _) = tungstenite::client::client_with_config(request, reader, Some(limits))
+        .read_buffer_size(32 * 1024)
+        .write_buffer_size(0)
+        .max_write_buffer_size(WRITE_BYTES);
+    let stream = BoundedStream::new(stream, stop.clone()).map_err(|e| format!("{place}: {e}"))?;
+    let (socket, _) = tungstenite::client::client_with_config(request, stream, Some(limits))
         .map_err(|e| format!("{place}: {e}"))?;
-    prepare(READ_SLICE).map_err(|e| e.to_string())?;
     Ok(socket)
 }
 

@@ -228,11 +228,9 @@ fn a_server_that_breaks_every_rule_is_survived() {
     let mut reasons = Vec::new();
     for _ in 0..n {
         // Each attempt by hand: the back-off has its own test and would take a minute here.
-        let why = match connect(&client.config) {
-            Ok(socket) => {
-                let (_hold, stop) = device_thread::pair();
-                client.serve(socket, &stop)
-            }
+        let (_hold, stop) = device_thread::pair();
+        let why = match connect(&client.config, &stop) {
+            Ok(socket) => client.serve(socket, &stop),
             Err(why) => why,
         };
         client.hands_gone();
@@ -251,8 +249,10 @@ fn a_server_that_breaks_every_rule_is_survived() {
 
 #[test]
 fn another_machine_is_not_asked_unless_allowed_and_only_ws_is_spoken() {
-    let to =
-        |url: &str| connect(&LeapConfig { url: url.into(), ..LeapConfig::default() }).unwrap_err();
+    let (_hold, stop) = device_thread::pair();
+    let to = |url: &str| {
+        connect(&LeapConfig { url: url.into(), ..LeapConfig::default() }, &stop).unwrap_err()
+    };
     assert!(to("ws://192.0.2.1:6437/v6.json").contains("allow_remote"));
     assert!(to("wss://127.0.0.1:6437/v6.json").contains("only ws://"));
     assert!(to("::::").contains("::::"));

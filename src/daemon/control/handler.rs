@@ -17,6 +17,7 @@ use sculptd_clay::brush::{self, BrushKind, Picture};
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
+use sculptd_control::event;
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
@@ -71,7 +72,7 @@ fn merge<T: Serialize + DeserializeOwned>(now: &T, named: impl Serialize) -> Res
 
 /// The brush in hand with the named settings. Another brush comes with its own settings, and what
 /// else is named is laid over them.
-pub(super) fn merged_brush(
+fn merged_brush(
     presets: &brush::Presets,
     shown: &Published,
     named: &asked::BrushSettings,
@@ -228,9 +229,15 @@ impl Handler for Host {
     fn stroke(&self, params: asked::StrokeParams) -> Result<asked::StrokeReply, RpcError> {
         params.check()?;
         let pen = self.pen.as_ref().ok_or_else(|| failed("this run has no pen for strokes"))?;
+        let shown = self.published.load_full();
+        let brush = params.brush.as_ref().map(|b| merged_brush(&self.presets, &shown, b));
+        let brush = brush.transpose()?;
+        let link = self.link();
         match pen.try_lock() {
-            Ok(mut pen) => pen.draw(self, &params),
-            Err(std::sync::TryLockError::Poisoned(pen)) => pen.into_inner().draw(self, &params),
+            Ok(mut pen) => pen.draw(link, &params, brush),
+            Err(std::sync::TryLockError::Poisoned(pen)) => {
+                pen.into_inner().draw(link, &params, brush)
+            }
             Err(std::sync::TryLockError::WouldBlock) => Err(failed("another stroke is under way")),
         }
     }
@@ -395,9 +402,9 @@ impl Handler for Host {
         Ok(ReachReply { measuring: reach.is_none() })
     }
 
-    fn subscribe(&self, _: NoParams) -> Result<status::SubscribeReply, RpcError> {
-        let events = sculptd_control::event::EventName::ALL.into();
-        Ok(status::SubscribeReply { events })
+    fn subscribe(&self, _: NoParams) -> Result<event::SubscribeReply, RpcError> {
+        let events = event::EventName::ALL.into();
+        Ok(event::SubscribeReply { events })
     }
 
     fn shutdown(&self, _: NoParams) -> Result<status::ShutdownReply, RpcError> {

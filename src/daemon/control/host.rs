@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use arc_swap::ArcSwap;
 
+use super::loop_link::LoopLink;
 use super::stroke::VirtualPen;
 use crate::Published;
 use crate::command_queue::{CommandSender, QueuedCommand};
@@ -58,8 +59,12 @@ impl Host {
 
     /// Hands a command to the loop.
     pub(super) fn send(&self, command: impl Into<QueuedCommand>) -> Result<(), RpcError> {
-        let full = "the loop has more commands waiting than it can take; try again";
-        self.commands.try_send(command).map_err(|_| RpcError::failed(full))
+        self.link().send(command)
+    }
+
+    /// The loop alone.
+    pub(super) fn link(&self) -> LoopLink<'_> {
+        LoopLink { commands: &self.commands, published: &self.published, stop: &self.stop }
     }
 
     /// Takes the one place for a Boolean. It is given back when the guard is dropped, by a panic

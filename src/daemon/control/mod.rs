@@ -15,6 +15,7 @@
 pub mod events;
 pub mod handler;
 pub mod host;
+pub mod loop_link;
 pub mod server;
 pub mod stroke;
 

@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use super::host::{Host, locked};
 use super::{IDLE_SECONDS, MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, user_id};
+use sculptd_control::client::foreign_folder;
 use sculptd_control::method::{self, ALWAYS_ANSWERED};
 use sculptd_control::wire::{Code, Response, parse};
 use sculptd_control::{Request, RpcError};
@@ -26,6 +27,8 @@ const OWNER_PATIENCE: Duration = Duration::from_secs(2);
 pub enum ServeError {
     #[error("{path}: a daemon is listening here already")]
     Taken { path: PathBuf },
+    #[error("{path}: {why}")]
+    Foreign { path: PathBuf, why: String },
     #[error("{path}: {source}")]
     Io { path: PathBuf, source: std::io::Error },
 }
@@ -42,7 +45,8 @@ impl Server {
     /// subscribed.
     ///
     /// # Errors
-    /// Where another daemon listens there, and what the system says.
+    /// Where another daemon listens there, where the folder is another user's, and what the system
+    /// says.
     pub fn start(path: &Path, host: Host) -> Result<Self, ServeError> {
         Server::start_with_idle(path, host, Duration::from_secs(IDLE_SECONDS))
     }
@@ -55,6 +59,9 @@ impl Server {
         let io = |source| ServeError::Io { path: path.into(), source };
         if let Some(dir) = path.parent().filter(|d| !d.exists()) {
             std::fs::DirBuilder::new().recursive(true).mode(0o700).create(dir).map_err(io)?;
+        }
+        if let Some(why) = foreign_folder(path) {
+            return Err(ServeError::Foreign { path: path.into(), why });
         }
         // A socket that nobody answers is what a killed daemon left behind.
         if path.symlink_metadata().is_ok_and(|m| m.file_type().is_socket()) {

@@ -5,9 +5,10 @@ use std::time::Duration;
 
 use glam::{Vec2, Vec3};
 
-use super::host::Host;
+use super::loop_link::LoopLink;
 use crate::Published;
 use crate::adaptors::CONTROL_PEN_ID;
+use sculptd_clay::brush::BrushSettings;
 use sculptd_control::RpcError;
 use sculptd_control::brush::{StrokeParams, StrokePoint, StrokeReply};
 use sculptd_devices::queue::{Sender, SenderFactory};
@@ -38,30 +39,34 @@ impl VirtualPen {
     }
 
     /// Makes the stroke in the time that its points say, and waits until the loop has taken it.
+    /// `brush`: the brush to make it with, instead of the one in hand.
     ///
     /// # Errors
     /// A point in space that is not seen, and a loop that takes nothing.
-    pub fn draw(&mut self, host: &Host, stroke: &StrokeParams) -> Result<StrokeReply, RpcError> {
-        let shown = host.published.load_full();
+    pub fn draw(
+        &mut self,
+        link: LoopLink<'_>,
+        stroke: &StrokeParams,
+        brush: Option<BrushSettings>,
+    ) -> Result<StrokeReply, RpcError> {
+        let shown = link.published.load_full();
         let points = in_view(&shown, stroke)?;
-        let brush =
-            stroke.brush.as_ref().map(|b| super::handler::merged_brush(&host.presets, &shown, b));
-        if let Some(brush) = brush.transpose()? {
-            host.send(Command::Brush(brush))?;
+        if let Some(brush) = brush {
+            link.send(Command::Brush(brush))?;
         }
-        let drawn = self.send_samples(host, &points, shown.camera.aspect);
-        if stroke.brush.is_some() {
+        let drawn = self.send_samples(link, &points, shown.camera.aspect);
+        if brush.is_some() {
             // Whatever came of it: the brush in hand is the person's. A stroke that follows finds
             // it in place.
-            host.send(Command::Brush(shown.brush))?;
-            self.await_tick(host)?;
+            link.send(Command::Brush(shown.brush))?;
+            self.await_tick(link)?;
         }
         drawn
     }
 
     fn send_samples(
         &mut self,
-        host: &Host,
+        link: LoopLink<'_>,
         points: &[ViewPoint],
         aspect: f32,
     ) -> Result<StrokeReply, RpcError> {
@@ -82,11 +87,11 @@ impl VirtualPen {
         let quiet = crossbeam_channel::never::<()>();
         for at in points {
             let due = begun + at.t_us;
-            while self.clock.now_us() < due && !stopped(host) {
+            while self.clock.now_us() < due && !link.stopped() {
                 let left = Duration::from_micros(due.saturating_sub(self.clock.now_us()));
                 let _ = quiet.recv_timeout(left.min(Duration::from_millis(50)));
             }
-            if stopped(host) {
+            if link.stopped() {
                 break;
             }
             self.push(pen(at, true));
@@ -95,27 +100,27 @@ impl VirtualPen {
         self.push(pen(last, false));
         let give_up = self.clock.now_us() + PATIENCE.as_micros() as u64;
         while !self.sender.flush() {
-            if stopped(host) || self.clock.now_us() > give_up {
+            if link.stopped() || self.clock.now_us() > give_up {
                 return Err(not_taken());
             }
             let _ = quiet.recv_timeout(LOOK);
         }
-        let tick = self.await_tick(host)?;
+        let tick = self.await_tick(link)?;
         Ok(StrokeReply { samples: points.len() as u64 + 1, tick })
     }
 
     /// Waits until the loop has taken what was handed over before. Returns the tick.
-    fn await_tick(&self, host: &Host) -> Result<u64, RpcError> {
+    fn await_tick(&self, link: LoopLink<'_>) -> Result<u64, RpcError> {
         let quiet = crossbeam_channel::never::<()>();
         let give_up = self.clock.now_us() + PATIENCE.as_micros() as u64;
         // The tick under way may have looked already.
-        let by = host.published.load().tick + 2;
+        let by = link.published.load().tick + 2;
         loop {
-            let tick = host.published.load().tick;
+            let tick = link.published.load().tick;
             if tick >= by {
                 return Ok(tick);
             }
-            if stopped(host) || self.clock.now_us() > give_up {
+            if link.stopped() || self.clock.now_us() > give_up {
                 return Err(not_taken());
             }
             let _ = quiet.recv_timeout(LOOK);
@@ -131,10 +136,6 @@ impl VirtualPen {
 
 fn not_taken() -> RpcError {
     RpcError::failed("the loop did not take the stroke")
-}
-
-fn stopped(host: &Host) -> bool {
-    host.stop.load(std::sync::atomic::Ordering::Relaxed)
 }
 
 /// A point of the stroke as the pen has it.

@@ -3,26 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+pub use super::names::works;
+use super::names::{number, sent};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{write_beside, write_mesh};
-
-/// Names of whole works in `folder`, in order. What a power cut left half-written has another name
-/// and is not among them.
-pub fn works(folder: &Path) -> std::io::Result<Vec<String>> {
-    let mut names: Vec<String> = std::fs::read_dir(folder)?
-        .filter_map(|e| e.ok().and_then(|e| e.file_name().into_string().ok()))
-        .filter(|n| number(n).is_some())
-        .collect();
-    names.sort();
-    Ok(names)
-}
-
-/// `work-000123.glb` is number 123.
-pub(super) fn number(name: &str) -> Option<u64> {
-    let digits = name.strip_prefix("work-")?.strip_suffix(".glb")?;
-    (digits.len() >= 6 && digits.bytes().all(|b| b.is_ascii_digit()))
-        .then(|| digits.parse().ok())?
-}
 
 /// Adds a work and writes the page anew. Each is written beside and renamed; the page is made from
 /// the folder, so a cut between the two is mended by the next.
@@ -31,7 +15,7 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     // A number is never given twice, even where staff has emptied the folder: a work that was sent
     // would be written over.
     let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
-    let next = last.max(super::spool::sent(folder)) + 1;
+    let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
     write_mesh(&path, mesh).map_err(std::io::Error::other)?;
     page(folder)?;

@@ -14,6 +14,7 @@ pub mod cycle;
 pub mod film;
 pub mod gallery;
 pub mod keeper;
+pub mod names;
 pub mod settings;
 #[cfg(unix)]
 pub mod share;

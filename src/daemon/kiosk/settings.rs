@@ -1,17 +1,11 @@
-//! `config/kiosk.toml` and the languages.
+//! The settings of an installation (`config/kiosk.toml` documents them) and the languages.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-/// The embedded defaults, which are also the documentation of every key.
-pub const DEFAULTS: &str = include_str!("../../../config/kiosk.toml");
-
-const LANGUAGES: [(&str, &str); 3] = [
-    ("en", include_str!("../../../config/languages/en.toml")),
-    ("it", include_str!("../../../config/languages/it.toml")),
-    ("el", include_str!("../../../config/languages/el.toml")),
-];
+/// Texts of languages, each behind its code (`en`), in the form of `config/languages/en.toml`.
+pub type LanguageTexts<'a> = &'a [(&'a str, &'a str)];
 
 /// What an installation can be told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -97,8 +91,11 @@ impl KioskConfig {
         Ok(())
     }
 
-    /// The words to show.
-    pub fn words(&self) -> Result<Language, String> {
+    /// The words to show: of `languages`, or of those that the program brings along.
+    ///
+    /// # Errors
+    /// In words, where the language is unknown or its file is not whole.
+    pub fn words(&self, built_in: LanguageTexts<'_>) -> Result<Language, String> {
         for path in &self.languages {
             let name = path.display();
             if path.file_stem().is_some_and(|s| s.to_string_lossy() == self.language) {
@@ -106,9 +103,11 @@ impl KioskConfig {
                 return toml::from_str(&text).map_err(|e| format!("{name}: {e}"));
             }
         }
-        let built_in = LANGUAGES.iter().find(|(n, _)| *n == self.language);
-        let (name, text) = built_in.ok_or_else(|| {
-            format!("language = \"{}\": expected en, it, el, or one of `languages`", self.language)
+        let known = built_in.iter().find(|(n, _)| *n == self.language);
+        let (name, text) = known.ok_or_else(|| {
+            let codes: Vec<&str> = built_in.iter().map(|(n, _)| *n).collect();
+            let (language, codes) = (&self.language, codes.join(", "));
+            format!("language = \"{language}\": expected {codes}, or one of `languages`")
         })?;
         toml::from_str(text).map_err(|e| format!("{name}: {e}"))
     }
@@ -116,15 +115,19 @@ impl KioskConfig {
 
 impl KioskConfig {
     /// Every language that can be chosen on the screen, the one of the settings first.
-    pub fn every_language(&self) -> Result<Vec<Language>, String> {
-        let mut all = vec![self.words()?];
-        for (name, _) in LANGUAGES {
-            all.push(KioskConfig { language: name.into(), ..self.clone() }.words()?);
+    ///
+    /// # Errors
+    /// As [`KioskConfig::words`].
+    pub fn every_language(&self, built_in: LanguageTexts<'_>) -> Result<Vec<Language>, String> {
+        let mut all = vec![self.words(built_in)?];
+        for (name, _) in built_in {
+            let language = (*name).to_owned();
+            all.push(KioskConfig { language, ..self.clone() }.words(built_in)?);
         }
         for path in &self.languages {
             let language =
                 path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-            all.push(KioskConfig { language, ..self.clone() }.words()?);
+            all.push(KioskConfig { language, ..self.clone() }.words(built_in)?);
         }
         let mut seen: Vec<String> = Vec::new();
         all.retain(|l| {
@@ -160,19 +163,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_embedded_file_is_the_code_s_own_defaults() {
-        assert_eq!(
-            toml::from_str::<KioskConfig>(DEFAULTS).expect("parses"),
-            KioskConfig::default()
-        );
-    }
-
-    #[test]
-    fn every_language_has_every_word_and_counts_the_seconds() {
-        for (language, _) in LANGUAGES {
-            let config = KioskConfig { language: language.into(), ..KioskConfig::default() };
-            assert!(config.words().expect("whole").countdown.contains("{seconds}"), "{language}");
-        }
-        assert!(KioskConfig { language: "xx".into(), ..KioskConfig::default() }.words().is_err());
+    fn an_unknown_language_is_refused_with_the_known_ones() {
+        let config = KioskConfig { language: "xx".into(), ..KioskConfig::default() };
+        let said = config.words(&[("en", ""), ("el", "")]).expect_err("unknown");
+        assert!(said.contains("\"xx\"") && said.contains("en, el"), "{said}");
+        assert!(config.words(&[("xx", "name = \"half\"")]).is_err(), "words are missing");
     }
 }

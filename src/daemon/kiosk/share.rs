@@ -1,19 +1,20 @@
-//! A visitor's work on the local network, for a while: a link that nobody can guess, and its QR
-//! code for the screen.
+//! A visitor's sculpture on the local network, for a while: a link that nobody can guess, and its
+//! QR code for the screen.
 //!
-//! Only what the link names is served, to whoever has it, until it expires; there is no list.
-//! `Host` must be an address of ours or the name in the settings, and a request with an `Origin` is
-//! refused: no web page reads works.
+//! Only the file that the link names is served, to whoever has the link, until it expires; there is
+//! no list. `Host` must be an address of ours or the name in the settings, and a request with an
+//! `Origin` is refused: no web page reads sculptures.
 
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::metrics::{PATIENCE, read_head, request};
+use hyper::{Request, StatusCode};
+
+use crate::http::answer::permitted;
+use crate::http::{Answer, HttpServer, Refusal};
 use sculptd_devices::Clock;
 
 /// Links that are good at a time; the oldest goes first.
@@ -58,12 +59,11 @@ struct ServedFile {
 /// The listener; closed when dropped.
 #[derive(Debug)]
 pub struct Share {
-    at: SocketAddr,
+    server: HttpServer,
     name: String,
     lasts: Duration,
     links: Arc<Mutex<BTreeMap<String, ServedFile>>>,
     clock: Clock,
-    closing: Arc<AtomicBool>,
 }
 
 /// 128 bits that nobody can guess, as hexadecimal digits.
@@ -89,38 +89,38 @@ impl Share {
         lasts: Duration,
         clock: Clock,
     ) -> std::io::Result<Share> {
-        let listener = TcpListener::bind(at)?;
-        let at = listener.local_addr()?;
-        let name = if name.is_empty() { at.ip().to_string() } else { name.to_owned() };
         let links: Arc<Mutex<BTreeMap<String, ServedFile>>> = Arc::default();
-        let closing = Arc::new(AtomicBool::new(false));
-        let (closed, good, known, time) =
-            (closing.clone(), links.clone(), name.clone(), clock.clone());
-        std::thread::Builder::new().name("sculptd-share".into()).spawn(move || {
-            for stream in listener.incoming() {
-                if closed.load(Ordering::SeqCst) {
-                    return;
-                }
-                if let Ok(stream) = stream {
-                    let _ = serve(stream, at, &known, &good, &time);
-                }
+        let (known, good, time) = (name.to_owned(), links.clone(), clock.clone());
+        let server = HttpServer::start(at, "sculptd-share", |at| {
+            // Without a name the address that is listened on is the only one.
+            let known = if known.is_empty() { at.ip().to_string() } else { known };
+            move |request: &Request<()>| {
+                answer(request, at, &known, &good, &time).unwrap_or_else(Answer::from)
             }
         })?;
-        Ok(Share { at, name, lasts, links, clock, closing })
+        let ip = || server.address().ip().to_string();
+        let name = if name.is_empty() { ip() } else { name.to_owned() };
+        Ok(Share { server, name, lasts, links, clock })
     }
 
+    /// Where it listens.
     pub fn address(&self) -> SocketAddr {
-        self.at
+        self.server.address()
     }
 
-    /// A link to a work, good from now on.
+    /// Connections at present.
+    pub fn connections(&self) -> usize {
+        self.server.connections()
+    }
+
+    /// A link to a file, good from now on.
     pub fn link(&self, file: &Path) -> std::io::Result<Link> {
         let token = token()?;
         let host = match self.name.parse::<IpAddr>() {
             Ok(IpAddr::V6(ip)) => format!("[{ip}]"),
             _ => self.name.clone(),
         };
-        let url = format!("http://{host}:{}/{token}", self.at.port());
+        let url = format!("http://{host}:{}/{token}", self.server.address().port());
         let code = Code::of(&url)
             .ok_or_else(|| std::io::Error::other("the link is too long for a code"))?;
         let now = self.clock.now_us();
@@ -140,51 +140,16 @@ impl Share {
     }
 }
 
-impl Drop for Share {
-    fn drop(&mut self) {
-        self.closing.store(true, Ordering::SeqCst);
-        let ip =
-            if self.at.ip().is_unspecified() { IpAddr::from([127, 0, 0, 1]) } else { self.at.ip() };
-        let _ = TcpStream::connect_timeout(&(ip, self.at.port()).into(), PATIENCE);
-    }
-}
-
-fn serve(
-    mut stream: TcpStream,
-    at: SocketAddr,
-    name: &str,
-    links: &Mutex<BTreeMap<String, ServedFile>>,
-    clock: &Clock,
-) -> std::io::Result<()> {
-    let Some(head) = read_head(&mut stream)? else { return Ok(()) };
-    let (status, kind, body) = match answer(&head, at, name, links, clock) {
-        Ok((kind, body)) => ("200 OK", kind, body),
-        Err((status, why)) => {
-            (status, "text/plain; charset=utf-8", format!("{why}\n").into_bytes())
-        }
-    };
-    let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nX-Content-Type-Options: \
-            \
-            nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: default-src \
-            'none'; style-src 'unsafe-inline'\r\nCache-Control: no-store\r\nConnection: \
-            close\r\n\r\n",
-        body.len()
-    );
-    stream.write_all(head.as_bytes())?;
-    stream.write_all(&body)
-}
-
-/// What a request gets: `/TOKEN` a page, `/TOKEN/work-000001.glb` the work.
+/// What a request gets: `/TOKEN` a page, `/TOKEN/work-000001.glb` the sculpture.
 fn answer(
-    head: &[u8],
+    request: &Request<()>,
     at: SocketAddr,
     name: &str,
     links: &Mutex<BTreeMap<String, ServedFile>>,
     clock: &Clock,
-) -> Result<(&'static str, Vec<u8>), (&'static str, &'static str)> {
-    const GONE: (&str, &str) = ("404 Not Found", "there is nothing here, or no longer");
-    let path = request(head, at, name)?;
+) -> Result<Answer, Refusal> {
+    const GONE: Refusal = (StatusCode::NOT_FOUND, "there is nothing here, or no longer");
+    let path = permitted(request, at, name)?;
     let mut parts = path.trim_start_matches('/').splitn(2, '/');
     let token = parts.next().unwrap_or("");
     let good = links.lock().ok().and_then(|l| l.get(token).cloned());
@@ -194,17 +159,16 @@ fn answer(
         None | Some("") => {
             // Names are digits and fixed letters, the token is digits: nothing to escape.
             let page = format!(
-                "<!doctype html><meta charset=\"utf-8\"><meta \
-                    name=\"viewport\" \
-                    content=\"width=device-width\"><title>sculptd</title><style>body{{font:1.4em \
-                    sans-serif;margin:2em}}</style><h1>sculptd</h1><p><a href=\"/{token}/{file}\" \
-                    download>{file}</a></p>"
+                "<!doctype html><meta charset=\"utf-8\"><meta name=\"viewport\" \
+                 content=\"width=device-width\"><title>sculptd</title><style>body{{font:1.4em \
+                 sans-serif;margin:2em}}</style><h1>sculptd</h1><p><a href=\"/{token}/{file}\" \
+                 download>{file}</a></p>"
             );
-            Ok(("text/html; charset=utf-8", page.into_bytes()))
+            Ok(Answer::text("text/html; charset=utf-8", page))
         }
         // Only the one file that the link was made for, whatever is asked for.
         Some(asked) if asked == file => {
-            Ok(("model/gltf-binary", std::fs::read(&good.file).map_err(|_| GONE)?))
+            Answer::file("model/gltf-binary", &good.file).map_err(|_| GONE)
         }
         Some(_) => Err(GONE),
     }

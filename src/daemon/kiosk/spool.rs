@@ -16,12 +16,10 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
+pub use super::names::{OUTGOING, sent};
+use super::names::{SENT, number, works};
 use sculptd_geometry::io::write_beside;
 
-/// The folder of names that wait, within the gallery.
-pub const OUTGOING: &str = "outgoing";
-/// The file in it that holds the number of the newest work that was sent.
-const SENT: &str = "sent";
 /// The first wait after a refusal, and the longest.
 const WAIT: Duration = Duration::from_millis(500);
 const LONGEST: Duration = Duration::from_secs(60);
@@ -52,21 +50,15 @@ pub fn offer(folder: &Path, name: &str) -> std::io::Result<()> {
 
 /// The names that wait, the oldest first.
 pub fn waiting(folder: &Path) -> Vec<String> {
-    super::gallery::works(&folder.join(OUTGOING)).unwrap_or_default()
-}
-
-/// The number of the newest work that was ever sent from `folder`; 0: none.
-pub fn sent(folder: &Path) -> u64 {
-    let text = std::fs::read_to_string(folder.join(OUTGOING).join(SENT)).unwrap_or_default();
-    text.trim().parse().unwrap_or(0)
+    works(&folder.join(OUTGOING)).unwrap_or_default()
 }
 
 /// Marks the works that have none and were never sent: a kill came between a work and its mark, or
 /// nothing was sent so far.
 fn catch_up(folder: &Path) -> std::io::Result<()> {
     let (sent, marked) = (sent(folder), waiting(folder));
-    for name in super::gallery::works(folder).unwrap_or_default() {
-        if super::gallery::number(&name).is_some_and(|n| n > sent) && !marked.contains(&name) {
+    for name in works(folder).unwrap_or_default() {
+        if number(&name).is_some_and(|n| n > sent) && !marked.contains(&name) {
             offer(folder, &name)?;
         }
     }
@@ -197,7 +189,7 @@ fn send_next(to: &SpoolTarget, folder: &Path, stop: &AtomicBool) -> Result<bool,
     if let Ok(page) = std::fs::read(folder.join("index.html")) {
         to.put("index.html", &page, stop)?;
     }
-    let number = super::gallery::number(name).unwrap_or(0).max(sent(folder));
+    let number = number(name).unwrap_or(0).max(sent(folder));
     let noted = write_beside(&folder.join(OUTGOING).join(SENT), |out| writeln!(out, "{number}"));
     noted.map_err(|e| e.to_string())?;
     std::fs::remove_file(&mark).map_err(|e| e.to_string())?;

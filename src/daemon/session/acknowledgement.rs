@@ -16,6 +16,8 @@ use std::io::{Read, Result, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+use rusqlite::Connection;
+
 /// Marks the blob.
 pub const MAGIC: [u8; 16] = *b"sculptd:acknowl.";
 /// Bytes of a slot.
@@ -171,6 +173,18 @@ impl AcknowledgementPage {
     pub fn sync(&self) -> Result<()> {
         self.file.sync_data()
     }
+}
+
+/// Puts the row that acknowledgements are written into, in a page of its own.
+pub(super) fn acknowledge_first(
+    db: &Connection,
+    identity: u64,
+    tick: u64,
+    chain: u32,
+) -> rusqlite::Result<()> {
+    let blob = blob(&Acknowledgement { identity, tick, chain, salts: [0, 0] });
+    db.execute("INSERT OR REPLACE INTO acknowledged (id, data) VALUES (1, ?1)", [blob])?;
+    Ok(())
 }
 
 #[cfg(test)]

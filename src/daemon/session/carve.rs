@@ -15,8 +15,8 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::acknowledgement::MAGIC;
-use super::create::companion;
-use super::format::InputRow;
+use super::connection::companion;
+use super::format::{InputRow, META_START, from_spare_blob};
 
 /// Largest write-ahead log that is read.
 const MAX_LOG: u64 = 4 << 30;
@@ -50,6 +50,8 @@ pub enum CarvedRow {
     /// Object, number, revision, bytes.
     Topology([i64; 3], Vec<u8>),
     Thumbnail(i64, Vec<u8>),
+    /// A second copy of an entry of `meta`; its checksum holds.
+    Spare(String, Vec<u8>),
     /// Number, tick, bytes, layout. It has no checksum.
     Pin(i64, i64, Vec<u8>, i64),
 }
@@ -333,6 +335,10 @@ fn row(id: i64, mut all: Vec<Column>) -> Option<CarvedRow> {
         [Null, Blob(data)] if data.starts_with(b"\x89PNG") => {
             CarvedRow::Thumbnail(id, std::mem::take(data))
         }
+        [Null, Blob(data)] => {
+            let (key, value) = from_spare_blob(data)?;
+            CarvedRow::Spare(key, value)
+        }
         _ => return None,
     };
     Some(found)
@@ -343,7 +349,10 @@ pub(super) fn is_without_content(path: &Path) -> bool {
     let Ok(mut image) = PageImage::open(path, true) else { return false };
     let mut any = false;
     image.rows(&mut |row| {
-        any |= !matches!(row, CarvedRow::Meta(key, _) if key != super::format::META_START);
+        any |= match row {
+            CarvedRow::Meta(key, _) | CarvedRow::Spare(key, _) => key == META_START,
+            _ => true,
+        };
         true
     });
     !any && !std::fs::read(path).is_ok_and(|b| b.windows(MAGIC.len()).any(|w| w == MAGIC))
@@ -374,6 +383,13 @@ impl CarvedInput {
                 }
                 // More than one version may be right; see the other ones too.
                 versions.len() > 1
+            }
+            CarvedRow::Spare(key, value) => {
+                let versions = all.meta.entry(key.clone()).or_default();
+                if !versions.contains(value) {
+                    versions.push(value.clone());
+                }
+                true
             }
             CarvedRow::Input(r) => {
                 loose.push(r.clone());

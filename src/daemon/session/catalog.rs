@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::acknowledgement::{self, Acknowledged};
+use super::connection::in_use;
 use super::history::{Store, StoreError, listing};
 use super::reader::open;
 use super::shared_memory_log::{self, FileIdentity, LogName};
@@ -123,12 +124,6 @@ pub fn list(folder: &Path) -> std::io::Result<Vec<SessionEntry>> {
 pub fn spare(mut all: Vec<SessionEntry>, keep: usize) -> Vec<SessionEntry> {
     let old = all.split_off(keep.min(all.len()));
     old.into_iter().filter(|e| e.damage.is_none() && !in_use(&e.path)).collect()
-}
-
-/// Whether a daemon writes it: the writer holds a lock as long as it runs.
-pub fn in_use(path: &Path) -> bool {
-    std::fs::File::open(path)
-        .is_ok_and(|f| matches!(f.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))
 }
 
 /// Lets a session's oldest places go until its history takes `most` bytes, and gives the file's

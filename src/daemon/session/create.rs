@@ -8,18 +8,32 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rusqlite::Connection;
 
-use super::acknowledgement::{self, Acknowledgement};
+use super::acknowledgement::acknowledge_first;
+use super::carve::is_without_content;
+use super::connection::{companion, in_use};
 use super::format::{
-    META_IDENTITY, META_SETTINGS, META_START, META_SUMS, Settings, TABLES, chain_start,
+    META_IDENTITY, META_SETTINGS, META_START, META_SUMS, Settings, TABLES, chain_start, spare_blob,
 };
 use super::shared_memory_log::new_creation_number;
-use super::writer::CreateError;
 use super::{APPLICATION_ID, VERSION};
 use sculptd_geometry::TriMesh;
 
 /// A half-made file is at most this long: what older versions left when they were killed while
 /// they made a session.
 const HALF_MADE_BYTES: u64 = 64 << 10;
+
+/// Why a session cannot be made or gone on with.
+#[derive(Debug, thiserror::Error)]
+pub enum CreateError {
+    #[error("{path}: exists already; a session is never overwritten")]
+    Exists { path: String },
+    #[error("{path}: another sculptd is writing it; end that one, or name another session")]
+    Busy { path: String },
+    #[error("{path}: {source}")]
+    Store { path: String, source: rusqlite::Error },
+    #[error("{path}: {source}")]
+    Io { path: String, source: std::io::Error },
+}
 
 /// A session under a name of its own, which is removed unless it is published.
 #[derive(Debug)]
@@ -72,13 +86,6 @@ fn refuse_others_folder(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// An SQLite file's companion.
-pub(super) fn companion(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(ending);
-    name.into()
-}
-
 /// Whether a file of that name is empty, or what was left of a session that was killed while it
 /// was made: nothing of a session can be read in it. It may be taken over.
 pub fn is_half_made(path: &Path) -> bool {
@@ -95,7 +102,7 @@ pub fn is_half_made(path: &Path) -> bool {
     // The mark may still have been on its way; a file with any table at all is another program's.
     let no_tables = bytes.len() <= 4096 && bytes.get(103..105) == Some(&[0, 0][..]);
     let begins = bytes.is_empty() || bytes.starts_with(b"SQLite format") && (ours || no_tables);
-    begins && super::carve::is_without_content(path) && !super::catalog::in_use(path)
+    begins && is_without_content(path) && !in_use(path)
 }
 
 impl SessionDraft {
@@ -145,6 +152,12 @@ impl SessionDraft {
             put.execute((META_START, &mesh))?;
             put.execute((META_SETTINGS, &settings))?;
             put.execute((META_SUMS, &sums))?;
+            let mut copy = db.prepare("INSERT INTO spare (data) VALUES (?1)")?;
+            for (key, value) in
+                [(META_SETTINGS, &settings), (META_SUMS, &sums), (META_START, &mesh)]
+            {
+                copy.execute([spare_blob(key, value)])?;
+            }
             db.execute_batch("COMMIT")
         };
         all().map_err(store)?;
@@ -201,18 +214,6 @@ impl Drop for SessionDraft {
             let _ = std::fs::remove_file(&self.temporary);
         }
     }
-}
-
-/// Puts the row that acknowledgements are written into, in a page of its own.
-pub(super) fn acknowledge_first(
-    db: &Connection,
-    identity: u64,
-    tick: u64,
-    chain: u32,
-) -> rusqlite::Result<()> {
-    let blob = acknowledgement::blob(&Acknowledgement { identity, tick, chain, salts: [0, 0] });
-    db.execute("INSERT OR REPLACE INTO acknowledged (id, data) VALUES (1, ?1)", [blob])?;
-    Ok(())
 }
 
 /// Exclusive unless `over`: of two daemons that make a session of one name at once, one is told.

@@ -39,6 +39,7 @@ use super::VERSION;
 pub const TABLES: &str = "
     CREATE TABLE meta (key TEXT PRIMARY KEY, value BLOB NOT NULL) WITHOUT ROWID;
     CREATE TABLE acknowledged (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
+    CREATE TABLE spare (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
     CREATE TABLE input (
         number INTEGER PRIMARY KEY,
         first_tick INTEGER NOT NULL,
@@ -58,6 +59,27 @@ pub const META_IDENTITY: &str = "identity";
 pub const META_REPLAY_FROM: &str = "replay_from";
 /// The CRC-32 of both, in that order. Files from before it was written go unchecked.
 pub const META_SUMS: &str = "sums";
+
+/// What a blob of the table `spare` begins with: a second copy of an entry of `meta`, in pages of
+/// its own, for salvage. Nothing can be replayed without the start and the settings, so damage to
+/// one place must not cost them.
+const SPARE_MAGIC: [u8; 16] = *b"sculptd:spare...";
+
+/// The blob of a spare copy: the magic, the CRC-32 of the rest, the key's length and the key, the
+/// value.
+pub fn spare_blob(key: &str, value: &[u8]) -> Vec<u8> {
+    let rest = [&[key.len() as u8], key.as_bytes(), value].concat();
+    [&SPARE_MAGIC[..], &crc32fast::hash(&rest).to_le_bytes(), &rest].concat()
+}
+
+/// The key and the value of a spare copy; `None` where the bytes are not those that were written.
+pub fn from_spare_blob(blob: &[u8]) -> Option<(String, Vec<u8>)> {
+    let (crc, rest) = blob.strip_prefix(&SPARE_MAGIC)?.split_first_chunk::<4>()?;
+    let (length, text) = rest.split_first()?;
+    let (key, value) = text.split_at_checked(usize::from(*length))?;
+    let whole = crc32fast::hash(rest).to_le_bytes() == *crc;
+    whole.then(|| Some((String::from_utf8(key.to_vec()).ok()?, value.to_vec())))?
+}
 
 /// Everything that a fresh world is made from, besides the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

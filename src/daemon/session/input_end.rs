@@ -6,7 +6,7 @@ use std::path::Path;
 use rusqlite::{Connection, OptionalExtension};
 
 use super::VERSION;
-use super::create::acknowledge_first;
+use super::acknowledgement::acknowledge_first;
 use super::format::{
     InputRow, META_IDENTITY, META_REPLAY_FROM, META_SETTINGS, META_START, META_SUMS, ReplayFrom,
     Settings, TABLES, append, chain_start, v3,

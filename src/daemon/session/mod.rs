@@ -14,20 +14,24 @@
 pub mod acknowledgement;
 pub mod carve;
 pub mod catalog;
+mod connection;
 mod create;
 pub mod film;
 pub mod format;
 pub mod history;
 mod input_end;
 pub mod reader;
+mod reopen;
 pub mod replay;
 pub mod salvage;
 pub mod shared_memory_log;
 mod syncer;
 pub mod writer;
 
-pub use create::is_half_made;
+pub use connection::in_use;
+pub use create::{CreateError, is_half_made};
 pub use reader::{Loss, OpenError, Opened, open};
+pub use reopen::{Reopened, reopen};
 pub use salvage::{Saved, salvage};
 pub use writer::{Fault, Health, SessionWriter, create, resume};
 

@@ -3,12 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use rusqlite::types::Type;
-use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension};
+use rusqlite::{Connection, ErrorCode, OptionalExtension};
 
 use super::acknowledgement::{self, Acknowledged, Acknowledgement};
 use super::carve::log_salts;
-use super::create::companion;
+use super::connection::{connect, in_use};
 use super::format::{
     InputRow, META_IDENTITY, META_REPLAY_FROM, META_SETTINGS, META_START, META_SUMS, ReplayFrom,
     Settings, TickInput, chain_start, field_counts, ticks, v3,
@@ -109,7 +108,7 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     let mut opened = read(path)?;
     for _ in 1..TRIES {
         // Somebody writes: what was read of the file may be older than what was read of the log.
-        if opened.loss.is_none() || !super::catalog::in_use(path) {
+        if opened.loss.is_none() || !in_use(path) {
             break;
         }
         opened = read(path)?;
@@ -133,38 +132,6 @@ pub fn history_damage(path: &Path) -> Option<String> {
     }
 }
 
-/// A connection that reads. `alone`: the main file without its log.
-pub(super) fn connect(path: &Path, alone: bool) -> rusqlite::Result<Connection> {
-    let plain = OpenFlags::SQLITE_OPEN_READ_ONLY;
-    if !alone {
-        let db = Connection::open_with_flags(path, plain)?;
-        db.busy_timeout(std::time::Duration::from_secs(2))?;
-        // The first statement opens the log's index, which needs a folder that can be written.
-        let trial = db.query_row("PRAGMA schema_version", [], |r| r.get::<_, i64>(0));
-        let closed = matches!(
-            trial.as_ref().err().and_then(rusqlite::Error::sqlite_error_code),
-            Some(ErrorCode::CannotOpen | ErrorCode::ReadOnly)
-        );
-        let log = std::fs::metadata(companion(path, "-wal")).map_or(0, |m| m.len());
-        if !closed || log > 0 {
-            trial?;
-            return Ok(db);
-        }
-    }
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.into());
-    let mut uri = String::from("file:");
-    for byte in whole.as_os_str().as_encoded_bytes() {
-        match byte {
-            b'/' | b'.' | b'-' | b'_' | b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' => {
-                uri.push(char::from(*byte));
-            }
-            other => uri.push_str(&format!("%{other:02x}")),
-        }
-    }
-    uri.push_str("?immutable=1");
-    Connection::open_with_flags(uri, plain | OpenFlags::SQLITE_OPEN_URI)
-}
-
 /// Whether the log beside a session is of another session, or of another time of this one.
 pub(super) fn log_is_foreign(path: &Path, known: &Acknowledgement) -> bool {
     log_salts(path).is_some_and(|now| salts_are_foreign(known, now))
@@ -174,20 +141,6 @@ pub(super) fn log_is_foreign(path: &Path, known: &Acknowledgement) -> bool {
 pub(super) fn salts_are_foreign(known: &Acknowledgement, now: [u32; 2]) -> bool {
     let had = known.salts;
     had != [0, 0] && had != now && now[0].wrapping_sub(had[0]).wrapping_sub(1) >= RESTARTS
-}
-
-/// The start mesh alone, for one who holds the session open for writing: no other handle of the
-/// file is opened, for closing it would give back SQLite's own locks.
-///
-/// # Errors
-/// Where it cannot be read.
-pub(super) fn read_start(path: &Path) -> rusqlite::Result<TriMesh> {
-    let db = connect(path, false)?;
-    let sql = "SELECT value FROM meta WHERE key = ?1";
-    let bytes: Vec<u8> = db.query_row(sql, [META_START], |r| r.get(0))?;
-    let start: TriMesh = postcard::from_bytes(&bytes)
-        .map_err(|e| rusqlite::Error::FromSqlConversionFailure(0, Type::Blob, Box::new(e)))?;
-    Ok(start)
 }
 
 /// One reading, without the history.

@@ -13,18 +13,17 @@ use rusqlite::Connection;
 use serde::de::DeserializeOwned;
 
 use super::VERSION;
-use super::acknowledgement::{self, Acknowledged};
+use super::acknowledgement::{self, Acknowledged, acknowledge_first};
 use super::carve::{CarvedInput, CarvedRow, PageImage};
-use super::create::{SessionDraft, acknowledge_first};
+use super::create::{CreateError, SessionDraft};
 use super::format::{
     InputRow, META_REPLAY_FROM, META_SETTINGS, META_START, ReplayFrom, Settings, TickInput, append,
     chain, chain_start, field_counts, v3,
 };
-use super::history::reopen::from_checkpoint;
 use super::history::{Node, Store, StoreError};
 use super::reader::{Loss, OpenError, Opened, indices_hold, open, salts_are_foreign};
+use super::reopen::from_checkpoint;
 use super::shared_memory_log::{self, LogEntry};
-use super::writer::CreateError;
 use sculptd_clay::Clay;
 use sculptd_engine::old_layout::from_bytes;
 use sculptd_geometry::TriMesh;
@@ -381,7 +380,10 @@ fn put_row(db: &Connection, row: &CarvedRow) -> rusqlite::Result<bool> {
             let sql = "INSERT OR REPLACE INTO pin (id, tick, data, layout) VALUES (?1, ?2, ?3, ?4)";
             db.prepare_cached(sql)?.execute((id, tick, data, layout))?;
         }
-        CarvedRow::Meta(..) | CarvedRow::Input(_) | CarvedRow::OldGroup(..) => {}
+        CarvedRow::Meta(..)
+        | CarvedRow::Spare(..)
+        | CarvedRow::Input(_)
+        | CarvedRow::OldGroup(..) => {}
     }
     Ok(true)
 }

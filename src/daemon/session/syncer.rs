@@ -17,7 +17,7 @@ use crossbeam_channel as cc;
 use rusqlite::Connection;
 
 use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
-use super::create::companion;
+use super::connection::companion;
 
 /// A log of this many bytes is taken over into the database.
 const LOG_BYTES: u64 = 4 << 20;

@@ -16,15 +16,16 @@ use rusqlite::Connection;
 
 use super::GROUP_MS;
 use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
-use super::create::{SessionDraft, is_half_made};
+use super::create::{CreateError, SessionDraft, is_half_made};
 use super::format::{Settings, append};
 use super::history::{Handle, keeper::Keeper};
 use super::input_end::{InputEnd, begin_log, upgrade};
 use super::shared_memory_log::LogName;
 use super::syncer::Syncer;
-use crate::live::{Journal, raise_priority_below};
+use crate::live::raise_priority_below;
 use crate::session::shared_memory_log;
 use crate::session::shared_memory_log::SharedMemoryLog;
+use crate::tick::Journal;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
@@ -41,18 +42,6 @@ const KEPT_BYTES: usize = 64 << 20;
 const IDLE: Duration = Duration::from_millis(1000);
 /// How often a disk that was full is tried again.
 const RETRY: Duration = Duration::from_millis(1000);
-
-#[derive(Debug, thiserror::Error)]
-pub enum CreateError {
-    #[error("{path}: exists already; a session is never overwritten")]
-    Exists { path: String },
-    #[error("{path}: another sculptd is writing it; end that one, or name another session")]
-    Busy { path: String },
-    #[error("{path}: {source}")]
-    Store { path: String, source: rusqlite::Error },
-    #[error("{path}: {source}")]
-    Io { path: String, source: std::io::Error },
-}
 
 /// What stands in the way of the journal, for a person; `None` while it is well.
 pub type Fault = Arc<Mutex<Option<String>>>;

@@ -1,7 +1,9 @@
 /* A disk that fails at the n-th call. Preloaded into sculptd by the test `faulty_disk`: calls that
  * change a file whose path contains FAULTY_PATH are counted; call FAULTY_AT, and with FAULTY_FOR=ever
  * every later one, fails as FAULTY_KIND says: eio, enospc, short (half is written, then ENOSPC),
- * lies (a sync does nothing and says it did). The number of calls is written to FAULTY_COUNT. */
+ * lies (a sync does nothing and says it did), rot (one bit of what is read is another; then reads
+ * are counted and not changes, as they are with FAULTY_READS). The number of calls is written to
+ * FAULTY_COUNT. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -32,7 +34,13 @@ static int watched(int fd) {
     return watched_path(path);
 }
 
-static enum verdict judge(int sync) {
+static int counts_reads(void) {
+    const char *kind = getenv("FAULTY_KIND");
+    return getenv("FAULTY_READS") || (kind && !strcmp(kind, "rot"));
+}
+
+static enum verdict judge_call(int sync, int read) {
+    if (read != counts_reads()) return GOOD;
     long n = atomic_fetch_add(&calls, 1) + 1;
     const char *at = getenv("FAULTY_AT"), *kind = getenv("FAULTY_KIND");
     const char *count = getenv("FAULTY_COUNT"), *ever = getenv("FAULTY_FOR");
@@ -50,10 +58,13 @@ static enum verdict judge(int sync) {
     if (!at || !kind) return GOOD;
     long first = atol(at);
     if (n < first || (n > first && !ever)) return GOOD;
+    if (!strcmp(kind, "rot")) return FAIL;
     if (!strcmp(kind, "lies")) return sync ? LIE : GOOD;
     errno = !strcmp(kind, "eio") ? EIO : ENOSPC;
     return !strcmp(kind, "short") && !sync ? SHORT : FAIL;
 }
+
+static enum verdict judge(int sync) { return judge_call(sync, 0); }
 
 #define REAL(name) __typeof__(&name) real = (__typeof__(&name))dlsym(RTLD_NEXT, #name)
 
@@ -63,6 +74,26 @@ ssize_t write(int fd, const void *from, size_t n) {
     if (v == FAIL) return -1;
     return real(fd, from, v == SHORT ? (n + 1) / 2 : n);
 }
+
+static ssize_t rot(ssize_t n, void *to) {
+    if (n > 0 && judge_call(0, 1) != GOOD) ((unsigned char *)to)[n / 3] ^= 4;
+    return n;
+}
+
+ssize_t read(int fd, void *to, size_t n) {
+    REAL(read);
+    ssize_t got = real(fd, to, n);
+    return watched(fd) ? rot(got, to) : got;
+}
+
+#define PREAD(name, offset)                            \
+    ssize_t name(int fd, void *to, size_t n, offset at) { \
+        REAL(name);                                    \
+        ssize_t got = real(fd, to, n, at);             \
+        return watched(fd) ? rot(got, to) : got;       \
+    }
+PREAD(pread, off_t)
+PREAD(pread64, off64_t)
 
 #define PWRITE(name, offset)                                        \
     ssize_t name(int fd, const void *from, size_t n, offset at) {   \

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::Vec2;
 use sculptd_daemon::session;
-use sculptd_daemon::session::history::{Want, listing, reopen};
+use sculptd_daemon::session::history::{Want, listing};
+use sculptd_daemon::session::reopen;
 use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
 

@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use sculptd_daemon::session::history::{Keeper, reopen};
+use sculptd_daemon::session::history::Keeper;
+use sculptd_daemon::session::reopen;
 use sculptd_daemon::session::{OpenError, open, salvage};
 
 use super::power_cuts::{Disk, SECTOR};
@@ -92,12 +93,19 @@ struct Outcome {
     saved: u32,
     /// Saved, and the loss could not be told in ticks: what tells it was damaged too.
     untold: u32,
-    /// The start mesh or the settings cannot be read: there is nothing to begin with.
+    /// The file was cut before the start mesh ended, and its second copy with it: no tick and no
+    /// checkpoint can be read, for both are changes of the start.
     no_start: u32,
     ticks_lost: u64,
 }
 
-fn one(disk: &Disk, hashes: &[u64], here: &Path, case: &str, out: &mut Outcome) {
+fn one(
+    (disk, damage): (&Disk, Damage),
+    hashes: &[u64],
+    here: &Path,
+    case: &str,
+    out: &mut Outcome,
+) {
     std::fs::create_dir(here).expect("a folder");
     let path = here.join("d.sculpt");
     put(&path, &disk.db);
@@ -130,6 +138,7 @@ fn one(disk: &Disk, hashes: &[u64], here: &Path, case: &str, out: &mut Outcome) 
             }
             Err(SalvageError::Open(OpenError::Damaged { what, .. })) => {
                 assert!(what == "start_mesh" || what == "settings", "{case}: {what}");
+                assert_eq!(damage, Damage::Cut, "{case}: a second copy is in the file");
                 out.no_start += 1;
             }
             Err(e) => panic!("{case}: refused: {e}"),
@@ -164,7 +173,13 @@ fn random_damage_is_never_silent_and_never_refused_where_something_can_be_read()
             let mut spoilt = disk.clone();
             let (damage, log) = spoil(&mut spoilt, &foreign, &mut rng);
             let case = format!("{name} {n}: {damage:?}, log {log}");
-            one(&spoilt, hashes, &dir.path().join(format!("{name}-{n}")), &case, &mut out);
+            one(
+                (&spoilt, damage),
+                hashes,
+                &dir.path().join(format!("{name}-{n}")),
+                &case,
+                &mut out,
+            );
         }
         println!("{} damages of a {name} session: {out:?}", cases / 2);
         assert!(out.saved > cases / 10, "{out:?}");

@@ -15,7 +15,9 @@ use sculptd_window::panels::{Tab, UiRequest, kiosk};
 use super::panels::{State, state};
 
 fn screen() -> Screen {
-    let words = KioskConfig::default().every_language().expect("three languages");
+    let words = KioskConfig::default()
+        .every_language(sculptd::settings::LANGUAGES)
+        .expect("three languages");
     Screen { desk: Arc::new(KioskDesk::default()), words, staff: true }
 }
 

@@ -409,7 +409,7 @@ fn describe(
 /// The work that the session began with.
 fn base(path: &Path) -> Result<Snapshot, StoreError> {
     let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
-    let start = crate::session::reader::read_start(path)?;
+    let start = crate::session::connection::read_start(path)?;
     let mut mesh = Clay::build(&start, &Job::default()).map_err(|e| damaged(&e))?;
     Ok(mesh.snapshot())
 }

@@ -18,13 +18,11 @@
 mod history_writer;
 pub mod keeper;
 pub mod listing;
-pub mod reopen;
 pub mod retention;
 pub mod store;
 mod thumbnail;
 pub mod tree;
 
 pub use keeper::{Handle, Keeper, Want};
-pub use reopen::{Reopened, reopen};
 pub use store::{Store, StoreError};
 pub use tree::{Node, Tree};

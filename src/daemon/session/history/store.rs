@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tree::{NOTHING, Node, Tree};
 use crate::session::format::{field_counts, v3};
-use crate::session::{VERSION, reader};
+use crate::session::{VERSION, connection};
 use sculptd_clay::brush::Picture;
 use sculptd_clay::page::PageTopology;
 use sculptd_clay::{Levels, ObjectState, Page};
@@ -132,7 +132,7 @@ pub(super) fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, 
 impl Store {
     /// For reading; changes nothing.
     pub fn read(path: &Path) -> Result<Store, StoreError> {
-        let db = reader::connect(path, false)?;
+        let db = connection::connect(path, false)?;
         let found: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0))?;
         Ok(Store { db, layout: if found == v3::LAYOUT { "3" } else { "layout" } })
     }

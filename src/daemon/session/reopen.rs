@@ -8,11 +8,10 @@
 
 use std::path::Path;
 
-use super::super::reader::Opened;
-use super::super::replay::{Replayed, Run};
-use super::keeper::assemble;
-use super::store::{Store, StoreError};
-use super::tree::Tree;
+use super::history::keeper::assemble;
+use super::history::{Store, StoreError, Tree};
+use super::reader::Opened;
+use super::replay::{Replayed, Run};
 use sculptd_clay::{Clay, Snapshot, Workers};
 use sculptd_engine::world::{HistoryEvent, World, WorldOptions};
 use sculptd_geometry::job::Job;
@@ -59,7 +58,7 @@ pub fn reopen(
 
 /// The world of one checkpoint and of the input after it; `None` where it may not be the one that
 /// a replay from the start gives.
-pub(in crate::session) fn from_checkpoint(
+pub(super) fn from_checkpoint(
     (store, tree, base): (&Store, &Tree, &Snapshot),
     opened: &Opened,
     id: u64,
