@@ -18,8 +18,8 @@ print(f"{made.volume:.1f} mm3, {len(made.mesh)} faces, {(made.operand == 1).sum(
 
 fine = sculptd.remesh(made.mesh, side=128, sharp=True)
 walls = sculptd.thickness(fine, progress=lambda done: print(f"\r{done:.0%}", end=""))
-area, share = walls.below(5.0)
-print(f"\nthinnest wall {walls.min:.2f} mm, {share:.1%} of the surface under 5 mm")
+area, share = walls.below(10.0)
+print(f"\nthinnest wall {walls.min:.2f} mm, {share:.1%} of the surface under 10 mm")
 
 facts = sculptd.check(made.mesh)
 print(f"closed: {facts['closed']}, triangles that cross: {facts['self_intersections']}")

@@ -93,7 +93,8 @@ impl Thickness {
 
     /// The area that is thinner than `limit`: in square units, and as a share of the whole, 0 to 1.
     fn below(&self, limit: f32) -> (f64, f64) {
-        self.measured.area_beyond(limit, false)
+        let (thin, all) = self.measured.area_beyond(limit, false);
+        (thin, if all > 0.0 { thin / all } else { 0.0 })
     }
 
     /// The thinnest regions below `limit`, the worst first: dicts with `position`, `thickness`,

@@ -163,8 +163,9 @@ class Questions(unittest.TestCase):
         walls = sculptd.thickness(plate)
         self.assertEqual(walls.values.shape, (len(plate.vertices),))
         self.assertAlmostEqual(walls.median, 2.0, delta=0.05)
-        self.assertGreater(walls.below(3.0)[1], 0.8)
-        self.assertEqual(walls.below(0.5)[0], 0.0)
+        area, share = walls.below(3.0)
+        self.assertTrue(800 < area < 1000 and 0.8 < share <= 1.0, (area, share))
+        self.assertEqual(walls.below(0.5), (0.0, 0.0))
         worst = walls.worst(3.0)[0]
         self.assertLess(worst["thickness"], 3.0)
         self.assertEqual(set(walls.summary()) & {"min", "histogram"}, {"min", "histogram"})
@@ -245,7 +246,7 @@ class Questions(unittest.TestCase):
 
 class LongWork(unittest.TestCase):
     def setUp(self):
-        self.big = Mesh.sphere(10.0, 160)
+        self.big = Mesh.sphere(10.0, 64)
 
     def test_progress_is_told_and_ends_at_one(self):
         told = []
