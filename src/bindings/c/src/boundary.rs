@@ -101,12 +101,11 @@ pub extern "C" fn sculptd_error_message() -> *const c_char {
 /// The library's version, e.g. "0.1.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn sculptd_version() -> *const c_char {
-    const VERSION: &CStr = match CStr::from_bytes_with_nul(
-        concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes(),
-    ) {
-        Ok(text) => text,
-        Err(_) => c"",
-    };
+    const VERSION: &CStr =
+        match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+            Ok(text) => text,
+            Err(_) => c"",
+        };
     VERSION.as_ptr()
 }
 

@@ -5,9 +5,7 @@ use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::{ThicknessSettings, measure};
 
-use crate::boundary::{
-    Failure, SculptdStatus, exclusive, guarded, hand_out, reference, copy_out,
-};
+use crate::boundary::{Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, reference};
 use crate::mesh::SculptdMesh;
 
 /// A Boolean operation on two solids A and B.
@@ -68,12 +66,10 @@ pub unsafe extern "C" fn sculptd_boolean(
             return Err(Failure::argument("tolerance: expected a finite length, or less than 0"));
         }
         // SAFETY: as this function's caller promises.
-        let operands =
-            unsafe { [&reference(a, "a")?.poly, &reference(b, "b")?.poly] };
+        let operands = unsafe { [&reference(a, "a")?.poly, &reference(b, "b")?.poly] };
         let tolerance = Some(tolerance).filter(|t| *t >= 0.0);
         let options = BooleanOptions { tolerance, ..BooleanOptions::default() };
-        let (solids, report) =
-            compute(operands, &[operation], &options, &Job::default(), || 0.0)?;
+        let (solids, report) = compute(operands, &[operation], &options, &Job::default(), || 0.0)?;
         let Some(solid) = solids.into_iter().next() else {
             return Err(Failure(SculptdStatus::Defect, "a Boolean without a result".into()));
         };

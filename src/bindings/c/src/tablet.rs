@@ -3,11 +3,12 @@
 use std::ffi::{CString, c_char};
 
 use sculptd_devices::catalogue::{Catalogue, Identification, Identity};
-use sculptd_devices::hid::Decoder;
+use sculptd_devices::hid::decoder::Decoder;
 use sculptd_devices::{Body, DeviceId, Pen, Sample, Tool};
 
 use crate::boundary::{
-    Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, reference, slice, take_back, text,
+    Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, reference, slice, take_back,
+    text,
 };
 
 /// A pen tablet of a known model, and the state of its pen. One thread uses it at a time.
@@ -221,8 +222,7 @@ unsafe fn each(
 ) -> SculptdStatus {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (tablet, count) =
-            unsafe { (exclusive(tablet, "tablet")?, exclusive(count, "count")?) };
+        let (tablet, count) = unsafe { (exclusive(tablet, "tablet")?, exclusive(count, "count")?) };
         let capacity = std::mem::take(count);
         let SculptdTablet { decoder, made, .. } = tablet;
         made.clear();

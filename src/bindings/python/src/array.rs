@@ -83,9 +83,9 @@ pub fn shared<'py, E: Element>(
 /// The points of an (n, 3) array-like object, and whether `what` is finite is for the caller.
 pub fn points(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<DVec3>> {
     let array = object.py().import("numpy")?.call_method1("ascontiguousarray", (object, "f8"))?;
-    let array = array.cast::<PyArray2<f64>>().map_err(|_| {
-        PyValueError::new_err(format!("{what}: expected an array of shape (n, 3)"))
-    })?;
+    let array = array
+        .cast::<PyArray2<f64>>()
+        .map_err(|_| PyValueError::new_err(format!("{what}: expected an array of shape (n, 3)")))?;
     if array.shape()[1] != 3 {
         let [n, m] = [array.shape()[0], array.shape()[1]];
         return Err(PyValueError::new_err(format!(

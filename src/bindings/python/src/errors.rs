@@ -1,9 +1,9 @@
 //! Failures as Python exceptions: the text for people, place and reason as attributes for programs.
 
-use pyo3::{IntoPyObjectExt, create_exception};
 use pyo3::exceptions::{PyException, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
+use pyo3::{IntoPyObjectExt, create_exception};
 use sculptd_geometry::boolean::BooleanError;
 use sculptd_geometry::io::{FilePlace, FileProblem, ReadError, WriteError};
 use sculptd_geometry::job::Cancelled;
@@ -50,11 +50,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// `e` with attributes; where one can't be set, that error instead.
-fn with<const N: usize>(
-    py: Python<'_>,
-    e: PyErr,
-    attributes: [(&str, Py<PyAny>); N],
-) -> PyErr {
+fn with<const N: usize>(py: Python<'_>, e: PyErr, attributes: [(&str, Py<PyAny>); N]) -> PyErr {
     for (name, value) in attributes {
         if let Err(other) = e.value(py).setattr(name, value) {
             return other;
@@ -99,9 +95,7 @@ fn system(path: &std::path::Path, source: &std::io::Error) -> PyErr {
 pub fn read(py: Python<'_>, e: &ReadError) -> PyErr {
     match e {
         ReadError::Io { path, source } => system(path, source),
-        ReadError::Format { path, problem } => {
-            format(py, &path.display().to_string(), problem)
-        }
+        ReadError::Format { path, problem } => format(py, &path.display().to_string(), problem),
         ReadError::Cancelled { .. } => cancelled(Cancelled),
     }
 }

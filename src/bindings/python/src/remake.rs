@@ -28,9 +28,8 @@ fn remesh(
 ) -> PyResult<Mesh> {
     let (part, solid) = prepared(py, mesh.get(), &None)?;
     let settings = RemeshSettings { side, sharp };
-    let made =
-        watched(py, &progress, |job| remeshing::remesh(&part.mesh, &solid, settings, job))?
-            .map_err(|e| errors::remesh(&e))?;
+    let made = watched(py, &progress, |job| remeshing::remesh(&part.mesh, &solid, settings, job))?
+        .map_err(|e| errors::remesh(&e))?;
     Ok(Mesh::at(&made, part.centre))
 }
 
@@ -70,9 +69,8 @@ fn hollow(
         return Err(PyValueError::new_err("wall: expected a length above 0"));
     }
     let (part, solid) = prepared(py, mesh.get(), &None)?;
-    let made =
-        watched(py, &progress, |job| offsets::hollow(&part.mesh, &solid, wall, side, job))?
-            .map_err(|e| errors::remesh(&e))?;
+    let made = watched(py, &progress, |job| offsets::hollow(&part.mesh, &solid, wall, side, job))?
+        .map_err(|e| errors::remesh(&e))?;
     Ok(Mesh::at(&made.mesh, part.centre))
 }
 
@@ -92,8 +90,8 @@ fn decimate(
     }
     let poly = mesh.get().poly.clone();
     let target = DecimationTarget { triangles, error };
-    let made = watched(py, &progress, |job| quadric(&poly, target, job))?
-        .map_err(errors::cancelled)?;
+    let made =
+        watched(py, &progress, |job| quadric(&poly, target, job))?.map_err(errors::cancelled)?;
     Ok(made.into())
 }
 

@@ -162,11 +162,7 @@ fn thickness_of(
             "sphere" => EdgePolicy::Sphere,
             "neutral" => EdgePolicy::Neutral,
             other => {
-                return Err(unknown(
-                    "edges",
-                    other,
-                    "'extrapolate', 'raw', 'sphere' or 'neutral'",
-                ));
+                return Err(unknown("edges", other, "'extrapolate', 'raw', 'sphere' or 'neutral'"));
             }
         },
         rays,
