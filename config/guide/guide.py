@@ -39,6 +39,7 @@ CHAPTERS = [
         ("An installation in five minutes", "first-installation.md"),
     ]),
     ("Use", [
+        ("The window", "window.md"),
         ("Brushes", "brushes/"),
         ("Gestures", "gestures.md"),
         ("Solids: join, measure, check", "solids.md"),
