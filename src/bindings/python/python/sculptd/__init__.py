@@ -1,0 +1,90 @@
+"""Booleans, wall thickness, distance, projection and remeshing of meshes.
+
+Read a mesh, ask it something, write what came out::
+
+    import sculptd
+
+    part = sculptd.read("part.stl")
+    hole = sculptd.Mesh.cylinder(radius=3.0, height=50.0)
+    made = sculptd.boolean(part, hole, "difference")
+    walls = sculptd.thickness(made.mesh)
+    print(made.volume, walls.min, walls.below(1.0))
+    made.mesh.write("drilled.3mf")
+
+Lengths are in the unit of the file, millimetres as a rule. A mesh never changes; every operation
+gives a new one. Arrays of a mesh (``vertices``, ``faces``) are read-only views of its own memory.
+
+Functions that may take long release the interpreter's lock, stop on Ctrl+C, and call
+``progress(done)`` with a number from 0 to 1 about ten times a second. An exception that ``progress``
+raises cancels the work.
+
+``sculptd.control`` talks to a running daemon; ``sculptd.trimesh_engine`` gives trimesh our
+Booleans.
+"""
+
+from ._native import (
+    BooleanFailed,
+    BooleanResult,
+    EmptyResult,
+    FileFormatError,
+    JobCancelled,
+    Mesh,
+    Projection,
+    SculptdError,
+    Solid,
+    Thickness,
+    __version__,
+    boolean,
+    boolean_all,
+    check,
+    decimate,
+    hollow,
+    measure,
+    offset,
+    picture,
+    project,
+    read,
+    remesh,
+    repair,
+    slices,
+    subdivide,
+    thickness,
+)
+
+__all__ = [
+    "BooleanFailed",
+    "BooleanResult",
+    "EmptyResult",
+    "FileFormatError",
+    "JobCancelled",
+    "Mesh",
+    "Projection",
+    "SculptdError",
+    "Solid",
+    "Thickness",
+    "__version__",
+    "boolean",
+    "boolean_all",
+    "check",
+    "decimate",
+    "hollow",
+    "measure",
+    "offset",
+    "picture",
+    "project",
+    "read",
+    "remesh",
+    "repair",
+    "signed_distance",
+    "slices",
+    "subdivide",
+    "thickness",
+]
+
+
+def signed_distance(mesh, points, *, progress=None):
+    """The distance of each of (n, 3) points to the surface of `mesh`, negative inside.
+
+    For several questions of one mesh make a `Solid` once.
+    """
+    return Solid(mesh).signed_distance(points, progress=progress)

@@ -1,0 +1,217 @@
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Progress = Callable[[float], object] | None
+_Path = str | PathLike[str]
+_Vector = Sequence[float]
+_Operation = Literal["union", "intersection", "difference", "reverse-difference"]
+_Faces = Literal["as-operands", "triangles", "convex", "polygons"]
+
+class SculptdError(Exception): ...
+
+class FileFormatError(SculptdError):
+    path: str
+    line: int | None
+    byte: int | None
+    expected: str
+    found: str
+
+class BooleanFailed(SculptdError):
+    operand: Literal["A", "B"] | None
+    kind: Literal["open", "inside-out", "not-finite", "inconsistent"]
+    edges: int | None
+
+class EmptyResult(SculptdError): ...
+class JobCancelled(SculptdError): ...
+
+class Mesh:
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        face_starts: ArrayLike | None = None,
+        colours: ArrayLike | None = None,
+    ) -> None: ...
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    @property
+    def corners(self) -> NDArray[np.uint32]: ...
+    @property
+    def face_starts(self) -> NDArray[np.uint32]: ...
+    @property
+    def colours(self) -> NDArray[np.uint8] | None: ...
+    @property
+    def groups(self) -> NDArray[np.uint32] | None: ...
+    @property
+    def format(self) -> str | None: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    def triangulated(self) -> Mesh: ...
+    def transformed(self, scale: float = 1.0, offset: _Vector = (0.0, 0.0, 0.0)) -> Mesh: ...
+    def write(self, path: _Path) -> None: ...
+    @classmethod
+    def box(cls, low: _Vector, high: _Vector) -> Mesh: ...
+    @classmethod
+    def sphere(cls, radius: float, frequency: int = 32) -> Mesh: ...
+    @classmethod
+    def cylinder(cls, radius: float, height: float, around: int = 64) -> Mesh: ...
+    def __len__(self) -> int: ...
+
+class BooleanResult:
+    @property
+    def operation(self) -> _Operation: ...
+    @property
+    def mesh(self) -> Mesh: ...
+    @property
+    def operand(self) -> NDArray[np.uint8]: ...
+    @property
+    def face(self) -> NDArray[np.uint32]: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def area(self) -> float: ...
+    @property
+    def components(self) -> int: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def manifold(self) -> bool: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def depends_on_tolerance(self) -> bool: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+class ThinRegion(TypedDict):
+    position: list[float]
+    thickness: float
+    area: float
+
+class Thickness:
+    @property
+    def values(self) -> NDArray[np.float32]: ...
+    @property
+    def reasons(self) -> NDArray[np.uint8]: ...
+    @property
+    def errors(self) -> NDArray[np.float32]: ...
+    @property
+    def min(self) -> float | None: ...
+    @property
+    def max(self) -> float | None: ...
+    @property
+    def mean(self) -> float | None: ...
+    @property
+    def median(self) -> float | None: ...
+    @property
+    def valid(self) -> float: ...
+    @property
+    def error_bound(self) -> float: ...
+    def summary(self) -> dict[str, Any]: ...
+    def below(self, limit: float) -> tuple[float, float]: ...
+    def worst(self, limit: float, count: int = 10) -> list[ThinRegion]: ...
+
+class Projection:
+    @property
+    def area(self) -> float: ...
+    @property
+    def axes(self) -> tuple[list[float], list[float]]: ...
+    @property
+    def regions(self) -> list[tuple[NDArray[np.float64], list[NDArray[np.float64]]]]: ...
+
+class Solid:
+    def __init__(
+        self,
+        mesh: Mesh,
+        *,
+        sign: Literal["winding", "pseudonormal"] = "winding",
+        progress: _Progress = None,
+    ) -> None: ...
+    def signed_distance(
+        self, at: ArrayLike, *, progress: _Progress = None
+    ) -> NDArray[np.float64]: ...
+    def nearest(
+        self, at: ArrayLike, *, progress: _Progress = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
+    def winding(self, at: ArrayLike) -> NDArray[np.float64]: ...
+
+class Measures(TypedDict):
+    volume: float
+    area: float
+    dimensions: list[float]
+    centroid: list[float] | None
+
+def read(path: _Path, progress: _Progress = None) -> Mesh: ...
+def boolean(
+    a: Mesh,
+    b: Mesh,
+    operation: _Operation = "union",
+    *,
+    tolerance: float | None = None,
+    faces: _Faces = "as-operands",
+    keep_contact: bool = False,
+    progress: _Progress = None,
+) -> BooleanResult: ...
+def boolean_all(
+    a: Mesh,
+    b: Mesh,
+    *,
+    tolerance: float | None = None,
+    faces: _Faces = "as-operands",
+    keep_contact: bool = False,
+    progress: _Progress = None,
+) -> dict[_Operation, BooleanResult]: ...
+def slices(
+    mesh: Mesh, normal: _Vector, offsets: Sequence[float], *, progress: _Progress = None
+) -> list[list[NDArray[np.float64]]]: ...
+def thickness(
+    mesh: Mesh,
+    *,
+    method: Literal["ray", "sphere"] = "ray",
+    rays: int = 25,
+    opening: float = 60.0,
+    side: Literal["wall", "gap"] = "wall",
+    edges: Literal["extrapolate", "raw", "sphere", "neutral"] = "extrapolate",
+    progress: _Progress = None,
+) -> Thickness: ...
+def measure(mesh: Mesh) -> Measures: ...
+def check(mesh: Mesh, *, crossings: bool = True, progress: _Progress = None) -> dict[str, Any]: ...
+def project(
+    mesh: Mesh, direction: _Vector = (0.0, 0.0, -1.0), *, progress: _Progress = None
+) -> Projection: ...
+def remesh(
+    mesh: Mesh, *, side: int = 256, sharp: bool = False, progress: _Progress = None
+) -> Mesh: ...
+def offset(
+    mesh: Mesh, distance: float, *, side: int = 256, progress: _Progress = None
+) -> Mesh: ...
+def hollow(mesh: Mesh, wall: float, *, side: int = 256, progress: _Progress = None) -> Mesh: ...
+def decimate(
+    mesh: Mesh, triangles: int = 0, *, error: float = ..., progress: _Progress = None
+) -> Mesh: ...
+def subdivide(
+    mesh: Mesh,
+    levels: int = 1,
+    *,
+    scheme: Literal["loop", "catmull-clark"] = "loop",
+    progress: _Progress = None,
+) -> Mesh: ...
+def repair(
+    mesh: Mesh, *, weld: float = 0.0, longest_hole: int = ..., progress: _Progress = None
+) -> Mesh: ...
+def picture(
+    mesh: Mesh,
+    *,
+    thickness: Thickness | None = None,
+    width: int = 640,
+    height: int = 480,
+    towards_eye: _Vector | None = None,
+) -> bytes: ...

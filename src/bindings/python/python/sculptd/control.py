@@ -1,0 +1,187 @@
+"""A client of the daemon's control socket: JSON-RPC 2.0, one message a line.
+
+    from sculptd.control import Client
+
+    with Client() as daemon:
+        daemon.stroke([(0.3, 0.5, 0.8, 0), (0.7, 0.5, 0.8, 400)], radius=0.1)
+        print(daemon.status()["dabs"])
+        daemon.export("/tmp/sculpture.stl")
+
+Every method of the protocol is a method of the client: ``daemon.call("camera", {"yaw": 0.5})`` and
+``daemon.camera(yaw=0.5)`` are the same. ``take-up`` and other names with a hyphen are written with
+an underscore. The schema is ``src/control/schema.json``; ``daemon.methods()`` lists the methods.
+It is pure Python over a Unix socket and needs nothing of the native module.
+"""
+
+import json
+import os
+import socket
+import tempfile
+import time
+from collections import deque
+
+__all__ = ["Client", "DaemonAbsent", "DaemonError", "DaemonRefused", "DaemonSilent", "default_path"]
+
+#: Versions of the protocol that this client speaks, oldest first.
+VERSIONS = (1, 2)
+#: Longest reply that is read, bytes.
+MAX_REPLY = 256 << 20
+#: Events that are kept while an answer is waited for; the oldest are dropped beyond.
+KEPT_EVENTS = 1024
+
+
+class DaemonError(Exception):
+    """The base of this module's exceptions."""
+
+
+class DaemonAbsent(DaemonError, ConnectionError):
+    """Nothing listens on the socket. Attribute: ``path``."""
+
+    def __init__(self, path):
+        super().__init__(
+            f"no daemon is running (nothing listens on {path}); start one with `sculptd run`"
+        )
+        self.path = path
+
+
+class DaemonSilent(DaemonError, TimeoutError):
+    """The daemon did not answer in time, or closed the connection."""
+
+
+class DaemonRefused(DaemonError):
+    """The daemon refused a request. Attributes: ``code`` (JSON-RPC), ``message``, ``method``."""
+
+    def __init__(self, method, code, message):
+        super().__init__(f"{method}: {message} ({code})")
+        self.method = method
+        self.code = code
+        self.message = message
+
+
+def default_path():
+    """Where a daemon listens unless it is told otherwise."""
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    if runtime:
+        return os.path.join(runtime, "sculptd.sock")
+    return os.path.join(tempfile.gettempdir(), f"sculptd-{os.getuid()}", "sculptd.sock")
+
+
+class Client:
+    """A connection to a running daemon; one request at a time.
+
+    ``path``: the socket, `default_path` unless told. ``patience``: seconds that an answer may take.
+    Raises `DaemonAbsent` where nothing listens.
+    """
+
+    def __init__(self, path=None, patience=30.0):
+        self.path = os.fspath(path) if path is not None else default_path()
+        self.patience = patience
+        self._sent = 0
+        self._events = deque(maxlen=KEPT_EVENTS)
+        self._read = b""
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._socket.settimeout(patience)
+            self._socket.connect(self.path)
+        except OSError as e:
+            self._socket.close()
+            raise DaemonAbsent(self.path) from e
+
+    def close(self):
+        """Closes the connection."""
+        self._socket.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def hello(self):
+        """Agrees on a version with the daemon; raises `DaemonRefused` where there is none."""
+        return self.call("hello", {"versions": {"min": VERSIONS[0], "max": VERSIONS[1]}})
+
+    def call(self, method, params=None):
+        """Calls a method by its name and returns its reply.
+
+        Raises `DaemonRefused` with the daemon's code and message, `DaemonSilent` where no answer
+        comes within ``patience``.
+        """
+        self._sent += 1
+        request = {"jsonrpc": "2.0", "id": self._sent, "method": method, "params": params or {}}
+        try:
+            self._socket.sendall(json.dumps(request).encode() + b"\n")
+        except OSError as e:
+            raise DaemonSilent(f"{self.path}: {e}") from e
+        until = time.monotonic() + self.patience
+        while True:
+            answer = self._line(until)
+            if answer is None:
+                raise DaemonSilent(f"{self.path}: no answer to {method} in {self.patience} s")
+            if answer.get("method") == "event":
+                self._events.append(answer["params"])
+                continue
+            error = answer.get("error")
+            if error is not None:
+                raise DaemonRefused(method, error["code"], error["message"])
+            return answer.get("result")
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        method = name.replace("_", "-")
+        return lambda **params: self.call(method, params)
+
+    def stroke(self, points, space="view", **brush):
+        """A stroke of a virtual pen, recorded like one of a tablet.
+
+        ``points``: rows of x, y, pressure, t_ms in view coordinates (0 to 1), or of x, y, z,
+        pressure, t_ms with ``space="world"``; time rises by at least 1 ms. Further arguments are
+        settings of the brush for this stroke alone, e.g. ``kind="crease", radius=0.1``.
+        Returns when the daemon has taken all its samples.
+        """
+        params = {"points": [[float(v) for v in row] for row in points], "space": space}
+        if brush:
+            params["brush"] = brush
+        return self.call("stroke", params)
+
+    def export(self, path):
+        """Writes the sculpture; the name's ending says the format."""
+        return self.call("export", {"path": os.path.abspath(os.fspath(path))})
+
+    def load(self, path):
+        """Replaces the sculpture by a mesh from a file."""
+        return self.call("load", {"path": os.path.abspath(os.fspath(path))})
+
+    def next_event(self, patience=None):
+        """The next event after `subscribe`, a dict; None where none comes within ``patience``."""
+        if self._events:
+            return self._events.popleft()
+        until = time.monotonic() + (self.patience if patience is None else patience)
+        while True:
+            line = self._line(until)
+            if line is None:
+                return None
+            if line.get("method") == "event":
+                return line["params"]
+
+    def _line(self, until):
+        """One message; None where it does not come in time."""
+        while b"\n" not in self._read:
+            left = until - time.monotonic()
+            if left <= 0.0:
+                return None
+            self._socket.settimeout(left)
+            try:
+                more = self._socket.recv(1 << 16)
+            except TimeoutError:
+                return None
+            except OSError as e:
+                raise DaemonSilent(f"{self.path}: {e}") from e
+            if not more:
+                raise DaemonSilent(f"{self.path}: the daemon closed the connection")
+            self._read += more
+            if len(self._read) > MAX_REPLY:
+                raise DaemonError(f"a reply of more than {MAX_REPLY} bytes")
+        line, self._read = self._read.split(b"\n", 1)
+        return json.loads(line)

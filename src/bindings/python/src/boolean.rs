@@ -1,0 +1,249 @@
+//! Booleans of two solids, with the origin of every face.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sculptd_geometry::boolean::{
+    BooleanFacts, BooleanOptions, BooleanReport, Operation, ResultFaces, compute, split,
+};
+
+use crate::array::shared;
+use crate::errors;
+use crate::job::{Progress, watched};
+use crate::mesh::Mesh;
+
+/// One result of a Boolean.
+///
+/// `mesh` is the solid; `operand` (uint8: 0 for A, 1 for B) and `face` (uint32) say for each of its
+/// faces which face of which operand it is or was cut from.
+#[pyclass(frozen, module = "sculptd")]
+#[derive(Debug)]
+struct BooleanResult {
+    operation: Operation,
+    mesh: Py<Mesh>,
+    operands: Arc<Vec<u8>>,
+    faces: Arc<Vec<u32>>,
+    facts: BooleanFacts,
+    report: Arc<BooleanReport>,
+}
+
+#[pymethods]
+impl BooleanResult {
+    /// 'union', 'intersection', 'difference' or 'reverse-difference'.
+    #[getter]
+    fn operation(&self) -> &'static str {
+        self.operation.name()
+    }
+
+    /// The solid; of no faces where the result is empty.
+    #[getter]
+    fn mesh(&self, py: Python<'_>) -> Py<Mesh> {
+        self.mesh.clone_ref(py)
+    }
+
+    /// For each face of the result: 0 where it is from A, 1 where it is from B. uint8, shared.
+    #[getter]
+    fn operand<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shared(py, self.operands.clone(), &self.operands, vec![self.operands.len()])
+    }
+
+    /// For each face of the result: its face in that operand. uint32, shared.
+    #[getter]
+    fn face<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shared(py, self.faces.clone(), &self.faces, vec![self.faces.len()])
+    }
+
+    /// In cubic units.
+    #[getter]
+    fn volume(&self) -> f64 {
+        self.facts.volume
+    }
+
+    /// In square units.
+    #[getter]
+    fn area(&self) -> f64 {
+        self.facts.area
+    }
+
+    /// Connected shells.
+    #[getter]
+    fn components(&self) -> usize {
+        self.facts.components
+    }
+
+    /// Every edge has as many faces on one side as on the other.
+    #[getter]
+    fn closed(&self) -> bool {
+        self.facts.closed
+    }
+
+    /// Every edge has two faces, every vertex one fan.
+    #[getter]
+    fn manifold(&self) -> bool {
+        self.facts.manifold
+    }
+
+    /// The length within which places were taken as one.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.report.tolerance
+    }
+
+    /// Whether another tolerance may give another answer.
+    #[getter]
+    fn depends_on_tolerance(&self) -> bool {
+        self.report.depends_on_tolerance
+    }
+
+    /// One sentence each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.report.warnings.clone()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<sculptd.BooleanResult {}: {} faces, volume {}>",
+            self.operation.name(),
+            self.faces.len(),
+            self.facts.volume
+        )
+    }
+}
+
+fn options(tolerance: Option<f64>, faces: &str, keep_contact: bool) -> PyResult<BooleanOptions> {
+    let faces = match faces {
+        "as-operands" => ResultFaces::AsOperands,
+        "triangles" => ResultFaces::Triangles,
+        "convex" => ResultFaces::ConvexPolygons,
+        "polygons" => ResultFaces::Polygons,
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "faces: expected 'as-operands', 'triangles', 'convex' or 'polygons', found \
+                 '{other}'"
+            )));
+        }
+    };
+    if tolerance.is_some_and(|t| !(t >= 0.0 && t.is_finite())) {
+        return Err(PyValueError::new_err("tolerance: expected a length of 0 or more"));
+    }
+    Ok(BooleanOptions { tolerance, faces, keep_contact })
+}
+
+fn computed(
+    py: Python<'_>,
+    a: &Mesh,
+    b: &Mesh,
+    operations: &[Operation],
+    options: &BooleanOptions,
+    progress: &Progress,
+) -> PyResult<Vec<BooleanResult>> {
+    let operands = [a.poly.as_ref(), b.poly.as_ref()];
+    let (solids, report) =
+        watched(py, progress, |job| compute(operands, operations, options, job, || 0.0))?
+            .map_err(|e| errors::boolean(py, &e))?;
+    let report = Arc::new(report);
+    let result = |s: sculptd_geometry::boolean::BooleanSolid| {
+        Ok(BooleanResult {
+            operation: s.operation,
+            mesh: Py::new(py, Mesh::warned(s.mesh, report.warnings.clone()))?,
+            operands: Arc::new(s.origins.iter().map(|o| o.operand).collect()),
+            faces: Arc::new(s.origins.iter().map(|o| o.face).collect()),
+            facts: s.facts,
+            report: report.clone(),
+        })
+    };
+    solids.into_iter().map(result).collect()
+}
+
+/// One Boolean of two closed solids: 'union', 'intersection', 'difference' (A minus B) or
+/// 'reverse-difference' (B minus A).
+///
+/// `tolerance`: length within which places are one; None takes what the coordinates can resolve.
+/// `faces`: what cut faces become: 'as-operands', 'triangles', 'convex' or 'polygons'.
+/// `keep_contact`: faces in which the solids only touch belong to the intersection too.
+/// `progress`: called with 0 to 1 about ten times a second; an exception from it cancels.
+///
+/// Raises BooleanFailed with `kind` and `operand` where an operand is open or inside out, or where
+/// no result passes the checks.
+#[pyfunction]
+#[pyo3(signature = (a, b, operation="union", *, tolerance=None, faces="as-operands",
+                    keep_contact=false, progress=None))]
+fn boolean(
+    py: Python<'_>,
+    a: &Bound<'_, Mesh>,
+    b: &Bound<'_, Mesh>,
+    operation: &str,
+    tolerance: Option<f64>,
+    faces: &str,
+    keep_contact: bool,
+    progress: Progress,
+) -> PyResult<BooleanResult> {
+    let wanted = Operation::ALL.into_iter().find(|o| o.name() == operation).ok_or_else(|| {
+        let names = Operation::ALL.map(Operation::name).join(", ");
+        PyValueError::new_err(format!("operation: expected one of {names}; found '{operation}'"))
+    })?;
+    let options = options(tolerance, faces, keep_contact)?;
+    let made = computed(py, a.get(), b.get(), &[wanted], &options, &progress)?;
+    made.into_iter().next().ok_or_else(|| PyValueError::new_err("no result"))
+}
+
+/// All four results from one arrangement: a dict by the names of the operations.
+#[pyfunction]
+#[pyo3(signature = (a, b, *, tolerance=None, faces="as-operands", keep_contact=false,
+                    progress=None))]
+fn boolean_all<'py>(
+    py: Python<'py>,
+    a: &Bound<'py, Mesh>,
+    b: &Bound<'py, Mesh>,
+    tolerance: Option<f64>,
+    faces: &str,
+    keep_contact: bool,
+    progress: Progress,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = options(tolerance, faces, keep_contact)?;
+    let out = PyDict::new(py);
+    for result in computed(py, a.get(), b.get(), &Operation::ALL, &options, &progress)? {
+        out.set_item(result.operation.name(), result)?;
+    }
+    Ok(out)
+}
+
+/// Sections of a closed solid by the planes `normal . p = offset`: for each offset a list of
+/// polylines, (n, 3) float64; a closed one ends with its first point. Each plane is cut by the same
+/// engine as a Boolean.
+#[pyfunction]
+#[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
+fn slices<'py>(
+    py: Python<'py>,
+    mesh: &Bound<'py, Mesh>,
+    normal: [f64; 3],
+    offsets: Vec<f64>,
+    progress: Progress,
+) -> PyResult<Vec<Vec<Bound<'py, PyAny>>>> {
+    let options = BooleanOptions::default();
+    let mut out = Vec::with_capacity(offsets.len());
+    for offset in offsets {
+        let mesh = mesh.get().poly.clone();
+        let normal = glam::DVec3::from(normal);
+        let (_, report) =
+            watched(py, &progress, |job| split(&mesh, normal, offset, &options, job, || 0.0))?
+                .map_err(|e| errors::boolean(py, &e))?;
+        let report = Arc::new(report);
+        let line = |line: &Vec<glam::DVec3>| {
+            shared(py, report.clone(), bytemuck::cast_slice::<_, f64>(line), vec![line.len(), 3])
+        };
+        out.push(report.cut.iter().map(line).collect::<PyResult<Vec<_>>>()?);
+    }
+    Ok(out)
+}
+
+/// Adds what this file defines.
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<BooleanResult>()?;
+    m.add_function(wrap_pyfunction!(boolean, m)?)?;
+    m.add_function(wrap_pyfunction!(boolean_all, m)?)?;
+    m.add_function(wrap_pyfunction!(slices, m)?)
+}

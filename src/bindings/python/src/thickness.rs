@@ -1,0 +1,191 @@
+//! Wall thickness of every vertex.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use sculptd_geometry::CentredMesh;
+use sculptd_geometry::thickness::{
+    self, EdgePolicy, MeasuredSide, ThicknessMethod, ThicknessSettings,
+};
+
+use sculptd_geometry::thickness::summary::ThicknessSummary;
+
+use crate::array::shared;
+use crate::errors;
+use crate::job::{Progress, watched};
+use crate::measure::plain;
+use crate::mesh::Mesh;
+
+/// The thickness of the walls of a part, one value a vertex of the mesh, in the mesh's unit.
+#[pyclass(frozen, module = "sculptd")]
+#[derive(Debug)]
+pub struct Thickness {
+    pub measured: Arc<thickness::Thickness>,
+    pub part: Arc<CentredMesh>,
+    summary: ThicknessSummary,
+    reasons: Arc<Vec<u8>>,
+}
+
+#[pymethods]
+impl Thickness {
+    /// float32, one a vertex, read-only, shared; NaN where there is no value: see `reasons`.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let values = &self.measured.values;
+        shared(py, self.measured.clone(), values, vec![values.len()])
+    }
+
+    /// uint8, one a vertex: 0 measured, 1 on a sharp edge, 2 nothing ahead, 3 no normal, 4 no face.
+    #[getter]
+    fn reasons<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shared(py, self.reasons.clone(), &self.reasons, vec![self.reasons.len()])
+    }
+
+    /// float32, one a vertex: the standard error of the mean of its cone of rays.
+    #[getter]
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let errors = &self.measured.errors;
+        shared(py, self.measured.clone(), errors, vec![errors.len()])
+    }
+
+    /// The least value; None where no vertex has one.
+    #[getter]
+    fn min(&self) -> Option<f32> {
+        self.summary.min
+    }
+
+    /// The largest value.
+    #[getter]
+    fn max(&self) -> Option<f32> {
+        self.summary.max
+    }
+
+    /// The mean over the area.
+    #[getter]
+    fn mean(&self) -> Option<f32> {
+        self.summary.mean
+    }
+
+    /// Half of the area is thinner.
+    #[getter]
+    fn median(&self) -> Option<f32> {
+        self.summary.median
+    }
+
+    /// The share of vertices with a value, 0 to 1.
+    #[getter]
+    fn valid(&self) -> f32 {
+        self.summary.valid
+    }
+
+    /// How far a value may be off by rounding and by the cone's spread.
+    #[getter]
+    fn error_bound(&self) -> f32 {
+        self.summary.error_bound
+    }
+
+    /// Every statistic as a dict, as `sculptd thickness --json` prints it.
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.summary)
+    }
+
+    /// The area that is thinner than `limit`: in square units, and as a share of the whole, 0 to 1.
+    fn below(&self, limit: f32) -> (f64, f64) {
+        let (thin, all) = self.measured.area_beyond(limit, false);
+        (thin, if all > 0.0 { thin / all } else { 0.0 })
+    }
+
+    /// The thinnest regions below `limit`, the worst first: dicts with `position`, `thickness`,
+    /// `area`.
+    #[pyo3(signature = (limit, count=10))]
+    fn worst<'py>(
+        &self,
+        py: Python<'py>,
+        limit: f32,
+        count: usize,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let out = PyList::empty(py);
+        for spot in self.measured.worst(limit, 0.0, count) {
+            let d = PyDict::new(py);
+            d.set_item("position", self.part.to_file(spot.position.into()).to_array())?;
+            d.set_item("thickness", spot.thickness)?;
+            d.set_item("area", spot.area)?;
+            out.append(d)?;
+        }
+        Ok(out)
+    }
+
+    fn __repr__(&self) -> String {
+        let s = &self.summary;
+        format!("<sculptd.Thickness min {:?}, median {:?}, max {:?}>", s.min, s.median, s.max)
+    }
+}
+
+/// How thick the walls are under every vertex.
+///
+/// `method`: 'ray' (a cone of `rays` rays of `opening` degrees, corrected by the chord) or 'sphere'
+/// (the largest ball that touches the surface there and fits inside). `side`: 'wall', or 'gap' for
+/// the clearance in front of the surface. `edges`: what a vertex on a sharp edge says:
+/// 'extrapolate', 'raw', 'sphere' or 'neutral'.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, method="ray", rays=25, opening=60.0, side="wall",
+                    edges="extrapolate", progress=None))]
+fn thickness_of(
+    py: Python<'_>,
+    mesh: &Bound<'_, Mesh>,
+    method: &str,
+    rays: usize,
+    opening: f32,
+    side: &str,
+    edges: &str,
+    progress: Progress,
+) -> PyResult<Thickness> {
+    let unknown = |what: &str, found: &str, expected: &str| {
+        PyValueError::new_err(format!("{what}: expected {expected}; found '{found}'"))
+    };
+    let settings = ThicknessSettings {
+        method: match method {
+            "ray" => ThicknessMethod::Ray,
+            "sphere" => ThicknessMethod::Sphere,
+            other => return Err(unknown("method", other, "'ray' or 'sphere'")),
+        },
+        side: match side {
+            "wall" => MeasuredSide::Wall,
+            "gap" => MeasuredSide::Gap,
+            other => return Err(unknown("side", other, "'wall' or 'gap'")),
+        },
+        edges: match edges {
+            "extrapolate" => EdgePolicy::Extrapolate,
+            "raw" => EdgePolicy::Raw,
+            "sphere" => EdgePolicy::Sphere,
+            "neutral" => EdgePolicy::Neutral,
+            other => {
+                return Err(unknown("edges", other, "'extrapolate', 'raw', 'sphere' or 'neutral'"));
+            }
+        },
+        rays,
+        opening,
+        ..ThicknessSettings::default()
+    };
+    let poly = mesh.get().poly.clone();
+    let (part, measured, summary) = watched(py, &progress, |job| {
+        let part = CentredMesh::new(&poly, 1.0);
+        let measured = thickness::measure(&part.mesh, &settings, job)?;
+        let mut summary = measured.summary();
+        let moved = |p: [f32; 3]| part.to_file(p.into()).as_vec3().to_array();
+        summary.thinnest = summary.thinnest.map(moved);
+        summary.thickest = summary.thickest.map(moved);
+        Ok((part, measured, summary))
+    })?
+    .map_err(|e| errors::thickness(&e))?;
+    let reasons = Arc::new(measured.reasons.iter().map(|&r| r as u8).collect());
+    Ok(Thickness { measured: Arc::new(measured), part: Arc::new(part), summary, reasons })
+}
+
+/// Adds what this file defines.
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<Thickness>()?;
+    m.add("thickness", wrap_pyfunction!(thickness_of, m)?)
+}

@@ -1,0 +1,80 @@
+"""The client against a real daemon; skipped unless SCULPTD_BINARY names one."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import time
+import unittest
+
+import sculptd
+from sculptd import control
+
+BINARY = os.environ.get("SCULPTD_BINARY")
+
+
+class Absent(unittest.TestCase):
+    def test_no_daemon_is_an_error_with_the_path(self):
+        with self.assertRaises(control.DaemonAbsent) as caught:
+            control.Client("/nowhere/sculptd.sock")
+        self.assertEqual(caught.exception.path, "/nowhere/sculptd.sock")
+
+
+@unittest.skipUnless(BINARY, "SCULPTD_BINARY is not set")
+class Daemon(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        home = pathlib.Path(self.folder.name)
+        self.socket = home / "sculptd.sock"
+        environment = {**os.environ, "XDG_RUNTIME_DIR": str(home), "HOME": str(home)}
+        for name in ("XDG_DATA_HOME", "XDG_CONFIG_HOME", "DISPLAY", "WAYLAND_DISPLAY"):
+            environment.pop(name, None)
+        self.log = open(home / "log", "wb")
+        self.daemon = subprocess.Popen(
+            [BINARY, "run", "--headless", "--for", "120"],
+            env=environment,
+            stdout=self.log,
+            stderr=self.log,
+        )
+        until = time.monotonic() + 60
+        while not self.socket.exists() and self.daemon.poll() is None:
+            self.assertLess(time.monotonic(), until, "the daemon opens no socket")
+            time.sleep(0.05)
+
+    def tearDown(self):
+        self.daemon.terminate()
+        self.daemon.wait(60)
+        self.log.close()
+        self.folder.cleanup()
+
+    def test_a_stroke_changes_the_clay_and_is_exported(self):
+        with control.Client(self.socket) as daemon:
+            self.assertGreaterEqual(daemon.hello()["protocol"], 1)
+            daemon.subscribe()
+            before = daemon.hash()["hash"]
+            points = [(0.3 + 0.004 * i, 0.5, 0.8, 10 * i) for i in range(100)]
+            reply = daemon.stroke(points, kind="clay", radius=0.1)
+            # One for each point, and one to leave the surface.
+            self.assertGreaterEqual(reply["samples"], 100)
+            until = time.monotonic() + 30
+            while daemon.hash()["hash"] == before:
+                self.assertLess(time.monotonic(), until, "the stroke changed nothing")
+            self.assertIsNotNone(daemon.next_event(10.0))
+            path = pathlib.Path(self.folder.name) / "sculpture.stl"
+            daemon.export(path)
+            made = sculptd.read(path)
+            self.assertGreater(len(made), 1000)
+
+    def test_a_refusal_names_the_field(self):
+        with control.Client(self.socket) as daemon:
+            with self.assertRaises(control.DaemonRefused) as caught:
+                daemon.camera(pitch=9)
+            self.assertEqual(caught.exception.code, -32602)
+            self.assertIn("pitch = 9", caught.exception.message)
+            with self.assertRaises(control.DaemonRefused):
+                daemon.call("frobnicate")
+            self.assertIn("stroke", str(daemon.methods()))
+
+
+if __name__ == "__main__":
+    unittest.main()

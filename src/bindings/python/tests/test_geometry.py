@@ -1,0 +1,299 @@
+"""The module over meshes whose answers are known."""
+
+import gc
+import math
+import os
+import pathlib
+import signal
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import sculptd
+from sculptd import Mesh
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+def cubes():
+    return Mesh.box((0, 0, 0), (2, 2, 2)), Mesh.box((1, 1, 1), (3, 3, 3))
+
+
+class Arrays(unittest.TestCase):
+    def test_arrays_share_the_memory_of_the_mesh(self):
+        mesh = Mesh.sphere(1.0, 16)
+        first, second = mesh.vertices, mesh.vertices
+        self.assertIsNot(first, second)
+        self.assertEqual(address(first), address(second))
+        self.assertEqual(address(mesh.faces), address(mesh.corners))
+        self.assertTrue(np.shares_memory(first, second))
+        self.assertEqual((first.dtype, first.shape), (np.float64, (2562, 3)))
+        self.assertEqual((mesh.faces.dtype, mesh.faces.shape), (np.uint32, (5120, 3)))
+
+    def test_a_result_s_arrays_are_those_that_rust_made(self):
+        made = sculptd.boolean(*cubes(), "union")
+        self.assertEqual(address(made.mesh.vertices), address(made.mesh.vertices))
+        self.assertEqual(address(made.face), address(made.face))
+        walls = sculptd.thickness(made.mesh)
+        self.assertEqual(address(walls.values), address(walls.values))
+
+    def test_arrays_are_read_only_and_outlive_the_mesh(self):
+        mesh = Mesh.sphere(1.0, 40)
+        vertices = mesh.vertices
+        with self.assertRaises(ValueError):
+            vertices[0, 0] = 9.0
+        before = vertices.sum()
+        del mesh
+        gc.collect()
+        fill = [np.full((100_000, 3), 7.0) for _ in range(8)]
+        self.assertEqual(vertices.sum(), before)
+        self.assertEqual(len(fill), 8)
+
+    def test_a_mesh_from_arrays(self):
+        box = Mesh.box((0, 0, 0), (1, 2, 3)).triangulated()
+        for kind in (np.int64, np.uint32, np.int32):
+            copy = Mesh(box.vertices.tolist(), box.faces.astype(kind))
+            np.testing.assert_array_equal(copy.vertices, box.vertices)
+            np.testing.assert_array_equal(copy.faces, box.faces)
+        mixed = Mesh(np.eye(4, 3), [0, 1, 2, 0, 1, 2, 3], face_starts=[0, 3, 7])
+        self.assertEqual(len(mixed), 2)
+        with self.assertRaises(ValueError):
+            mixed.faces
+        self.assertEqual(mixed.triangulated().faces.shape, (3, 3))
+
+    def test_wrong_arrays_are_refused_by_name_and_place(self):
+        points = np.eye(3)
+        for error, text, arguments in [
+            (IndexError, "faces: entry 1 is 3", (points, [[0, 1, 2], [0, 1, 3]])),
+            (IndexError, "faces: entry 0 is -1", (points, [[0, 1, -1]])),
+            (TypeError, "faces: expected integers", (points, [[0.0, 1.0, 2.0]])),
+            (ValueError, "vertices: expected an array of shape", (np.zeros((3, 2)), [[0, 1, 2]])),
+            (ValueError, "vertices: entry 2", ([[0, 0, 0], [1, 0, 0], [0, math.nan, 0]], [])),
+            (ValueError, "face_starts", (points, [0, 1, 2], [0, 2])),
+        ]:
+            with self.assertRaisesRegex(error, text):
+                Mesh(*arguments)
+
+
+class Files(unittest.TestCase):
+    def test_every_format_keeps_the_solid(self):
+        part = Mesh.box((0, 0, 0), (4, 5, 6))
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("obj", "stl", "ply", "off", "glb", "3mf"):
+                path = pathlib.Path(folder) / f"part.{ending}"
+                part.write(path)
+                again = sculptd.read(path)
+                self.assertIsNotNone(again.format)
+                self.assertAlmostEqual(sculptd.measure(again)["volume"], 120.0, places=4)
+
+    def test_an_error_has_its_place_and_its_reason(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "bad.obj")
+            with open(path, "w") as out:
+                out.write("v 0 0 0\nv 1 0 0\nv 0 1 x\nf 1 2 3\n")
+            with self.assertRaises(sculptd.FileFormatError) as caught:
+                sculptd.read(path)
+            e = caught.exception
+            self.assertEqual((e.path, e.line, e.byte), (path, 3, None))
+            self.assertIn("x", e.found)
+            self.assertTrue(e.expected)
+            with self.assertRaises(FileNotFoundError) as caught:
+                sculptd.read(os.path.join(folder, "absent.stl"))
+            self.assertTrue(caught.exception.filename.endswith("absent.stl"))
+            with self.assertRaisesRegex(ValueError, "ends in .obj"):
+                Mesh.sphere(1, 2).write(os.path.join(folder, "part.txt"))
+
+
+class Booleans(unittest.TestCase):
+    def test_four_results_and_their_volumes(self):
+        results = sculptd.boolean_all(*cubes())
+        volumes = {name: round(r.volume, 9) for name, r in results.items()}
+        self.assertEqual(
+            volumes,
+            {"union": 15, "intersection": 1, "difference": 7, "reverse-difference": 7},
+        )
+        self.assertTrue(all(r.closed and r.manifold for r in results.values()))
+
+    def test_every_face_has_an_origin_in_an_operand(self):
+        a, b = cubes()
+        made = sculptd.boolean(a, b, "difference", faces="triangles")
+        vertices, faces = made.mesh.vertices, made.mesh.faces
+        self.assertEqual(len(made.operand), len(faces))
+        for corners, operand, face in zip(faces, made.operand, made.face):
+            origin = (a, b)[operand]
+            plane = origin.vertices[origin.faces[face]]
+            normal = np.cross(plane[1] - plane[0], plane[2] - plane[0])
+            away = (vertices[corners] - plane[0]) @ normal
+            np.testing.assert_allclose(away, 0.0, atol=1e-12)
+        self.assertEqual(set(made.operand), {0, 1})
+
+    def test_an_open_operand_is_named(self):
+        a, _ = cubes()
+        open_ = Mesh(a.vertices, a.faces[1:])
+        with self.assertRaises(sculptd.BooleanFailed) as caught:
+            sculptd.boolean(a, open_, "union")
+        e = caught.exception
+        self.assertEqual((e.operand, e.kind, e.edges), ("B", "open", 4))
+
+    def test_a_tolerance_joins_what_nearly_touches(self):
+        a = Mesh.box((0, 0, 0), (1, 1, 1))
+        b = Mesh.box((1 + 1e-6, 0, 0), (2, 1, 1))
+        self.assertEqual(sculptd.boolean(a, b, tolerance=0.0).components, 2)
+        self.assertEqual(sculptd.boolean(a, b, tolerance=1e-4).components, 1)
+        with self.assertRaisesRegex(ValueError, "operation: expected one of union"):
+            sculptd.boolean(a, b, "add")
+
+    def test_slices(self):
+        ball = Mesh.sphere(5.0, 24)
+        (middle,), (high,), none = sculptd.slices(ball, (0, 0, 1), [0.1, 3.0, 9.0])
+        radius = np.linalg.norm(middle[:, :2], axis=1)
+        np.testing.assert_allclose(middle[:, 2], 0.1, atol=1e-9)
+        np.testing.assert_allclose(radius, 5.0, atol=0.03)
+        np.testing.assert_allclose(np.linalg.norm(high[:, :2], axis=1), 4.0, atol=0.03)
+        self.assertEqual(none, [])
+
+
+class Questions(unittest.TestCase):
+    def test_thickness_of_a_plate(self):
+        plate = sculptd.remesh(Mesh.box((0, 0, 0), (20, 20, 2)), side=64, sharp=True)
+        walls = sculptd.thickness(plate)
+        self.assertEqual(walls.values.shape, (len(plate.vertices),))
+        self.assertAlmostEqual(walls.median, 2.0, delta=0.05)
+        area, share = walls.below(3.0)
+        self.assertTrue(800 < area < 1000 and 0.8 < share <= 1.0, (area, share))
+        self.assertEqual(walls.below(0.5), (0.0, 0.0))
+        worst = walls.worst(3.0)[0]
+        self.assertLess(worst["thickness"], 3.0)
+        self.assertEqual(set(walls.summary()) & {"min", "histogram"}, {"min", "histogram"})
+        balls = sculptd.thickness(plate, method="sphere")
+        self.assertLessEqual(balls.max, 2.1)
+        with self.assertRaisesRegex(ValueError, "rays"):
+            sculptd.thickness(plate, rays=0)
+
+    def test_distance_inside_and_outside(self):
+        solid = sculptd.Solid(Mesh.box((0, 0, 0), (2, 2, 2)))
+        at = [[1, 1, 1], [1, 1, 1.75], [5, 1, 1]]
+        np.testing.assert_allclose(solid.signed_distance(at), [-1.0, -0.25, 3.0])
+        places, triangles = solid.nearest(at)
+        np.testing.assert_allclose(places[2], [2, 1, 1])
+        self.assertLess(triangles.max(), 12)
+        np.testing.assert_allclose(solid.winding(at), [1, 1, 0], atol=1e-9)
+        far = Mesh.box((1e7, 0, 0), (1e7 + 2, 2, 2))
+        found = sculptd.signed_distance(far, [[1e7 + 3, 1, 1]])
+        np.testing.assert_allclose(found, [1.0], atol=1e-6)
+
+    def test_measure_check_and_projection(self):
+        part = Mesh.box((10, 20, 30), (11, 22, 33))
+        m = sculptd.measure(part)
+        self.assertAlmostEqual(m["volume"], 6.0)
+        self.assertAlmostEqual(m["area"], 22.0)
+        np.testing.assert_allclose(m["dimensions"], [1, 2, 3])
+        np.testing.assert_allclose(m["centroid"], [10.5, 21, 31.5])
+        facts = sculptd.check(part)
+        self.assertTrue(facts["closed"] and facts["manifold"])
+        self.assertEqual(facts["self_intersections"], 0)
+        shadow = sculptd.project(part, (0, 0, -1))
+        self.assertAlmostEqual(shadow.area, 2.0, places=6)
+        ((outer, holes),) = shadow.regions
+        self.assertEqual(holes, [])
+        u, v = (np.array(a) for a in shadow.axes)
+        space = outer @ np.stack([u, v])
+        np.testing.assert_allclose(space[:, :2].min(axis=0), [10, 20], atol=1e-6)
+        np.testing.assert_allclose(space[:, :2].max(axis=0), [11, 22], atol=1e-6)
+
+    def test_another_mesh_of_the_same_solid(self):
+        ball = Mesh.sphere(10.0, 24)
+        volume = sculptd.measure(ball)["volume"]
+        fine = sculptd.remesh(ball, side=48)
+        self.assertAlmostEqual(sculptd.measure(fine)["volume"] / volume, 1.0, delta=0.01)
+        grown = sculptd.offset(ball, 1.0, side=48)
+        self.assertAlmostEqual(grown.vertices[:, 0].max(), 11.0, delta=0.05)
+        shell = sculptd.hollow(ball, 2.0, side=48)
+        inner = 4 / 3 * math.pi * 8**3
+        self.assertAlmostEqual(sculptd.measure(shell)["volume"] / (volume - inner), 1.0, delta=0.05)
+        with self.assertRaises(sculptd.EmptyResult):
+            sculptd.hollow(ball, 11.0, side=48)
+        few = sculptd.decimate(ball, 500)
+        self.assertLessEqual(len(few), 500)
+        self.assertTrue(sculptd.check(few)["closed"])
+        self.assertEqual(len(sculptd.subdivide(few)), 4 * len(few))
+        quads = sculptd.subdivide(Mesh.box((0, 0, 0), (1, 1, 1)), 2, scheme="catmull-clark")
+        self.assertEqual(quads.faces.shape, (96, 4))
+
+    def test_repair_closes_and_turns(self):
+        box = Mesh.box((0, 0, 0), (1, 1, 1)).triangulated()
+        faces = box.faces.copy()
+        faces[3] = faces[3][::-1]
+        broken = Mesh(box.vertices, faces[:-1])
+        self.assertFalse(sculptd.check(broken)["closed"])
+        sound = sculptd.repair(broken)
+        facts = sculptd.check(sound)
+        self.assertTrue(facts["closed"] and facts["oriented"])
+        self.assertAlmostEqual(facts["volume"], 1.0)
+        self.assertTrue(any("holes closed" in w for w in sound.warnings), sound.warnings)
+
+    def test_a_picture(self):
+        ball = Mesh.sphere(10.0, 8)
+        plain = sculptd.picture(ball, width=80, height=60)
+        self.assertEqual(plain[:8], b"\x89PNG\r\n\x1a\n")
+        coloured = sculptd.picture(ball, thickness=sculptd.thickness(ball), width=80, height=60)
+        self.assertNotEqual(plain, coloured)
+
+
+class LongWork(unittest.TestCase):
+    def setUp(self):
+        self.big = Mesh.sphere(10.0, 64)
+
+    def test_progress_is_told_and_ends_at_one(self):
+        told = []
+        sculptd.thickness(self.big, progress=told.append)
+        self.assertEqual(told[-1], 1.0)
+        self.assertEqual(told, sorted(told))
+
+    def test_an_exception_of_progress_cancels(self):
+        class Enough(Exception):
+            pass
+
+        def progress(_):
+            raise Enough
+
+        with self.assertRaises(Enough):
+            sculptd.thickness(self.big, rays=500, progress=progress)
+
+    def test_the_interpreter_runs_meanwhile(self):
+        ticks = []
+        stop = threading.Event()
+
+        def count():
+            while not stop.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.005)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        start = time.monotonic()
+        sculptd.thickness(self.big, rays=200)
+        took = time.monotonic() - start
+        stop.set()
+        thread.join()
+        during = sum(start < t < start + took for t in ticks)
+        # Without the lock the other thread ticks all the time, with it once.
+        self.assertGreater(during, min(took / 0.2, 5))
+
+    def test_an_interrupt_stops_the_work(self):
+        main = threading.main_thread().ident
+        timer = threading.Timer(0.2, lambda: signal.pthread_kill(main, signal.SIGINT))
+        timer.start()
+        start = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            sculptd.thickness(self.big, rays=1000)
+        self.assertLess(time.monotonic() - start, 20.0)
+        timer.join()
+
+
+if __name__ == "__main__":
+    unittest.main()
