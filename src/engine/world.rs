@@ -351,7 +351,7 @@ impl World {
     /// see the strokes ended.
     fn lift_all(&mut self) {
         for seat in &mut self.pens {
-            seat.track.lift(&self.brush.path);
+            seat.track.lift();
         }
         self.hands.lift();
         self.advance_strokes(u64::MAX);
@@ -554,5 +554,7 @@ impl World {
     }
 }
 
+#[cfg(test)]
+mod tap_tests;
 #[cfg(test)]
 mod tests;

@@ -39,6 +39,8 @@ const ON_BRINK: f32 = 0.1;
 /// Dabs on hidden clay at a leap: a slope of five times its width is the steepest that is gone
 /// down.
 const MOST_HIDDEN: usize = 10;
+/// No dab at the end of a stroke that is nearer to the last one than this share of the spacing.
+const ON_END: f32 = 0.02;
 /// Beyond so many spacings the surface at a dab's own view point is another one than that which the
 /// dab was laid on.
 const JUMPED: f32 = 4.0;
@@ -59,6 +61,11 @@ pub struct Spacer {
     /// Height and width of the view in the same unit: x is multiplied by this before lengths are
     /// taken.
     aspect: f32,
+    /// Dabs since the pen touched, and the pressure of the first one.
+    #[serde(default)]
+    dabs: u32,
+    #[serde(default)]
+    touch: f32,
 }
 
 /// From one report of the pen to the next.
@@ -151,13 +158,36 @@ fn advance(
 
 impl Spacer {
     pub fn new(aspect: f32) -> Self {
-        Spacer { last: None, leapt: false, aspect }
+        Spacer { last: None, leapt: false, aspect, dabs: 0, touch: 0.0 }
     }
 
     /// The pen touches: a dab at once.
     pub fn begin(&mut self, at: &PenPoint, on: &mut dyn Surface) -> Flow {
-        (self.last, self.leapt) = (None, false);
+        *self = Spacer { touch: at.pressure, ..Spacer::new(self.aspect) };
         self.rest(at, on)
+    }
+
+    /// The stroke ends at `at`, to which the path was walked: a dab there, with the share of the
+    /// strength that is due to the way from the last one. A stroke that came nowhere is a tap: it
+    /// leaves what one dab does at `firmest`, the point of the greatest pressure, less what the
+    /// dab at the touch did.
+    pub fn finish(&mut self, at: &PenPoint, firmest: &PenPoint, on: &mut dyn Surface) -> Flow {
+        if self.dabs <= 1 {
+            let touch = if self.dabs == 0 { 0.0 } else { self.touch };
+            if firmest.pressure <= touch {
+                return Flow::Go;
+            }
+            let share = 1.0 - touch / firmest.pressure;
+            let Some(hit) = on.pick(firmest.view) else { return Flow::Go };
+            self.dabs += 1;
+            return on.dab(firmest, &hit, Laid { tap: true, share, ..Laid::ALONE });
+        }
+        let (Some(last), Some(hit)) = (self.last, on.pick(at.view)) else { return Flow::Go };
+        let off = (hit.position - last).length() / on.spacing(at);
+        if !(ON_END..=1.0).contains(&off) {
+            return Flow::Go;
+        }
+        self.place(at, &hit, off, &mut |on| on.pick(at.view), on)
     }
 
     /// A dab more where the pen rests: the run goes on from it.
@@ -178,7 +208,8 @@ impl Spacer {
         on: &mut dyn Surface,
     ) -> Flow {
         let along = self.last.and_then(|p| (hit.position - p).try_normalize());
-        let flow = on.dab(at, hit, Laid { first: self.last.is_none(), along, share });
+        let flow = on.dab(at, hit, Laid { first: self.last.is_none(), along, share, tap: false });
+        self.dabs = self.dabs.saturating_add(1);
         let now = again(on).map_or(hit.position, |h| h.position);
         // The dab may have folded its own place out of sight.
         self.leapt = (now - hit.position).length() > JUMPED * on.spacing(at) + 1e-30;
@@ -404,6 +435,28 @@ mod tests {
             field.dabs.len() as i64
         };
         assert!((run(1) - run(77)).abs() <= 2 && (run(1) - run(1000)).abs() <= 3);
+    }
+
+    #[test]
+    fn a_stroke_ends_at_the_pen_and_a_tap_leaves_one_dab() {
+        let mut field = Field { height: |_| Some(0.0), dabs: vec![], budget: usize::MAX };
+        let mut spacer = Spacer::new(1.0);
+        spacer.begin(&point(0.1), &mut field);
+        spacer.advance(&point(0.1), &point(0.509), 0.0, &mut field);
+        spacer.finish(&point(0.509), &point(0.3), &mut field);
+        assert_eq!(field.dabs.last().map(|p| p.x), Some(0.509));
+        // A touch without pressure, and then a slide that is shorter than the spacing.
+        let light = PenPoint { pressure: 0.0, ..point(0.7) };
+        field.dabs.clear();
+        spacer.begin(&light, &mut field);
+        spacer.advance(&light, &point(0.71), 0.0, &mut field);
+        spacer.finish(&PenPoint { pressure: 0.1, ..point(0.71) }, &point(0.705), &mut field);
+        assert_eq!(field.dabs.iter().map(|p| p.x).collect::<Vec<_>>(), [0.7, 0.705]);
+        // One that was firm from the touch on has left its dab.
+        field.dabs.clear();
+        spacer.begin(&point(0.7), &mut field);
+        spacer.finish(&point(0.7), &point(0.7), &mut field);
+        assert_eq!(field.dabs.len(), 1);
     }
 
     #[test]

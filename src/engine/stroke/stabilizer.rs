@@ -1,4 +1,4 @@
-//! A steadier hand: the lazy rope, and the moving average.
+//! The stabilizer between the pen and the brush: a lazy rope, and a moving average of reports.
 
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
@@ -43,9 +43,10 @@ impl Stabilizer {
         self.count = (self.count + 1).min(MOST);
     }
 
-    /// Where the brush is drawn to by a pen at `at`; `None` while the rope hangs loose. `aspect`:
-    /// width over height of the view; the rope is measured in heights.
-    pub fn follow(&mut self, at: &PenPoint, path: &PathSettings, aspect: f32) -> Option<PenPoint> {
+    /// Where the brush is drawn to by a pen at `at`; where it was, with the pen's pressure, while
+    /// the rope hangs loose. `aspect`: width over height of the view; the rope is measured in
+    /// heights.
+    pub fn follow(&mut self, at: &PenPoint, path: &PathSettings, aspect: f32) -> PenPoint {
         self.newest = *at;
         self.remember(at);
         let mut goal = *at;
@@ -59,20 +60,19 @@ impl Stabilizer {
         if path.rope > 0.0 {
             let d = (goal.view - self.brush.view) * Vec2::new(aspect, 1.0);
             let length = d.length();
-            if length <= path.rope {
-                return None;
-            }
-            goal.view =
-                self.brush.view + (goal.view - self.brush.view) * (1.0 - path.rope / length);
+            goal.view = if length <= path.rope {
+                self.brush.view
+            } else {
+                self.brush.view + (goal.view - self.brush.view) * (1.0 - path.rope / length)
+            };
         }
         self.brush = goal;
-        Some(goal)
+        goal
     }
 
-    /// The pen lifts: an averaged stroke ends where the pen did; a rope stays as it lies.
-    pub fn catch_up(&mut self, path: &PathSettings) -> Option<PenPoint> {
-        (path.average > 1 && path.rope <= 0.0 && self.newest.view != self.brush.view)
-            .then_some(self.newest)
+    /// The pen lifts: the stroke ends where the pen did. `None`: the brush is there.
+    pub fn catch_up(&mut self) -> Option<PenPoint> {
+        (self.newest.view != self.brush.view).then_some(self.newest)
     }
 }
 
@@ -85,20 +85,21 @@ mod tests {
     }
 
     #[test]
-    fn a_rope_keeps_its_length_and_a_loose_one_moves_nothing() {
+    fn a_rope_keeps_its_length_moves_nothing_while_loose_and_ends_at_the_pen() {
         let path = PathSettings { rope: 0.1, ..PathSettings::default() };
         let mut steady = Stabilizer::default();
         steady.begin(&at(0.2, 0.5));
-        assert_eq!(steady.follow(&at(0.25, 0.5), &path, 1.0), None);
+        assert_eq!(steady.follow(&at(0.25, 0.5), &path, 1.0).view, at(0.2, 0.5).view);
         let mut last = at(0.2, 0.5);
         for i in 0..50 {
             let pen = at(0.3 + 0.01 * i as f32, 0.5 + 0.05 * (i as f32 * 0.5).sin());
-            if let Some(b) = steady.follow(&pen, &path, 1.0) {
-                assert!(((b.view - pen.view).length() - 0.1).abs() < 1e-6);
-                last = b;
-            }
+            let b = steady.follow(&pen, &path, 1.0);
+            let length = (b.view - pen.view).length();
+            assert!(length < 0.1 + 1e-6 && (length > 0.1 - 1e-6 || b.view == last.view));
+            last = b;
         }
-        assert!(last.view.x > 0.65 && steady.catch_up(&path).is_none());
+        assert!(last.view.x > 0.65);
+        assert!((steady.catch_up().expect("it lags").view.x - 0.79).abs() < 1e-6);
     }
 
     #[test]
@@ -110,7 +111,7 @@ mod tests {
             // A tremble about a straight line, from report to report: the average of eight has none
             // of it.
             let wobble = if i % 2 == 0 { 0.01 } else { -0.01 };
-            let b = steady.follow(&at(i as f32 * 0.01, 0.5 + wobble), &path, 1.6).expect("no rope");
+            let b = steady.follow(&at(i as f32 * 0.01, 0.5 + wobble), &path, 1.6);
             if i >= 8 {
                 assert!(
                     (b.view.y - 0.5).abs() < 1e-6
@@ -118,6 +119,6 @@ mod tests {
                 );
             }
         }
-        assert!((steady.catch_up(&path).expect("it lags").view.x - 0.4).abs() < 1e-6);
+        assert!((steady.catch_up().expect("it lags").view.x - 0.4).abs() < 1e-6);
     }
 }

@@ -66,11 +66,14 @@ pub struct Laid {
     /// The part of a whole dab's strength that is due to the way since the one before it: 1, and
     /// less where a dab had to be laid before a whole spacing was travelled. Above 0, at most 1.
     pub share: f32,
+    /// The dab of a pen that was lifted where it came down: its pressure counts in full, however
+    /// softly the stroke began.
+    pub tap: bool,
 }
 
 impl Laid {
     /// A dab by itself.
-    pub const ALONE: Laid = Laid { first: true, along: None, share: 1.0 };
+    pub const ALONE: Laid = Laid { first: true, along: None, share: 1.0, tap: false };
 }
 
 /// What a stroke is drawn on.

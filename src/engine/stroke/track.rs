@@ -69,6 +69,9 @@ pub struct PenTrack {
     /// The pen came down where no stroke may begin: it does nothing until it is lifted.
     #[serde(default)]
     refused: bool,
+    /// Where the stroke was pressed hardest.
+    #[serde(default)]
+    firmest: PenPoint,
 }
 
 impl Default for PenTrack {
@@ -93,6 +96,7 @@ impl Default for PenTrack {
             pen: None,
             on_tablet: None,
             refused: false,
+            firmest: PenPoint::default(),
         }
     }
 }
@@ -144,27 +148,26 @@ impl PenTrack {
                 self.push(PenEvent::Down(at));
             }
             (true, true) => {
-                if let Some(at) = self.steady.follow(&at, path, aspect) {
-                    self.push(PenEvent::Move(at));
-                }
+                let at = self.steady.follow(&at, path, aspect);
+                self.push(PenEvent::Move(at));
             }
-            (true, false) => self.up(path),
+            (true, false) => self.up(),
             (false, false) => {}
         }
         self.down = touches;
     }
 
-    fn up(&mut self, path: &PathSettings) {
-        if let Some(end) = self.steady.catch_up(path) {
+    fn up(&mut self) {
+        if let Some(end) = self.steady.catch_up() {
             self.push(PenEvent::Move(end));
         }
         self.push(PenEvent::Up);
     }
 
     /// The pen is gone, without a word: the stroke ends as a lifted pen.
-    pub fn lift(&mut self, path: &PathSettings) {
+    pub fn lift(&mut self) {
         if self.down {
-            self.up(path);
+            self.up();
             self.down = false;
         }
         (self.seen, self.on_tablet) = (None, None);
@@ -290,7 +293,7 @@ impl PenTrack {
                 self.spacer = Spacer::new(aspect);
                 (self.from, self.start, self.drawing) = (at, at, false);
                 self.string = on.string(&at);
-                self.pen = None;
+                (self.pen, self.firmest) = (None, at);
                 match on.way() {
                     StrokeMethod::Spaced | StrokeMethod::Each => self.spacer.begin(&at, on),
                     StrokeMethod::Held => on.hold(&at, true),
@@ -303,6 +306,9 @@ impl PenTrack {
                 Flow::Go
             }
             PenEvent::Move(to) => {
+                if to.pressure > self.firmest.pressure {
+                    self.firmest = to;
+                }
                 let to = match on.way() {
                     StrokeMethod::Spaced => self.pull(&to, aspect),
                     _ => to,
@@ -330,26 +336,27 @@ impl PenTrack {
                 flow
             }
             PenEvent::Up => {
-                // The brush comes to where the pen was lifted: a tap leaves its mark, and no stroke
-                // ends a string's length early.
-                let mut flow = Flow::Go;
-                if let (true, StrokeMethod::Spaced, Some(pen)) = (self.open, on.way(), self.pen) {
-                    self.share = if self.from.view == self.start.view {
-                        flow = self.spacer.rest(&pen, on);
-                        1.0
-                    } else {
-                        self.spacer.advance(&self.from, &pen, self.share, on)
-                    };
-                    if self.share < 1.0 {
-                        walked.paused = true;
-                        return Some(walked);
+                let flow = match on.way() {
+                    StrokeMethod::Spaced if self.open => {
+                        // The string is drawn in: the brush comes to where the pen was lifted.
+                        let end = self.pen.unwrap_or(self.from);
+                        self.share = self.spacer.advance(&self.from, &end, self.share, on);
+                        if self.share < 1.0 {
+                            walked.paused = true;
+                            return Some(walked);
+                        }
+                        (self.pen, self.from) = (None, end);
+                        self.spacer.finish(&end, &self.firmest, on)
                     }
-                    self.pen = None;
-                }
-                if on.way() == StrokeMethod::Line && self.open && !self.draw_line(on) {
-                    walked.paused = true;
-                    return Some(walked);
-                }
+                    StrokeMethod::Line if self.open => {
+                        if !self.draw_line(on) {
+                            walked.paused = true;
+                            return Some(walked);
+                        }
+                        self.spacer.finish(&self.from, &self.firmest, on)
+                    }
+                    _ => Flow::Go,
+                };
                 walked.ended = self.open;
                 (self.open, self.drawing) = (false, false);
                 flow
@@ -369,22 +376,20 @@ impl PenTrack {
         if self.string <= 0.0 {
             return *to;
         }
-        // In a stroke that never pulled the string straight, the greatest pressure counts: a pen
-        // touches down and lifts at nearly none.
-        let still = self.from.view == self.start.view;
-        let greatest = self.pen.map_or(self.start.pressure, |p| p.pressure);
-        let pressure = if still { to.pressure.max(greatest) } else { to.pressure };
-        self.pen = Some(PenPoint { pressure, ..*to });
+        self.pen = Some(*to);
         if length <= self.string {
             return PenPoint { view: self.from.view, ..*to };
         }
         PenPoint { view: self.from.view.lerp(to.view, 1.0 - self.string / length), ..*to }
     }
 
-    /// Draws the line that waited for the pen to lift. False: there is more of it, for the next
+    /// Draws the line that waited for the pen to lift, as firmly as the pen was pressed at most: a
+    /// pen touches down and lifts at nearly no pressure. False: there is more of it, for the next
     /// tick.
     fn draw_line(&mut self, on: &mut dyn Surface) -> bool {
         if !self.drawing {
+            let pressure = self.firmest.pressure;
+            (self.start.pressure, self.from.pressure) = (pressure, pressure);
             (self.drawing, self.share) = (true, 0.0);
             self.spacer.begin(&self.start, on);
         }
@@ -410,6 +415,7 @@ impl PenTrack {
             (self.share, self.from) = (0.0, to);
             self.pieces += 1;
         }
+        self.spacer.finish(&self.from, &self.from, on);
         true
     }
 

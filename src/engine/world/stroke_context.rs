@@ -58,6 +58,10 @@ struct HeldStroke {
     drag: Vec3,
     /// The dab that is not final yet: what it may have changed, its own ball first.
     shown: Option<(Vec3, f32)>,
+    /// The greatest pressure so far: what is not final until the pen lifts keeps it, so that it
+    /// does not vanish with the pressure of the lifting pen.
+    #[serde(default)]
+    pressure: f32,
 }
 
 impl Stroke {
@@ -404,6 +408,9 @@ impl StrokeContext<'_> {
 
     fn move_held(&mut self, mut held: HeldStroke, at: &PenPoint) -> HeldStroke {
         let drag = self.drawn(&held, at);
+        held.pressure = held.pressure.max(at.pressure);
+        let firm = PenPoint { pressure: held.pressure, ..*at };
+        let at = if self.brush.kind.grip() == Grip::Tow { at } else { &firm };
         match (self.brush.path.method, self.brush.kind.grip()) {
             (Method::Anchored, Grip::Surface) => {
                 self.take_back(&mut held);
@@ -484,7 +491,7 @@ impl Surface for StrokeContext<'_> {
         if began {
             self.stroke.held = self.pick(at.view).map(|hit| {
                 self.mesh.begin_step();
-                HeldStroke { from: *at, hit, drag: Vec3::ZERO, shown: None }
+                HeldStroke { from: *at, hit, drag: Vec3::ZERO, shown: None, pressure: 0.0 }
             });
             if self.brush.path.method != Method::DragDot {
                 return Flow::Go;
@@ -509,6 +516,9 @@ impl Surface for StrokeContext<'_> {
             self.stroke.last_measured = None;
         }
         let hit = self.strewn(hit, radius);
+        if laid.tap {
+            self.stroke.pressure = at.pressure;
+        }
         self.one_dab(at, &hit, radius, laid.share, None);
         if self.left == 0 { Flow::Pause } else { Flow::Go }
     }
