@@ -33,7 +33,8 @@
 //! assert!((walls.summary().median.expect("walls") - 2.0).abs() < 0.1);
 //! ```
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
-#![warn(missing_docs, rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]
+#![deny(missing_docs)]
+#![warn(rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]
 
 mod aabb;
 pub mod alpha_shape;

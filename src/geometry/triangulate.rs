@@ -163,8 +163,14 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
         let length = |i: usize, j: usize| {
             positions[corners[i] as usize].distance_squared(positions[corners[j] as usize])
         };
+        let thin = |i, j, k| flat_ear(&points, i, j, k, turn(i, j, k));
         let by_first = match (first, second) {
-            (true, true) | (false, false) => length(0, 2) <= length(1, 3),
+            (true, true) => {
+                let first = thin(0, 1, 2) || thin(0, 2, 3);
+                let second = thin(0, 1, 3) || thin(1, 2, 3);
+                if first == second { length(0, 2) <= length(1, 3) } else { second }
+            }
+            (false, false) => length(0, 2) <= length(1, 3),
             (f, _) => f,
         };
         let order: [[usize; 3]; 2] =
@@ -173,6 +179,16 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
         return;
     }
     ears(corners, &points, turn, |_, _| true, out);
+}
+
+/// Whether three corners are in line but for rounding. A triangle of such has no direction: in space
+/// it may lie in the plane of a face beside its own, over it.
+fn flat_ear(points: &[Coord<f64>], i: usize, j: usize, k: usize, turn: f64) -> bool {
+    let square = |a: usize, b: usize| {
+        let (x, y) = (points[a].x - points[b].x, points[a].y - points[b].y);
+        x * x + y * y
+    };
+    turn.abs() <= 1e-9 * square(i, j).max(square(j, k)).max(square(k, i))
 }
 
 /// Cuts ears; a diagonal that is not `allowed` is taken only where no other ear is left.
@@ -196,19 +212,22 @@ fn ears(
             && turn(q, p, r) >= 0.0
     };
     let (mut left, mut at, mut tried) = (n, 0, 0);
-    // Rounds of ever lower demands: a true ear by an allowed diagonal; a true ear; any convex
-    // corner; any corner. Simple polygons without neighbours in the way need the first only.
+    // Rounds of ever lower demands: a true ear by an allowed diagonal that leaves no three corners
+    // in line; any true ear by an allowed diagonal; a true ear; any convex corner; any corner.
+    // Simple polygons without neighbours in the way need the first two only.
     let mut demand = 0;
     while left > 3 {
         let (p, q) = (prev[at], next[at]);
-        let convex = turn(p, at, q) > 0.0;
+        let bend = turn(p, at, q);
+        let convex = bend > 0.0;
         let good = match demand {
-            0 | 1 => {
-                (demand > 0 || allowed(p, q))
+            0..=2 => {
+                (demand > 1 || allowed(p, q))
                     && convex
+                    && (demand > 0 || !flat_ear(points, p, at, q, bend))
                     && !reflex.iter().any(|&r| r != p && r != at && r != q && inside(p, at, q, r))
             }
-            2 => convex,
+            3 => convex,
             _ => true,
         };
         if !good {

@@ -33,7 +33,8 @@ const ROUNDS: usize = 6;
 
 /// `mesh` as a file with the ending `kind` will hold it (STL and GLB have single precision; they
 /// and 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision
-/// or four times `tolerance`, and only where triangles cross.
+/// or four times `tolerance`, and only where triangles cross. A polygon that a repair changes comes
+/// in triangles; the others stay.
 ///
 /// # Errors
 /// [`Cancelled`] when the job is.
@@ -52,16 +53,16 @@ pub fn for_file<'a>(
         let rounded = mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
         out.to_mut().positions = rounded;
     }
-    let (triangles, _) = out.triangles();
+    let (triangles, faces) = out.triangles();
     let pairs = self_intersection::pairs(&out.positions, &triangles, job)?;
     let found = pairs.len();
-    let all = triangles.len() == out.face_count();
-    if pairs.is_empty() || !all || found > MOST_PAIRS {
+    if pairs.is_empty() || found > MOST_PAIRS {
         return Ok(WrittenMesh { mesh: out, found, crossings: found });
     }
     let reach = out.positions.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
     let step = reach * 2f64.powi(if single { -23 } else { -52 });
     let mut local = LocalMesh::new(out.positions.clone(), triangles, single, step, tolerance, job)?;
+    local.faces = faces;
     let mut left = pairs;
     for _ in 0..ROUNDS {
         let before = left.len();
@@ -99,7 +100,11 @@ pub fn triangulated(mesh: &PolyMesh) -> PolyMesh {
 struct LocalMesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// Face of each triangle.
+    faces: Vec<u32>,
     gone: Vec<bool>,
+    /// Triangles that a repair changed.
+    touched: Vec<bool>,
     around: Vec<Vec<u32>>,
     tree: SpanTree,
     /// Triangles that are no longer where the tree has them.
@@ -131,10 +136,21 @@ impl LocalMesh {
         let spans: Vec<Span> =
             triangles.iter().map(|t| Span::of(t.map(|v| positions[v as usize]))).collect();
         let tree = SpanTree::build(&spans, job)?;
-        let gone = vec![false; triangles.len()];
+        let (gone, touched) = (vec![false; triangles.len()], vec![false; triangles.len()]);
         let limit = (64.0 * step).max(4.0 * tolerance);
-        let changed = Vec::new();
-        Ok(LocalMesh { positions, triangles, gone, around, tree, changed, single, step, limit })
+        Ok(LocalMesh {
+            positions,
+            triangles,
+            faces: Vec::new(),
+            gone,
+            touched,
+            around,
+            tree,
+            changed: Vec::new(),
+            single,
+            step,
+            limit,
+        })
     }
 
     fn alive(&self) -> Vec<[u32; 3]> {
@@ -202,6 +218,20 @@ impl LocalMesh {
                 }
             }
         }
+        // Along the other triangle's normal, to its plane and a little beyond, or to its other side.
+        for (own, other) in [(s, t), (t, s)] {
+            let [a, b, c] = self.triangles[other as usize].map(|v| self.positions[v as usize]);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            for v in self.triangles[own as usize] {
+                let height = (self.positions[v as usize] - a).dot(normal);
+                for share in [1.0, 1.25, 2.0] {
+                    let by = height * share + height.signum() * self.step;
+                    if by.abs() <= self.limit && self.shift(v, -normal * by) {
+                        return;
+                    }
+                }
+            }
+        }
         let mut size = self.step;
         while size <= self.limit {
             for t in pair {
@@ -228,6 +258,7 @@ impl LocalMesh {
         if before > 0 && self.crossings(list) < before {
             self.changed.sort_unstable();
             self.changed.dedup();
+            list.iter().for_each(|&t| self.touched[t as usize] = true);
             return true;
         }
         self.changed.truncate(marks);
@@ -338,12 +369,27 @@ impl LocalMesh {
         })
     }
 
-    /// The triangles that are left, in the mesh they came from.
+    /// What is left, in the mesh it came from: faces that no repair changed as they were, the
+    /// triangles of the others.
     fn store(self, mesh: &mut PolyMesh) {
-        let names = self.numbers();
-        mesh.groups = mesh.groups.take().map(|g| names.iter().map(|&t| g[t as usize]).collect());
-        mesh.corners = self.alive().into_iter().flatten().collect();
-        mesh.face_starts = (0..=names.len() as u32).map(|t| t * 3).collect();
+        let old = std::mem::replace(mesh, PolyMesh::new());
+        let mut names = Vec::new();
+        let mut start = 0;
+        for group in self.faces.chunk_by(|a, b| a == b) {
+            let range = start..start + group.len();
+            start = range.end;
+            if range.clone().any(|t| self.touched[t]) {
+                for t in range.filter(|&t| !self.gone[t]) {
+                    mesh.push_face(&self.triangles[t]);
+                    names.push(group[0]);
+                }
+            } else {
+                mesh.push_face(old.face(group[0] as usize));
+                names.push(group[0]);
+            }
+        }
+        mesh.groups = old.groups.map(|g| names.iter().map(|&f| g[f as usize]).collect());
+        mesh.colours = old.colours;
         mesh.positions = self.positions;
         crate::repair::drop_unused(mesh);
     }
@@ -369,5 +415,22 @@ mod tests {
         let facts = crate::check::report(&made.mesh, true, &job).expect("a report");
         assert_eq!((facts.closed, facts.manifold), (true, true));
         assert_eq!(facts.self_intersections, Some(0));
+    }
+
+    #[test]
+    fn polygons_that_no_repair_changes_stay() {
+        let mut mesh = crate::shapes::torus(2.0, 0.5, 16, 8);
+        let quads = mesh.face_count();
+        let edge = [mesh.corners[0], mesh.corners[1]];
+        let (from, to) = (mesh.positions[edge[0] as usize], mesh.positions[edge[1] as usize]);
+        mesh.positions[edge[0] as usize] = to + (to - from).normalize() * 4e-6;
+        let made = for_file(&mesh, "stl", 0.0, &Job::default()).expect("written");
+        assert!(made.found > 0 && made.crossings == 0, "{} {}", made.found, made.crossings);
+        let made = for_file(&mesh, "ply", 1e-6, &Job::default()).expect("written");
+        assert!(made.found > 0 && made.crossings == 0, "{} {}", made.found, made.crossings);
+        let kept = made.mesh.faces().filter(|f| f.len() == 4).count();
+        assert!(kept + 16 > quads && kept < quads, "{kept} of {quads}");
+        let facts = crate::check::report(&made.mesh, true, &Job::default()).expect("a report");
+        assert_eq!((facts.closed, facts.manifold), (true, true));
     }
 }

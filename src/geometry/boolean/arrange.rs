@@ -11,7 +11,7 @@ use super::merge::{self, ResultPolygon};
 use super::pieces::{self, FacePiece, PieceShape};
 use super::points::PointSet;
 use crate::PolyMesh;
-use crate::boolean::classify::{Classification, classify};
+use crate::boolean::classify::{Around, Classification, classify};
 use crate::boolean::intersect;
 use crate::boolean::intersect::Intersections;
 use crate::job::{Cancelled, Job};
@@ -26,9 +26,6 @@ pub enum FaceState {
     /// A part of it, or the whole with more corners.
     Cut,
 }
-
-/// How often a surface goes around a point, where the operand at hand is only a part of it.
-pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
 
 /// Both operands over common points, each face cut where the other surface crosses it, and each
 /// piece classified.
@@ -192,6 +189,11 @@ impl Arrangement {
         for (p, turned) in cut.iter().zip(turns) {
             give(FaceOrigin { operand: p.side, face: p.face }, &p.corners, turned, false);
         }
+    }
+
+    /// Of each point, whether both surfaces have it.
+    pub fn on_both(&self) -> &[bool] {
+        &self.meeting.shared
     }
 
     /// The curve in which the surfaces meet, in polylines; see `chains`.

@@ -6,7 +6,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::orient3d;
 
-use super::arrange::Around;
 use super::pieces::{FacePiece, Placement, triangles as parts_of};
 use super::points::{Map, PointSet};
 use crate::PolyMesh;
@@ -17,6 +16,9 @@ use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
 use crate::portable::PortableMath;
 use crate::triangulate::area_vector;
+
+/// How often a surface goes around a point, where the operand at hand is only a part of it.
+pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
 
 /// Placements of the faces that nothing cuts: each has that of the connected part that it is in.
 #[derive(Debug, Default)]

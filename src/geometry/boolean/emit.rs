@@ -51,6 +51,51 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<BooleanFac
     Ok(facts)
 }
 
+/// Takes out faces that lie on each other with their fronts outwards: two faces with the same
+/// corners in opposite order have nothing between them. Such sheets come where surfaces meet within
+/// the tolerance along the border of a face. Only faces whose corners are all marked are looked at.
+/// Returns how many went.
+pub fn drop_folded_faces(
+    mesh: &mut PolyMesh,
+    origins: &mut Vec<FaceOrigin>,
+    marked: &[bool],
+) -> usize {
+    let mut rings: Vec<(Vec<u32>, bool, u32)> = Vec::new();
+    for (f, corners) in mesh.faces().enumerate() {
+        if corners.len() < 3 || !corners.iter().all(|&v| marked[v as usize]) {
+            continue;
+        }
+        let mut ring = corners.to_vec();
+        let first = (0..ring.len()).min_by_key(|&i| ring[i]).unwrap_or(0);
+        ring.rotate_left(first);
+        let turned = ring[1] > ring[ring.len() - 1];
+        if turned {
+            ring[1..].reverse();
+        }
+        rings.push((ring, turned, f as u32));
+    }
+    rings.sort_unstable();
+    let mut gone = vec![false; mesh.face_count()];
+    let mut count = 0;
+    for same in rings.chunk_by(|a, b| a.0 == b.0) {
+        let back = same.partition_point(|r| !r.1);
+        let pairs = back.min(same.len() - back);
+        let folded = same[..pairs].iter().chain(&same[back..back + pairs]);
+        folded.for_each(|r| gone[r.2 as usize] = true);
+        count += 2 * pairs;
+    }
+    if count > 0 {
+        let old = std::mem::replace(mesh, PolyMesh::new());
+        let mut kept = Vec::with_capacity(origins.len() - count);
+        for (f, corners) in old.faces().enumerate().filter(|(f, _)| !gone[*f]) {
+            mesh.push_face(corners);
+            kept.push(origins[f]);
+        }
+        *origins = kept;
+    }
+    count
+}
+
 /// Takes out shells whose volume is less than that of a sheet of their area and this thickness:
 /// what faces in contact leave between them. Returns how many went.
 pub fn drop_thin_shells(

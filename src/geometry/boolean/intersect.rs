@@ -2,6 +2,7 @@
 //! computed once and shared by all triangles around it; then the segments that cut each triangle.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 
 use super::points::{Map, PointSet};
@@ -65,10 +66,15 @@ pub fn intersect(
     job: &Job,
 ) -> Result<Intersections, Cancelled> {
     let [a, b] = triangles;
-    pairs.retain(|&(i, j)| {
+    let at = &points.at;
+    let near = |&(i, j): &(u32, u32)| {
         let (s, t) = (a[i as usize], b[j as usize]);
-        near_plane(&points.at, s, t, eps) && near_plane(&points.at, t, s, eps)
-    });
+        near_plane(at, s, t, eps)
+            && near_plane(at, t, s, eps)
+            && !beside(at, s, t, eps)
+            && !beside(at, t, s, eps)
+    };
+    pairs = pairs.into_par_iter().filter(near).collect();
     job.check()?;
     let mut f = Finder {
         points,
@@ -108,6 +114,32 @@ fn near_plane(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
     let n = (b - a).cross(c - a).normalize_or_zero();
     let d = t.map(|i| (at[i as usize] - a).dot(n));
     d.iter().any(|&x| x <= 2.0 * eps) && d.iter().any(|&x| x >= -2.0 * eps)
+}
+
+/// Whether `t` is beyond an edge of `s`, seen along the normal of `s`, by more than is ever
+/// compared with the tolerance. Of triangles that lie in one plane, as fans around the holes of a
+/// flat face do, thousands have boxes that meet and nothing else.
+fn beside(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
+    let [a, b, c] = s.map(|i| at[i as usize]);
+    let n = (b - a).cross(c - a);
+    let other = t.map(|i| at[i as usize]);
+    // From each edge outwards.
+    [(a, b), (b, c), (c, a)].iter().any(|&(o, p)| {
+        let out = (p - o).cross(n);
+        let far = 8.0 * eps * out.length();
+        far > 0.0 && other.iter().all(|&q| (q - o).dot(out) > far)
+    })
+}
+
+/// `p`, with the coordinates that all of `of` have in common exactly: what is computed on a face or
+/// an edge along the axes stays on it.
+fn kept(mut p: DVec3, of: &[DVec3]) -> DVec3 {
+    for axis in 0..3 {
+        if of.iter().all(|q| q[axis] == of[0][axis]) {
+            p[axis] = of[0][axis];
+        }
+    }
+    p
 }
 
 impl Finder<'_> {
@@ -222,7 +254,9 @@ impl Finder<'_> {
         if !self.points.contact.compared(distance, self.eps) {
             return None;
         }
-        let p = self.points.point((o + u * s + q + v * t) * 0.5);
+        let middle = (o + u * s + q + v * t) * 0.5;
+        let [on_a, on_b] = [ea, eb].map(|e| e.map(|i| self.p(i)));
+        let p = self.points.point(kept(kept(middle, &on_b), &on_a));
         self.crossings.insert((a, b), Some(p));
         Some(p)
     }
@@ -249,7 +283,10 @@ impl Finder<'_> {
                     let w = [turn(a, b), turn(b, c), turn(c, a)];
                     w.iter().all(|&x| x > 0.0) || w.iter().all(|&x| x < 0.0)
                 };
-                let k = inside.then(|| self.points.point(p + (q - p) * (x / (x - y))));
+                let k = inside.then(|| {
+                    let place = p + (q - p) * (x / (x - y));
+                    self.points.point(kept(place, &[a, b, c]))
+                });
                 self.piercings.insert(key, k);
                 k
             }
