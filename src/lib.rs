@@ -109,11 +109,12 @@
 //! * `sculptd-player`, made by `cli::live`: plays recordings as devices. Waits for: the clock.
 //! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for: the
 //!   disk.
-//! * `sculptd-limit`, made by `cli::live`: ends a run after `--for`. Waits for: the clock.
+//! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
-//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, made by `window::viewer::tasks`: changes
-//!   of the whole object that the window asked for, sent as commands. Waits for: the loop's answer.
+//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, made by
+//!   `window::viewer::tasks`: changes of the whole object that the window asked for, sent as
+//!   commands. Waits for: the loop's answer.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a

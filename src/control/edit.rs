@@ -144,6 +144,38 @@ pub struct LevelReply {
     pub levels: u64,
 }
 
+/// Parameters of `remesh`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct RemeshParams {
+    /// Edge of a voxel in the mesh's unit; without it the mean edge of the triangles as they are.
+    /// At least 1/1024 and at most 1/8 of the object's longest side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1e-9, max = COORDINATE.max)))]
+    pub voxel: Option<f32>,
+    /// Edges stay sharp.
+    pub sharp: bool,
+}
+
+/// Reply of `remesh`. Lengths and volumes are in the mesh's unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RemeshReply {
+    /// Edge of a voxel.
+    pub voxel: f32,
+    /// Vertices of the new mesh.
+    pub vertices: u64,
+    /// Triangles of the new mesh.
+    pub triangles: u64,
+    /// The volume before.
+    pub volume_before: f64,
+    /// The volume after. Parts thinner than a voxel or two are lost or grow together.
+    pub volume: f64,
+    /// How long it took, seconds.
+    pub seconds: f64,
+}
+
 /// Parameters of `jump`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -16,8 +16,8 @@ use crate::brush::{
 use crate::check;
 use crate::edit::{
     BooleanParams, BooleanReply, CancelReply, ExportReply, HashReply, HistoryReply, JoinParams,
-    JumpParams, LevelParams, LevelReply, LoadReply, ProgressReply, TakeUpReply, ThicknessParams,
-    ThicknessReply, TrimParams,
+    JumpParams, LevelParams, LevelReply, LoadReply, ProgressReply, RemeshParams, RemeshReply,
+    TakeUpReply, ThicknessParams, ThicknessReply, TrimParams,
 };
 use crate::event::SubscribeReply;
 use crate::status::{
@@ -207,6 +207,9 @@ methods! {
     "trim" Trim trim(TrimParams) -> BooleanReply;
     /// Shows the object one level finer or coarser; what was sculpted on finer levels is kept.
     "level" Level level(LevelParams) -> LevelReply;
+    /// Gives the object one closed surface of even triangles: one step of undo. Shells that overlap
+    /// are united; masks and colours are carried over.
+    "remesh" Remesh remesh(RemeshParams) -> RemeshReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;
     /// How far the Boolean is that is under way.

@@ -21,7 +21,8 @@ use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
-use sculptd_geometry::job::Job;
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::remesh::RemeshError;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// Tries before a work that never rests is told so.
@@ -47,6 +48,12 @@ pub enum JoinError {
     Build(String),
     #[error("the work was changed while it was joined, {TRIES} times over")]
     Restless,
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    #[error(transparent)]
+    Remesh(#[from] RemeshError),
+    #[error("voxel = {voxel}: expected {least} to {most}, 1024 to 8 along the longest side")]
+    Voxel { voxel: f32, least: f32, most: f32 },
     #[error("the loop has ended")]
     Ended,
 }

@@ -24,6 +24,7 @@ pub mod live_run;
 pub mod metrics;
 pub mod pacer;
 pub mod published;
+pub mod remesh_job;
 #[cfg(unix)]
 pub mod service;
 pub mod session;

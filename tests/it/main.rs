@@ -31,6 +31,7 @@ mod mesh_craft;
 #[cfg(unix)]
 mod mutations;
 mod recovery;
+mod remesh_live;
 mod service;
 mod sessions;
 mod soak;

@@ -10,9 +10,10 @@ use serde_json::Value;
 
 use super::host::{Host, locked};
 use crate::command_queue::QueuedCommand;
+use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
-use crate::{Published, boolean_jobs, startup, trim};
+use crate::{Published, boolean_jobs, remesh_job, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::brush as asked;
@@ -361,6 +362,24 @@ impl Handler for Host {
             boolean_jobs::level(&self.published, finer).map_err(failed)?;
         self.send(command)?;
         Ok(edit::LevelReply { level: level as u64, levels: levels as u64 })
+    }
+
+    fn remesh(&self, params: edit::RemeshParams) -> Result<edit::RemeshReply, RpcError> {
+        let place = self.begin_boolean()?;
+        let clock = Clock::monotonic();
+        let begun = clock.now_us();
+        let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
+        let (command, made) =
+            remesh_job::remeshed(&self.published, &wanted, &place.job).map_err(failed)?;
+        self.send(command)?;
+        Ok(edit::RemeshReply {
+            voxel: made.voxel,
+            vertices: made.vertices as u64,
+            triangles: made.triangles as u64,
+            volume_before: made.volume[0],
+            volume: made.volume[1],
+            seconds: (clock.now_us() - begun) as f64 * 1e-6,
+        })
     }
 
     fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {

@@ -71,6 +71,7 @@ pub fn act(
         Action::TryKeep => ui_state.trial.turn(MenuItem::Keep),
         Action::Finer => out.push(UiRequest::Level(true)),
         Action::Coarser => out.push(UiRequest::Level(false)),
+        Action::Remesh if !ui_state.joining => out.push(UiRequest::Remesh(ui_state.remesh)),
         Action::Mask => toggle(&mut ui_state.look.map, Map::Mask),
         Action::Search => {
             ui_state.search = ui_state.search.take().is_none().then(SearchBox::default)

@@ -5,8 +5,8 @@ use super::state::action;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, cube, curve_stroke, devices, files, hand_menu, hints, history, legend, look,
-    masks, measure, messages, modal, preferences, pressure_curve, radial, scene, search, start,
-    symmetry, theme, timing, trim,
+    masks, measure, messages, modal, preferences, pressure_curve, radial, remesh, scene, search,
+    start, symmetry, theme, timing, trim,
 };
 
 const TABS: [(Tab, &str, &str); 8] = [
@@ -123,6 +123,8 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
             scene::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::levels(ui, view, ui_state, out);
+            ui.add_space(8.0);
+            remesh::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::buttons(ui, ui_state);
         }

@@ -25,6 +25,7 @@ pub mod modal;
 pub mod preferences;
 pub mod pressure_curve;
 pub mod radial;
+pub mod remesh;
 pub mod scene;
 pub mod search;
 pub mod start;

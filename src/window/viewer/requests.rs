@@ -63,6 +63,10 @@ impl WindowState {
                 self.ui_state.joining = true;
                 self.tasks.level(finer, wiring.published.clone(), wiring.commands.clone());
             }
+            UiRequest::Remesh(wanted) => {
+                self.ui_state.joining = true;
+                self.tasks.remesh(wanted, wiring.published.clone(), wiring.commands.clone());
+            }
             UiRequest::Reference => self.before = Some(state.mesh.clone()),
             UiRequest::Outline(path) => {
                 if let Some(found) = &self.ui_state.sizes.found {

@@ -18,9 +18,10 @@ use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
+use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
-use sculptd_daemon::{Published, boolean_jobs, startup};
+use sculptd_daemon::{Published, boolean_jobs, remesh_job, startup};
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
@@ -188,6 +189,21 @@ impl Tasks {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
             Ok((vec![command], format!("Level {} of {of}", at + 1)))
+        });
+    }
+
+    /// The object as one surface of even triangles.
+    pub fn remesh(&self, wanted: Wanted, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
+        self.change("sculptd-remesh", commands, move || {
+            let (command, made) = remesh_job::remeshed(&shown, &wanted, &Job::default())?;
+            let [before, now] = made.volume;
+            let text = format!(
+                "Remeshed: {} triangles, voxels of {:.4}, volume {:+.2} %",
+                made.triangles,
+                made.voxel,
+                (now / before - 1.0) * 100.0
+            );
+            Ok((vec![command], text))
         });
     }
 

@@ -41,6 +41,7 @@ pub enum Action {
     TrimLine,
     Finer,
     Coarser,
+    Remesh,
     TryAdd,
     TryCut,
     TryKeep,
@@ -136,6 +137,7 @@ pub const ALL: &[ActionEntry] = &[
     entry(Action::TrimLine, "Trim by a line", None, "cut off plane"),
     entry(Action::Finer, "Finer level", ctrl(Key::PageUp), "subdivide multires detail"),
     entry(Action::Coarser, "Coarser level", ctrl(Key::PageDown), "multires shape"),
+    entry(Action::Remesh, "Remesh", ctrl(Key::R), "voxel even triangles dynamesh retopology"),
     entry(Action::TryAdd, "Preview: add the held object", None, "boolean union try join"),
     entry(
         Action::TryCut,

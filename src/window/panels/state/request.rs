@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::Vec3;
+use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim::Part;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
@@ -30,6 +31,8 @@ pub enum UiRequest {
     Trim(Part),
     /// The object one level finer, or coarser.
     Level(bool),
+    /// The object gets one surface of even triangles.
+    Remesh(Wanted),
     /// Distances are those to the object as it is now.
     Reference,
     /// The shadow's outline is written.

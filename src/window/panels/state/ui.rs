@@ -11,6 +11,7 @@ use super::search::SearchBox;
 use super::sizes::SizesPage;
 use super::thickness::WallsPage;
 use crate::look::Look;
+use sculptd_daemon::remesh_job::Wanted;
 
 /// Which page of the right panel is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -45,6 +46,8 @@ pub struct UiState {
     /// A Boolean is under way.
     pub joining: bool,
     pub trial: BooleanTrial,
+    /// How fine the next remeshing is.
+    pub remesh: Wanted,
     pub trim: Option<Trim>,
     /// The handle of a curve that was held last.
     pub handle: Option<usize>,

@@ -1,0 +1,119 @@
+//! Voxel remeshing of the object: one closed surface of even triangles, on the thread of whoever
+//! asks. What was sculpted meanwhile is not lost: then it is computed again.
+
+use std::sync::Arc;
+
+use arc_swap::ArcSwap;
+use glam::{DVec3, Vec3};
+
+use crate::Published;
+use crate::boolean_jobs::{JoinError, settled};
+use crate::command_queue::QueuedCommand;
+use sculptd_clay::Clay;
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::payload::Payload;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::distance::DistanceSolid;
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::measure::measures;
+use sculptd_geometry::remesh::{RemeshSettings, remesh};
+
+/// Voxels along the longest side of the object, least and greatest.
+pub const SIDE: (usize, usize) = (8, 1024);
+
+/// What is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wanted {
+    /// Edge of a voxel in the mesh's unit; `None`: the mean edge of the triangles as they are.
+    pub voxel: Option<f32>,
+    /// Edges stay sharp.
+    pub sharp: bool,
+}
+
+/// What came of it. Lengths and volumes are in the mesh's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Remeshed {
+    /// Edge of a voxel: the one wanted, but for what makes the longest side a whole number of them.
+    pub voxel: f32,
+    pub vertices: usize,
+    pub triangles: usize,
+    /// Volume before and after: parts thinner than a voxel or two are lost or grow together.
+    pub volume: [f64; 2],
+}
+
+/// The mean edge of the triangles; 0 without any.
+pub fn mean_edge(mesh: &TriMesh) -> f32 {
+    let each = |t: usize| {
+        let [a, b, c] = mesh.corners(t).map(Vec3::as_dvec3);
+        a.distance(b) + b.distance(c) + c.distance(a)
+    };
+    let n = mesh.triangles.len();
+    let sum: f64 = (0..n).map(each).sum();
+    (sum / (3 * n.max(1)) as f64) as f32
+}
+
+/// The command that puts the remeshed object in place, as one step of undo, and what it is.
+///
+/// # Errors
+/// A voxel that gives fewer or more than [`SIDE`] along the longest side, an object that encloses
+/// nothing, a cancelled job, and an object that is changed again and again.
+pub fn remeshed(
+    shown: &ArcSwap<Published>,
+    wanted: &Wanted,
+    job: &Job,
+) -> Result<(QueuedCommand, Remeshed), JoinError> {
+    settled(shown, |now| {
+        let old = now.mesh.to_tri();
+        let (lo, hi) = old.bounds();
+        let longest = (hi - lo).max_element();
+        let voxel = wanted.voxel.unwrap_or_else(|| mean_edge(&old)).max(f32::MIN_POSITIVE);
+        let side = (longest / voxel).round();
+        if !(side >= SIDE.0 as f32 && side <= SIDE.1 as f32) {
+            let (least, most) = (longest / SIDE.1 as f32, longest / SIDE.0 as f32);
+            return Err(JoinError::Voxel { voxel, least, most });
+        }
+        let solid = DistanceSolid::build(&old, job)?;
+        let settings = RemeshSettings { side: side as usize, sharp: wanted.sharp };
+        let new = remesh(&old, &solid, settings, job)?;
+        let masks = now.mesh.masks();
+        let masks = masks.map(|m| carried(&m, &old, &solid, &new.positions, job)).transpose()?;
+        let found = Remeshed {
+            voxel: longest / side,
+            vertices: new.positions.len(),
+            triangles: new.triangles.len(),
+            volume: [measures(&old).volume, measures(&new).volume],
+        };
+        let built = Clay::build_masked(&new, masks.as_deref().unwrap_or(&[]), job);
+        let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
+        let clay = NewClay::new(Arc::new(new), true);
+        let command = match masks {
+            Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
+            None => Command::Replace(clay),
+        };
+        Ok((QueuedCommand::with_payload(command, Payload::Clay(Box::new(built))), found))
+    })
+}
+
+/// A value of each old vertex at each new one: that of the nearest place on the old surface.
+fn carried(
+    values: &[f32],
+    old: &TriMesh,
+    solid: &DistanceSolid,
+    places: &[Vec3],
+    job: &Job,
+) -> Result<Vec<f32>, Cancelled> {
+    let places: Vec<DVec3> = places.iter().map(|p| p.as_dvec3()).collect();
+    let nearest = solid.nearest(&places, job)?;
+    let at = nearest.iter().map(|n| {
+        let Some(n) = n else { return 0.0 };
+        let triangle = n.triangle as usize;
+        let [a, b, c] = old.corners(triangle).map(Vec3::as_dvec3);
+        let area = |p: DVec3, q: DVec3| (p - n.point).cross(q - n.point).length();
+        let w = [area(b, c), area(c, a), area(a, b)];
+        let sum = w[0] + w[1] + w[2];
+        let w = if sum > 0.0 { w.map(|x| x / sum) } else { [1.0, 0.0, 0.0] };
+        let t = old.triangles[triangle];
+        (0..3).map(|i| f64::from(values[t[i] as usize]) * w[i]).sum::<f64>() as f32
+    });
+    Ok(at.collect())
+}
