@@ -106,7 +106,7 @@
 //!   sculpt, reset. Waits for: time, the published state.
 //! * `sculptd-gallery`, made by `daemon::kiosk::spool`: brings finished sculptures to their place.
 //!   Waits for: the disk, the network.
-//! * `sculptd-player`, made by `cli::live`: plays recordings as devices. Waits for: the clock.
+//! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the clock.
 //! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for: the
 //!   disk.
 //! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
