@@ -187,7 +187,7 @@ const GALLERY_DAY: &str = "SCULPTD_GALLERY_DAY";
 
 /// The sculpture of visitor `n`.
 fn visitor(n: u32) -> sculptd_geometry::PolyMesh {
-    sculptd_geometry::shapes::uv_sphere(1.0, 4 + n as usize, 8)
+    sculptd_geometry::shapes::uv_sphere(1.0, 4 + n, 8)
 }
 
 /// Three visitors' sculptures are kept, marked and sent, each told of on standard output. Run by

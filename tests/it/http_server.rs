@@ -144,7 +144,7 @@ fn every_kind_of_request_gets_an_answer_or_the_end_in_time() {
     }
     // A byte every now and then: the head has two seconds, not two seconds a byte.
     let clock = Clock::monotonic();
-    let mut trickle = send(at, b"GET / HT");
+    let mut trickle = send(at, b"GET / HTTP/1.1\r\nA: ");
     trickle.set_read_timeout(Some(Duration::from_millis(300))).expect("set");
     loop {
         let _ = trickle.write_all(b"x");
