@@ -150,8 +150,6 @@ fn no_meshes(folder: &Path) -> Vec<PathBuf> {
     all.push(sparse(folder, "sparse.obj", b"v 0 0 0\n", 4 << 30));
     all.push(sparse(folder, "holes.obj", b"v 0 0 0\n", 256 << 20));
     all.push(put(folder, "count.stl", &stl_head(u32::MAX)));
-    let face = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {}\n", "1 2 3 ".repeat(2_000_000));
-    all.push(put(folder, "face.obj", face.as_bytes()));
     all.push(put(folder, "index.obj", b"v 0 0 0\nf 1 2 99999999999999999999\n"));
     all.push(put(folder, "line.obj", &[&b"v "[..], &vec![b'1'; 64 << 20]].concat()));
     let ply = |vertices: &str, kind: &str| {

@@ -268,3 +268,56 @@ fn every_subcommand_has_its_manual_page_and_numbers_read_as_they_were_written() 
     assert_eq!(shown["brush.radius"]["value"].to_string(), "0.3");
     assert_eq!(shown["undo.history_bytes"]["value"], 4u64 << 30);
 }
+
+/// Without a runtime folder the socket lies in the temporary directory, where anybody may have made
+/// a folder of its name before.
+#[cfg(unix)]
+#[test]
+fn a_fallback_folder_that_others_may_write_is_refused_by_daemon_and_client() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    let dir = tempfile::tempdir().expect("a folder");
+    let user = std::fs::metadata(dir.path()).expect("ours").uid();
+    let folder = dir.path().join(format!("sculptd-{user}"));
+    let run = |arguments: &[&str]| {
+        let mut command = sculptd();
+        command.args(arguments).env("TMPDIR", dir.path()).env_remove("XDG_RUNTIME_DIR");
+        let out = command.env("XDG_CONFIG_HOME", dir.path()).output().expect("runs");
+        (out.status.code(), String::from_utf8_lossy(&out.stderr).into_owned())
+    };
+    let start = ["run", "--headless", "--for", "0.1"];
+    // Its own folder serves.
+    let (code, said) = run(&start);
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(std::fs::metadata(&folder).expect("made").mode() & 0o777, 0o700);
+    let refused = |what: &str, word: &str| {
+        let (code, said) = run(&start);
+        assert!(code == Some(4) && said.contains(word), "{what}: {code:?}, {said}");
+        let (code, said) = run(&["ctl", "status"]);
+        assert!(code != Some(0) && said.contains(word), "{what}: {code:?}, {said}");
+    };
+    std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o777)).expect("set");
+    refused("a folder that all may write", "open to others");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let elsewhere = dir.path().join("elsewhere");
+    std::fs::create_dir(&elsewhere).expect("made");
+    std::os::unix::fs::symlink(&elsewhere, &folder).expect("linked");
+    refused("a link", "another user");
+    std::fs::remove_file(&folder).expect("removed");
+    std::fs::create_dir(&folder).expect("made");
+    // Only root can give a folder away.
+    if user == 0 && std::os::unix::fs::chown(&folder, Some(65_534), None).is_ok() {
+        refused("a folder of another user", "another user");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn figures_of_a_run_on_a_simulated_clock_are_refused_and_not_left_out() {
+    let out = sculptd()
+        .args(["run", "--headless", "--metrics", "0", "--play-device", "none.txt"])
+        .output()
+        .expect("runs");
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert_eq!(out.status.code(), Some(2), "{said}");
+    assert!(said.contains("--metrics"), "{said}");
+}

@@ -227,7 +227,7 @@ impl Client {
         self.map = ClockMap::default();
         let (mut heard, mut pinged, mut greeted) = (self.clock.now_us(), false, false);
         let mut rate = MessageRate::begin();
-        let mut whole = false;
+        let (mut whole, mut was_silent) = (false, false);
         while !stop.stopped() {
             if rate.exceeded() {
                 self.sender.flush();
@@ -265,10 +265,13 @@ impl Client {
                 }
                 Err(e) => return e.to_string(),
             }
-            // Whatever else the server sends meanwhile: without frames there are no hands.
-            if self.clock.now_us().saturating_sub(self.framed_us) >= SILENCE_US {
+            // Whatever else the server sends meanwhile: without frames there are no hands. Seen
+            // twice, so that a process that was stopped reads first what came meanwhile.
+            let silent = self.clock.now_us().saturating_sub(self.framed_us) >= SILENCE_US;
+            if silent && was_silent {
                 self.hands_gone();
             }
+            was_silent = silent;
             if !greeted && (self.last.is_some() || self.version().is_some()) {
                 greeted = true;
                 // A server that refuses the settings may still send frames.

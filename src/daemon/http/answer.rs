@@ -53,7 +53,8 @@ impl Answer {
 
     /// The response with the headers that keep a browser from guessing, storing and telling.
     pub(super) fn respond(self, pace: Arc<OutgoingRate>) -> Response<Pieces> {
-        let mut response = Response::new(Pieces { rest: self.content.into(), pace, wait: None });
+        let mut response =
+            Response::new(Pieces { rest: self.content.into(), pace, wait: None, reserved: false });
         *response.status_mut() = self.status;
         let headers = response.headers_mut();
         let mut set = |name, value| headers.insert(name, HeaderValue::from_static(value));
@@ -95,6 +96,8 @@ pub(super) struct Pieces {
     rest: Rest,
     pace: Arc<OutgoingRate>,
     wait: Option<Pin<Box<tokio::time::Sleep>>>,
+    /// Time for the next piece is reserved.
+    reserved: bool,
 }
 
 impl Body for Pieces {
@@ -110,16 +113,17 @@ impl Body for Pieces {
             Rest::Text(Some(text)) => text.len(),
             Rest::File { left, .. } => (*left).min(PIECE as u64) as usize,
         };
-        if self.wait.is_none() {
+        if !self.reserved {
             let time = self.pace.reserve(size);
-            self.wait = Some(Box::pin(tokio::time::sleep(time)));
+            self.wait = (!time.is_zero()).then(|| Box::pin(tokio::time::sleep(time)));
+            self.reserved = true;
         }
         if let Some(wait) = &mut self.wait
             && wait.as_mut().poll(context).is_pending()
         {
             return Poll::Pending;
         }
-        self.wait = None;
+        (self.wait, self.reserved) = (None, false);
         Poll::Ready(Some(match &mut self.rest {
             Rest::Text(text) => Ok(Frame::data(text.take().unwrap_or_default())),
             Rest::File { file, left } => {

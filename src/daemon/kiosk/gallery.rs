@@ -18,7 +18,13 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
     write_mesh(&path, mesh).map_err(std::io::Error::other)?;
-    page(folder)?;
+    // The sculpture is kept, with or without the page that lists it.
+    if let Err(e) = page(folder) {
+        tracing::error!(
+            "{}: the page is not written, the next one mends it: {e}",
+            folder.display()
+        );
+    }
     Ok(path)
 }
 

@@ -53,8 +53,8 @@ pub fn waiting(folder: &Path) -> Vec<String> {
     works(&folder.join(OUTGOING)).unwrap_or_default()
 }
 
-/// Marks the works that have none and were never sent: a kill came between a work and its mark, or
-/// nothing was sent so far.
+/// Marks the works that have none and were never sent: a kill or a bad disk came between a work and
+/// its mark, or nothing was sent so far.
 fn catch_up(folder: &Path) -> std::io::Result<()> {
     let (sent, marked) = (sent(folder), waiting(folder));
     for name in works(folder).unwrap_or_default() {
@@ -151,11 +151,15 @@ impl Spool {
         Ok(Spool { folder: folder.to_path_buf(), wake, stand, thread: Some(thread) })
     }
 
-    /// Offers a work that lies in the folder.
+    /// Offers a sculpture that lies in the folder. Where it cannot be marked it is found by the
+    /// sending thread all the same, as long as the disk lists it.
+    ///
+    /// # Errors
+    /// What the system says of the mark.
     pub fn offer(&self, name: &str) -> std::io::Result<()> {
-        offer(&self.folder, name)?;
+        let marked = offer(&self.folder, name);
         let _ = self.wake.try_send(());
-        Ok(())
+        marked
     }
 }
 
@@ -173,6 +177,9 @@ impl Drop for Spool {
 
 /// Sends the oldest work that waits, and the page after it. False: none waits.
 fn send_next(to: &SpoolTarget, folder: &Path, stop: &AtomicBool) -> Result<bool, String> {
+    // A sculpture whose mark could not be made must not be passed over: the number of what was
+    // sent would then say that it was.
+    catch_up(folder).map_err(|e| e.to_string())?;
     let all = waiting(folder);
     let Some(name) = all.first() else { return Ok(false) };
     let mark = folder.join(OUTGOING).join(name);

@@ -75,11 +75,12 @@ fn refuse_others_folder(path: &Path) -> std::io::Result<()> {
         let fallback = std::env::temp_dir().join("sculptd");
         let own = rustix::process::getuid().as_raw();
         if path.parent() == Some(&fallback)
-            && std::fs::symlink_metadata(&fallback).is_ok_and(|m| m.uid() != own || !m.is_dir())
+            && std::fs::symlink_metadata(&fallback)
+                .is_ok_and(|m| m.uid() != own || !m.is_dir() || m.mode() & 0o002 != 0)
         {
             return Err(std::io::Error::new(
                 ErrorKind::PermissionDenied,
-                "the folder belongs to another user; name a session in a folder of your own",
+                "the folder is not this user's alone; name a session in a folder of your own",
             ));
         }
     }

@@ -43,8 +43,10 @@ pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, ParseError> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
         bad(FilePlace::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
     })?;
-    // A choice, not a law of the format: what unpacks to more than this is taken for a trap.
-    let mut room = bytes.len() as u64 * 100 + (16 << 20);
+    // A choice, not a law of the format: what unpacks to more than this is taken for a trap. Small
+    // files may be a hundred times as long unpacked, large ones eight times.
+    let packed = bytes.len() as u64;
+    let mut room = (packed * 100).min(packed * 8 + (256 << 20)) + (16 << 20);
     let mut part = |name: &str| -> Result<Vec<u8>, ParseError> {
         let entry = zip
             .by_name(name)
@@ -57,7 +59,7 @@ pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, ParseError> {
         room = room.checked_sub(out.len() as u64).ok_or_else(|| {
             bad(
                 FilePlace::File,
-                "parts of at most a hundred times the file's length",
+                "parts of at most a hundred times the file's length, or eight and 256 MiB",
                 format!("more in {name}"),
             )
         })?;
