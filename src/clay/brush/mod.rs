@@ -14,6 +14,7 @@ pub mod dab;
 mod drag;
 pub mod falloff;
 pub mod geodesic;
+pub mod level;
 pub mod mask_all;
 pub mod options;
 mod palm;
@@ -133,6 +134,7 @@ brushes! {
     "multiplane-scrape" MultiplaneScrape multiplane_scrape::MultiplaneScrapeBrush,
     "sharpen" Sharpen sharpen::SharpenBrush,
     "surface-smooth" SurfaceSmooth surface_smooth::SurfaceSmoothBrush,
+    "boundary" Boundary boundary::BoundaryBrush,
 }
 
 // The variants come from a macro, which marks no default.

@@ -79,7 +79,7 @@ pub(super) fn merged_brush(
     let other = named.kind.as_deref().map(str::parse::<BrushKind>).transpose();
     let other = other.map_err(RpcError::bad_params)?;
     let base = match other.filter(|k| *k != shown.brush.kind) {
-        Some(kind) => presets.switched(&shown.brush, kind),
+        Some(kind) => presets.recalled(&shown.brush, &shown.kept_brushes, kind),
         None => shown.brush,
     };
     let brush: brush::BrushSettings = merge(&base, named)?;

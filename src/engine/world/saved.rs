@@ -102,6 +102,7 @@ struct CoreRef<'a> {
     last_hands: &'a Option<Hands>,
     place: Option<Similarity>,
     lineages: u32,
+    kept_brushes: &'a [BrushSettings],
 }
 
 #[derive(Deserialize)]
@@ -116,6 +117,8 @@ struct Core {
     last_hands: Option<Hands>,
     place: Option<Similarity>,
     lineages: u32,
+    #[serde(default)]
+    kept_brushes: Vec<BrushSettings>,
 }
 
 impl World {
@@ -202,6 +205,7 @@ impl World {
             last_hands: &self.last_hands,
             place: self.thing.as_ref().map(|t| t.place),
             lineages: self.lineages,
+            kept_brushes: &self.kept_brushes,
         };
         Some(Saved {
             tick: self.tick,
@@ -241,6 +245,7 @@ impl World {
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
+        world.kept_brushes = Arc::new(core.kept_brushes);
         Ok(world)
     }
 }
