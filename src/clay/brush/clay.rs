@@ -4,7 +4,8 @@
 //! The plane is that of the surface as the stroke found it (unless the stroke accumulates), so a
 //! stroke does not climb upon itself: it comes to one coat, however closely its dabs lie.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 

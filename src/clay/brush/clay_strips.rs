@@ -7,7 +7,8 @@
 use glam::Vec3;
 
 use super::clay::coat;
-use super::dab::{Brush, Dab, VertexChange, VertexContext, soft};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, soft};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 use crate::{PageIn, Reach};

@@ -1,7 +1,8 @@
 //! Levelling: what lies over or under the mean plane beneath the brush goes a share of the way to
 //! it. [`super::fill`], [`super::flatten`] and [`super::scrape`] are this brush.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 

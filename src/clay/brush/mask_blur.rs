@@ -1,7 +1,8 @@
 //! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it
 //! sharpens them.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
 

@@ -1,6 +1,7 @@
 //! Paint: lays the brush's colour on.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of paint, made ready.

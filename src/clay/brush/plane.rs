@@ -2,7 +2,8 @@
 //! leaves what stands further off. The plane is that of the surface as the stroke found it, so that
 //! it stays where it is while the stroke passes to and fro; the other way round it deepens.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 

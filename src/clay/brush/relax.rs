@@ -1,7 +1,8 @@
 //! Slide-relax: evens the triangles along the surface and leaves the form: the tangential part of
 //! the way to the middle of the neighbours.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of relax, made ready.

@@ -10,8 +10,8 @@
 use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
-use super::tool::Tool;
+use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::weights::Weights;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
@@ -150,8 +150,8 @@ impl Brush for SmoothBrush {
         }
     }
 
-    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(&Self::reach(dab), &SmoothBrush::of(dab));
+    fn alone<R: RunKernel>(dab: &Dab<'_>, on: &mut R) -> bool {
+        on.run_kernel(&Self::reach(dab), &SmoothBrush::of(dab));
         true
     }
 }

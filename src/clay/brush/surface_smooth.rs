@@ -2,7 +2,8 @@
 //! approach to fair surface design". Each dab evens by `lambda` and then goes back by `mu`, where
 //! `1 / lambda + 1 / mu` is the pass band: what is wider than that keeps its form.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::smooth::around;
 use crate::brush::surface_query::SurfaceQuery;
 

@@ -2,7 +2,8 @@
 //! whatever is deep within the brush comes to lie on the plane at once. The other way round it
 //! fills to a plane set over the surface.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 

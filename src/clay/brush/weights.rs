@@ -4,7 +4,6 @@
 
 use glam::Vec3;
 
-use super::dab::facing;
 use crate::{PAGE_VERTICES, PageIn};
 
 /// Vertices looked at together.
@@ -72,6 +71,12 @@ impl Weights {
     pub fn of(&self, page: &PageIn<'_>) -> &[f32] {
         &self.weight[..page.own().min(MOST)]
     }
+}
+
+/// See [`super::Dab::facing`]; `c` is the cosine between the normals.
+#[inline(always)]
+pub(super) fn facing(c: f32) -> f32 {
+    ((c + 0.5) * 2.0).max(0.0).min(1.0)
 }
 
 /// `e^x` for `x <= 0`, with an error below 2e-7 of the result; 0 below -87. No table, no branch, no
