@@ -307,7 +307,7 @@ fn one_dab<'a>(settings: &'a BrushSettings, hit: &Hit, ray: &Ray, sign: f32, i: 
         radius,
         strength: settings.strength,
         span: 1.0,
-        share: 0.0,
+        pace: 0.0,
         heading: along * 0.5,
         pass: 0,
         sign,
@@ -328,7 +328,7 @@ fn one_dab<'a>(settings: &'a BrushSettings, hit: &Hit, ray: &Ray, sign: f32, i: 
         travelled: 0.2 * radius * i as f32,
         stroke: (i / STROKE) as u32 + 1,
     };
-    Dab { share: dab.approach(settings.strength), ..dab }
+    Dab { pace: dab.pace_of(settings.strength), ..dab }
 }
 
 fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers) -> Dabs {

@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::Dab;
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
@@ -22,7 +22,7 @@ pub struct CreaseBrush {
     normal: Vec3,
     /// The direction of the stroke, along which nothing is drawn together.
     along: Vec3,
-    /// The share of the way to the line.
+    /// How fast it draws together.
     pinch: f32,
     /// Squared, mesh units: added to the squared distance from the middle.
     round: f32,
@@ -59,7 +59,7 @@ impl Brush for CreaseBrush {
             whole: if middle > 0.0 { 1.0 / middle } else { 1.0 },
             normal: on.plane(dab, 0.0).normal,
             along: dab.along(),
-            pinch: dab.approach(rate),
+            pinch: dab.pace_of(rate),
         }
     }
 
@@ -71,6 +71,6 @@ impl Brush for CreaseBrush {
         let w = spot.weight;
         // Sharper than it is pinched: the groove's floor is a line.
         let cut = self.normal * (dab.height() * w * w);
-        VertexChange::by(cut + self.inward(dab, spot.p) * (self.pinch * w))
+        VertexChange::by(cut + self.inward(dab, spot.p) * part(self.pinch, w))
     }
 }

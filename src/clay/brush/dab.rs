@@ -8,12 +8,21 @@ use glam::Vec3;
 
 use super::BrushSettings;
 use super::stamp::Lens;
-use super::weights::facing;
+use super::weights::{exp, facing, ln};
 use crate::Reach;
-use sculptd_geometry::portable::PortableMath;
 
 /// Images of a dab at most, itself counted.
 pub const IMAGES: usize = 32;
+
+/// The greatest share of the way to its goal that a brush goes over a fifth of the radius.
+pub const FASTEST: f32 = 0.97;
+
+/// The share of the way to its goal that a vertex of this weight goes at this pace: `1 -
+/// e^-(pace * weight)`.
+#[inline(always)]
+pub fn part(pace: f32, weight: f32) -> f32 {
+    1.0 - exp(-pace * weight)
+}
 
 /// How a brush is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,9 +57,8 @@ pub struct Dab<'a> {
     /// The way that the dab stands for, in fifths of the radius: strengths are those of a dab for
     /// which this is 1.
     pub span: f32,
-    /// The share of the way to its goal that a brush goes with this dab: [`Dab::approach`] at the
-    /// rate `strength`.
-    pub share: f32,
+    /// How fast a brush goes to its goal with this dab: [`Dab::pace_of`] at the rate `strength`.
+    pub pace: f32,
     /// The direction of the stroke, averaged over half a radius; of any length, zero at its start.
     pub heading: Vec3,
     /// Which of the brush's passes it is, from 0.
@@ -89,14 +97,11 @@ impl Dab<'_> {
         self.sign * self.strength * self.radius
     }
 
-    /// The share of the way to its goal that a brush goes with this dab, if it goes `rate` of it
-    /// (0 to 1) with a dab for which `span` is 1.
-    pub fn approach(&self, rate: f32) -> f32 {
-        if self.span == 1.0 {
-            rate
-        } else {
-            1.0 - (1.0 - rate.clamp(0.0, 1.0)).portable_powf(self.span)
-        }
+    /// How fast a brush goes to its goal with this dab, if it goes `rate` of the way there (0 to 1;
+    /// taken as [`FASTEST`] at most) with a dab for which `span` is 1. The paces of several dabs
+    /// add up, so that neither their spacing nor their number changes how far they go together.
+    pub fn pace_of(&self, rate: f32) -> f32 {
+        -ln(1.0 - rate.clamp(0.0, FASTEST)) * self.span
     }
 
     /// The share of the brush at a squared distance from its middle.

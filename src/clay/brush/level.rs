@@ -2,7 +2,7 @@
 //! it. [`super::fill`], [`super::flatten`] and [`super::scrape`] are this brush.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::Dab;
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
@@ -32,6 +32,6 @@ impl<const SIDE: i8> Brush for LevelBrush<SIDE> {
             return VertexChange::default();
         }
         let way = if SIDE == 0 { dab.sign } else { 1.0 };
-        VertexChange::by(self.plane.normal * (-h * way * dab.share * spot.weight))
+        VertexChange::by(self.plane.normal * (-h * way * part(dab.pace, spot.weight)))
     }
 }

@@ -2,7 +2,7 @@
 //! sharpens them.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::Dab;
+use super::dab::{Dab, part};
 use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -39,6 +39,6 @@ impl Brush for MaskBlurBrush {
         } else {
             0.0
         };
-        VertexChange::mask(by * dab.share * spot.weight)
+        VertexChange::mask(by * part(dab.pace, spot.weight))
     }
 }

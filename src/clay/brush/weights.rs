@@ -102,9 +102,29 @@ pub fn exp(x: f32) -> f32 {
     if x < -87.0 { 0.0 } else { p * scale }
 }
 
+/// The natural logarithm of `x` in 0.001 to 1, by Halley's iteration on [`exp`], to the precision
+/// of that.
+pub fn ln(x: f32) -> f32 {
+    let mut y = x - 1.0;
+    for _ in 0..8 {
+        let e = exp(y);
+        y = (y + 2.0 * (x - e) / (x + e)).min(0.0);
+    }
+    y
+}
+
 #[cfg(test)]
 mod tests {
-    use super::exp;
+    use super::{exp, ln};
+
+    #[test]
+    fn ln_undoes_exp() {
+        assert_eq!(ln(1.0), 0.0);
+        for i in 1..=1000 {
+            let x = i as f32 / 1000.0;
+            assert!((exp(ln(x)) - x).abs() < 1e-6 * x.max(0.1), "{x}: {}", ln(x));
+        }
+    }
 
     #[test]
     fn exp_is_close_to_the_true_one() {
