@@ -46,13 +46,18 @@ impl VirtualPen {
         let points = in_view(&shown, stroke)?;
         let brush =
             stroke.brush.as_ref().map(|b| super::handler::merged_brush(&host.presets, &shown, b));
-        if let Some(brush) = brush.transpose()? {
+        let brush = brush.transpose()?;
+        if let Some(brush) = brush {
             host.send(Command::Brush(brush))?;
         }
         let drawn = self.send_samples(host, &points, shown.camera.aspect);
-        if stroke.brush.is_some() {
-            // Whatever came of it: the brush in hand is the person's. A stroke that follows finds
-            // it in place.
+        if let Some(brush) = brush {
+            // Whatever came of it: the brush in hand is the person's, and so is what the other
+            // brush was set to. A stroke that follows finds it in place.
+            if brush.kind != shown.brush.kind {
+                let (now, kept) = (&shown.brush, &shown.kept_brushes);
+                host.send(Command::Brush(host.presets.recalled(now, kept, brush.kind)))?;
+            }
             host.send(Command::Brush(shown.brush))?;
             self.await_tick(host)?;
         }
