@@ -45,6 +45,7 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "multiplane-scrape",
     "sharpen",
     "surface-smooth",
+    "boundary",
 ];
 
 /// The embedded presets, read once.

@@ -237,6 +237,11 @@ impl Page {
         &self.topology
     }
 
+    /// Whether an own vertex lies on a border, or its ring is not one closed fan.
+    pub fn is_border(&self, own: usize) -> bool {
+        self.topology.kinds[own] != Ring::Closed
+    }
+
     /// Own vertices; the rest of every array is halo.
     pub fn own(&self) -> usize {
         self.topology.own

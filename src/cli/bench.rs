@@ -10,8 +10,11 @@ use glam::{Vec2, Vec3};
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush, PressureCurve, SmoothBrush};
-use sculptd_clay::{Clay, PhaseTimes, Ray, Reach, Workers, bytes_to_build};
+use sculptd_clay::brush::stamp::Lens;
+use sculptd_clay::brush::{
+    BrushKind, BrushSettings, Dab, Measure, PressureCurve, Scratch, Tool, TopologySettings,
+};
+use sculptd_clay::{Clay, DabReport, Hit, PhaseTimes, Ray, Reach, Workers, bytes_to_build};
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::pacer::Pacer;
 use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics};
@@ -34,9 +37,12 @@ pub struct BenchArgs {
     /// Vertices that one dab is to affect, about.
     #[arg(long, value_name = "K", default_value_t = 10_000)]
     pub affected: usize,
-    /// Which brush; `turns` changes between the two.
-    #[arg(long, value_enum, default_value_t = BenchBrush::Gaussian)]
+    /// Which brush, by its name, with its preset; `turns` changes between gaussian and smooth.
+    #[arg(long, value_name = "NAME", default_value = "gaussian")]
     pub brush: BenchBrush,
+    /// Cut triangles under the stroke to edges of this share of the radius; 0.002 to 1.
+    #[arg(long, value_name = "EDGE")]
+    pub topology: Option<f32>,
     /// Single dabs to measure.
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub dabs: usize,
@@ -51,21 +57,43 @@ pub struct BenchArgs {
     pub workers: usize,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+/// What is measured: one brush, or two by turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BenchBrush {
-    Gaussian,
-    Smooth,
+    One(BrushKind),
     Turns,
+}
+
+impl std::str::FromStr for BenchBrush {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "turns" => Ok(BenchBrush::Turns),
+            name => name.parse().map(BenchBrush::One),
+        }
+    }
 }
 
 impl BenchBrush {
     fn kind(self, turn: usize) -> BrushKind {
         match self {
-            BenchBrush::Gaussian => BrushKind::Gaussian,
-            BenchBrush::Smooth => BrushKind::Smooth,
+            BenchBrush::One(kind) => kind,
             BenchBrush::Turns if turn % 2 == 0 => BrushKind::Gaussian,
             BenchBrush::Turns => BrushKind::Smooth,
         }
+    }
+
+    /// The brush's preset; those that raise by the dab leave so little that the form lasts.
+    fn settings(self, turn: usize) -> BrushSettings {
+        let kind = self.kind(turn);
+        let preset = crate::presets().of(kind);
+        let strength = match kind {
+            BrushKind::Gaussian => 0.02,
+            BrushKind::Smooth => 0.5,
+            _ => preset.strength,
+        };
+        BrushSettings { strength, spacing: 0.2, ..preset }
     }
 }
 
@@ -263,9 +291,50 @@ struct Dabs {
 /// Dabs a stroke: one undo step.
 const STROKE: usize = 50;
 
+/// A dab of a stroke that goes on by a fifth of the radius.
+fn one_dab<'a>(settings: &'a BrushSettings, hit: &Hit, ray: &Ray, sign: f32, i: usize) -> Dab<'a> {
+    let radius = settings.radius;
+    let way = direction(i + 1) - direction(i);
+    let flat = way - hit.normal * way.dot(hit.normal);
+    let along = flat.try_normalize().unwrap_or_else(|| hit.normal.any_orthonormal_vector());
+    let right = ray.dir.any_orthonormal_vector();
+    let dab = Dab {
+        settings,
+        centre: hit.position,
+        normal: hit.normal,
+        touch: hit.position,
+        found: settings.kind.found() && !settings.accumulate,
+        radius,
+        strength: settings.strength,
+        span: 1.0,
+        pace: 0.0,
+        heading: along * 0.5,
+        pass: 0,
+        sign,
+        motion: along * (0.2 * radius),
+        last: Vec3::ZERO,
+        eye: -ray.dir,
+        right,
+        lens: Lens {
+            eye: ray.origin,
+            right,
+            up: right.cross(ray.dir),
+            back: -ray.dir,
+            half: 0.4,
+            parallel: false,
+        },
+        hand: 1.0,
+        image: 0,
+        travelled: 0.2 * radius * i as f32,
+        stroke: (i / STROKE) as u32 + 1,
+    };
+    Dab { pace: dab.pace_of(settings.strength), ..dab }
+}
+
 fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers) -> Dabs {
     let mut out = Dabs::default();
     let mut snapshot = None;
+    let mut scratch = Scratch::default();
     for i in 0..args.dabs {
         let ray = ray_from(mesh, direction(i));
         let before = mesh.phases();
@@ -274,21 +343,12 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
         let t1 = now_ns();
         let Some(hit) = hit else { continue };
         mesh.begin_step();
-        let reach = Reach::Sphere { centre: hit.position, radius };
-        let report = match args.brush.kind(i / STROKE) {
-            BrushKind::Smooth => {
-                mesh.dab(&reach, &SmoothBrush::new(hit.position, radius, 0.5), workers)
-            }
-            _ => {
-                // Out and in by turns, so that the form lasts however long the measurement.
-                let height = radius * if i % 2 == 0 { 0.02 } else { -0.02 };
-                mesh.dab(
-                    &reach,
-                    &GaussianBrush::new(hit.position, radius, hit.normal, height),
-                    workers,
-                )
-            }
-        };
+        let settings = BrushSettings { radius, ..args.brush.settings(i / STROKE) };
+        let mut tool = Tool { mesh, workers, scratch: &mut scratch, report: DabReport::default() };
+        // Out and in by turns, so that the form lasts however long the measurement.
+        let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+        settings.kind.apply(&[one_dab(&settings, &hit, &ray, sign, i)], &mut tool);
+        let report = tool.report;
         if i % STROKE == STROKE - 1 {
             mesh.end_step();
         }
@@ -326,15 +386,23 @@ fn stroke(mesh: Clay, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke
     let count = workers.count();
     let (lo, hi) = mesh.bounds();
     let extent = (hi - lo).length() * 0.5;
-    let settings = |turn: usize, negative: bool| BrushSettings {
-        kind: args.brush.kind(turn),
-        radius: radius / extent,
-        strength: if args.brush.kind(turn) == BrushKind::Smooth { 0.5 } else { 0.02 },
-        negative,
-        spacing: 0.2,
-        pressure_radius: PressureCurve { at_zero: 1.0, gamma: 1.0 },
-        pressure_strength: PressureCurve { at_zero: 1.0, gamma: 1.0 },
-        ..BrushSettings::default()
+    let firm = PressureCurve { at_zero: 1.0, gamma: 1.0 };
+    let settings = |turn: usize, negative: bool| {
+        let brush = args.brush.settings(turn);
+        let topology = args.topology.map_or(brush.topology, |edge| TopologySettings {
+            by: Measure::Brush,
+            edge,
+            ..brush.topology
+        });
+        BrushSettings {
+            radius: radius / extent,
+            negative,
+            pressure_radius: firm,
+            pressure_strength: firm,
+            topology,
+            ..brush
+        }
+        .clamped()
     };
     let options =
         WorldOptions { dab_budget: u64::MAX, undo_bytes: 1 << 28, hands: HandSettings::default() };

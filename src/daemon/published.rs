@@ -28,6 +28,8 @@ pub struct Published {
     pub mesh: Snapshot,
     pub camera: Camera,
     pub brush: BrushSettings,
+    /// What each brush was set to when it was last exchanged for another.
+    pub kept_brushes: Arc<Vec<BrushSettings>>,
     /// Brush radius in mesh units at full pressure.
     pub brush_radius: f32,
     /// Bounding radius of the work when it was put in place.
@@ -104,6 +106,7 @@ impl Published {
             mesh,
             camera: *world.camera(),
             brush: *world.brush(),
+            kept_brushes: world.kept_brushes().clone(),
             brush_radius: world.brush_radius(),
             extent: world.extent(),
             middle: world.middle(),

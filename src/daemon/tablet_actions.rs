@@ -225,7 +225,10 @@ impl TabletActions {
                     self.before.get_or_insert(asked.brush);
                 }
                 asked.brush(match what {
-                    Meaning::Brush(kind) => self.presets.switched(&asked.brush, kind),
+                    Meaning::Brush(kind) => {
+                        let kept = asked.world.kept_brushes();
+                        self.presets.recalled(&asked.brush, kept, kind)
+                    }
                     _ => BrushSettings { negative: !asked.brush.negative, ..asked.brush },
                 });
             }

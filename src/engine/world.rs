@@ -87,6 +87,8 @@ pub struct World {
     workers: Workers,
     options: WorldOptions,
     brush: BrushSettings,
+    /// What each brush was set to when it was last exchanged for another.
+    kept_brushes: Arc<Vec<BrushSettings>>,
     camera: Camera,
     /// Centre and bounding radius of the object when it was put in place: the measure of brushes,
     /// mirrors and hands.
@@ -132,6 +134,7 @@ impl World {
             workers,
             options,
             brush: brush.clamped(),
+            kept_brushes: Arc::default(),
             camera,
             middle: Vec3::ZERO,
             extent: 1.0,
@@ -200,6 +203,7 @@ impl World {
     fn apply_command(&mut self, command: &Command) {
         match command {
             Command::Brush(brush) => {
+                self.keep_brush(brush.kind);
                 self.brush = brush.clamped();
                 let lays = self.brush.kind.grip() == Grip::Surface
                     && self.brush.path.method == Method::Curve;

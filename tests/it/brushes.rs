@@ -1,5 +1,6 @@
 //! Brushes: golden strokes, formulas, properties.
 
+mod boundary;
 mod curve;
 mod feel;
 mod formulas;

@@ -41,8 +41,12 @@ pub struct Picture {
     pub width: u32,
     /// Pixels.
     pub height: u32,
-    /// 0 lowest to 65535 highest; `width * height` of them.
+    /// 0 lowest to 65535 highest; `width * height` of them. What is transparent is low: brightness
+    /// times the alpha channel.
     pub heights: Vec<u16>,
+    /// The alpha channel, as many; empty for a picture that is opaque everywhere.
+    #[serde(default)]
+    pub cover: Vec<u16>,
 }
 
 /// Pixels of a picture at most: a square of 4096.
@@ -52,11 +56,14 @@ impl Picture {
     /// Whether the sizes and the heights agree.
     pub fn is_sane(&self) -> bool {
         let pixels = u64::from(self.width) * u64::from(self.height);
-        pixels > 0 && pixels <= MOST && self.heights.len() as u64 == pixels
+        let fits = |rows: &[u16]| rows.len() as u64 == pixels;
+        let covered = self.cover.is_empty() || fits(&self.cover);
+        pixels > 0 && pixels <= MOST && fits(&self.heights) && covered
     }
 
-    /// Reads PNG, TIFF or OpenEXR, 8 or 16 bits or float; colours become their brightness,
-    /// and what is transparent is low: the height is brightness times the alpha channel.
+    /// Reads PNG, and with the feature `pictures` JPEG, WebP, TIFF and OpenEXR; 8 or 16 bits or
+    /// float. Colours become their brightness, and what is transparent is low: the height is
+    /// brightness times the alpha channel.
     ///
     /// # Errors
     /// Says what is wrong: not a picture, too large, empty.
@@ -74,12 +81,24 @@ impl Picture {
             ((u32::from(luma) * u32::from(alpha) + 32_767) / 65_535) as u16
         };
         let heights = image.pixels().map(|p| height(p.0)).collect();
-        let picture = Picture { width, height: rows, heights };
+        let opaque = image.pixels().all(|p| p.0[1] == u16::MAX);
+        let cover =
+            if opaque { Vec::new() } else { image.pixels().map(|p| p.0[1]).collect::<Vec<_>>() };
+        let picture = Picture { width, height: rows, heights, cover };
         if picture.is_sane() { Ok(picture) } else { Err("an empty picture".into()) }
     }
 
     /// Height at `s`, `t`, between four pixels; repeats along `s`, ends at the edges of `t`.
     pub fn at(&self, s: f32, t: f32) -> f32 {
+        self.between(&self.heights, s, t)
+    }
+
+    /// How opaque the picture is at `s`, `t`: 0 to 1.
+    pub fn cover(&self, s: f32, t: f32) -> f32 {
+        if self.cover.is_empty() { 1.0 } else { self.between(&self.cover, s, t) }
+    }
+
+    fn between(&self, rows: &[u16], s: f32, t: f32) -> f32 {
         let (w, h) = (self.width as usize, self.height as usize);
         let x = (s - s.floor()) * w as f32 - 0.5;
         let y = (1.0 - t.clamp(0.0, 1.0)) * h as f32 - 0.5;
@@ -88,7 +107,7 @@ impl Picture {
         let pixel = |i: f32, j: f32| {
             let column = (i as i64).rem_euclid(w as i64) as usize;
             let row = (j as i64).clamp(0, h as i64 - 1) as usize;
-            f32::from(self.heights[row * w + column]) / 65535.0
+            f32::from(rows[row * w + column]) / 65535.0
         };
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
         mix(
@@ -152,6 +171,16 @@ impl Alpha {
             Alpha::Picture => picture.map_or(0.0, |p| p.at(s, t)),
         };
         h.clamp(0.0, 1.0)
+    }
+}
+
+impl Alpha {
+    /// How opaque the alpha is at `s`, `t`: 0 to 1. Those that the program makes are opaque.
+    pub fn cover(self, s: f32, t: f32, picture: Option<&Picture>) -> f32 {
+        match (self, picture) {
+            (Alpha::Picture, Some(picture)) => picture.cover(s, t),
+            _ => 1.0,
+        }
     }
 }
 
@@ -267,8 +296,29 @@ mod tests {
             .expect("fits")
             .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png);
         written.expect("written");
-        assert_eq!(Picture::decode(&png).expect("read").heights, [200 * 257, 0]);
+        let read = Picture::decode(&png).expect("read");
+        assert_eq!((read.heights, read.cover), (vec![200 * 257, 0], vec![65_535, 0]));
         assert!(Picture::decode(b"not a picture").is_err());
         assert!(Picture::decode(&png[..png.len() / 2]).is_err());
+    }
+
+    #[cfg(feature = "pictures")]
+    #[test]
+    fn jpeg_and_webp_are_read_and_their_alpha_counts() {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let grey = image::ImageBuffer::<image::Luma<u8>, _>::from_pixel(16, 8, image::Luma([180]));
+        grey.write_to(&mut bytes, image::ImageFormat::Jpeg).expect("written");
+        let read = Picture::decode(bytes.get_ref()).expect("a JPEG");
+        assert_eq!((read.width, read.height, read.cover.len()), (16, 8, 0));
+        assert!(read.heights.iter().all(|h| h.abs_diff(180 * 257) < 3 * 257));
+        bytes = std::io::Cursor::new(Vec::new());
+        let rim = image::ImageBuffer::from_fn(8, 8, |x, y| {
+            let inside = (2..6).contains(&x) && (2..6).contains(&y);
+            image::Rgba([150u8, 150, 150, if inside { 255 } else { 0 }])
+        });
+        rim.write_to(&mut bytes, image::ImageFormat::WebP).expect("written");
+        let read = Picture::decode(bytes.get_ref()).expect("a WebP");
+        assert_eq!((read.heights[0], read.cover[0]), (0, 0));
+        assert_eq!((read.heights[27], read.cover[27]), (150 * 257, 65_535));
     }
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::dab::Dab;
-use super::stamp::PlacedStamp;
+use super::placed_stamp::PlacedStamp;
 use crate::PageIn;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use sculptd_geometry::portable::PortableMath;

@@ -1,8 +1,11 @@
-//! Blob: swells away from a point below the surface, so that a round drop rises.
+//! Blob: swells away from a point below the surface, so that a round drop rises; along a stroke
+//! from the line that such points make, so that a round bead rises and nothing is drawn to and fro
+//! along it.
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -10,6 +13,8 @@ use crate::brush::surface_query::SurfaceQuery;
 #[derive(Debug, Clone, Copy)]
 pub struct BlobBrush {
     heart: Vec3,
+    /// The direction of the stroke, in which nothing moves; zero where it begins.
+    along: Vec3,
 }
 
 impl Brush for BlobBrush {
@@ -24,11 +29,13 @@ impl Brush for BlobBrush {
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let plane = on.plane(dab, 0.0);
-        BlobBrush { heart: plane.point - plane.normal * (dab.radius * dab.extra(0)) }
+        let along = if dab.heading == Vec3::ZERO { Vec3::ZERO } else { dab.along() };
+        BlobBrush { heart: plane.point - plane.normal * (dab.radius * dab.extra(0)), along }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        let out = (spot.at - self.heart).normalize_or_zero();
+        let away = spot.at - self.heart;
+        let out = (away - self.along * away.dot(self.along)).normalize_or_zero();
         VertexChange::by(out * (dab.height() * spot.weight))
     }
 }

@@ -4,7 +4,8 @@
 //! The plane is that of the surface as the stroke found it (unless the stroke accumulates), so a
 //! stroke does not climb upon itself: it comes to one coat, however closely its dabs lie.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
@@ -12,8 +13,8 @@ use crate::brush::surface_query::{Plane, SurfaceQuery};
 #[derive(Debug, Clone, Copy)]
 pub struct ClayBrush {
     plane: Plane,
-    /// The share of the way to the plane that this dab goes.
-    share: f32,
+    /// How fast this dab goes to the plane.
+    pace: f32,
 }
 
 impl Brush for ClayBrush {
@@ -37,21 +38,21 @@ impl Brush for ClayBrush {
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let plane = on.plane(dab, dab.extra(0) * dab.sign * dab.strength);
-        ClayBrush { plane, share: dab.approach(dab.extra(1)) }
+        ClayBrush { plane, pace: dab.pace_of(dab.extra(1)) }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        coat(&self.plane, dab.sign, self.share, spot)
+        coat(&self.plane, dab.sign, self.pace, spot)
     }
 }
 
-/// Moves what lies under the plane (over it, if `sign` is negative) `share` of the way up to it, by
-/// its weight.
-pub(super) fn coat(plane: &Plane, sign: f32, share: f32, spot: &VertexContext<'_>) -> VertexChange {
+/// Moves what lies under the plane (over it, if `sign` is negative) towards it at this pace, by its
+/// weight.
+pub(super) fn coat(plane: &Plane, sign: f32, pace: f32, spot: &VertexContext<'_>) -> VertexChange {
     let h = plane.height(spot.p);
     if h * sign >= 0.0 {
         VertexChange::default()
     } else {
-        VertexChange::by(plane.normal * (-h * share * spot.weight))
+        VertexChange::by(plane.normal * (-h * part(pace, spot.weight)))
     }
 }

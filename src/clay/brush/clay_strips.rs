@@ -7,7 +7,8 @@
 use glam::Vec3;
 
 use super::clay::coat;
-use super::dab::{Brush, Dab, VertexChange, VertexContext, soft};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, soft};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 use crate::{PageIn, Reach};
@@ -18,8 +19,8 @@ pub struct ClayStripsBrush {
     plane: Plane,
     along: Vec3,
     across: Vec3,
-    /// The share of the way to the plane that this dab goes.
-    share: f32,
+    /// How fast this dab goes to the plane.
+    pace: f32,
     /// 1 a disc, 0 a square.
     round: f32,
 }
@@ -59,7 +60,7 @@ impl Brush for ClayStripsBrush {
             plane,
             along,
             across: along.cross(dab.normal),
-            share: dab.approach(dab.extra(2)),
+            pace: dab.pace_of(dab.extra(2)),
             round,
         }
     }
@@ -86,6 +87,6 @@ impl Brush for ClayStripsBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        coat(&self.plane, dab.sign, self.share, spot)
+        coat(&self.plane, dab.sign, self.pace, spot)
     }
 }

@@ -4,11 +4,16 @@
 //! How deep it cuts is measured on the surface as the stroke found it; what it draws together goes
 //! towards the line of the stroke by a share of its way there, so it never passes the line. The
 //! first dab has no line and only cuts.
+//!
+//! A falloff that comes to a point would leave a pit under each dab: the floor is rounded over the
+//! distance between two dabs, so that their sum along the stroke is even.
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
+use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of crease.
@@ -17,8 +22,12 @@ pub struct CreaseBrush {
     normal: Vec3,
     /// The direction of the stroke, along which nothing is drawn together.
     along: Vec3,
-    /// The share of the way to the line.
+    /// How fast it draws together.
     pinch: f32,
+    /// Squared, mesh units: added to the squared distance from the middle.
+    round: f32,
+    /// Makes up for that in the middle.
+    whole: f32,
 }
 
 impl CreaseBrush {
@@ -42,17 +51,26 @@ impl Brush for CreaseBrush {
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let rate = if dab.heading == Vec3::ZERO { 0.0 } else { dab.extra(0) * dab.strength };
+        let round = dab.settings.spacing.clamp(0.02, 0.2) * dab.radius;
+        let round = round * round;
+        let middle = dab.fade(round);
         CreaseBrush {
+            round,
+            whole: if middle > 0.0 { 1.0 / middle } else { 1.0 },
             normal: on.plane(dab, 0.0).normal,
             along: dab.along(),
-            pinch: dab.approach(rate),
+            pinch: dab.pace_of(rate),
         }
+    }
+
+    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, at: Vec3) -> f32 {
+        dab.fade((at - dab.centre).length_squared() + self.round) * self.whole
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let w = spot.weight;
         // Sharper than it is pinched: the groove's floor is a line.
         let cut = self.normal * (dab.height() * w * w);
-        VertexChange::by(cut + self.inward(dab, spot.p) * (self.pinch * w))
+        VertexChange::by(cut + self.inward(dab, spot.p) * part(self.pinch, w))
     }
 }

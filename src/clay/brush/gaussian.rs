@@ -6,8 +6,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
-use super::tool::Tool;
+use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::weights::{Weights, exp};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
@@ -69,8 +69,8 @@ impl Brush for GaussianBrush {
         VertexChange::by(self.offset * spot.weight)
     }
 
-    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(
+    fn alone<R: RunKernel>(dab: &Dab<'_>, on: &mut R) -> bool {
+        on.run_kernel(
             &Self::reach(dab),
             &GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height()),
         );

@@ -34,6 +34,8 @@ pub struct Geodesic {
     blocks: Vec<Block>,
     used: usize,
     heap: BinaryHeap<Reverse<(u32, u32, u16)>>,
+    /// Vertices of a border, and how far along it they are.
+    border: Vec<(Key, f32)>,
 }
 
 impl Geodesic {
@@ -184,6 +186,61 @@ impl Geodesic {
                     let d = d + (p - from).length();
                     if d < radius {
                         self.offer(mesh, to, d, 1);
+                    }
+                },
+            );
+        }
+    }
+
+    /// Distances over the edges from the border of the surface, on the surface as it was before the
+    /// stroke, as far as `radius`; the border is taken as far as `radius` along itself from its
+    /// vertex nearest to `centre`, which lies within `radius` of it. Each vertex's place is
+    /// `[distance of its border along the border, 0]`.
+    pub fn measure_from_border(&mut self, mesh: &Clay, centre: Vec3, radius: f32) {
+        self.begin(mesh);
+        let mut seed: Option<(f32, Key)> = None;
+        mesh.each_page_before(&Reach::Sphere { centre, radius }, |number, page| {
+            for v in (0..page.own()).filter(|v| page.is_border(*v)) {
+                let d2 = (page.point(v) - centre).length_squared();
+                if d2 < radius * radius && seed.is_none_or(|s| d2 < s.0) {
+                    seed = Some((d2, (number, v as u16)));
+                }
+            }
+        });
+        let Some((_, key)) = seed else { return };
+        let mut border = std::mem::take(&mut self.border);
+        border.clear();
+        self.offer(mesh, key, 0.0, 1);
+        while let Some((key, d)) = self.take() {
+            border.push((key, d));
+            let from = mesh.before(key.0).point(key.1 as usize);
+            ring(
+                |i| mesh.before(i),
+                key,
+                |to, p| {
+                    let d = d + (p - from).length();
+                    if d < radius && mesh.before(to.0).is_border(to.1 as usize) {
+                        self.offer(mesh, to, d, 1);
+                    }
+                },
+            );
+        }
+        self.begin(mesh);
+        for &(key, along) in &border {
+            self.offer(mesh, key, 0.0, 1);
+            self.settle(mesh, key, [along, 0.0], [Vec3::ZERO; 2]);
+        }
+        self.border = border;
+        while let Some((key, d)) = self.take() {
+            let from = mesh.before(key.0).point(key.1 as usize);
+            let Some(place) = self.place(key.0, key.1 as usize) else { continue };
+            ring(
+                |i| mesh.before(i),
+                key,
+                |to, p| {
+                    let d = d + (p - from).length();
+                    if d < radius && self.offer(mesh, to, d, 1) {
+                        self.settle(mesh, to, place, [Vec3::ZERO; 2]);
                     }
                 },
             );

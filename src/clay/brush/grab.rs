@@ -1,6 +1,7 @@
 //! Grab: what was under the brush when the pen came down follows the pen.
 
-use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, Grip};
 use crate::Reach;
 use crate::brush::surface_query::SurfaceQuery;
 

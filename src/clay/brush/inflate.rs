@@ -1,6 +1,7 @@
 //! Inflate: every vertex along its own normal, so that the form swells, or shrinks.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of inflate.

@@ -1,7 +1,8 @@
 //! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all
 //! its dabs, not their sum, each measured from where the stroke found the surface.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of layer.

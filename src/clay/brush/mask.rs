@@ -1,6 +1,7 @@
 //! Mask: protects what it paints from other brushes; the other way round it frees it.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of mask, made ready.

@@ -1,7 +1,8 @@
 //! Mask blur: softens the mask's edges to the mean of the neighbours; the other way round it
 //! sharpens them.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -38,6 +39,6 @@ impl Brush for MaskBlurBrush {
         } else {
             0.0
         };
-        VertexChange::mask(by * dab.share * spot.weight)
+        VertexChange::mask(by * part(dab.pace, spot.weight))
     }
 }

@@ -2,21 +2,24 @@
 //! nothing else knows how many there are. What a brush begins with is a value, [`Presets`]: the
 //! defaults of the code, or texts that a program brings along.
 //!
-//! * [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]:
+//! * [`brush_trait`], [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]:
 //!   what a brush may ask first.
 //! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
 //! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
 
 pub mod alpha;
 pub mod automask;
+pub mod brush_trait;
 pub(crate) mod cotangent;
 pub mod dab;
 mod drag;
 pub mod falloff;
 pub mod geodesic;
+pub mod level;
 pub mod mask_all;
 pub mod options;
 mod palm;
+pub mod placed_stamp;
 pub mod preset;
 mod push;
 pub mod restore;
@@ -30,7 +33,8 @@ pub mod weights;
 use serde::{Deserialize, Serialize};
 
 pub use alpha::{Alpha, Picture};
-pub use dab::{Brush, Dab, Grip};
+pub use brush_trait::Brush;
+pub use dab::{Dab, Grip};
 pub use drag::Drag;
 pub use falloff::Falloff;
 pub use gaussian::GaussianBrush;
@@ -133,6 +137,7 @@ brushes! {
     "multiplane-scrape" MultiplaneScrape multiplane_scrape::MultiplaneScrapeBrush,
     "sharpen" Sharpen sharpen::SharpenBrush,
     "surface-smooth" SurfaceSmooth surface_smooth::SurfaceSmoothBrush,
+    "boundary" Boundary boundary::BoundaryBrush,
 }
 
 // The variants come from a macro, which marks no default.

@@ -3,7 +3,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 use sculptd_geometry::portable::turn_about;
@@ -14,7 +15,7 @@ pub struct MultiplaneScrapeBrush {
     /// To the left and to the right of the stroke.
     planes: [Plane; 2],
     across: Vec3,
-    share: f32,
+    pace: f32,
 }
 
 impl Brush for MultiplaneScrapeBrush {
@@ -41,7 +42,7 @@ impl Brush for MultiplaneScrapeBrush {
             planes: [tilted(-half), tilted(half)],
             across: plane.normal.cross(along),
             // A stroke that has no direction yet has no ridge.
-            share: if dab.heading == Vec3::ZERO { 0.0 } else { dab.share },
+            pace: if dab.heading == Vec3::ZERO { 0.0 } else { dab.pace },
         }
     }
 
@@ -52,6 +53,6 @@ impl Brush for MultiplaneScrapeBrush {
         if h * dab.sign <= 0.0 {
             return VertexChange::default();
         }
-        VertexChange::by(plane.normal * (-h * self.share * spot.weight))
+        VertexChange::by(plane.normal * (-h * part(self.pace, spot.weight)))
     }
 }

@@ -1,6 +1,7 @@
 //! Paint: lays the brush's colour on.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of paint, made ready.
@@ -13,6 +14,6 @@ impl Brush for PaintBrush {
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        VertexChange { dye: dab.share * spot.weight, ..VertexChange::default() }
+        VertexChange { dye: part(dab.pace, spot.weight), ..VertexChange::default() }
     }
 }

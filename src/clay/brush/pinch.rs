@@ -3,7 +3,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of pinch, made ready.
@@ -20,6 +21,6 @@ impl Brush for PinchBrush {
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let d = dab.centre - spot.p;
         let flat = d - self.normal * d.dot(self.normal);
-        VertexChange::by(flat * (dab.sign * dab.share * spot.weight))
+        VertexChange::by(flat * (dab.sign * part(dab.pace, spot.weight)))
     }
 }

@@ -2,7 +2,8 @@
 //! leaves what stands further off. The plane is that of the surface as the stroke found it, so that
 //! it stays where it is while the stroke passes to and fro; the other way round it deepens.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
@@ -10,7 +11,7 @@ use crate::brush::surface_query::{Plane, SurfaceQuery};
 #[derive(Debug, Clone, Copy)]
 pub struct PlaneBrush {
     plane: Plane,
-    share: f32,
+    pace: f32,
     /// Mesh units, above and below the plane.
     above: f32,
     below: f32,
@@ -48,7 +49,7 @@ impl Brush for PlaneBrush {
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         PlaneBrush {
             plane: on.plane(dab, dab.extra(2)),
-            share: dab.share,
+            pace: dab.pace,
             above: dab.extra(0) * dab.radius,
             below: dab.extra(1) * dab.radius,
         }
@@ -61,7 +62,7 @@ impl Brush for PlaneBrush {
             return VertexChange::default();
         }
         let within = ((most - h.abs()) / (EDGE * most)).min(1.0);
-        let by = -h * dab.sign * self.share * within * spot.weight;
+        let by = -h * dab.sign * part(self.pace, within * spot.weight);
         VertexChange::by(self.plane.normal * by)
     }
 }

@@ -139,6 +139,7 @@ impl Presets {
     }
 
     /// Another brush in the same hand: its own settings, at the size and with the mirrors of `now`.
+    /// See [`Presets::recalled`]: for a brush that was never set.
     #[must_use]
     pub fn switched(&self, now: &BrushSettings, kind: BrushKind) -> BrushSettings {
         BrushSettings {
@@ -146,6 +147,26 @@ impl Presets {
             symmetry: now.symmetry,
             mirror: now.mirror,
             ..self.of(kind)
+        }
+    }
+
+    /// Another brush in the same hand, as it was set when it was last used (the one of its kind in
+    /// `kept`), or else as its preset has it; at the size and with the mirrors of `now`.
+    #[must_use]
+    pub fn recalled(
+        &self,
+        now: &BrushSettings,
+        kept: &[BrushSettings],
+        kind: BrushKind,
+    ) -> BrushSettings {
+        match kept.iter().find(|k| k.kind == kind) {
+            Some(kept) => BrushSettings {
+                radius: now.radius,
+                symmetry: now.symmetry,
+                mirror: now.mirror,
+                ..*kept
+            },
+            None => self.switched(now, kind),
         }
     }
 }

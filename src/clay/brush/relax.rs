@@ -1,7 +1,8 @@
 //! Slide-relax: evens the triangles along the surface and leaves the form: the tangential part of
 //! the way to the middle of the neighbours.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, part};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of relax, made ready.
@@ -15,6 +16,6 @@ impl Brush for RelaxBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (n, d) = (spot.normal(), spot.middle() - spot.p);
-        VertexChange::by((d - n * d.dot(n)) * (dab.share * spot.weight))
+        VertexChange::by((d - n * d.dot(n)) * part(dab.pace, spot.weight))
     }
 }

@@ -1,33 +1,6 @@
 //! Scrape: hills down to the mean plane, hollows stay; the other way round hollows up to it.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
-use super::preset::OwnNumber;
-use crate::brush::surface_query::{Plane, SurfaceQuery};
+use super::level::LevelBrush;
 
 /// One dab of scrape, made ready.
-#[derive(Debug, Clone, Copy)]
-pub struct ScrapeBrush {
-    plane: Plane,
-}
-
-impl Brush for ScrapeBrush {
-    const OWN_NUMBERS: &'static [OwnNumber] = &[OwnNumber {
-        name: "offset",
-        value: 0.0,
-        min: -1.0,
-        max: 1.0,
-        about: "how far the plane is moved along its normal, in radii",
-    }];
-
-    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
-        ScrapeBrush { plane: on.plane(dab, dab.extra(0)) }
-    }
-
-    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
-        let h = self.plane.height(spot.p);
-        if h * dab.sign <= 0.0 {
-            return VertexChange::default();
-        }
-        VertexChange::by(self.plane.normal * (-h * dab.share * spot.weight))
-    }
-}
+pub type ScrapeBrush = LevelBrush<1>;

@@ -5,7 +5,8 @@
 //! The relief is that of the surface as the stroke found it and does not feed upon itself; nothing
 //! goes further in one stroke than half of the shortest edge about it.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of sharpen.

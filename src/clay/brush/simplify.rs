@@ -4,7 +4,8 @@
 //! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]);
 //! its own file turns it on.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::relax::RelaxBrush;
 use crate::brush::surface_query::SurfaceQuery;
 

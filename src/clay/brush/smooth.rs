@@ -10,9 +10,9 @@
 use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
-use super::tool::Tool;
-use super::weights::Weights;
+use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::dab::{Dab, FASTEST, part};
+use super::weights::{Weights, ln};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
 use sculptd_geometry::simd::cotangents::MAX_COT;
@@ -27,18 +27,21 @@ pub struct SmoothBrush {
     /// What faces away from it is left alone; zero: nothing is.
     normal: Vec3,
     radius: f32,
-    lambda: f32,
+    /// How fast it goes to the weighted mean of the ring, at the centre.
+    pace: f32,
 }
 
 impl SmoothBrush {
-    /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre.
+    /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre; taken
+    /// as [`FASTEST`] at most.
     pub fn new(centre: Vec3, radius: f32, lambda: f32) -> Self {
-        SmoothBrush { centre, normal: Vec3::ZERO, radius, lambda: lambda.clamp(0.0, 1.0) }
+        let pace = -ln(1.0 - lambda.clamp(0.0, FASTEST));
+        SmoothBrush { centre, normal: Vec3::ZERO, radius, pace }
     }
 
     fn of(dab: &Dab<'_>) -> Self {
-        let lambda = dab.approach(dab.strength);
-        SmoothBrush { normal: dab.normal, ..SmoothBrush::new(dab.centre, dab.radius, lambda) }
+        let (centre, radius, pace) = (dab.centre, dab.radius, dab.pace_of(dab.strength));
+        SmoothBrush { centre, normal: dab.normal, radius, pace }
     }
 }
 
@@ -102,7 +105,7 @@ impl Kernel for SmoothBrush {
         Weights::with(|w| {
             let fade = |d2: f32| {
                 let fade = 1.0 - d2 / radius2;
-                self.lambda * (fade * fade)
+                part(self.pace, fade * fade)
             };
             out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
             let weights = w.of(page);
@@ -144,14 +147,14 @@ impl Brush for SmoothBrush {
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (sum, weights) = around(spot.page, spot.v, spot.p);
         if weights > 0.0 {
-            VertexChange::by(sum * (self.lambda * spot.weight / weights))
+            VertexChange::by(sum * (part(self.pace, spot.weight) / weights))
         } else {
             VertexChange::default()
         }
     }
 
-    fn alone(dab: &Dab<'_>, tool: &mut Tool<'_>) -> bool {
-        tool.run(&Self::reach(dab), &SmoothBrush::of(dab));
+    fn alone<R: RunKernel>(dab: &Dab<'_>, on: &mut R) -> bool {
+        on.run_kernel(&Self::reach(dab), &SmoothBrush::of(dab));
         true
     }
 }

@@ -1,6 +1,7 @@
 //! Snake hook: draws clay out after the pen, and goes with it.
 
-use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, Grip};
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of snake hook, made ready.

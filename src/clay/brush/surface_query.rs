@@ -131,6 +131,14 @@ impl SurfaceQuery<'_> {
         self.scratch.walk_mut(image).measure(self.mesh, dab.centre, dab.normal, dab.radius);
     }
 
+    /// Measures along the surface, as it was when the stroke began, how far each vertex is from the
+    /// border of the surface near the dab, no further than the radius; its place is how far that
+    /// border is along the border from the point of it that is nearest to the dab.
+    pub fn measure_from_border(&mut self, dab: &Dab<'_>) {
+        let image = self.image;
+        self.scratch.walk_mut(image).measure_from_border(self.mesh, dab.centre, dab.radius);
+    }
+
     /// Carries the stroke's own coordinates on to this dab. Answers which samples are new: the
     /// number of the newest, or 0.
     pub fn unroll(&mut self, dab: &Dab<'_>) -> u32 {

@@ -5,7 +5,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
@@ -75,8 +76,10 @@ impl Brush for TextureBrush {
         let width = dab.radius * dab.extra(2);
         let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / width);
         let t = if (0.0..=1.0).contains(&t) { t } else { t - t.floor() };
-        let alpha = dab.settings.alpha.at(s, t, spot.scratch.picture());
-        let h = dab.whole_height() * (alpha - dab.extra(1)) * dab.fade(far * far) * spot.weight;
+        let (alpha, picture) = (dab.settings.alpha, spot.scratch.picture());
+        // Where the picture is transparent the surface stays, whatever the floor.
+        let relief = alpha.at(s, t, picture) - dab.extra(1) * alpha.cover(s, t, picture);
+        let h = dab.whole_height() * relief * dab.fade(far * far) * spot.weight;
         VertexChange::held(spot.page.normal_before(spot.v) * h)
     }
 }

@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, Grip, IMAGES, VertexChange, VertexContext};
+use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::dab::{Dab, Grip, IMAGES};
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
 use crate::brush::automask::AutoMasking;
@@ -110,6 +111,12 @@ impl Tool<'_> {
             self.run(&reach, &BrushKernel { members: &members[..n], scratch: &scratch, limit });
             *self.scratch = scratch;
         }
+    }
+}
+
+impl RunKernel for Tool<'_> {
+    fn run_kernel<K: Kernel>(&mut self, reach: &Reach, kernel: &K) {
+        self.run(reach, kernel);
     }
 }
 

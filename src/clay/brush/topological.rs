@@ -3,7 +3,8 @@
 
 use glam::Vec3;
 
-use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, Grip};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 

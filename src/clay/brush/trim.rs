@@ -1,8 +1,10 @@
 //! Trim: cuts off what stands over a plane set a little below the surface, as a knife does:
 //! whatever is deep within the brush comes to lie on the plane at once. The other way round it
-//! fills to a plane set over the surface.
+//! fills to a plane set over the surface. The surface is that which the stroke found (unless the
+//! stroke accumulates), so a stroke does not dig itself in.
 
-use super::dab::{Brush, Dab, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::Dab;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
@@ -13,6 +15,7 @@ pub struct TrimBrush {
 }
 
 impl Brush for TrimBrush {
+    const FOUND: bool = true;
     const OWN_NUMBERS: &'static [OwnNumber] = &[OwnNumber {
         name: "depth",
         value: 0.1,

@@ -1,7 +1,8 @@
 //! Twist: turns what was under the brush about the surface normal; to the right a whole radius is
 //! one radian.
 
-use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
+use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::dab::{Dab, Grip};
 use crate::Reach;
 use crate::brush::surface_query::SurfaceQuery;
 use sculptd_geometry::portable::turn_about;

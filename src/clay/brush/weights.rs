@@ -4,7 +4,6 @@
 
 use glam::Vec3;
 
-use super::dab::facing;
 use crate::{PAGE_VERTICES, PageIn};
 
 /// Vertices looked at together.
@@ -74,6 +73,12 @@ impl Weights {
     }
 }
 
+/// See [`super::Dab::facing`]; `c` is the cosine between the normals.
+#[inline(always)]
+pub(super) fn facing(c: f32) -> f32 {
+    ((c + 0.5) * 2.0).max(0.0).min(1.0)
+}
+
 /// `e^x` for `x <= 0`, with an error below 2e-7 of the result; 0 below -87. No table, no branch, no
 /// fused multiply-add: it runs eight at a time and gives the same bits one at a time.
 ///
@@ -97,9 +102,29 @@ pub fn exp(x: f32) -> f32 {
     if x < -87.0 { 0.0 } else { p * scale }
 }
 
+/// The natural logarithm of `x` in 0.001 to 1, by Halley's iteration on [`exp`], to the precision
+/// of that.
+pub fn ln(x: f32) -> f32 {
+    let mut y = x - 1.0;
+    for _ in 0..8 {
+        let e = exp(y);
+        y = (y + 2.0 * (x - e) / (x + e)).min(0.0);
+    }
+    y
+}
+
 #[cfg(test)]
 mod tests {
-    use super::exp;
+    use super::{exp, ln};
+
+    #[test]
+    fn ln_undoes_exp() {
+        assert_eq!(ln(1.0), 0.0);
+        for i in 1..=1000 {
+            let x = i as f32 / 1000.0;
+            assert!((exp(ln(x)) - x).abs() < 1e-6 * x.max(0.1), "{x}: {}", ln(x));
+        }
+    }
 
     #[test]
     fn exp_is_close_to_the_true_one() {

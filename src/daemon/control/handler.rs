@@ -81,7 +81,7 @@ fn merged_brush(
     let other = named.kind.as_deref().map(str::parse::<BrushKind>).transpose();
     let other = other.map_err(RpcError::bad_params)?;
     let base = match other.filter(|k| *k != shown.brush.kind) {
-        Some(kind) => presets.switched(&shown.brush, kind),
+        Some(kind) => presets.recalled(&shown.brush, &shown.kept_brushes, kind),
         None => shown.brush,
     };
     let brush: brush::BrushSettings = merge(&base, named)?;
@@ -233,6 +233,11 @@ impl Handler for Host {
         let shown = self.published.load_full();
         let brush = params.brush.as_ref().map(|b| merged_brush(&self.presets, &shown, b));
         let brush = brush.transpose()?;
+        // With the settings that the other brush had, to be put back after the stroke.
+        let brush = brush.map(|b| {
+            let kept = || self.presets.recalled(&shown.brush, &shown.kept_brushes, b.kind);
+            (b, (b.kind != shown.brush.kind).then(kept))
+        });
         let link = self.link();
         match pen.try_lock() {
             Ok(mut pen) => pen.draw(link, &params, brush),

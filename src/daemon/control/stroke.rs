@@ -39,7 +39,8 @@ impl VirtualPen {
     }
 
     /// Makes the stroke in the time that its points say, and waits until the loop has taken it.
-    /// `brush`: the brush to make it with, instead of the one in hand.
+    /// `brush`: the brush to make it with, instead of the one in hand, and what that brush is set to
+    /// again afterwards where it is of another kind.
     ///
     /// # Errors
     /// A point in space that is not seen, and a loop that takes nothing.
@@ -47,17 +48,20 @@ impl VirtualPen {
         &mut self,
         link: LoopLink<'_>,
         stroke: &StrokeParams,
-        brush: Option<BrushSettings>,
+        brush: Option<(BrushSettings, Option<BrushSettings>)>,
     ) -> Result<StrokeReply, RpcError> {
         let shown = link.published.load_full();
         let points = in_view(&shown, stroke)?;
-        if let Some(brush) = brush {
+        if let Some((brush, _)) = brush {
             link.send(Command::Brush(brush))?;
         }
         let drawn = self.send_samples(link, &points, shown.camera.aspect);
-        if brush.is_some() {
-            // Whatever came of it: the brush in hand is the person's. A stroke that follows finds
-            // it in place.
+        if let Some((_, kept)) = brush {
+            // Whatever came of it: the brush in hand is the person's, and so is what the other
+            // brush was set to. A stroke that follows finds it in place.
+            if let Some(kept) = kept {
+                link.send(Command::Brush(kept))?;
+            }
             link.send(Command::Brush(shown.brush))?;
             self.await_tick(link)?;
         }

@@ -104,6 +104,7 @@ struct CoreRef<'a> {
     place: Option<Similarity>,
     lineages: u32,
     desktop: &'a DesktopLayout,
+    kept_brushes: &'a [BrushSettings],
 }
 
 #[derive(Deserialize)]
@@ -120,6 +121,8 @@ struct Core {
     lineages: u32,
     #[serde(default)]
     desktop: DesktopLayout,
+    #[serde(default)]
+    kept_brushes: Vec<BrushSettings>,
 }
 
 impl World {
@@ -207,6 +210,7 @@ impl World {
             place: self.thing.as_ref().map(|t| t.place),
             lineages: self.lineages,
             desktop: &self.desktop,
+            kept_brushes: &self.kept_brushes,
         };
         Some(Saved {
             tick: self.tick,
@@ -247,6 +251,7 @@ impl World {
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
         world.desktop = core.desktop;
+        world.kept_brushes = Arc::new(core.kept_brushes);
         Ok(world)
     }
 }

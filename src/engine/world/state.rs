@@ -1,5 +1,7 @@
 //! What others may see of the world, and what goes into it besides samples and commands.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::{StepReport, World};
@@ -8,7 +10,7 @@ use crate::command::{Command, Jump};
 use crate::hand::{HandTools, HeldObject, Pose, Volume};
 use crate::payload::{Payload, PayloadId};
 use crate::stroke::{CurveStroke, PenPoint};
-use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::brush::{BrushKind, BrushSettings};
 use sculptd_clay::{Clay, GarbageSink, Grafted};
 use sculptd_devices::{DeviceId, Hands};
 
@@ -56,6 +58,25 @@ impl World {
     /// The brush and its settings.
     pub fn brush(&self) -> &BrushSettings {
         &self.brush
+    }
+
+    /// What each brush was set to when it was last exchanged for another; the brush in use is not
+    /// among them, or as it was when it was last put away.
+    pub fn kept_brushes(&self) -> &Arc<Vec<BrushSettings>> {
+        &self.kept_brushes
+    }
+
+    /// Keeps the settings of the brush in use, if it is to be exchanged for one of kind `next`.
+    pub(super) fn keep_brush(&mut self, next: BrushKind) {
+        if self.brush.kind == next {
+            return;
+        }
+        let now = self.brush;
+        let kept = Arc::make_mut(&mut self.kept_brushes);
+        match kept.iter_mut().find(|k| k.kind == now.kind) {
+            Some(old) => *old = now,
+            None => kept.push(now),
+        }
     }
 
     /// The brush's radius in mesh units at full pressure.

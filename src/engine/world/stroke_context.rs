@@ -269,7 +269,7 @@ impl StrokeContext<'_> {
             radius,
             strength,
             span,
-            share: 0.0,
+            pace: 0.0,
             heading: self.stroke.heading,
             pass: 0,
             sign: if s.negative != at.inverted { -1.0 } else { 1.0 },
@@ -283,7 +283,7 @@ impl StrokeContext<'_> {
             travelled: self.stroke.travelled,
             stroke: self.stroke.number,
         };
-        let first = Dab { share: first.approach(strength), ..first };
+        let first = Dab { pace: first.pace_of(strength), ..first };
         let mut dabs = [first; IMAGES];
         let mut count = 1;
         for (i, image) in Images::of(s, self.middle, self.extent).each().iter().enumerate().skip(1)

@@ -107,3 +107,53 @@ fn what_is_replaced_and_what_no_command_takes_goes_to_the_sink() {
     world.deliver(&mut Command::Undo, Payload::Pages(Vec::new()));
     assert_eq!(payloads(&kept.0.lock().expect("one thread")), 2);
 }
+
+#[test]
+fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
+    use sculptd_clay::brush::{BrushKind, Presets};
+    let plain = shapes::sphere_of_about(400);
+    let presets = Presets::default();
+    let mut world = world(&plain);
+    let mut set: Vec<BrushSettings> = BrushKind::ALL.iter().map(|k| presets.of(*k)).collect();
+    let mut seed = 7u64;
+    let mut dice = |most: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (seed >> 33) as usize % most
+    };
+    // What a person sees is at the size of the brush before, so the sizes stay the same here.
+    let radius = world.brush().radius;
+    set.iter_mut().for_each(|b| b.radius = radius);
+    for tick in 1..=100u64 {
+        let kind = BrushKind::ALL[dice(BrushKind::ALL.len())];
+        let recalled = presets.recalled(world.brush(), world.kept_brushes(), kind);
+        let recalled = if kind == world.brush().kind { *world.brush() } else { recalled };
+        assert_eq!(recalled, set[kind as usize], "{kind} at switch {tick}");
+        // Each time something else is set.
+        let mut now = recalled;
+        now.strength = dice(1000) as f32 / 1000.0;
+        now.pressure_strength.gamma = 0.1 + dice(900) as f32 / 100.0;
+        now.steady = dice(100) as f32 / 100.0;
+        now.stamp.turn_degrees = dice(180) as f32;
+        now.path.average = dice(64) as u8;
+        set[kind as usize] = now;
+        world.step(tick, &[], &[Command::Brush(now)]);
+        if tick % 20 == 0 {
+            let saved = world.save().expect("at rest");
+            let again = World::restore(
+                clay(&plain),
+                saved,
+                Workers::new(1),
+                WorldOptions {
+                    dab_budget: 1 << 20,
+                    undo_bytes: 1 << 30,
+                    hands: HandSettings::default(),
+                },
+            );
+            world = again.expect("its own bytes");
+        }
+    }
+    for kind in BrushKind::ALL.iter().filter(|k| **k != world.brush().kind) {
+        let recalled = presets.recalled(world.brush(), world.kept_brushes(), *kind);
+        assert_eq!(recalled, set[*kind as usize], "{kind}");
+    }
+}

@@ -69,7 +69,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
                 if response.on_hover_text(view.presets.get(kind).about()).clicked()
                     && brush.kind != kind
                 {
-                    brush = view.presets.switched(&brush, kind);
+                    brush = view.presets.recalled(&brush, &view.state.kept_brushes, kind);
                 }
             }
         });

@@ -151,7 +151,7 @@ impl WindowState {
             let brush = state.brush;
             let mut now = brush;
             if draft.is_empty() {
-                now = lent(brush, self.mods, &wiring.presets);
+                now = lent(brush, self.mods, &wiring.presets, &state.kept_brushes);
             }
             if now != brush {
                 self.pointer.lent = Some(brush);

@@ -64,10 +64,15 @@ impl Speed {
 
 /// The brush for one stroke with these keys down: Shift evens, Ctrl and Alt turn it round.
 /// Slide-relax evens by itself.
-pub(super) fn lent(brush: BrushSettings, mods: ModifiersState, presets: &Presets) -> BrushSettings {
+pub(super) fn lent(
+    brush: BrushSettings,
+    mods: ModifiersState,
+    presets: &Presets,
+    kept: &[BrushSettings],
+) -> BrushSettings {
     let mut now = match (mods.shift_key(), brush.kind) {
         (true, BrushKind::SlideRelax) => BrushSettings { negative: !brush.negative, ..brush },
-        (true, _) => presets.switched(&brush, BrushKind::Smooth),
+        (true, _) => presets.recalled(&brush, kept, BrushKind::Smooth),
         (false, _) => brush,
     };
     now.negative ^= mods.control_key() || mods.alt_key();
@@ -82,7 +87,7 @@ mod tests {
     fn shift_evens_and_slide_relax_relaxes() {
         let presets = Presets::default();
         let of = |kind| presets.of(kind);
-        let lent = |brush, mods| lent(brush, mods, &presets);
+        let lent = |brush, mods| lent(brush, mods, &presets, &[]);
         assert_eq!(lent(of(BrushKind::Draw), ModifiersState::SHIFT).kind, BrushKind::Smooth);
         let relaxing = lent(of(BrushKind::SlideRelax), ModifiersState::SHIFT);
         assert!(relaxing.kind == BrushKind::SlideRelax && relaxing.negative);

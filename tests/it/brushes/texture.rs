@@ -1,9 +1,12 @@
 //! The coordinates of a stroke against the exact ones, and the relief that they carry.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 use sculptd_clay::Clay;
 use sculptd_clay::brush::stroke_param::{StrokeParameters, StrokeSample};
-use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, PressureCurve};
+use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, Picture, PressureCurve};
+use sculptd_engine::command::Command;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
@@ -215,5 +218,43 @@ fn an_alpha_becomes_relief_of_its_height_and_carves_the_other_way_round() {
             "{worst} of {}",
             0.2 * radius
         );
+    }
+}
+
+#[test]
+fn a_picture_with_a_transparent_rim_leaves_no_rim_in_the_clay() {
+    // White and opaque in the middle, white and transparent about it.
+    let side = 64u32;
+    let inside = |k: u32| (16..48).contains(&(k % side)) && (16..48).contains(&(k / side));
+    let cover: Vec<u16> = (0..side * side).map(|k| if inside(k) { u16::MAX } else { 0 }).collect();
+    let picture = Picture { width: side, height: side, heights: cover.clone(), cover };
+    let flat = sheet(200, 200, 0.3, |x, y| Vec3::new(x * 2.0 - 1.0, y * 2.0 - 1.0, 0.0));
+    let firm = PressureCurve { at_zero: 1.0, gamma: 1.0 };
+    for floor in [0.0, 0.3] {
+        let mut brush = BrushSettings {
+            radius: 0.15,
+            strength: 0.2,
+            alpha: Alpha::Picture,
+            pressure_strength: firm,
+            ..sculptd::presets().of(BrushKind::Texture)
+        };
+        brush.extra[1] = floor;
+        let mut studio = Studio::new(&flat, brush, 2);
+        studio.tell(Command::Picture(Arc::new(picture.clone())));
+        let points: Vec<_> = (0..=20)
+            .map(|i| (studio.view(Vec3::new(-0.6 + 0.06 * i as f32, 0.0, 0.0)), 1.0))
+            .collect();
+        studio.stroke(&points);
+        let radius = studio.world.brush_radius();
+        let end = studio.positions();
+        // A pixel beyond the middle half nothing has moved; within it the relief stands.
+        let beyond = 0.5 + 2.0 / side as f32;
+        let rim = end.iter().filter(|p| p.y.abs() > beyond * radius);
+        let rim = rim.map(|p| p.z.abs()).fold(0.0, f32::max);
+        let top = end.iter().map(|p| p.z).fold(0.0, f32::max);
+        println!("floor {floor}: {top} high, {rim} at the rim");
+        assert!(top > 0.9 * (1.0 - floor) * 0.2 * radius, "{top}");
+        assert!(rim < 1e-3 * top, "{rim} of {top}");
+        assert!(end.iter().all(|p| p.z > -1e-3 * top), "pressed in where it is transparent");
     }
 }
