@@ -130,8 +130,9 @@ impl WindowState {
         if busy || self.pointer.drag != Drag::None || self.tablets.in_range.is_empty() {
             return;
         }
-        let brush = self.pointer.lent.unwrap_or(wiring.published.load().brush);
-        let now = lent(brush, self.mods, &wiring.presets);
+        let state = wiring.published.load();
+        let brush = self.pointer.lent.unwrap_or(state.brush);
+        let now = lent(brush, self.mods, &wiring.presets, &state.kept_brushes);
         let before = self.pointer.lent;
         self.pointer.lent = (now != brush).then_some(brush);
         if self.pointer.lent != before {
