@@ -6,17 +6,20 @@
 
 use std::fmt::Write as _;
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use hyper::{Request, StatusCode};
 
 use super::Published;
 use crate::http::answer::permitted;
+use crate::http::bounds::ConnectionTable;
 use crate::http::{Answer, HttpServer};
 use crate::systemd::Watched;
 
-/// The page, from what the loop published and how the journal stands.
-pub fn page(p: &Published, journal: Option<&super::session::Health>) -> String {
+/// The page, from what the loop published, how the journal stands, and how many connections ask
+/// for it.
+pub fn page(p: &Published, journal: Option<&super::session::Health>, connections: usize) -> String {
     let f = &p.figures;
     let mut out = String::with_capacity(2048);
     let mut put = |name: &str, kind: &str, help: &str, value: f64| {
@@ -61,6 +64,8 @@ pub fn page(p: &Published, journal: Option<&super::session::Health>) -> String {
     put("vertices", "gauge", "Vertices of the mesh.", p.mesh.vertex_count() as f64);
     put("triangles", "gauge", "Triangles of the mesh.", p.mesh.triangle_count() as f64);
     put("undo_steps", "gauge", "Steps that can be taken back.", p.undo_steps as f64);
+    let text = "Connections to this page, this one counted in; at most 256.";
+    put("metrics_connections", "gauge", text, connections as f64);
     if let Some(h) = journal {
         put(
             "journal_tick",
@@ -103,7 +108,9 @@ impl Metrics {
     /// # Errors
     /// What the system says of the address.
     pub fn start(at: SocketAddr, watched: Watched) -> std::io::Result<Self> {
-        let answer = |at| move |request: &Request<()>| answer(request, at, &watched);
+        let answer = |at, table: Arc<ConnectionTable>| {
+            move |request: &Request<()>| answer(request, at, &watched, table.count())
+        };
         HttpServer::start(at, "sculptd-metrics", answer).map(Metrics)
     }
 
@@ -113,11 +120,11 @@ impl Metrics {
     }
 }
 
-fn answer(request: &Request<()>, at: SocketAddr, watched: &Watched) -> Answer {
+fn answer(request: &Request<()>, at: SocketAddr, watched: &Watched, connections: usize) -> Answer {
     match permitted(request, at, "") {
         Ok("/metrics") => Answer::text(
             "text/plain; version=0.0.4; charset=utf-8",
-            page(&watched.published.load(), watched.journal.as_ref()),
+            page(&watched.published.load(), watched.journal.as_ref(), connections),
         ),
         Ok(_) => Answer::from((StatusCode::NOT_FOUND, "the figures are at /metrics")),
         Err(refusal) => refusal.into(),

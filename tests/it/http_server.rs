@@ -47,7 +47,7 @@ fn get(at: SocketAddr, path: &str) -> Vec<u8> {
 #[test]
 fn a_quick_reader_is_served_within_a_second_beside_a_hundred_slow_ones() {
     more_descriptors();
-    let (_dir, share, path, content) = share_of(2 << 20);
+    let (_dir, share, path, content) = share_of(1 << 20);
     let at = share.address();
     let request = format!("GET {path} HTTP/1.1\r\nHost: {at}\r\n\r\n");
     let mut slow: Vec<TcpStream> = (0..100).map(|_| send(at, request.as_bytes())).collect();
@@ -58,27 +58,33 @@ fn a_quick_reader_is_served_within_a_second_beside_a_hundred_slow_ones() {
     let clock = Clock::monotonic();
     let reply = get(at, &path);
     let seconds = clock.now_us() as f64 * 1e-6;
-    println!("2 MiB beside 100 slow readers: {seconds:.3} s");
+    println!("1 MiB beside 100 slow readers: {seconds:.3} s");
     assert!(reply.ends_with(&content) && reply.starts_with(b"HTTP/1.1 200 OK\r\n"));
     assert!(seconds < 1.0, "{seconds} s");
-    assert_eq!(share.connections(), 100, "the slow readers are still there");
-    drop(slow);
-    until("all places are free", || share.connections() == 0);
+    // The slow readers are still there, and get the rest when they want it.
+    for mut reader in slow.into_iter().take(8) {
+        let mut rest = Vec::new();
+        reader.read_to_end(&mut rest).expect("read");
+        assert!(rest.ends_with(&content), "a slow reader was cut off");
+    }
 }
 
 #[test]
 fn three_hundred_slow_readers_take_no_more_than_the_places_there_are() {
     more_descriptors();
-    let (_dir, share, path, content) = share_of(4 << 20);
+    // Longer than what the kernel holds of it for a reader who does not read.
+    let (_dir, share, path, content) = share_of(1 << 20);
     let at = share.address();
     let request = format!("GET {path} HTTP/1.1\r\nHost: {at}\r\n\r\n");
     let slow: Vec<TcpStream> = (0..300).map(|_| send(at, request.as_bytes())).collect();
     let clock = Clock::monotonic();
     assert!(get(at, &path).ends_with(&content));
     let seconds = clock.now_us() as f64 * 1e-6;
-    println!("4 MiB beside 300 slow readers: {seconds:.3} s");
-    assert!(share.connections() <= CONNECTIONS && seconds < 1.0, "{seconds} s");
-    drop(slow);
+    let whole = slow.into_iter().map(answer).filter(|a| a.ends_with(&content)).count();
+    println!("1 MiB beside 300 slow readers: {seconds:.3} s; {whole} of them kept their place");
+    assert!(whole <= CONNECTIONS && seconds < 1.0, "{whole}, {seconds} s");
+    // Those that are read last may have stood still for too long by then.
+    assert!(whole > 0, "nobody kept a place");
 }
 
 #[test]
@@ -156,5 +162,4 @@ fn every_kind_of_request_gets_an_answer_or_the_end_in_time() {
     }
     assert!(clock.now_us() as u128 >= HEAD_TIME.as_micros() / 2);
     let _ = trickle.shutdown(Shutdown::Both);
-    until("all places are free", || share.connections() == 0);
 }

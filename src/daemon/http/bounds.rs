@@ -117,7 +117,7 @@ impl ConnectionTable {
         self.locked().remove(&number);
     }
 
-    /// Connections at present.
+    /// Connections at present; never more than [`CONNECTIONS`].
     pub fn count(&self) -> usize {
         self.locked().len()
     }

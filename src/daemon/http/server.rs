@@ -37,21 +37,21 @@ pub type Handler = dyn Fn(&Request<()>) -> Answer + Send + Sync;
 #[derive(Debug)]
 pub struct HttpServer {
     at: SocketAddr,
-    places: Arc<ConnectionTable>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl HttpServer {
     /// Listens on `at` and answers by `handler`, on a thread of the name `thread`. The handler is
-    /// made from the address, whose port is the one that was found free if 0 was asked for.
+    /// made from the address, whose port is the one that was found free if 0 was asked for, and the
+    /// table of the connections.
     ///
     /// # Errors
     /// What the system says of the address or the thread.
     pub fn start<H>(
         at: SocketAddr,
         thread: &str,
-        handler: impl FnOnce(SocketAddr) -> H,
+        handler: impl FnOnce(SocketAddr, Arc<ConnectionTable>) -> H,
     ) -> std::io::Result<Self>
     where
         H: Fn(&Request<()>) -> Answer + Send + Sync + 'static,
@@ -62,32 +62,26 @@ impl HttpServer {
         sockopt::set_socket_send_buffer_size(&listener, SOCKET_BUFFER)?;
         sockopt::set_socket_recv_buffer_size(&listener, HEAD_BYTES * 2)?;
         let at = listener.local_addr()?;
-        let handler: Arc<Handler> = Arc::new(handler(at));
+        let places = Arc::new(ConnectionTable::default());
+        let handler: Arc<Handler> = Arc::new(handler(at, places.clone()));
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_io().enable_time().build()?;
         let (stop, stopped) = oneshot::channel();
-        let places = Arc::new(ConnectionTable::default());
-        let entered = places.clone();
         let thread = std::thread::Builder::new().name(thread.into()).spawn(move || {
             runtime.block_on(async {
                 match tokio::net::TcpListener::from_std(listener) {
-                    Ok(listener) => accept(&listener, &entered, &handler, stopped).await,
+                    Ok(listener) => accept(&listener, &places, &handler, stopped).await,
                     Err(e) => tracing::error!("{at}: {e}"),
                 }
             });
             // Dropping the runtime ends every connection.
         })?;
-        Ok(HttpServer { at, places, stop: Some(stop), thread: Some(thread) })
+        Ok(HttpServer { at, stop: Some(stop), thread: Some(thread) })
     }
 
     /// Where it listens.
     pub fn address(&self) -> SocketAddr {
         self.at
-    }
-
-    /// Connections at present; never more than [`super::bounds::CONNECTIONS`].
-    pub fn connections(&self) -> usize {
-        self.places.count()
     }
 }
 

@@ -91,7 +91,7 @@ impl Share {
     ) -> std::io::Result<Share> {
         let links: Arc<Mutex<BTreeMap<String, ServedFile>>> = Arc::default();
         let (known, good, time) = (name.to_owned(), links.clone(), clock.clone());
-        let server = HttpServer::start(at, "sculptd-share", |at| {
+        let server = HttpServer::start(at, "sculptd-share", |at, _| {
             // Without a name the address that is listened on is the only one.
             let known = if known.is_empty() { at.ip().to_string() } else { known };
             move |request: &Request<()>| {
@@ -106,11 +106,6 @@ impl Share {
     /// Where it listens.
     pub fn address(&self) -> SocketAddr {
         self.server.address()
-    }
-
-    /// Connections at present.
-    pub fn connections(&self) -> usize {
-        self.server.connections()
     }
 
     /// A link to a file, good from now on.
