@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use sculptd_clay::Ray;
 use sculptd_clay::brush::stamp::Lens;
+use sculptd_geometry::portable::PortableMath;
 
 /// A turntable camera. Right-handed world, +y up.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -51,8 +52,8 @@ impl Default for Camera {
 impl Camera {
     /// Backward: from the target to the eye, unit length.
     pub fn backward(&self) -> Vec3 {
-        let (sy, cy) = self.yaw.sin_cos();
-        let (sp, cp) = self.pitch.sin_cos();
+        let (sy, cy) = self.yaw.portable_sin_cos();
+        let (sp, cp) = self.pitch.portable_sin_cos();
         Vec3::new(sy * cp, sp, cy * cp)
     }
 
@@ -78,7 +79,7 @@ impl Camera {
     /// Half the view's height at `depth` before the eye, mesh units.
     fn half_height(&self, depth: f32) -> f32 {
         let at = if self.orthographic { self.distance } else { depth };
-        at * (self.fov_y * 0.5).tan()
+        at * (self.fov_y * 0.5).portable_tan()
     }
 
     /// World length of a step of one whole view height at `depth` before the eye.
@@ -120,7 +121,7 @@ impl Camera {
         let (right, up) = self.axes();
         let back = self.backward();
         let half = (hi - lo) * 0.5;
-        let tan = (self.fov_y * 0.5).tan();
+        let tan = (self.fov_y * 0.5).portable_tan();
         let mut distance = half.length().max(1e-6) * 0.1;
         for corner in 0..8 {
             let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };

@@ -12,7 +12,7 @@ mod stroke_context;
 
 use std::sync::Arc;
 
-use glam::{DVec3, Quat, Vec3};
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SideData};
@@ -27,6 +27,7 @@ use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, Reach, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
+use sculptd_geometry::portable::turn_about;
 use sculptd_geometry::{PolyMesh, TriMesh, shapes};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
@@ -362,7 +363,7 @@ impl World {
             return;
         }
         let scale = self.extent / 3.0 / size;
-        let turn = Quat::from_rotation_y(self.camera.yaw);
+        let turn = turn_about(Vec3::Y, self.camera.yaw);
         let at = self.middle + turn * Vec3::new(self.extent * 1.2, self.extent * 0.4, 0.0);
         let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
         if place.is_sane() {

@@ -53,6 +53,7 @@ pub mod march;
 pub mod measure;
 pub mod offset;
 pub mod picture;
+pub mod portable;
 pub mod projection;
 pub mod remesh;
 pub mod repair;

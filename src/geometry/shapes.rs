@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec3, Vec3};
 
 use super::{PolyMesh, TriMesh};
+use crate::portable::PortableMath;
 
 fn poly(positions: Vec<DVec3>, faces: impl IntoIterator<Item = impl AsRef<[u32]>>) -> PolyMesh {
     let mut mesh = PolyMesh::new();
@@ -60,7 +61,7 @@ fn lathe(rings: &[(f64, f64)], around: u32) -> PolyMesh {
         start.push((positions.len() as u32, r > 0.0));
         if r > 0.0 {
             positions.extend((0..n).map(|i| {
-                let (s, c) = (TAU * i as f64 / n as f64).sin_cos();
+                let (s, c) = (TAU * i as f64 / n as f64).portable_sin_cos();
                 DVec3::new(r * c, r * s, z)
             }));
         } else {
@@ -105,7 +106,7 @@ pub fn uv_sphere(radius: f64, rings: u32, around: u32) -> PolyMesh {
     let rings = rings.max(2);
     let profile: Vec<(f64, f64)> = (0..=rings)
         .map(|i| {
-            let (s, c) = (PI * i as f64 / rings as f64).sin_cos();
+            let (s, c) = (PI * i as f64 / rings as f64).portable_sin_cos();
             (if i == 0 || i == rings { 0.0 } else { radius * s }, -radius * c)
         })
         .collect();
@@ -117,9 +118,9 @@ pub fn torus(major: f64, minor: f64, around: u32, across: u32) -> PolyMesh {
     let (n, m) = (around.max(3), across.max(3));
     let mut positions = Vec::with_capacity((n * m) as usize);
     for i in 0..n {
-        let (si, ci) = (TAU * i as f64 / n as f64).sin_cos();
+        let (si, ci) = (TAU * i as f64 / n as f64).portable_sin_cos();
         for j in 0..m {
-            let (sj, cj) = (TAU * j as f64 / m as f64).sin_cos();
+            let (sj, cj) = (TAU * j as f64 / m as f64).portable_sin_cos();
             let r = major + minor * cj;
             positions.push(DVec3::new(r * ci, r * si, minor * sj));
         }

@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::PolyMesh;
 use super::edges::EdgeTable;
 use crate::job::{Cancelled, Job};
+use crate::portable::PortableMath;
 
 /// More corners than this are not made: 2^31.
 pub const MAX_CORNERS: u64 = 1 << 31;
@@ -104,7 +105,7 @@ enum VertexRule {
 
 /// Loop's weight of each of `k` neighbours.
 fn beta(k: f64) -> f64 {
-    let c = 0.375 + (std::f64::consts::TAU / k).cos() / 4.0;
+    let c = 0.375 + (std::f64::consts::TAU / k).portable_cos() / 4.0;
     (0.625 - c * c) / k
 }
 

@@ -6,6 +6,7 @@
 
 use std::f32::consts::{PI, TAU};
 
+use sculptd_geometry::portable::PortableMath;
 use serde::{Deserialize, Serialize};
 
 /// A picture of heights that the program makes, or the one that was loaded.
@@ -123,9 +124,10 @@ impl Alpha {
             Alpha::Rope => {
                 // Each strand is a half round that goes from one side to the other in half a turn.
                 let strand = |phase: f32| {
-                    let c = 0.5 + 0.22 * ((s + phase) * TAU).cos();
+                    let c = 0.5 + 0.22 * ((s + phase) * TAU).portable_cos();
                     let d = (t - c) / 0.2;
-                    (1.0 - d * d).max(0.0).sqrt() * (0.75 + 0.25 * ((s + phase) * TAU).sin())
+                    (1.0 - d * d).max(0.0).sqrt()
+                        * (0.75 + 0.25 * ((s + phase) * TAU).portable_sin())
                 };
                 strand(0.0).max(strand(0.5))
             }
@@ -135,7 +137,7 @@ impl Alpha {
                 let seam = 0.25 * (1.0 - (y / 0.06) * (y / 0.06)).max(0.0);
                 (1.0 - a * a - b * b * b * b).max(0.0).sqrt().max(seam)
             }
-            Alpha::Waves => 0.5 - 0.5 * (s * TAU * 2.0).cos(),
+            Alpha::Waves => 0.5 - 0.5 * (s * TAU * 2.0).portable_cos(),
             Alpha::Bricks => {
                 let row = (t * 4.0).floor();
                 let x = (s * 2.0 + row * 0.5).rem_euclid(1.0);
@@ -215,7 +217,7 @@ fn cracks(s: f32, t: f32) -> f32 {
         }
     }
     let gap = ((second - first) / 0.18).clamp(0.0, 1.0);
-    0.5 - 0.5 * (gap * PI).cos()
+    0.5 - 0.5 * (gap * PI).portable_cos()
 }
 
 #[cfg(test)]

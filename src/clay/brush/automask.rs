@@ -6,6 +6,7 @@ use super::dab::Dab;
 use super::stamp::PlacedStamp;
 use crate::PageIn;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
+use sculptd_geometry::portable::PortableMath;
 
 /// Faces fade out over this much of the cosine to the eye.
 const FRONT_FADE: f32 = 0.2;
@@ -59,7 +60,7 @@ impl AutoMasking {
             return 0.0;
         }
         if let Some((normal, most)) = self.normal {
-            let angle = n.dot(normal).clamp(-1.0, 1.0).acos();
+            let angle = n.dot(normal).clamp(-1.0, 1.0).portable_acos();
             w *= ((most - angle) / (most / 3.0)).clamp(0.0, 1.0);
         }
         if self.cavity != 0.0 {

@@ -11,6 +11,7 @@ use super::preset::OwnNumber;
 use super::stamp::Lens;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{PageIn, Reach};
+use sculptd_geometry::portable::PortableMath;
 
 /// Images of a dab at most, itself counted.
 pub const IMAGES: usize = 32;
@@ -92,7 +93,11 @@ impl Dab<'_> {
     /// The share of the way to its goal that a brush goes with this dab, if it goes `rate` of it
     /// (0 to 1) with a dab for which `span` is 1.
     pub fn approach(&self, rate: f32) -> f32 {
-        if self.span == 1.0 { rate } else { 1.0 - (1.0 - rate.clamp(0.0, 1.0)).powf(self.span) }
+        if self.span == 1.0 {
+            rate
+        } else {
+            1.0 - (1.0 - rate.clamp(0.0, 1.0)).portable_powf(self.span)
+        }
     }
 
     /// The share of the brush at a squared distance from its middle.

@@ -1,11 +1,12 @@
 //! Multiplane scrape: takes hills down to two planes that meet along the stroke as a roof does, so
 //! that a ridge with flat sides is left; the other way round it fills a valley up to them.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::dab::{Brush, Dab, VertexChange, VertexContext};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
+use sculptd_geometry::portable::turn_about;
 
 /// One dab of multiplane scrape.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +34,7 @@ impl Brush for MultiplaneScrapeBrush {
             .unwrap_or_else(|| plane.normal.any_orthonormal_vector());
         let half = dab.extra(0).to_radians() * 0.5 * dab.sign;
         let tilted = |angle: f32| Plane {
-            normal: Quat::from_axis_angle(along, angle) * plane.normal,
+            normal: turn_about(along, angle) * plane.normal,
             ..plane
         };
         MultiplaneScrapeBrush {

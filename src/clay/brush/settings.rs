@@ -11,6 +11,7 @@ use super::alpha::Alpha;
 use super::falloff::{CURVE, Falloff};
 use super::options::{AutoMask, Mirror, PathSettings, TopologySettings};
 use super::stamp::Stamp;
+use sculptd_geometry::portable::PortableMath;
 
 /// How pressure (0 to 1) becomes a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,7 +33,7 @@ impl PressureCurve {
     /// The factor for a pressure, which is clamped to 0 to 1.
     pub fn factor(&self, pressure: f32) -> f32 {
         let p = pressure.clamp(0.0, 1.0);
-        let bent = if self.gamma == 1.0 { p } else { p.powf(self.gamma.clamp(0.1, 10.0)) };
+        let bent = if self.gamma == 1.0 { p } else { p.portable_powf(self.gamma.clamp(0.1, 10.0)) };
         let at_zero = self.at_zero.clamp(0.0, 1.0);
         at_zero + (1.0 - at_zero) * bent
     }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::alpha::{Alpha, Picture};
 use super::dab::Dab;
+use sculptd_geometry::portable::PortableMath;
 
 /// How the alpha is laid over the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -129,7 +130,7 @@ impl PlacedStamp {
             stamp,
             alpha: dab.settings.alpha,
             lens: dab.lens,
-            turn: Vec2::new(angle.cos(), angle.sin()),
+            turn: Vec2::new(angle.portable_cos(), angle.portable_sin()),
             centre: dab.centre,
             along: along / half,
             across: dab.normal.cross(along) * (dab.hand / half),

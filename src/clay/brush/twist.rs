@@ -1,11 +1,10 @@
 //! Twist: turns what was under the brush about the surface normal; to the right a whole radius is
 //! one radian.
 
-use glam::Quat;
-
 use super::dab::{Brush, Dab, Grip, VertexChange, VertexContext};
 use crate::Reach;
 use crate::brush::surface_query::SurfaceQuery;
+use sculptd_geometry::portable::turn_about;
 
 /// One dab of twist, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +27,7 @@ impl Brush for TwistBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let arm = spot.page.before(spot.v) - dab.centre;
-        let turned = Quat::from_axis_angle(dab.normal, self.angle * spot.weight) * arm;
+        let turned = turn_about(dab.normal, self.angle * spot.weight) * arm;
         VertexChange::held(turned - arm)
     }
 }

@@ -10,6 +10,7 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
 use glam::Vec3;
+use sculptd_geometry::portable::PortableMath;
 
 /// An angle below which no operation goes, radians: 3 degrees.
 const LEAST: f32 = 0.052;
@@ -71,7 +72,7 @@ pub struct Cuts {
 /// The smallest angle of a triangle, radians; 0 for one without area.
 pub(super) fn smallest_angle(a: Vec3, b: Vec3, c: Vec3) -> f32 {
     let area2 = (b - a).cross(c - a).length();
-    let at = |p: Vec3, q: Vec3, r: Vec3| area2.atan2((q - p).dot(r - p));
+    let at = |p: Vec3, q: Vec3, r: Vec3| area2.portable_atan2((q - p).dot(r - p));
     at(a, b, c).min(at(b, c, a)).min(at(c, a, b))
 }
 

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::reach_box::ReachBox;
 use sculptd_devices::Hand;
+use sculptd_geometry::portable::PortableMath;
 
 /// How long a calibration listens.
 pub const CALIBRATION_US: u64 = 5_000_000;
@@ -115,7 +116,7 @@ impl Fatigue {
         let effort = hands.iter().map(Fatigue::effort).fold(0.0, f32::max);
         if effort > FREE_SHARE {
             // Endurance in seconds at this share of the strongest.
-            let endurance = (1236.5 / (effort * 100.0 - 15.0).powf(0.618) - 72.5).max(5.0);
+            let endurance = (1236.5 / (effort * 100.0 - 15.0).portable_powf(0.618) - 72.5).max(5.0);
             self.spent = (self.spent + dt / endurance).min(1.0);
         } else {
             // Recovery: a spent arm is fresh after two minutes of rest.

@@ -38,6 +38,7 @@ use serde::{Deserialize, Serialize};
 
 use sculptd_devices::filter::HandsFilter;
 use sculptd_devices::{DeviceId, Hands};
+use sculptd_geometry::portable::turn_about;
 
 /// Acts waiting for the tick's budget; beyond it the newest sweep is joined to the one before.
 const MAX_WAITING: usize = 256;
@@ -128,7 +129,7 @@ impl HandTools {
     pub fn follow(&mut self, target: Vec3, yaw: f32) {
         let by = yaw - self.yaw;
         if by != 0.0 {
-            let turn = Quat::from_rotation_y(by);
+            let turn = turn_about(Vec3::Y, by);
             self.volume.origin = target + turn * (self.volume.origin - target);
             self.volume.turn = (turn * self.volume.turn).normalize();
             self.yaw = yaw;

@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::reach_box::{BOX_MIDDLE_MM, ReachBox};
+use sculptd_geometry::portable::turn_about;
 
 /// The work's bounding sphere takes this share of the cube, so that a hand can come from outside.
 const WORK_SHARE: f32 = 0.6;
@@ -27,7 +28,7 @@ impl Volume {
     /// toward the camera. `reach` is the part of the tracked space that is used.
     pub fn over(middle: Vec3, extent: f32, yaw: f32, reach: &ReachBox) -> Self {
         let scale = extent / (reach.half_mm * WORK_SHARE);
-        let turn = Quat::from_rotation_y(yaw);
+        let turn = turn_about(Vec3::Y, yaw);
         Volume { origin: middle - turn * (reach.middle_mm * scale), turn, scale }
     }
 

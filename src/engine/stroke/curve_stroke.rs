@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::curve::Curve;
 use super::surface::PenPoint;
+use sculptd_geometry::portable::PortableMath;
 
 /// Handles of one curve at most.
 pub const MOST: usize = 64;
@@ -170,7 +171,7 @@ impl CurveStroke {
 }
 
 fn length(d: Vec2, aspect: f32) -> f32 {
-    (d.x * aspect).hypot(d.y)
+    (d.x * aspect).portable_hypot(d.y)
 }
 
 /// Between the middle two of four points, by Barry and Goldman's pyramid with knots a square root

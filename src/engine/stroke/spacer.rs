@@ -27,6 +27,7 @@ use serde::{Deserialize, Serialize};
 
 use super::surface::{Flow, Laid, PenPoint, Surface};
 use sculptd_clay::{Hit, Ray};
+use sculptd_geometry::portable::PortableMath;
 
 /// A dab is accepted between these shares of the spacing: never above one, so that the law holds
 /// with room for rounding.
@@ -195,7 +196,7 @@ impl Spacer {
         on: &mut dyn Surface,
     ) -> f32 {
         let d = to.view - from.view;
-        let length = (d.x * self.aspect).hypot(d.y);
+        let length = (d.x * self.aspect).portable_hypot(d.y);
         let mut t = start;
         if length <= 0.0 || !length.is_finite() {
             return 1.0;

@@ -10,6 +10,7 @@ use sculptd_clay::brush::dab::IMAGES;
 use sculptd_clay::brush::restore::Restore;
 use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
 use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
+use sculptd_geometry::portable::{PortableMath, turn_matrix};
 
 /// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this
 /// one stopped.
@@ -119,9 +120,9 @@ impl Images {
         for k in 1..turns {
             let angle = std::f32::consts::TAU * k as f32 / turns as f32;
             let m = match brush.mirror.axis {
-                0 => Mat3::from_rotation_x(angle),
-                1 => Mat3::from_rotation_y(angle),
-                _ => Mat3::from_rotation_z(angle),
+                0 => turn_matrix(Vec3::X, angle),
+                1 => turn_matrix(Vec3::Y, angle),
+                _ => turn_matrix(Vec3::Z, angle),
             };
             let turn = Image::about(m, middle);
             base[..kept].iter().for_each(|i| images.add(i.then(&turn)));
@@ -181,7 +182,10 @@ impl StrokeContext<'_> {
     /// The pen's own direction, from its tip up, in the world.
     fn pen_direction(&self, tilt: Vec2) -> Vec3 {
         let (right, up) = self.camera.axes();
-        let lean = Vec2::new(tilt.x.clamp(-1.4, 1.4).tan(), tilt.y.clamp(-1.4, 1.4).tan());
+        let lean = Vec2::new(
+            tilt.x.clamp(-1.4, 1.4).portable_tan(),
+            tilt.y.clamp(-1.4, 1.4).portable_tan(),
+        );
         (self.camera.backward() + right * lean.x - up * lean.y).normalize()
     }
 
@@ -206,7 +210,7 @@ impl StrokeContext<'_> {
         let step = stroke.last_measured.map_or(Vec3::ZERO, |last| centre - last);
         stroke.last_measured = Some(centre);
         let way = step.length() / radius;
-        stroke.heading = stroke.heading * (-way / HEADING).exp() + step / radius;
+        stroke.heading = stroke.heading * (-way / HEADING).portable_exp() + step / radius;
         let spaced =
             matches!(self.way(), StrokeMethod::Spaced | StrokeMethod::Line | StrokeMethod::Curve);
         let stroke = &mut self.stroke;
@@ -370,7 +374,7 @@ impl StrokeContext<'_> {
         }
         let (angle, far) = (self.dice(1) * std::f32::consts::TAU, self.dice(2).sqrt() * j * radius);
         let (u, v) = hit.normal.any_orthonormal_pair();
-        let aside = hit.position + (u * angle.cos() + v * angle.sin()) * far;
+        let aside = hit.position + (u * angle.portable_cos() + v * angle.portable_sin()) * far;
         let down = Ray { origin: aside + hit.normal * radius, dir: -hit.normal };
         self.mesh
             .pick(down)

@@ -15,6 +15,7 @@ use crate::boolean::broad_phase::SurfaceView;
 use crate::boolean::intersect::{Intersections, c3};
 use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
+use crate::portable::PortableMath;
 use crate::triangulate::area_vector;
 
 /// Placements of the faces that nothing cuts: each has that of the connected part that it is in.
@@ -394,7 +395,11 @@ pub fn crossings(
 ) -> i32 {
     for attempt in 0..64 {
         let k = attempt as f64;
-        let d = DVec3::new((k * 1.7 + 0.4).sin(), (k * 2.3 + 1.1).sin(), (k * 0.9 + 2.2).cos());
+        let d = DVec3::new(
+            (k * 1.7 + 0.4).portable_sin(),
+            (k * 2.3 + 1.1).portable_sin(),
+            (k * 0.9 + 2.2).portable_cos(),
+        );
         let p = o + d.normalize_or(DVec3::X) * reach;
         let (mut sum, mut good) = (0, true);
         along(p, &mut |[a, b, c]| {

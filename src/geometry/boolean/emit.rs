@@ -8,6 +8,7 @@ use super::fans;
 use crate::PolyMesh;
 use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
+use crate::portable::PortableMath;
 use crate::triangulate::area_vector;
 
 /// Which face of which operand a face of the result is, or is a part of.
@@ -247,7 +248,7 @@ fn around(mesh: &PolyMesh, at: &[DVec3], group: &[(u64, u32)], face_of: &[u32]) 
             let w = n.cross(if forward { d } else { -d });
             let (s, t) = (w.dot(x), w.dot(y));
             // Directions that differ by rounding only are one direction; the solid starts after it.
-            let angle = (t.atan2(s) * 1e9).round();
+            let angle = (t.portable_atan2(s) * 1e9).round();
             (
                 if angle <= -(std::f64::consts::PI * 1e9).round() { -angle } else { angle },
                 forward,
