@@ -64,6 +64,8 @@
 //!   (wgpu): they see snapshots and send commands.
 //! * `sculptd` (`src/main.rs`, `src/cli`) knows all: the command line: reads arguments, calls,
 //!   prints.
+//! * `src/bindings`, for other languages: `c` (a header and a shared library over geometry and
+//!   devices) and `python` (over geometry; a workspace of its own). Nobody here knows them.
 //!
 //! ## Threads
 //! The core crates (geometry's Booleans apart) start no thread of their own accord: the daemon asks

@@ -109,6 +109,24 @@ pub extern "C" fn sculptd_version() -> *const c_char {
     VERSION.as_ptr()
 }
 
+/// The object behind a pointer that may be null.
+///
+/// # Safety
+/// As [`reference`].
+pub unsafe fn optional<'a, T>(p: *const T) -> Option<&'a T> {
+    // SAFETY: as the caller promises.
+    unsafe { p.as_ref() }
+}
+
+/// The place behind a pointer that may be null, to be written.
+///
+/// # Safety
+/// As [`exclusive`].
+pub unsafe fn optional_mut<'a, T>(p: *mut T) -> Option<&'a mut T> {
+    // SAFETY: as the caller promises.
+    unsafe { p.as_mut() }
+}
+
 /// The object behind a pointer.
 ///
 /// # Safety

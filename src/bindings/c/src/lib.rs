@@ -2,10 +2,10 @@
 //!
 //! This crate is the second place of the workspace where `unsafe` is allowed, for one reason: a
 //! pointer that comes from C carries no proof of what it points to. So every pointer is read in
-//! [`boundary`] and nowhere else, each function states in its documentation what the caller
+//! `boundary.rs` and nowhere else, each function states in its documentation what the caller
 //! promises, and everything behind the boundary is safe Rust.
 //!
-//! Rules: no function unwinds into C ([`boundary::guarded`]); no function prints; what is handed
+//! Rules: no function unwinds into C (`boundary::guarded`); no function prints; what is handed
 //! out is freed by a function of this crate; null is refused, never followed.
 #![allow(unsafe_code)]
 #![warn(missing_docs)]

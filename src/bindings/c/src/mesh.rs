@@ -8,7 +8,8 @@ use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
 
 use crate::boundary::{
-    Failure, SculptdStatus, guarded, hand_out, path, reference, slice, take_back,
+    Failure, SculptdStatus, guarded, hand_out, optional, optional_mut, path, reference, slice,
+    take_back,
 };
 
 /// A surface of polygons in double precision, lengths in the unit of its file (mm as a rule). It
@@ -117,7 +118,7 @@ pub unsafe extern "C" fn sculptd_mesh_vertices(
     count: *mut usize,
 ) -> *const f64 {
     // SAFETY: as this function's caller promises.
-    let positions = unsafe { mesh.as_ref() }.map_or(&[][..], |m| &m.poly.positions);
+    let positions = unsafe { optional(mesh) }.map_or(&[][..], |m| &m.poly.positions);
     // SAFETY: as this function's caller promises.
     unsafe { lend(bytemuck::cast_slice(positions), positions.len(), count) }
 }
@@ -133,7 +134,7 @@ pub unsafe extern "C" fn sculptd_mesh_corners(
     count: *mut usize,
 ) -> *const u32 {
     // SAFETY: as this function's caller promises.
-    let corners = unsafe { mesh.as_ref() }.map_or(&[][..], |m| &m.poly.corners);
+    let corners = unsafe { optional(mesh) }.map_or(&[][..], |m| &m.poly.corners);
     // SAFETY: as this function's caller promises.
     unsafe { lend(corners, corners.len(), count) }
 }
@@ -149,7 +150,7 @@ pub unsafe extern "C" fn sculptd_mesh_face_starts(
     count: *mut usize,
 ) -> *const u32 {
     // SAFETY: as this function's caller promises.
-    let starts = unsafe { mesh.as_ref() }.map_or(&[][..], |m| &m.poly.face_starts);
+    let starts = unsafe { optional(mesh) }.map_or(&[][..], |m| &m.poly.face_starts);
     // SAFETY: as this function's caller promises.
     unsafe { lend(starts, starts.len().saturating_sub(1), count) }
 }
@@ -158,7 +159,7 @@ pub unsafe extern "C" fn sculptd_mesh_face_starts(
 /// `count` is null or may be written.
 unsafe fn lend<T>(all: &[T], told: usize, count: *mut usize) -> *const T {
     // SAFETY: as the caller promises.
-    if let Some(count) = unsafe { count.as_mut() } {
+    if let Some(count) = unsafe { optional_mut(count) } {
         *count = told;
     }
     if all.is_empty() { std::ptr::null() } else { all.as_ptr() }

@@ -5,7 +5,9 @@ use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::{ThicknessSettings, measure};
 
-use crate::boundary::{Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, reference};
+use crate::boundary::{
+    Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, optional_mut, reference,
+};
 use crate::mesh::SculptdMesh;
 
 /// A Boolean operation on two solids A and B.
@@ -74,7 +76,7 @@ pub unsafe extern "C" fn sculptd_boolean(
             return Err(Failure(SculptdStatus::Defect, "a Boolean without a result".into()));
         };
         // SAFETY: as this function's caller promises.
-        if let Some(facts) = unsafe { facts.as_mut() } {
+        if let Some(facts) = unsafe { optional_mut(facts) } {
             *facts = SculptdBooleanFacts {
                 volume: solid.facts.volume,
                 area: solid.facts.area,

@@ -7,8 +7,8 @@ use sculptd_devices::hid::decoder::Decoder;
 use sculptd_devices::{Body, DeviceId, Pen, Sample, Tool};
 
 use crate::boundary::{
-    Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, reference, slice, take_back,
-    text,
+    Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, optional, reference, slice,
+    take_back, text,
 };
 
 /// A pen tablet of a known model, and the state of its pen. One thread uses it at a time.
@@ -140,7 +140,7 @@ pub unsafe extern "C" fn sculptd_tablet_open(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sculptd_tablet_name(tablet: *const SculptdTablet) -> *const c_char {
     // SAFETY: as this function's caller promises.
-    unsafe { tablet.as_ref() }.map_or(std::ptr::null(), |t| t.name.as_ptr())
+    unsafe { optional(tablet) }.map_or(std::ptr::null(), |t| t.name.as_ptr())
 }
 
 /// The size of the active area, mm.
