@@ -12,7 +12,9 @@ use crate::{Corner, Cut, Home, NewVertex, Page, Snapshot, home_of};
 use sculptd_geometry::boolean::arrange::{Arrangement, FaceState};
 use sculptd_geometry::boolean::classify::crossings;
 use sculptd_geometry::boolean::points::Map;
-use sculptd_geometry::boolean::{BooleanError, BooleanOptions, NAMES, Operation, check};
+use sculptd_geometry::boolean::{
+    BooleanError, BooleanOptions, NAMES, Operation, check, single_tolerance,
+};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, triangulate};
 
@@ -35,8 +37,11 @@ pub fn local(
         .iter()
         .fold(lo.abs().max(hi.abs()).max_element() as f64, |r, p| r.max(p.abs().max_element()));
     let floor = reach * 2f64.powi(-49);
-    let wanted =
-        options.tolerance.unwrap_or(reach * 2f64.powi(-38)).max(floor).max(f64::MIN_POSITIVE);
+    let box_of = |(lo, hi): (DVec3, DVec3), p: &DVec3| (lo.min(*p), hi.max(*p));
+    let (low, high) = tool.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), box_of);
+    // Clay is in single precision, and so was a tool before it was placed.
+    let resolved = single_tolerance(reach, (high - low).max_element());
+    let wanted = options.tolerance.unwrap_or(resolved).max(floor).max(f64::MIN_POSITIVE);
     let patch = ToolSurroundings::of(clay, tool, 4.0 * wanted);
     let around = |p: DVec3| winding(clay, p);
     for factor in [1.0, 0.125, 1.0 / 64.0] {

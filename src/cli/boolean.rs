@@ -7,7 +7,7 @@ use glam::DVec3;
 use sculptd_devices::Clock;
 use serde::Serialize;
 
-use super::convert::{FileFacts, write_checked};
+use super::convert::{FileFacts, ReadyMesh, write_checked, write_ready};
 use super::distance::warn;
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::boolean;
@@ -94,7 +94,7 @@ pub struct BooleanArgs {
 }
 
 /// What `--json` prints.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Clone, Serialize)]
 struct BooleanAnswer {
     results: Vec<Made>,
     seconds: f64,
@@ -117,7 +117,7 @@ struct BooleanAnswer {
     warnings: Vec<String>,
 }
 
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Clone, Serialize)]
 struct ContactAnswer {
     places: usize,
     farthest: f64,
@@ -132,7 +132,7 @@ impl ContactAnswer {
     }
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct Line {
     closed: bool,
     length: f64,
@@ -141,7 +141,7 @@ struct Line {
     points: Option<Vec<[f64; 3]>>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct Made {
     name: String,
     file: PathBuf,
@@ -213,35 +213,56 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     };
     // These formats hold triangles only.
     let faces = match writable_format(&args.out)? {
-        "stl" | "glb" | "3mf" => ResultFaces::Triangles,
+        "stl" | "glb" | "gltf" | "3mf" => ResultFaces::Triangles,
         _ => faces,
     };
-    let options =
+    if args.what == What::Shells {
+        return shells(&operands[0], args, out, json);
+    }
+    let mut options =
         BooleanOptions { tolerance: args.tolerance, faces, keep_contact: args.keep_contact };
-    let solids: Vec<(String, BooleanSolid, Origins)> = match plane {
-        Some((normal, offset)) => {
-            let (made, report) = boolean::split(&operands[0], normal, offset, &options, &job, now)?;
-            out.note(report, args.details);
-            let names = ["above", "below"].map(str::to_owned);
-            names.into_iter().zip(made).map(|(n, s)| (n, s, None)).collect()
+    let (mut best, blank) = (None::<ResultSet>, out);
+    for factor in SMALLER {
+        let first = best.as_ref().map(|b| b.out.tolerance);
+        if let Some(first) = first {
+            options.tolerance = Some(first * factor);
         }
-        None if args.what == What::Shells => return shells(&operands[0], args, out, json),
-        None => join(&operands, args, &options, &job, &now, &mut out)?,
+        let out = blank.clone();
+        let mut made = match ResultSet::of(&operands, args, &options, plane, out, &job, &now) {
+            Ok(made) => made,
+            Err(e) if best.is_none() => return Err(e),
+            Err(_) => break,
+        };
+        let again = made.crossings > 0 && made.out.contact.near_misses > 0;
+        if best.as_ref().is_none_or(|b| made.crossings < b.crossings) {
+            if let (Some(first), Some(b)) = (first, &best) {
+                made.out.warnings.push(format!(
+                    "tolerance {:.1e} taken instead of {first:.1e}, with which {} pairs of \
+                     triangles of the results cross",
+                    made.out.tolerance, b.crossings
+                ));
+                made.out.depends_on_tolerance = true;
+            }
+            best = Some(made);
+        }
+        if !again || args.tolerance.is_some() {
+            break;
+        }
+    }
+    let Some(ResultSet { mut out, solids, .. }) = best else {
+        return Err(Fail::Check("no result".into()));
     };
     out.seconds = now() - start;
-    let several = solids.len() > 1;
-    let check = (!args.trust).then_some(out.tolerance);
-    for (name, s, origins) in &solids {
-        let file = if several { named(&args.out, name) } else { args.out.clone() };
-        if s.mesh.face_count() == 0 {
+    for ReadySolid { name, file, solid, origins, written } in solids {
+        if solid.mesh.face_count() == 0 {
             out.warnings.push(format!("the {name} is empty"));
         }
-        let written = write_checked(&file, &s.mesh, check, &job)?;
+        let written = write_ready(&file, &solid.mesh, written, &job)?;
         out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
-        let mut made = Made::of(name, file, &written);
+        let mut made = Made::of(&name, file, &written);
         if args.details {
-            let plain = || s.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
-            let all = origins.clone().unwrap_or_else(plain);
+            let plain = || solid.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
+            let all = origins.unwrap_or_else(plain);
             if all.len() == made.faces {
                 made.origins = Some(all);
             } else {
@@ -256,6 +277,65 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     }
     told(args, &out, json);
     Ok(())
+}
+
+/// Factors of the default tolerance that are tried while results cross themselves and places are
+/// only just not in contact: then the tolerance parts places that belong together.
+const SMALLER: [f64; 3] = [1.0, 0.125, 0.0];
+
+/// The results with one tolerance, ready to be written.
+struct ResultSet {
+    out: BooleanAnswer,
+    solids: Vec<ReadySolid>,
+    /// Pairs of triangles that cross in them once they are rounded to the format.
+    crossings: usize,
+}
+
+struct ReadySolid {
+    name: String,
+    file: PathBuf,
+    solid: BooleanSolid,
+    origins: Origins,
+    /// None: it is not looked at (`--trust`).
+    written: Option<ReadyMesh>,
+}
+
+impl ResultSet {
+    fn of(
+        operands: &[PolyMesh],
+        args: &BooleanArgs,
+        options: &BooleanOptions,
+        plane: Option<(DVec3, f64)>,
+        mut out: BooleanAnswer,
+        job: &Job,
+        now: &impl Fn() -> f64,
+    ) -> Result<ResultSet, Fail> {
+        let solids: Vec<(String, BooleanSolid, Origins)> = match plane {
+            Some((normal, offset)) => {
+                let (made, report) =
+                    boolean::split(&operands[0], normal, offset, options, job, now)?;
+                out.note(report, args.details);
+                let names = ["above", "below"].map(str::to_owned);
+                names.into_iter().zip(made).map(|(n, s)| (n, s, None)).collect()
+            }
+            None => join(operands, args, options, job, now, &mut out)?,
+        };
+        let several = solids.len() > 1;
+        let lap = now();
+        let (mut ready, mut crossings) = (Vec::new(), 0);
+        for (name, solid, origins) in solids {
+            let file = if several { named(&args.out, &name) } else { args.out.clone() };
+            let written = if args.trust {
+                None
+            } else {
+                Some(ReadyMesh::of(&file, &solid.mesh, out.tolerance, job)?)
+            };
+            crossings += written.as_ref().map_or(0, |w| w.crossings);
+            ready.push(ReadySolid { name, file, solid, origins, written });
+        }
+        *out.phases.entry("crossings".into()).or_default() += now() - lap;
+        Ok(ResultSet { out, solids: ready, crossings })
+    }
 }
 
 /// Operand and face of each face, where there were more than two operands.
@@ -399,6 +479,16 @@ fn operand(
         // Triangle soups (STL) say their corners anew for each triangle.
         repair::weld(&mut mesh, 0.0);
         facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
+    }
+    if args.solve.is_none() && !facts.closed {
+        // Said here, where the file's name is known and what helps.
+        if let Err(boolean::BooleanError::Open { edges, .. }) = boolean::check(&mesh, "", job) {
+            return Err(Fail::Input(format!(
+                "{}: the surface is open: {edges} edges lack a partner (--solve winding closes \
+                 holes first)",
+                path.display()
+            )));
+        }
     }
     let crossed = facts.self_intersections.unwrap_or(0);
     phase(out, "look");

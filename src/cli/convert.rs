@@ -1,20 +1,25 @@
 //! `sculptd convert`: a mesh from one format to another, scaled or mended on the way.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
-use sculptd_geometry::io::{read_mesh, writable_format, write_mesh};
+use sculptd_geometry::io::{left_out, read_mesh, writable_format, write_mesh};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::{boolean, check, repair, written};
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct ConvertArgs {
     pub input: PathBuf,
-    /// The ending names the format: .obj, .stl, .ply, .off, .glb or .3mf.
-    pub output: PathBuf,
+    /// The ending names the format: .obj, .stl, .ply, .off, .glb, .gltf or .3mf.
+    #[arg(required_unless_present = "out", conflicts_with = "out")]
+    pub output: Option<PathBuf>,
+    /// The output, as other commands take it.
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
     /// Multiply all coordinates, for instance by 25.4 from inches to millimetres.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub scale: f64,
@@ -58,6 +63,31 @@ pub(super) struct FileFacts {
     pub warnings: Vec<String>,
 }
 
+/// A mesh rounded to its file's format, looked at for triangles that cross, and repaired within
+/// the format's precision and a tolerance.
+pub(super) struct ReadyMesh {
+    /// Where it is not the mesh itself.
+    changed: Option<PolyMesh>,
+    /// Pairs of triangles that still cross.
+    pub crossings: usize,
+}
+
+impl ReadyMesh {
+    pub fn of(path: &Path, mesh: &PolyMesh, tolerance: f64, job: &Job) -> Result<ReadyMesh, Fail> {
+        let kind = writable_format(path)?;
+        if mesh.face_count() == 0 {
+            return Ok(ReadyMesh { changed: None, crossings: 0 });
+        }
+        let made = written::for_file(mesh, kind, tolerance, job);
+        let made = made.map_err(|e: Cancelled| Fail::Input(e.to_string()))?;
+        let changed = match made.mesh {
+            Cow::Owned(mesh) => Some(mesh),
+            Cow::Borrowed(_) => None,
+        };
+        Ok(ReadyMesh { changed, crossings: made.crossings })
+    }
+}
+
 /// Writes `mesh`, reads the file again and says what is in it. `crossings`: what is written is
 /// looked at for triangles that cross after rounding to the format, and repaired within the
 /// format's precision and this tolerance.
@@ -67,22 +97,26 @@ pub(super) fn write_checked(
     crossings: Option<f64>,
     job: &Job,
 ) -> Result<FileFacts, Fail> {
-    let stop = |e: Cancelled| Fail::Input(e.to_string());
-    let kind = writable_format(path)?;
-    let mut warnings = Vec::new();
-    if let Some(tolerance) = crossings.filter(|_| mesh.face_count() > 0) {
-        let made = written::for_file(mesh, kind, tolerance, job).map_err(stop)?;
-        write_mesh(path, &made.mesh)?;
-        if made.crossings > 0 {
-            warnings.push(format!(
-                "{} pairs of triangles cross in {} after rounding to the format",
-                made.crossings,
-                path.display()
-            ));
-        }
-        return file_facts(path, Some(made.crossings), warnings, job);
+    let ready = crossings.map(|tolerance| ReadyMesh::of(path, mesh, tolerance, job)).transpose()?;
+    write_ready(path, mesh, ready, job)
+}
+
+/// Writes `mesh`, or what `ready` has in its place, reads the file again and says what is in it.
+pub(super) fn write_ready(
+    path: &Path,
+    mesh: &PolyMesh,
+    ready: Option<ReadyMesh>,
+    job: &Job,
+) -> Result<FileFacts, Fail> {
+    let mut warnings = left_out(writable_format(path)?, mesh);
+    let crossings = ready.as_ref().map(|r| r.crossings);
+    write_mesh(path, ready.as_ref().and_then(|r| r.changed.as_ref()).unwrap_or(mesh))?;
+    if let Some(left) = crossings.filter(|n| *n > 0) {
+        warnings.push(format!(
+            "{left} pairs of triangles cross in {} after rounding to the format",
+            path.display()
+        ));
     }
-    write_mesh(path, mesh)?;
     if mesh.face_count() == 0 {
         // An empty solid: a valid file of its format, which no reader takes for a mesh.
         return Ok(FileFacts {
@@ -94,11 +128,11 @@ pub(super) fn write_checked(
             genus: None,
             closed: true,
             manifold: true,
-            self_intersections: crossings.map(|_| 0),
+            self_intersections: crossings,
             warnings,
         });
     }
-    file_facts(path, None, warnings, job)
+    file_facts(path, crossings, warnings, job)
 }
 
 fn file_facts(
@@ -161,7 +195,10 @@ pub(super) fn deliver(path: &Path, mesh: &PolyMesh, warnings: Vec<String>, json:
 }
 
 pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
-    writable_format(&args.output)?;
+    let Some(output) = args.output.as_ref().or(args.out.as_ref()) else {
+        return Err(Fail::Usage("expected a name for the output".into()));
+    };
+    writable_format(output)?;
     if !args.scale.is_finite() || args.scale == 0.0 {
         return Err(Fail::Usage(format!(
             "--scale: expected a number other than 0, found {}",
@@ -213,5 +250,5 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     if args.triangulate {
         mesh = written::triangulated(&mesh);
     }
-    deliver(&args.output, &mesh, warnings, json)
+    deliver(output, &mesh, warnings, json)
 }

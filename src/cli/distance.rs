@@ -22,9 +22,15 @@ pub struct DistanceArgs {
     /// Points as text, three numbers a line, in the mesh's unit.
     #[arg(long, value_name = "FILE")]
     pub points: Option<PathBuf>,
-    /// Sample a grid of this many samples along the longest side, 2 to 1024.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1024))]
-    pub grid: Option<u64>,
+    /// Sample a grid of this many samples along the longest side, 2 to 1024; or of so many along x,
+    /// y and z. The spacing is the same along all three.
+    #[arg(
+        long,
+        value_name = "N|X,Y,Z",
+        value_delimiter = ',',
+        value_parser = clap::value_parser!(u64).range(2..=1024)
+    )]
+    pub grid: Vec<u64>,
     /// Samples outside the mesh's box on each side of the grid.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub margin: usize,
@@ -102,6 +108,9 @@ pub fn solid_about(path: &Path, centre: Option<DVec3>, job: &Job) -> Result<Read
         )));
     }
     let solid = DistanceSolid::build(&part.mesh, job).map_err(|e| Fail::Input(e.to_string()))?;
+    let own: Vec<DVec3> = loaded.mesh.positions.iter().map(|&p| p - part.centre).collect();
+    let corners = part.mesh.triangles.iter().map(|t| t.map(|v| own[v as usize])).collect();
+    let solid = solid.with_corners(corners);
     let mut warnings = loaded.warnings;
     if !solid.topology.closed {
         warnings.push(
@@ -185,12 +194,17 @@ pub fn run(args: &DistanceArgs, json: bool) -> Outcome {
         out.distances = Some(distances);
     } else {
         let (lo, hi) = solid.tree.bounds();
-        let side = args.grid.unwrap_or(30) as usize;
-        let layout = DistanceGrid::layout(
-            (lo.as_dvec3(), hi.as_dvec3()),
-            side,
-            args.margin.min((side / 2).saturating_sub(1)),
-        );
+        let span = (lo.as_dvec3(), hi.as_dvec3());
+        let margin = |side: usize| args.margin.min((side / 2).saturating_sub(1));
+        let layout = match args.grid[..] {
+            [x, y, z] => {
+                let size = [x, y, z].map(|n| n as usize);
+                let least = size.into_iter().min().unwrap_or(2);
+                DistanceGrid::layout_of(span, size, margin(least))
+            }
+            [side] => DistanceGrid::layout(span, side as usize, margin(side as usize)),
+            _ => return Err(Fail::Usage("--grid: expected one number or three".into())),
+        };
         let (grid, seconds) = timed(|| DistanceGrid::sample(&solid, layout, &job));
         let mut grid = grid.map_err(cancelled)?;
         grid.origin += part.centre;

@@ -38,6 +38,12 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
             args.wall / made.spacing
         ));
     }
+    if made.wall < args.wall {
+        warnings.push(format!(
+            "the wall is {} at its thinnest place instead of {}: a larger --side keeps it",
+            made.wall, args.wall
+        ));
+    }
     warn(&args.mesh, &warnings);
     finish(&args.out, &made.mesh, part.centre, seconds, warnings, json)
 }

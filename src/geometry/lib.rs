@@ -64,6 +64,7 @@ pub mod silhouette;
 pub mod simd;
 pub mod subdivide;
 pub mod thickness;
+mod tight_frame;
 pub mod triangulate;
 mod unfold;
 pub mod weld;

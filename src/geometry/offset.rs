@@ -5,6 +5,7 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::bvh::nearest_on_triangle;
 use super::distance::DistanceSolid;
 use super::grid::DistanceGrid;
 use super::remesh::dual::extract;
@@ -107,6 +108,8 @@ pub struct Hollow {
     pub cavity: usize,
     /// Spacing of the samples that the cavity was made from.
     pub spacing: f64,
+    /// The thinnest place of the wall, in the mesh's unit.
+    pub wall: f64,
 }
 
 /// The cavity everywhere further than `depth` inside, without partitions thinner than `wall`.
@@ -127,10 +130,13 @@ fn cavity_at(
 }
 
 /// Rounds of [`hollow`] after which the wall is as it is: the second, as a rule, finds nothing.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
+/// Steps by which a place in a triangle comes to the one that is nearest to the old surface.
+const DESCENT: usize = 12;
 
-/// The least distance from the solid's surface to a cavity, at the corners, the middles of the
-/// edges and the centre of each of its triangles.
+/// The least distance from the solid's surface to a cavity: of each of its triangles the nearest
+/// of seven places, from which projections onto the old surface and back onto the triangle in turns
+/// (von Neumann's alternating projections) lead to the nearest place of all around.
 fn least_wall(
     solid: &DistanceSolid,
     cavity: &OffsetSurface,
@@ -143,12 +149,29 @@ fn least_wall(
             job.check()?;
             let mut least = f64::INFINITY;
             for face in faces {
-                let [a, b, c] = face.map(|v| cavity.points[v as usize].as_dvec3());
+                let corners = face.map(|v| cavity.points[v as usize].as_dvec3());
+                let [a, b, c] = corners;
                 let middles = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0];
-                for p in [a, b, c].into_iter().chain(middles) {
-                    // A bound makes the search faster: what is farther does not matter.
-                    least = solid.tree.nearest(p, least).map_or(least, |n| least.min(n.distance()));
+                // A bound makes the search faster: from places much farther no descent leads below.
+                let span = (b - a).length().max((c - a).length());
+                let mut near = None;
+                for p in corners.into_iter().chain(middles) {
+                    let bound = near.map_or(least + 0.5 * span, |(d, _)| d);
+                    if let Some(n) = solid.tree.nearest(p, bound) {
+                        near = Some((n.distance(), n.point));
+                    }
                 }
+                let Some((mut distance, mut point)) = near else { continue };
+                for _ in 0..DESCENT {
+                    let (p, _) = nearest_on_triangle(point, corners);
+                    let Some(n) = solid.tree.nearest(p, distance) else { break };
+                    let gained = distance - n.distance();
+                    (distance, point) = (n.distance(), n.point);
+                    if gained <= 1e-6 * distance {
+                        break;
+                    }
+                }
+                least = least.min(distance);
             }
             Ok(least)
         })
@@ -158,8 +181,9 @@ fn least_wall(
 
 /// Hollows `mesh` to a wall of at least `wall`: the old surface is kept, and a cavity everywhere
 /// further than `wall` inside is cut out, together with every partition within it that is thinner
-/// than the wall. The wall is measured at seven points of each of the cavity's triangles, and the
-/// cavity is made again, deeper, until none is nearer than `wall`. [`RemeshError::Empty`]
+/// than the wall. The wall is measured over each of the cavity's triangles, and the cavity is made
+/// again, deeper, until none is nearer than `wall`; [`Hollow::wall`] says what was reached.
+/// [`RemeshError::Empty`]
 /// where the solid is nowhere thick enough for a cavity.
 pub fn hollow(
     mesh: &TriMesh,
@@ -171,13 +195,14 @@ pub fn hollow(
     // A cavity's chords come nearer to the old surface than its vertices do: what is missing of the
     // wall is measured and added until nothing is.
     let (mut depth, mut cavity) = (wall, cavity_at(solid, wall, wall, side, job)?);
+    let mut least = least_wall(solid, &cavity, job)?;
     for _ in 0..ROUNDS {
-        let missing = wall - least_wall(solid, &cavity, job)?;
-        if missing <= 0.0 {
+        if least >= wall {
             break;
         }
-        depth += missing * 1.05 + cavity.spacing * 1e-4;
+        depth += (wall - least) * 1.05 + cavity.spacing * 1e-4;
         cavity = cavity_at(solid, depth, wall, side, job)?;
+        least = least_wall(solid, &cavity, job)?;
     }
     let OffsetSurface { points: inner, faces, spacing: h } = cavity;
     let mut out = mesh.clone();
@@ -196,7 +221,7 @@ pub fn hollow(
         c.resize(out.positions.len(), [255; 4]);
     }
     job.progress(1.0);
-    Ok(Hollow { mesh: out, cavity: faces.len(), spacing: h })
+    Ok(Hollow { mesh: out, cavity: faces.len(), spacing: h, wall: least })
 }
 
 /// The cavity grown by `radius` and shrunk again (Serra, "Image analysis and mathematical
@@ -316,5 +341,39 @@ mod tests {
             }
         }
         assert!((1.999..2.2).contains(&least), "{least}");
+        assert!(made.wall >= 2.0 && made.wall <= least + 1e-6, "{} {least}", made.wall);
+    }
+
+    #[test]
+    fn an_inner_edge_between_samples_is_found() {
+        // The corner of a notch that reaches into the solid, at no sample of any triangle.
+        let l = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        let ring = [l(0., 0.), l(10., 0.), l(10., 4.3), l(4.7, 4.3), l(4.7, 10.), l(0., 10.)];
+        let mut mesh = TriMesh::default();
+        for z in [0.0, 8.0] {
+            mesh.positions.extend(ring.map(|p| p + Vec3::Z * z));
+        }
+        for t in [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]] {
+            mesh.triangles.extend([[t[0], t[2], t[1]], t.map(|v| v + 6)]);
+        }
+        for i in 0..6 {
+            let j = (i + 1) % 6;
+            mesh.triangles.extend([[i, j, j + 6], [i, j + 6, i + 6]]);
+        }
+        let job = Job::default();
+        let solid = DistanceSolid::build(&mesh, &job).unwrap();
+        let made = hollow(&mesh, &solid, 1.1, 24, &job).unwrap();
+        let cavity = &made.mesh.triangles[made.mesh.triangles.len() - made.cavity..];
+        let mut least = f64::INFINITY;
+        for t in cavity {
+            let [a, b, c] = t.map(|v| made.mesh.positions[v as usize].as_dvec3());
+            for i in 0..=12 {
+                for j in 0..=12 - i {
+                    let p = a + (b - a) * (f64::from(i) / 12.0) + (c - a) * (f64::from(j) / 12.0);
+                    least = least.min(solid.tree.nearest(p, f64::INFINITY).unwrap().distance());
+                }
+            }
+        }
+        assert!(least >= 1.1, "{least}, told {}", made.wall);
     }
 }

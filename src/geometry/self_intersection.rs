@@ -10,13 +10,14 @@
 
 use std::cmp::Ordering;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use obvhs::aabb::Aabb;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::job::{Cancelled, Job};
+use crate::tight_frame::tight_frame;
 
 /// How often a mesh crosses itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,11 +40,20 @@ pub fn pairs(
     if triangles.len() < 2 {
         return Ok(Vec::new());
     }
+    // In a turned frame places are off by rounding: the boxes are larger by more than that.
+    let (turn, room) = match tight_frame(positions, triangles) {
+        Some(turn) => {
+            let reach = positions.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
+            (turn, reach * 1e-14)
+        }
+        None => (DMat3::IDENTITY, 0.0),
+    };
     let boxes: Vec<Aabb> = triangles
         .par_iter()
         .map(|t| {
             let [a, b, c] = t.map(|v| positions[v as usize]);
-            let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+            let [a, b, c] = if room > 0.0 { [turn * a, turn * b, turn * c] } else { [a, b, c] };
+            let (lo, hi) = (a.min(b).min(c) - room, a.max(b).max(c) + room);
             // Outwards, so that rounding to single precision loses no contact.
             let down = Vec3::from(lo.to_array().map(|v| (v as f32).next_down()));
             let up = Vec3::from(hi.to_array().map(|v| (v as f32).next_up()));
@@ -238,16 +248,57 @@ enum Which {
     Second,
 }
 
+/// On which side of a plane a point is, as [`side`] says it; None where rounding may hide it
+/// (Shewchuk's first filter).
+fn rounded_side([a, b, c]: [DVec3; 3], p: DVec3) -> Option<f64> {
+    let (a, b, c) = (a - p, b - p, c - p);
+    let (xy, yz, zx) = ((b.x * c.y, c.x * b.y), (c.x * a.y, a.x * c.y), (a.x * b.y, b.x * a.y));
+    let det = a.z * (xy.0 - xy.1) + b.z * (yz.0 - yz.1) + c.z * (zx.0 - zx.1);
+    let size = a.z.abs() * (xy.0.abs() + xy.1.abs())
+        + b.z.abs() * (yz.0.abs() + yz.1.abs())
+        + c.z.abs() * (zx.0.abs() + zx.1.abs());
+    (det.abs() > 1e-15 * size).then_some(det)
+}
+
+/// Whether an edge of the first triangle parts it from the second, seen along the first's normal,
+/// by more than rounding: corners that both have may lie on the edge.
+fn beside(ps: [DVec3; 3], pt: [DVec3; 3], s: [u32; 3], t: [u32; 3]) -> bool {
+    let n = (ps[1] - ps[0]).cross(ps[2] - ps[0]);
+    let reach = ps.iter().chain(&pt).fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
+    (0..3).any(|k| {
+        let j = (k + 1) % 3;
+        let out = (ps[j] - ps[k]).cross(n);
+        // The triangle's own third corner is on the other side by more than rounding too.
+        let far = 1e-13 * reach * out.length();
+        far > 0.0
+            && (ps[(k + 2) % 3] - ps[k]).dot(out) < -far
+            && (0..3).all(|i| t[i] == s[k] || t[i] == s[j] || (pt[i] - ps[k]).dot(out) > far)
+    })
+}
+
 /// How two triangles meet beyond what they share.
 fn triangles_meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> Meet {
     let p = |v: u32| positions[v as usize];
     let shared = s.iter().filter(|v| t.contains(v)).count();
     let (ps, pt) = (s.map(p), t.map(p));
     // A common vertex is in both planes: known without arithmetic.
-    let sides = |plane: [u32; 3], at: [DVec3; 3], of: [u32; 3]| {
-        of.map(|v| if plane.contains(&v) { 0.0 } else { side(at[0], at[1], at[2], p(v)) })
+    let sides = |plane: [u32; 3], at: [DVec3; 3], of: [u32; 3], near: [Option<f64>; 3]| {
+        [0, 1, 2].map(|i| match near[i] {
+            Some(side) => side,
+            None if plane.contains(&of[i]) => 0.0,
+            None => side(at[0], at[1], at[2], p(of[i])),
+        })
     };
-    let of_t = sides(s, ps, t);
+    let rounded = |plane: [u32; 3], at: [DVec3; 3], of: [u32; 3]| {
+        of.map(|v| if plane.contains(&v) { None } else { rounded_side(at, p(v)) })
+    };
+    let near = rounded(s, ps, t);
+    // Triangles beside each other in one plane need exact signs, and are told apart without.
+    let unsure = (0..3).any(|i| near[i].is_none() && !s.contains(&t[i]));
+    if unsure && (beside(ps, pt, s, t) || beside(pt, ps, t, s)) {
+        return Meet::No;
+    }
+    let of_t = sides(s, ps, t, near);
     let zeros = |d: &[f64; 3]| d.iter().filter(|&&v| v == 0.0).count();
     if zeros(&of_t) == 3 {
         return if overlap(ps, pt) { Meet::Cross } else { Meet::No };
@@ -259,7 +310,7 @@ fn triangles_meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> Meet {
     if !astride(&of_t) && zeros(&of_t) < 2 {
         return Meet::No;
     }
-    let of_s = sides(t, pt, s);
+    let of_s = sides(t, pt, s, rounded(t, pt, s));
     match (astride(&of_s), astride(&of_t)) {
         (true, true) if lines_overlap(ps, of_s, pt, of_t) => Meet::Cross,
         (true, false) => edge_on(&of_t)

@@ -4,6 +4,7 @@
 use glam::{DVec3, I64Vec3};
 
 use super::*;
+use crate::tight_frame::tight_frame;
 
 type Flat = (Vec<I64Vec3>, Vec<[u32; 3]>);
 
@@ -211,4 +212,32 @@ fn thousands_of_faces_at_one_edge_are_sorted_around_it() {
     // Halves and sums of coordinates are exact, and so is whether four points lie in one plane.
     assert!(found.contains(&(0, 8000)), "{found:?}");
     assert!(found.iter().all(|&(a, b)| [0, 2345, 7999].contains(&a) && b >= 8000), "{found:?}");
+}
+
+#[test]
+fn ribs_along_a_diagonal_are_compared_in_their_own_frame() {
+    let mut random = SplitMix(5);
+    let mut place = |size: f64| {
+        let p = random.point(1 << 20);
+        DVec3::new(p.x as f64, p.y as f64, p.z as f64) * (size / f64::from(1 << 20))
+    };
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..300 {
+        let along = DVec3::new(20.0, 31.0, -17.0) + place(1.0);
+        let start = place(3.0);
+        positions.extend([start, start + along, start + along * 0.4 + place(1.0)]);
+        triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+    }
+    assert!(tight_frame(&positions, &triangles).is_some());
+    let found = pairs(&positions, &triangles, &Job::default()).expect("not cancelled");
+    let mut want = Vec::new();
+    for t in 0..triangles.len() {
+        for u in t + 1..triangles.len() {
+            if crosses(&positions, triangles[t], triangles[u]) {
+                want.push((t as u32, u as u32));
+            }
+        }
+    }
+    assert!(want.len() > 20);
+    assert_eq!(found, want);
 }

@@ -31,10 +31,10 @@ pub struct WrittenMesh<'a> {
 const MOST_PAIRS: usize = 3000;
 const ROUNDS: usize = 6;
 
-/// `mesh` as a file with the ending `kind` will hold it (STL and GLB have single precision; they
-/// and 3MF have triangles only). Vertices move by no more than 64 steps of the format's precision
-/// or four times `tolerance`, and only where triangles cross. A polygon that a repair changes comes
-/// in triangles; the others stay.
+/// `mesh` as a file with the ending `kind` will hold it (STL, GLB and glTF have single precision;
+/// they and 3MF have triangles only). Vertices move by no more than 64 steps of the format's
+/// precision or four times `tolerance`, and only where triangles cross. A polygon that a repair
+/// changes comes in triangles; the others stay.
 ///
 /// # Errors
 /// [`Cancelled`] when the job is.
@@ -44,9 +44,10 @@ pub fn for_file<'a>(
     tolerance: f64,
     job: &Job,
 ) -> Result<WrittenMesh<'a>, Cancelled> {
-    let single = matches!(kind, "stl" | "glb");
+    let single = matches!(kind, "stl" | "glb" | "gltf");
     let mut out = Cow::Borrowed(mesh);
-    if matches!(kind, "stl" | "glb" | "3mf") && mesh.corners.len() != 3 * mesh.face_count() {
+    if matches!(kind, "stl" | "glb" | "gltf" | "3mf") && mesh.corners.len() != 3 * mesh.face_count()
+    {
         out = Cow::Owned(triangulated(mesh));
     }
     if single && mesh.positions.iter().any(|p| p.as_vec3().as_dvec3() != *p) {

@@ -82,6 +82,15 @@ pub fn default_tolerance(operands: [&PolyMesh; 2]) -> DefaultTolerance {
     DefaultTolerance { tolerance: wanted.clamp(least, most), precision }
 }
 
+/// The tolerance for a mesh in single precision whose coordinates reach as far as `reach`, and an
+/// other operand of `size`, which may have been moved in double precision: 8 errors of single
+/// precision at that distance, at most 1e-4 of the size. For live clay, which is not looked at as a
+/// whole.
+pub fn single_tolerance(reach: f64, size: f64) -> f64 {
+    let least = reach * 2f64.powi(-38);
+    (ERRORS * single_error(reach)).min((size * COARSEST).max(least)).max(least)
+}
+
 /// Half of the last place of a number of this size in single precision.
 fn single_error(reach: f64) -> f64 {
     if reach > 0.0 { 2f64.powi(reach.log2().floor() as i32 - 24) } else { 0.0 }

@@ -123,10 +123,29 @@ impl Bvh8 {
     /// bound makes the search faster, never different.
     #[inline]
     pub fn nearest(&self, p: DVec3, within: f64) -> Option<NearestPoint> {
+        self.nearest_of(p, within, &[])
+    }
+
+    /// The same for a mesh whose corners in double precision are `corners`, one entry a triangle of
+    /// the mesh that the tree was built from, which has them rounded: the answer is exact for what
+    /// was rounded. No corners: as [`Bvh8::nearest`].
+    #[inline]
+    pub fn nearest_of(
+        &self,
+        p: DVec3,
+        within: f64,
+        corners: &[[DVec3; 3]],
+    ) -> Option<NearestPoint> {
         if self.out_of_range(p) {
             return None;
         }
-        wide::dispatch(self.scalar, NearestSearch { tree: self, p, within })
+        wide::dispatch(self.scalar, NearestSearch { tree: self, p, within, corners })
+    }
+
+    /// How far rounding to single precision may have moved a corner.
+    pub(crate) fn rounding(&self) -> f32 {
+        let (lo, hi) = self.bounds;
+        lo.abs().max(hi.abs()).max_element() * 1.2e-7
     }
 }
 
@@ -134,6 +153,8 @@ struct NearestSearch<'a> {
     tree: &'a Bvh8,
     p: DVec3,
     within: f64,
+    /// Corners in double precision, or none.
+    corners: &'a [[DVec3; 3]],
 }
 
 /// The filter's error, in units of the largest length that enters it: about 20 roundings of 6e-8.
@@ -147,12 +168,16 @@ impl WideWork for NearestSearch<'_> {
 
     #[inline(always)]
     fn run<W: Wide>(self, wide: W) -> Option<NearestPoint> {
-        let NearestSearch { tree, p: exact, within } = self;
+        let NearestSearch { tree, p: exact, within, corners } = self;
         let p = exact.as_vec3().to_array();
         // What rounding the point itself may cost.
-        let moved = p[0].abs().max(p[1].abs()).max(p[2].abs()) * 1.2e-7;
-        let mut exactly =
-            ExactDecision { tree, p: exact, moved, limit: within * within, best: None };
+        let mut moved = p[0].abs().max(p[1].abs()).max(p[2].abs()) * 1.2e-7;
+        if !corners.is_empty() {
+            // And rounding the corners: that a triangle seems nearer, and that another seems farther.
+            moved += 2.0 * tree.rounding();
+        }
+        let limit = within * within;
+        let mut exactly = ExactDecision { tree, p: exact, moved, limit, corners, best: None };
         let mut radius = exactly.radius();
         let mut bound = square(radius);
         let mut maybe = [(0.0f32, 0u32); MAYBE];
@@ -241,6 +266,7 @@ struct ExactDecision<'a> {
     p: DVec3,
     moved: f32,
     limit: f64,
+    corners: &'a [[DVec3; 3]],
     best: Option<NearestPoint>,
 }
 
@@ -260,8 +286,9 @@ impl ExactDecision<'_> {
             if id == NO_TRIANGLE {
                 continue;
             }
-            let corners =
-                pack.v.map(|c| DVec3::new(c[0][i] as f64, c[1][i] as f64, c[2][i] as f64));
+            let rounded =
+                || pack.v.map(|c| DVec3::new(c[0][i].into(), c[1][i].into(), c[2][i].into()));
+            let corners = self.corners.get(id as usize).copied().unwrap_or_else(rounded);
             let (point, feature) = nearest_on_triangle(self.p, corners);
             let d = self.p.distance_squared(point);
             let better = match &self.best {

@@ -39,6 +39,8 @@ pub struct DistanceSolid {
     /// Which triangles meet at an edge, and the pseudonormals.
     pub topology: Topology,
     sign: Sign,
+    /// Corners of each triangle in double precision; empty: the tree's.
+    corners: Vec<[DVec3; 3]>,
 }
 
 /// Points that one task works through.
@@ -52,7 +54,21 @@ impl DistanceSolid {
         let tree = tree?;
         job.check()?;
         let winding = Winding::build(&tree);
-        Ok(DistanceSolid { tree, winding, topology, sign: Sign::default() })
+        let sign = Sign::default();
+        Ok(DistanceSolid { tree, winding, topology, sign, corners: Vec::new() })
+    }
+
+    /// With the corners in double precision of which the mesh's are rounded, one entry a triangle:
+    /// distances to them, without the rounding. Other numbers of corners are left out of account.
+    pub fn with_corners(mut self, corners: Vec<[DVec3; 3]>) -> DistanceSolid {
+        self.corners =
+            if corners.len() == self.topology.triangles.len() { corners } else { Vec::new() };
+        self
+    }
+
+    /// The nearest point of the surface, as [`Bvh8::nearest`] has it.
+    pub fn nearest_point(&self, p: DVec3, within: f64) -> Option<NearestPoint> {
+        self.tree.nearest_of(p, within, &self.corners)
     }
 
     /// [`Sign::Pseudonormal`] is refused, and the winding number kept, on meshes that are not
@@ -75,7 +91,7 @@ impl DistanceSolid {
     /// Whether `p` is inside. `nearest` is the mesh's nearest point, where the caller has it.
     pub fn inside(&self, p: DVec3, nearest: Option<&NearestPoint>) -> bool {
         if self.sign == Sign::Pseudonormal
-            && let Some(n) = nearest.copied().or_else(|| self.tree.nearest(p, f64::INFINITY))
+            && let Some(n) = nearest.copied().or_else(|| self.nearest_point(p, f64::INFINITY))
             && let Some(normal) = self.topology.pseudonormal(&n)
         {
             let away = p - n.point;
@@ -86,13 +102,25 @@ impl DistanceSolid {
                 return side < 0.0;
             }
         }
+        // The winding number is that of the rounded corners: nearer than rounding may have moved
+        // them, it is asked farther away on the same side.
+        let mut place = p;
+        if !self.corners.is_empty()
+            && let Some(n) = nearest
+            && n.distance() <= 8.0 * f64::from(self.tree.rounding())
+            && let Some(normal) = self.topology.pseudonormal(n)
+        {
+            let side = (p - n.point).dot(normal).signum();
+            let far = 16.0 * f64::from(self.tree.rounding());
+            place += normal.normalize_or_zero() * (side * far);
+        }
         // Either way round: a mesh turned inside out is a solid too.
-        self.winding(p).abs() > 0.5
+        self.winding(place).abs() > 0.5
     }
 
     /// Negative inside; infinite for an empty mesh or a point that is not finite.
     pub fn signed_distance(&self, p: DVec3) -> f64 {
-        match self.tree.nearest(p, f64::INFINITY) {
+        match self.nearest_point(p, f64::INFINITY) {
             Some(n) if self.inside(p, Some(&n)) => -n.distance(),
             Some(n) => n.distance(),
             None => f64::INFINITY,
@@ -110,7 +138,7 @@ impl DistanceSolid {
         points: &[DVec3],
         job: &Job,
     ) -> Result<Vec<Option<NearestPoint>>, Cancelled> {
-        self.batch(points, None, job, |p| self.tree.nearest(p, f64::INFINITY))
+        self.batch(points, None, job, |p| self.nearest_point(p, f64::INFINITY))
     }
 
     fn batch<T: Clone + Send>(

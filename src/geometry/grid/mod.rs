@@ -44,6 +44,20 @@ impl DistanceGrid {
         DistanceGrid { origin: centre - span * 0.5, spacing, size, values: Vec::new() }
     }
 
+    /// As [`DistanceGrid::layout`], with a number of samples for each axis, each at least 2 + 2 *
+    /// `margin`: the smallest spacing, the same along all axes, with which the grid holds the box
+    /// and its margin.
+    pub fn layout_of((lo, hi): (DVec3, DVec3), size: [usize; 3], margin: usize) -> DistanceGrid {
+        let size = size.map(|n| n.max(2 + 2 * margin));
+        let extent = (hi - lo).max(DVec3::ZERO);
+        let spacing =
+            (0..3).map(|k| extent[k] / (size[k] - 1 - 2 * margin) as f64).fold(0.0, f64::max);
+        let spacing = if spacing > 0.0 && spacing.is_finite() { spacing } else { 1.0 };
+        let span = DVec3::from_array(size.map(|n| (n - 1) as f64)) * spacing;
+        let centre = if lo.is_finite() && hi.is_finite() { (lo + hi) * 0.5 } else { DVec3::ZERO };
+        DistanceGrid { origin: centre - span * 0.5, spacing, size, values: Vec::new() }
+    }
+
     /// Every sample exact, on all threads. The sign is asked for only where the distances do not
     /// settle it: two samples further from the surface, together, than from each other are on the
     /// same side of a closed one.
@@ -163,5 +177,21 @@ impl DistanceGrid {
             face([4, 5, 6, 7], x, y) - face([0, 1, 2, 3], x, y),
         );
         d / self.spacing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_of_so_many_samples_each_way_holds_the_box() {
+        let (lo, hi) = (DVec3::new(-1.0, 2.0, 0.0), DVec3::new(3.0, 4.0, 10.0));
+        let grid = DistanceGrid::layout_of((lo, hi), [20, 11, 31], 2);
+        assert_eq!(grid.size, [20, 11, 31]);
+        // Along z: 26 spacings hold 10; x and y have room.
+        assert!((grid.spacing - 10.0 / 26.0).abs() < 1e-12, "{}", grid.spacing);
+        let room = DVec3::splat(2.0 * grid.spacing - 1e-9);
+        assert!((grid.origin + room).cmple(lo).all() && (grid.end() - room).cmpge(hi).all());
     }
 }

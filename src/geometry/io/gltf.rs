@@ -159,6 +159,10 @@ pub(super) fn parse(
     if file.left_out > 0 {
         warnings.push(format!("{} primitives of points or lines left out", file.left_out));
     }
+    let (materials, textures) = (root.materials.len(), root.textures.len());
+    if materials + textures > 0 {
+        warnings.push(format!("{materials} materials and {textures} textures left out"));
+    }
     let mut mesh = file.mesh;
     if mesh.face_count() == 0 {
         return Err(bad(FilePlace::File, "a node with triangles in the default scene", "none"));

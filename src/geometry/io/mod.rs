@@ -26,7 +26,7 @@ pub use beside::write_beside;
 pub use format::MeshFormat;
 pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
 pub use regular::read_regular;
-pub use write::{encode, writable_format, write_mesh};
+pub use write::{encode, left_out, writable_format, write_mesh};
 
 use super::PolyMesh;
 use crate::job::Job;
@@ -97,7 +97,7 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
     } else if text.trim_ascii_start().starts_with(b"{") || is("gltf") {
         (gltf::parse(text, name, &mut warnings, job)?, MeshFormat::Gltf)
     } else if bytes.starts_with(b"PK\x03\x04") || is("3mf") {
-        (threemf::parse(bytes, job)?, MeshFormat::ThreeMf)
+        (threemf::parse(bytes, &mut warnings, job)?, MeshFormat::ThreeMf)
     } else if off::header(text).is_some() || is("off") {
         (off::parse(text, &mut warnings, job)?, MeshFormat::Off)
     } else if stl::binary_exact(bytes) {

@@ -33,13 +33,19 @@ struct ThreemfPackage {
     build: Vec<(PartName, DMat4)>,
     /// Millimetres in the root part's unit.
     unit: f64,
+    /// Groups of colours, materials and texture coordinates.
+    properties: usize,
 }
 
 fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
     FileProblem::new(at, expected.into(), found.into()).into()
 }
 
-pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, ParseError> {
+pub(super) fn parse(
+    bytes: &[u8],
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, ParseError> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
         bad(FilePlace::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
     })?;
@@ -96,6 +102,12 @@ pub(super) fn parse(bytes: &[u8], job: &Job) -> Result<PolyMesh, ParseError> {
                 "none of them",
             ));
         }
+    }
+    if package.properties > 0 {
+        warnings.push(format!(
+            "{} groups of colours, materials or texture coordinates left out",
+            package.properties
+        ));
     }
     assemble(&package, job)
 }
@@ -235,6 +247,8 @@ fn model(
                     o.mesh.push_face(&corners);
                 }
             }
+            "basematerials" | "colorgroup" | "texture2dgroup" | "compositematerials"
+            | "multiproperties" => package.properties += 1,
             "component" => {
                 if let Some((_, o)) = &mut now {
                     o.components.push(target()?);

@@ -1,5 +1,5 @@
 //! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in
-//! single precision and no colours, OFF no groups, PLY no groups.
+//! single precision and no colours, OFF no groups, PLY no groups; [`left_out`] says which.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -8,7 +8,7 @@ use super::{WriteError, extension, write_beside, write_packed};
 use crate::PolyMesh;
 
 /// The formats written, by the ending of a name.
-const ENDINGS: [&str; 6] = ["obj", "stl", "ply", "off", "glb", "3mf"];
+const ENDINGS: [&str; 7] = ["obj", "stl", "ply", "off", "glb", "gltf", "3mf"];
 
 /// The ending (lower case) by which [`write_mesh`] will write, asked for before the work is done.
 pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {
@@ -36,12 +36,25 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "ply" => ply(mesh, out),
         "off" => off(mesh, out),
         "glb" => write_packed::glb(mesh, out),
+        "gltf" => write_packed::gltf(mesh, out),
         "3mf" => write_packed::threemf(mesh, out),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("no mesh format is called \"{kind}\""),
         )),
     }
+}
+
+/// What of `mesh` a file of the ending `kind` does not hold, one sentence each.
+pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
+    let mut out = Vec::new();
+    if mesh.colours.is_some() && matches!(kind, "stl" | "3mf") {
+        out.push(format!("the vertices' colours are left out: .{kind} is written without"));
+    }
+    if mesh.groups.is_some() && kind != "obj" {
+        out.push(format!("the groups of faces are left out: .{kind} is written without"));
+    }
+    out
 }
 
 fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {

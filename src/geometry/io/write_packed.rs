@@ -1,4 +1,4 @@
-//! GLB and 3MF, out.
+//! GLB, glTF and 3MF, out.
 
 use std::io::{self, Cursor, Write};
 
@@ -6,8 +6,17 @@ use zip::write::SimpleFileOptions;
 
 use crate::PolyMesh;
 
-/// One mesh, single precision, colours as bytes of linear light (the format's own).
-pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+/// A mesh as glTF has it: single precision, colours as bytes of linear light (the format's own).
+struct GltfScene<'a> {
+    json: serde_json::Value,
+    points: Vec<glam::Vec3>,
+    triangles: Vec<[u32; 3]>,
+    colours: Option<&'a [[u8; 4]]>,
+    /// Bytes of the buffer.
+    total: usize,
+}
+
+fn scene(mesh: &PolyMesh) -> GltfScene<'_> {
     let (triangles, _) = mesh.triangles();
     let points: Vec<glam::Vec3> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
     let (lo, hi) =
@@ -45,7 +54,34 @@ pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
             "asset": {"version": "2.0", "generator": "sculptd"}, "scene": 0, "scenes": [{}],
         });
     }
-    let mut json = serde_json::to_vec(&json)?;
+    GltfScene { json, points, triangles, colours: mesh.colours.as_deref(), total }
+}
+
+impl GltfScene<'_> {
+    fn buffer(&self, out: &mut dyn Write) -> io::Result<()> {
+        for p in &self.points {
+            out.write_all(bytemuck::bytes_of(&p.to_array().map(|v| v.to_bits().to_le())))?;
+        }
+        for t in &self.triangles {
+            out.write_all(bytemuck::bytes_of(&t.map(u32::to_le)))?;
+        }
+        for c in self.colours.into_iter().flatten() {
+            let linear = |v: u8| {
+                let v = v as f64 / 255.0;
+                let l = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
+                (l * 255.0).round() as u8
+            };
+            out.write_all(&[linear(c[0]), linear(c[1]), linear(c[2]), c[3]])?;
+        }
+        Ok(())
+    }
+}
+
+/// glTF in its binary container.
+pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let scene = scene(mesh);
+    let total = scene.total;
+    let mut json = serde_json::to_vec(&scene.json)?;
     json.resize(json.len().next_multiple_of(4), b' ');
     let length = u32::try_from(12 + 8 + json.len() + 8 + total)
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidInput, "GLB holds at most 4 GiB"))?;
@@ -57,21 +93,34 @@ pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     for word in [total as u32, 0x004e_4942] {
         out.write_all(&word.to_le_bytes())?;
     }
-    for p in &points {
-        out.write_all(bytemuck::bytes_of(&p.to_array().map(|v| v.to_bits().to_le())))?;
+    scene.buffer(out)
+}
+
+/// glTF as JSON, its buffer inside.
+pub(super) fn gltf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let mut scene = scene(mesh);
+    if scene.total > 0 {
+        let mut bytes = Vec::with_capacity(scene.total);
+        scene.buffer(&mut bytes)?;
+        let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+        scene.json["buffers"][0]["uri"] = uri.into();
     }
-    for t in &triangles {
-        out.write_all(bytemuck::bytes_of(&t.map(u32::to_le)))?;
+    out.write_all(&serde_json::to_vec(&scene.json)?)
+}
+
+/// Base64 with padding (RFC 4648, section 4).
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for part in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(part.get(i).copied().unwrap_or(0));
+        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for i in 0..4 {
+            let letter = LETTERS[(word >> (18 - 6 * i) & 63) as usize];
+            out.push(if i <= part.len() { letter.into() } else { '=' });
+        }
     }
-    for c in mesh.colours.iter().flatten() {
-        let linear = |v: u8| {
-            let v = v as f64 / 255.0;
-            let l = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-            (l * 255.0).round() as u8
-        };
-        out.write_all(&[linear(c[0]), linear(c[1]), linear(c[2]), c[3]])?;
-    }
-    Ok(())
+    out
 }
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>

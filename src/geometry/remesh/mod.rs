@@ -63,7 +63,17 @@ pub(super) fn layout(
     if !(lo.abs().max(hi.abs()).max_element() as f64 + more < REACH) {
         return Err(RemeshError::Empty);
     }
-    let grid = DistanceGrid::layout((lo.as_dvec3() - more, hi.as_dvec3() + more), side, MARGIN);
+    let (lo, hi) = (lo.as_dvec3() - more, hi.as_dvec3() + more);
+    let mut grid = DistanceGrid::layout((lo, hi), side - 1, MARGIN);
+    // The box's sides run half way between samples, or as near to it as one sample more makes them:
+    // a sample on a face has no sign, and its cell would come out empty.
+    for axis in 0..3 {
+        let beyond = (lo[axis] - grid.origin[axis]) / grid.spacing;
+        if (beyond.fract() - 0.5).abs() > 0.25 {
+            grid.size[axis] += 1;
+            grid.origin[axis] -= 0.5 * grid.spacing;
+        }
+    }
     let [x, y, z] = grid.size;
     if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }
 }
