@@ -7,7 +7,35 @@ from typing_extensions import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__: list[str]
+__all__ = [
+    "__version__",
+    "SculptdError",
+    "FileFormatError",
+    "BooleanFailed",
+    "EmptyResult",
+    "JobCancelled",
+    "Mesh",
+    "read",
+    "BooleanResult",
+    "boolean",
+    "boolean_all",
+    "slices",
+    "Thickness",
+    "thickness",
+    "Projection",
+    "measure",
+    "check",
+    "project",
+    "Solid",
+    "remesh",
+    "offset",
+    "hollow",
+    "decimate",
+    "subdivide",
+    "repair",
+    "picture",
+]
+
 __version__: str
 
 _Progress = Callable[[float], object] | None
