@@ -172,7 +172,7 @@ impl Mesh {
         py.detach(|| written::triangulated(&self.poly)).into()
     }
 
-    /// The mesh with every vertex multiplied by `scale`, then moved by `move`.
+    /// The mesh with every vertex multiplied by `scale`, then moved by `offset`.
     #[pyo3(signature = (scale=1.0, offset=[0.0, 0.0, 0.0]))]
     fn transformed(&self, scale: f64, offset: [f64; 3]) -> PyResult<Mesh> {
         let offset = DVec3::from(offset);

@@ -1,9 +1,40 @@
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any, Literal, TypedDict
+from typing import Any, Literal, TypedDict, final
+
+from typing_extensions import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "__version__",
+    "SculptdError",
+    "FileFormatError",
+    "BooleanFailed",
+    "EmptyResult",
+    "JobCancelled",
+    "Mesh",
+    "read",
+    "BooleanResult",
+    "boolean",
+    "boolean_all",
+    "slices",
+    "Thickness",
+    "thickness",
+    "Projection",
+    "measure",
+    "check",
+    "project",
+    "Solid",
+    "remesh",
+    "offset",
+    "hollow",
+    "decimate",
+    "subdivide",
+    "repair",
+    "picture",
+]
 
 __version__: str
 
@@ -30,14 +61,15 @@ class BooleanFailed(SculptdError):
 class EmptyResult(SculptdError): ...
 class JobCancelled(SculptdError): ...
 
+@final
 class Mesh:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         vertices: ArrayLike,
         faces: ArrayLike,
         face_starts: ArrayLike | None = None,
         colours: ArrayLike | None = None,
-    ) -> None: ...
+    ) -> Self: ...
     @property
     def vertices(self) -> NDArray[np.float64]: ...
     @property
@@ -55,7 +87,7 @@ class Mesh:
     @property
     def warnings(self) -> list[str]: ...
     def triangulated(self) -> Mesh: ...
-    def transformed(self, scale: float = 1.0, offset: _Vector = (0.0, 0.0, 0.0)) -> Mesh: ...
+    def transformed(self, scale: float = 1.0, offset: _Vector = ...) -> Mesh: ...
     def write(self, path: _Path) -> None: ...
     @classmethod
     def box(cls, low: _Vector, high: _Vector) -> Mesh: ...
@@ -65,6 +97,7 @@ class Mesh:
     def cylinder(cls, radius: float, height: float, around: int = 64) -> Mesh: ...
     def __len__(self) -> int: ...
 
+@final
 class BooleanResult:
     @property
     def operation(self) -> _Operation: ...
@@ -91,11 +124,12 @@ class BooleanResult:
     @property
     def warnings(self) -> list[str]: ...
 
-class ThinRegion(TypedDict):
+class _ThinRegion(TypedDict):
     position: list[float]
     thickness: float
     area: float
 
+@final
 class Thickness:
     @property
     def values(self) -> NDArray[np.float32]: ...
@@ -117,8 +151,9 @@ class Thickness:
     def error_bound(self) -> float: ...
     def summary(self) -> dict[str, Any]: ...
     def below(self, limit: float) -> tuple[float, float]: ...
-    def worst(self, limit: float, count: int = 10) -> list[ThinRegion]: ...
+    def worst(self, limit: float, count: int = 10) -> list[_ThinRegion]: ...
 
+@final
 class Projection:
     @property
     def area(self) -> float: ...
@@ -127,14 +162,15 @@ class Projection:
     @property
     def regions(self) -> list[tuple[NDArray[np.float64], list[NDArray[np.float64]]]]: ...
 
+@final
 class Solid:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         mesh: Mesh,
         *,
         sign: Literal["winding", "pseudonormal"] = "winding",
         progress: _Progress = None,
-    ) -> None: ...
+    ) -> Self: ...
     def signed_distance(
         self, at: ArrayLike, *, progress: _Progress = None
     ) -> NDArray[np.float64]: ...
@@ -143,7 +179,7 @@ class Solid:
     ) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
     def winding(self, at: ArrayLike) -> NDArray[np.float64]: ...
 
-class Measures(TypedDict):
+class _Measures(TypedDict):
     volume: float
     area: float
     dimensions: list[float]
@@ -182,10 +218,10 @@ def thickness(
     edges: Literal["extrapolate", "raw", "sphere", "neutral"] = "extrapolate",
     progress: _Progress = None,
 ) -> Thickness: ...
-def measure(mesh: Mesh) -> Measures: ...
+def measure(mesh: Mesh) -> _Measures: ...
 def check(mesh: Mesh, *, crossings: bool = True, progress: _Progress = None) -> dict[str, Any]: ...
 def project(
-    mesh: Mesh, direction: _Vector = (0.0, 0.0, -1.0), *, progress: _Progress = None
+    mesh: Mesh, direction: _Vector = ..., *, progress: _Progress = None
 ) -> Projection: ...
 def remesh(
     mesh: Mesh, *, side: int = 256, sharp: bool = False, progress: _Progress = None
