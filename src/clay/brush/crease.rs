@@ -5,8 +5,8 @@
 //! towards the line of the stroke by a share of its way there, so it never passes the line. The
 //! first dab has no line and only cuts.
 //!
-//! A falloff that comes to a point would leave a pit under each dab: the floor is rounded over the
-//! distance between two dabs, so that their sum along the stroke is even.
+//! A falloff that comes to a point would leave a pit under each dab: the floor is rounded, so that
+//! the sum of the dabs along the stroke is even.
 
 use glam::Vec3;
 
@@ -15,6 +15,9 @@ use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
+
+/// How wide the floor of the groove is rounded, in radii.
+const FLOOR: f32 = 0.08;
 
 /// One dab of crease.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +54,7 @@ impl Brush for CreaseBrush {
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let rate = if dab.heading == Vec3::ZERO { 0.0 } else { dab.extra(0) * dab.strength };
-        let round = dab.settings.spacing.clamp(0.02, 0.2) * dab.radius;
+        let round = FLOOR * dab.radius;
         let round = round * round;
         let middle = dab.fade(round);
         CreaseBrush {

@@ -104,6 +104,13 @@ impl Dab<'_> {
         -ln(1.0 - rate.clamp(0.0, FASTEST)) * self.span
     }
 
+    /// The share of the way to a mean that moves along with it (that of its neighbours) which a
+    /// vertex goes with this dab, if it goes `rate` of it (0 to 1) with a dab for which `span` is
+    /// 1: what evens a surface adds up by the share itself.
+    pub fn evening(&self, rate: f32) -> f32 {
+        (rate * self.span).clamp(0.0, 1.0)
+    }
+
     /// The share of the brush at a squared distance from its middle.
     #[inline(always)]
     pub fn fade(&self, d2: f32) -> f32 {

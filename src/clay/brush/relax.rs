@@ -2,7 +2,7 @@
 //! the way to the middle of the neighbours.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::{Dab, part};
+use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of relax, made ready.
@@ -16,6 +16,6 @@ impl Brush for RelaxBrush {
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (n, d) = (spot.normal(), spot.middle() - spot.p);
-        VertexChange::by((d - n * d.dot(n)) * part(dab.pace, spot.weight))
+        VertexChange::by((d - n * d.dot(n)) * (dab.evening(dab.strength) * spot.weight))
     }
 }

@@ -11,8 +11,8 @@ use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
 use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
-use super::dab::{Dab, FASTEST, part};
-use super::weights::{Weights, ln};
+use super::dab::Dab;
+use super::weights::Weights;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
 use sculptd_geometry::simd::cotangents::MAX_COT;
@@ -27,21 +27,19 @@ pub struct SmoothBrush {
     /// What faces away from it is left alone; zero: nothing is.
     normal: Vec3,
     radius: f32,
-    /// How fast it goes to the weighted mean of the ring, at the centre.
-    pace: f32,
+    /// The share of the way to the weighted mean of the ring, at the centre.
+    lambda: f32,
 }
 
 impl SmoothBrush {
-    /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre; taken
-    /// as [`FASTEST`] at most.
+    /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre.
     pub fn new(centre: Vec3, radius: f32, lambda: f32) -> Self {
-        let pace = -ln(1.0 - lambda.clamp(0.0, FASTEST));
-        SmoothBrush { centre, normal: Vec3::ZERO, radius, pace }
+        SmoothBrush { centre, normal: Vec3::ZERO, radius, lambda: lambda.clamp(0.0, 1.0) }
     }
 
     fn of(dab: &Dab<'_>) -> Self {
-        let (centre, radius, pace) = (dab.centre, dab.radius, dab.pace_of(dab.strength));
-        SmoothBrush { centre, normal: dab.normal, radius, pace }
+        let lambda = dab.evening(dab.strength);
+        SmoothBrush { normal: dab.normal, ..SmoothBrush::new(dab.centre, dab.radius, lambda) }
     }
 }
 
@@ -105,7 +103,7 @@ impl Kernel for SmoothBrush {
         Weights::with(|w| {
             let fade = |d2: f32| {
                 let fade = 1.0 - d2 / radius2;
-                part(self.pace, fade * fade)
+                self.lambda * (fade * fade)
             };
             out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
             let weights = w.of(page);
@@ -147,7 +145,7 @@ impl Brush for SmoothBrush {
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (sum, weights) = around(spot.page, spot.v, spot.p);
         if weights > 0.0 {
-            VertexChange::by(sum * (part(self.pace, spot.weight) / weights))
+            VertexChange::by(sum * (self.lambda * spot.weight / weights))
         } else {
             VertexChange::default()
         }

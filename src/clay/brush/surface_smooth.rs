@@ -3,7 +3,7 @@
 //! `1 / lambda + 1 / mu` is the pass band: what is wider than that keeps its form.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::{Dab, part};
+use super::dab::Dab;
 use super::smooth::around;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -16,23 +16,22 @@ const MOST: f32 = 0.6;
 /// One dab of surface smooth.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfaceSmoothBrush {
-    pace: f32,
-    back: bool,
+    factor: f32,
 }
 
 impl Brush for SurfaceSmoothBrush {
     const PASSES: usize = 2;
 
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
-        SurfaceSmoothBrush { pace: dab.pace_of(dab.strength * MOST), back: dab.pass > 0 }
+        let lambda = dab.evening(dab.strength * MOST).min(MOST);
+        let back = -lambda / (1.0 - PASS_BAND * lambda);
+        SurfaceSmoothBrush { factor: if dab.pass == 0 { lambda } else { back } }
     }
 
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (sum, weights) = around(spot.page, spot.v, spot.p);
         if weights > 0.0 && !spot.page.is_border(spot.v) {
-            let lambda = part(self.pace, spot.weight);
-            let factor = if self.back { -lambda / (1.0 - PASS_BAND * lambda) } else { lambda };
-            VertexChange::by(sum * (factor / weights))
+            VertexChange::by(sum * (self.factor * spot.weight / weights))
         } else {
             VertexChange::default()
         }

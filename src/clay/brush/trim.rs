@@ -4,7 +4,7 @@
 //! stroke accumulates), so a stroke does not dig itself in.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::Dab;
+use super::dab::{Dab, FASTEST, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
@@ -12,6 +12,7 @@ use crate::brush::surface_query::{Plane, SurfaceQuery};
 #[derive(Debug, Clone, Copy)]
 pub struct TrimBrush {
     plane: Plane,
+    pace: f32,
 }
 
 impl Brush for TrimBrush {
@@ -25,7 +26,10 @@ impl Brush for TrimBrush {
     }];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
-        TrimBrush { plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength) }
+        TrimBrush {
+            plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength),
+            pace: dab.pace_of(FASTEST),
+        }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
@@ -34,6 +38,6 @@ impl Brush for TrimBrush {
             return VertexChange::default();
         }
         // A knife has no soft edge: a third of the falloff is all the fading there is.
-        VertexChange::by(self.plane.normal * (-h * (spot.weight * 3.0).min(1.0)))
+        VertexChange::by(self.plane.normal * (-h * part(self.pace, (spot.weight * 3.0).min(1.0))))
     }
 }

@@ -41,6 +41,8 @@ const ON_BRINK: f32 = 0.1;
 const MOST_HIDDEN: usize = 10;
 /// No dab at the end of a stroke that is nearer to the last one than this share of the spacing.
 const ON_END: f32 = 0.02;
+/// A stroke none of whose dabs had this share of its greatest pressure is a tap.
+const FAINT: f32 = 0.5;
 /// Beyond so many spacings the surface at a dab's own view point is another one than that which the
 /// dab was laid on.
 const JUMPED: f32 = 4.0;
@@ -61,11 +63,11 @@ pub struct Spacer {
     /// Height and width of the view in the same unit: x is multiplied by this before lengths are
     /// taken.
     aspect: f32,
-    /// Dabs since the pen touched, and the pressure of the first one.
+    /// Dabs since the pen touched, and the greatest pressure of one.
     #[serde(default)]
     dabs: u32,
     #[serde(default)]
-    touch: f32,
+    firmest: f32,
 }
 
 /// From one report of the pen to the next.
@@ -158,36 +160,37 @@ fn advance(
 
 impl Spacer {
     pub fn new(aspect: f32) -> Self {
-        Spacer { last: None, leapt: false, aspect, dabs: 0, touch: 0.0 }
+        Spacer { last: None, leapt: false, aspect, dabs: 0, firmest: 0.0 }
     }
 
     /// The pen touches: a dab at once.
     pub fn begin(&mut self, at: &PenPoint, on: &mut dyn Surface) -> Flow {
-        *self = Spacer { touch: at.pressure, ..Spacer::new(self.aspect) };
+        *self = Spacer::new(self.aspect);
         self.rest(at, on)
     }
 
     /// The stroke ends at `at`, to which the path was walked: a dab there, with the share of the
-    /// strength that is due to the way from the last one. A stroke that came nowhere is a tap: it
-    /// leaves what one dab does at `firmest`, the point of the greatest pressure, less what the
-    /// dab at the touch did.
+    /// strength that is due to the way from the last one. A stroke that came nowhere, or that laid
+    /// its dabs before and after the pen was pressed, is a tap: it leaves what one dab does at
+    /// `firmest`, the point of the greatest pressure, less what its firmest dab did.
     pub fn finish(&mut self, at: &PenPoint, firmest: &PenPoint, on: &mut dyn Surface) -> Flow {
-        if self.dabs <= 1 {
-            let touch = if self.dabs == 0 { 0.0 } else { self.touch };
-            if firmest.pressure <= touch {
-                return Flow::Go;
+        let mut flow = Flow::Go;
+        if self.dabs > 1
+            && let (Some(last), Some(hit)) = (self.last, on.pick(at.view))
+        {
+            let off = (hit.position - last).length() / on.spacing(at);
+            if (ON_END..=1.0).contains(&off) {
+                flow = self.place(at, &hit, off, &mut |on| on.pick(at.view), on);
             }
-            let share = 1.0 - touch / firmest.pressure;
-            let Some(hit) = on.pick(firmest.view) else { return Flow::Go };
-            self.dabs += 1;
-            return on.dab(firmest, &hit, Laid { tap: true, share, ..Laid::ALONE });
         }
-        let (Some(last), Some(hit)) = (self.last, on.pick(at.view)) else { return Flow::Go };
-        let off = (hit.position - last).length() / on.spacing(at);
-        if !(ON_END..=1.0).contains(&off) {
-            return Flow::Go;
+        let most = if self.dabs > 1 { FAINT * firmest.pressure } else { firmest.pressure };
+        if self.firmest < most
+            && let Some(hit) = on.pick(firmest.view)
+        {
+            let share = 1.0 - self.firmest / firmest.pressure;
+            flow = on.dab(firmest, &hit, Laid { tap: true, share, ..Laid::ALONE });
         }
-        self.place(at, &hit, off, &mut |on| on.pick(at.view), on)
+        flow
     }
 
     /// A dab more where the pen rests: the run goes on from it.
@@ -210,6 +213,7 @@ impl Spacer {
         let along = self.last.and_then(|p| (hit.position - p).try_normalize());
         let flow = on.dab(at, hit, Laid { first: self.last.is_none(), along, share, tap: false });
         self.dabs = self.dabs.saturating_add(1);
+        self.firmest = self.firmest.max(at.pressure);
         let now = again(on).map_or(hit.position, |h| h.position);
         // The dab may have folded its own place out of sight.
         self.leapt = (now - hit.position).length() > JUMPED * on.spacing(at) + 1e-30;
