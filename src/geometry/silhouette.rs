@@ -12,16 +12,11 @@ use i_overlay::core::overlay::Overlay;
 use i_overlay::core::overlay::ShapeType::Subject;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
-use rayon::prelude::*;
 
 use super::distance::topology::{NO_PARTNER, Topology};
 
 /// Half the extent of a chain in whole numbers: about 4e-9 of the extent is the smallest step.
 const REACH: f64 = (1 << 28) as f64;
-
-/// With more edges than this the triangles are united in groups of so many.
-const MANY: usize = 6000;
-const GROUP: usize = 128;
 
 /// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit
 /// length.
@@ -176,10 +171,11 @@ impl Chain {
     /// The region that the chain goes around, as polygons with holes.
     pub fn resolve(mut self) -> Vec<PlaneRegion> {
         let loops = self.loops();
-        self.regions(resolved(&loops))
-    }
-
-    fn regions(&self, shapes: Vec<Vec<Vec<IntPoint>>>) -> Vec<PlaneRegion> {
+        let mut overlay = Overlay::<i32>::new(self.edges.len());
+        for l in &loops {
+            overlay.add_contour(l, Subject);
+        }
+        let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
         let back = |p: &IntPoint| self.centre + DVec2::new(p.x as f64, p.y as f64) / self.scale;
         shapes
             .into_iter()
@@ -193,51 +189,6 @@ impl Chain {
             })
             .collect()
     }
-
-    /// The union of triangles that all face the viewer, group by group: of neighbours first, then of
-    /// pairs of groups. Where thousands of outlines cross each other, as those of a ribbed or
-    /// braided part do, most of the crossings lie within the shadow and are never computed.
-    fn united(&self, mut triangles: Vec<[[i32; 2]; 3]>) -> Vec<PlaneRegion> {
-        // Along a curve through the plane that keeps neighbours together (Morton 1966).
-        let spread = |x: i32| {
-            let mut x = u64::from((x >> 13).wrapping_add(1 << 16) as u32 & 0xffff);
-            x = (x | x << 8) & 0x00ff_00ff;
-            x = (x | x << 4) & 0x0f0f_0f0f;
-            x = (x | x << 2) & 0x3333_3333;
-            (x | x << 1) & 0x5555_5555
-        };
-        let middle = |t: &[[i32; 2]; 3], k: usize| t[0][k] / 3 + t[1][k] / 3 + t[2][k] / 3;
-        triangles.sort_by_cached_key(|t| (spread(middle(t, 0)) | spread(middle(t, 1)) << 1, *t));
-        let mut groups: Vec<Vec<Vec<IntPoint>>> = triangles
-            .par_chunks(GROUP)
-            .map(|some| {
-                let mut own = Chain { centre: self.centre, scale: self.scale, edges: Vec::new() };
-                for t in some {
-                    (0..3).for_each(|k| own.push(t[k], t[(k + 1) % 3]));
-                }
-                resolved(&own.loops()).into_iter().flatten().collect()
-            })
-            .collect();
-        while groups.len() > 1 {
-            groups = groups
-                .par_chunks(2)
-                .map(|pair| match pair {
-                    [one] => one.clone(),
-                    _ => resolved(&pair.concat()).into_iter().flatten().collect(),
-                })
-                .collect();
-        }
-        self.regions(resolved(&groups.concat()))
-    }
-}
-
-/// The region that loops go around, in shapes: an outer loop each, then its holes.
-fn resolved(loops: &[Vec<IntPoint>]) -> Vec<Vec<Vec<IntPoint>>> {
-    let mut overlay = Overlay::<i32>::new(loops.iter().map(Vec::len).sum());
-    for l in loops {
-        overlay.add_contour(l, Subject);
-    }
-    overlay.overlay(OverlayRule::Subject, FillRule::NonZero)
 }
 
 /// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent. Rings repeat their first
@@ -283,47 +234,5 @@ pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion>
             if side > 0 { chain.push(a, b) } else { chain.push(b, a) }
         }
     }
-    if chain.edges.len() < MANY {
-        return chain.resolve();
-    }
-    let place = |v: u32| chain.whole(flat[v as usize]);
-    let facing_us = topology.triangles.iter().zip(&facing).filter_map(|(t, &side)| match side {
-        1 => Some(t.map(place)),
-        -1 if !topology.closed => Some([t[0], t[2], t[1]].map(place)),
-        _ => None,
-    });
-    chain.united(facing_us.collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn triangles_united_in_groups_have_the_outline_of_all() {
-        // Strips that cross each other: two hundred one way, two hundred the other.
-        let (lo, hi) = (DVec2::splat(-1.0), DVec2::splat(21.0));
-        let chain = Chain::new(lo, hi);
-        let mut triangles = Vec::new();
-        for i in 0..200 {
-            let x = 0.1 * f64::from(i);
-            let strip = |a: DVec2, b: DVec2| {
-                let w = (b - a).perp().normalize() * 0.03;
-                [a - w, b - w, b + w, a + w].map(|p| chain.whole(p))
-            };
-            for [a, b, c, d] in [
-                strip(DVec2::new(x, 0.0), DVec2::new(20.0 - x, 20.0)),
-                strip(DVec2::new(0.0, x), DVec2::new(20.0, 20.0 - x)),
-            ] {
-                triangles.extend([[a, b, c], [a, c, d]]);
-            }
-        }
-        let mut whole = chain.clone();
-        for t in &triangles {
-            (0..3).for_each(|k| whole.push(t[k], t[(k + 1) % 3]));
-        }
-        let area = |r: &[PlaneRegion]| r.iter().map(PlaneRegion::area).sum::<f64>();
-        let (one, other) = (area(&whole.resolve()), area(&chain.united(triangles)));
-        assert!(one > 50.0 && (one - other).abs() < 1e-5 * one, "{one} {other}");
-    }
+    chain.resolve()
 }
