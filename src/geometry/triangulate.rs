@@ -191,6 +191,10 @@ fn flat_ear(points: &[Coord<f64>], i: usize, j: usize, k: usize, turn: f64) -> b
     turn.abs() <= 1e-9 * square(i, j).max(square(j, k)).max(square(k, i))
 }
 
+/// Corners that may be held against an ear, over all ears of a polygon: some seconds. A polygon
+/// beyond it crosses or repeats itself over and over.
+const MOST_CHECKS: u64 = 1_000_000_000;
+
 /// Cuts ears; a diagonal that is not `allowed` is taken only where no other ear is left.
 fn ears(
     corners: &[u32],
@@ -215,11 +219,19 @@ fn ears(
     // Rounds of ever lower demands: a true ear by an allowed diagonal that leaves no three corners
     // in line; any true ear by an allowed diagonal; a true ear; any convex corner; any corner.
     // Simple polygons without neighbours in the way need the first two only.
-    let mut demand = 0;
+    let (mut demand, mut least, mut checks) = (0, 0, 0u64);
     while left > 3 {
         let (p, q) = (prev[at], next[at]);
         let bend = turn(p, at, q);
         let convex = bend > 0.0;
+        if demand < 3 {
+            checks += reflex.len() as u64 + 1;
+            if checks > MOST_CHECKS {
+                // Whatever it is: any corner, in order, which ends at once.
+                (demand, least) = (4, 4);
+                reflex.clear();
+            }
+        }
         let good = match demand {
             0..=2 => {
                 (demand > 1 || allowed(p, q))
@@ -244,7 +256,7 @@ fn ears(
         prev[q] = p;
         left -= 1;
         tried = 0;
-        demand = 0;
+        demand = least;
         let gone = at;
         reflex.retain(|&r| r != gone && ((r != p && r != q) || turn(prev[r], r, next[r]) <= 0.0));
         // One on, so that a round polygon is not cut into a fan.
@@ -310,6 +322,15 @@ mod tests {
             .collect();
         sides.sort_unstable();
         assert!(sides.chunk_by(|a, b| a == b).all(|g| g.len() == 2), "{sides:?}");
+    }
+
+    #[test]
+    fn a_face_that_repeats_its_corners_ends() {
+        let mut m = PolyMesh::new();
+        m.positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        let corners: Vec<u32> = (0..60_000).map(|i| (i * 7 + i / 3) as u32 % 4).collect();
+        m.push_face(&corners);
+        assert_eq!(m.triangulate().0.triangles.len(), corners.len() - 2);
     }
 
     #[test]
