@@ -257,7 +257,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         if solid.mesh.face_count() == 0 {
             out.warnings.push(format!("the {name} is empty"));
         }
-        let written = write_ready(&file, &solid.mesh, written, &job)?;
+        let written = write_ready(&file, &solid.mesh, written.as_ref(), &job)?;
         out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
         let mut made = Made::of(&name, file, &written);
         if args.details {
