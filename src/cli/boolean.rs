@@ -483,10 +483,11 @@ fn operand(
     if args.solve.is_none() && !facts.closed {
         // Said here, where the file's name is known and what helps.
         if let Err(boolean::BooleanError::Open { edges, .. }) = boolean::check(&mesh, "", job) {
+            let first = args.meshes.first().is_some_and(|m| m == path);
             return Err(Fail::Input(format!(
-                "{}: the surface is open: {edges} edges lack a partner (--solve winding closes \
-                 holes first)",
-                path.display()
+                "{}: {} is open: {edges} edges lack a partner (--solve winding closes holes first)",
+                path.display(),
+                boolean::NAMES[usize::from(!first)]
             )));
         }
     }
