@@ -257,7 +257,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         if solid.mesh.face_count() == 0 {
             out.warnings.push(format!("the {name} is empty"));
         }
-        let written = write_ready(&file, &solid.mesh, written, &job)?;
+        let written = write_ready(&file, &solid.mesh, written.as_ref(), &job)?;
         out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
         let mut made = Made::of(&name, file, &written);
         if args.details {
@@ -483,10 +483,11 @@ fn operand(
     if args.solve.is_none() && !facts.closed {
         // Said here, where the file's name is known and what helps.
         if let Err(boolean::BooleanError::Open { edges, .. }) = boolean::check(&mesh, "", job) {
+            let first = args.meshes.first().is_some_and(|m| m == path);
             return Err(Fail::Input(format!(
-                "{}: the surface is open: {edges} edges lack a partner (--solve winding closes \
-                 holes first)",
-                path.display()
+                "{}: {} is open: {edges} edges lack a partner (--solve winding closes holes first)",
+                path.display(),
+                boolean::NAMES[usize::from(!first)]
             )));
         }
     }

@@ -98,19 +98,19 @@ pub(super) fn write_checked(
     job: &Job,
 ) -> Result<FileFacts, Fail> {
     let ready = crossings.map(|tolerance| ReadyMesh::of(path, mesh, tolerance, job)).transpose()?;
-    write_ready(path, mesh, ready, job)
+    write_ready(path, mesh, ready.as_ref(), job)
 }
 
 /// Writes `mesh`, or what `ready` has in its place, reads the file again and says what is in it.
 pub(super) fn write_ready(
     path: &Path,
     mesh: &PolyMesh,
-    ready: Option<ReadyMesh>,
+    ready: Option<&ReadyMesh>,
     job: &Job,
 ) -> Result<FileFacts, Fail> {
     let mut warnings = left_out(writable_format(path)?, mesh);
-    let crossings = ready.as_ref().map(|r| r.crossings);
-    write_mesh(path, ready.as_ref().and_then(|r| r.changed.as_ref()).unwrap_or(mesh))?;
+    let crossings = ready.map(|r| r.crossings);
+    write_mesh(path, ready.and_then(|r| r.changed.as_ref()).unwrap_or(mesh))?;
     if let Some(left) = crossings.filter(|n| *n > 0) {
         warnings.push(format!(
             "{left} pairs of triangles cross in {} after rounding to the format",

@@ -110,7 +110,7 @@ pub enum WriteError {
     },
     /// The extension names no format that can be written.
     #[error(
-        "{}: expected a name that ends in .obj, .stl, .ply, .off, .glb or .3mf",
+        "{}: expected a name that ends in .obj, .stl, .ply, .off, .glb, .gltf or .3mf",
         path.display()
     )]
     Extension {
