@@ -29,8 +29,6 @@ pub struct CreaseBrush {
     pinch: f32,
     /// Squared, mesh units: added to the squared distance from the middle.
     round: f32,
-    /// Makes up for that in the middle.
-    whole: f32,
 }
 
 impl CreaseBrush {
@@ -56,10 +54,8 @@ impl Brush for CreaseBrush {
         let rate = if dab.heading == Vec3::ZERO { 0.0 } else { dab.extra(0) * dab.strength };
         let round = FLOOR * dab.radius;
         let round = round * round;
-        let middle = dab.fade(round);
         CreaseBrush {
             round,
-            whole: if middle > 0.0 { 1.0 / middle } else { 1.0 },
             normal: on.plane(dab, 0.0).normal,
             along: dab.along(),
             pinch: dab.pace_of(rate),
@@ -67,7 +63,7 @@ impl Brush for CreaseBrush {
     }
 
     fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, at: Vec3) -> f32 {
-        dab.fade((at - dab.centre).length_squared() + self.round) * self.whole
+        dab.fade((at - dab.centre).length_squared() + self.round)
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::BrushSettings;
 use super::stamp::Lens;
-use super::weights::{exp, facing, ln};
+use super::weights::{facing, ln};
 use crate::Reach;
 
 /// Images of a dab at most, itself counted.
@@ -17,11 +17,14 @@ pub const IMAGES: usize = 32;
 /// The greatest share of the way to its goal that a brush goes over a fifth of the radius.
 pub const FASTEST: f32 = 0.97;
 
-/// The share of the way to its goal that a vertex of this weight goes at this pace: `1 -
-/// e^-(pace * weight)`.
+/// The share of the way to its goal that a vertex of this weight goes at this pace: `1 - e^-x` with
+/// `x = pace * weight`, the exponential by its series to the fourth power. That is one division,
+/// and off by less than 0.002 up to `x = 1`, by 0.012 at the fastest pace.
 #[inline(always)]
 pub fn part(pace: f32, weight: f32) -> f32 {
-    1.0 - exp(-pace * weight)
+    let x = pace * weight;
+    let e = 1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0))));
+    (e - 1.0) / e
 }
 
 /// How a brush is held.
