@@ -22,7 +22,9 @@ mod tests {
     #[test]
     fn the_daemon_s_file_is_the_code_s_own_defaults_and_names_every_key() {
         let written: Config = toml::from_str(DAEMON).expect("it parses");
-        assert_eq!(written, Config::default());
+        // What the table of the brush leaves out is its preset's: compared below.
+        let code = Config::default();
+        assert_eq!(Config { brush: code.brush, ..written }, code);
         let keys = |table: &toml::Table| -> Vec<String> {
             let sections = table.iter();
             let keys = sections.flat_map(|(section, keys)| {

@@ -480,7 +480,10 @@ fn attempt(
         }
         job.check()?;
         let at_the_cut = a.on_both();
-        emit::drop_folded_faces(&mut mesh, &mut origins, at_the_cut);
+        // Kept contact is such a sheet, and wanted.
+        if !options.keep_contact {
+            emit::drop_folded_faces(&mut mesh, &mut origins, at_the_cut);
+        }
         let mut facts = emit::finish(&mut mesh, &a.points.at, job)?;
         let contact = a.points.contact.farthest;
         if facts.closed && facts.components > 1 && contact > 8.0 * floor {

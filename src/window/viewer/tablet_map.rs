@@ -20,8 +20,9 @@ const PAIRS: usize = 256;
 const LEAST: usize = 12;
 /// Places of the pen that are remembered, for looking back by the delay.
 const TRAIL: usize = 512;
-/// Delays of the pointer behind the pen that are tried, microseconds.
-const DELAYS_US: [u64; 7] = [0, 8_000, 16_000, 25_000, 35_000, 50_000, 70_000];
+/// Delays of the pointer behind the pen that are tried: so many, by this step in microseconds. A pen
+/// at a thousand pixels a second is two pixels on in half a step.
+const DELAYS: (u64, u64) = (19, 4_000);
 /// A map is believed while its pairs lie within so many pixels of it, in the median.
 const BELIEVED: f64 = 3.0;
 /// No map fits: the pointer does not follow the pen.
@@ -167,9 +168,8 @@ impl TabletMap {
         // Pairs older than the trail are of an earlier visit: they have done their part.
         let oldest = self.trail.front().map_or(0, |t| t.0);
         self.pairs.retain(|p| p.t_us >= oldest);
-        let best = DELAYS_US
-            .iter()
-            .filter_map(|&delay| self.try_delay(delay))
+        let best = (0..DELAYS.0)
+            .filter_map(|i| self.try_delay(i * DELAYS.1))
             .min_by(|a, b| a.2.total_cmp(&b.2));
         let Some((delay, map, error)) = best else { return };
         if error <= BELIEVED {
