@@ -325,7 +325,8 @@ impl ResultSet {
         let (mut ready, mut crossings) = (Vec::new(), 0);
         for (name, solid, origins) in solids {
             let file = if several { named(&args.out, &name) } else { args.out.clone() };
-            let written = if args.trust {
+            // Kept contact is a sheet with two sides, which a repair would part.
+            let written = if args.trust || args.keep_contact {
                 None
             } else {
                 Some(ReadyMesh::of(&file, &solid.mesh, out.tolerance, job)?)
