@@ -163,18 +163,19 @@ impl WindowState {
 
 /// Whether the daemon must hear of it.
 fn differs(a: &DesktopLayout, b: &DesktopLayout) -> bool {
+    let pairs = a.tablets.iter().zip(&b.tablets);
+    a.away != b.away || a.covers != b.covers || !pairs.into_iter().all(|(a, b)| alike(a, b))
+}
+
+/// Whether two places of a tablet are the same to the eye.
+fn alike(a: &Option<(DeviceId, PenPlace)>, b: &Option<(DeviceId, PenPlace)>) -> bool {
     let near = |a: Vec2, b: Vec2| (a - b).abs().max_element() <= MOVED;
-    let same = |pair: (&Option<(DeviceId, PenPlace)>, &Option<(DeviceId, PenPlace)>)| match pair {
+    let (Some((i, place)), Some((j, other))) = (a, b) else { return a == b };
+    match (*place, *other) {
         (
-            Some((i, PenPlace::Mapped { origin, across, down })),
-            Some((j, PenPlace::Mapped { .. })),
-        ) => {
-            let Some((_, PenPlace::Mapped { origin: o, across: x, down: y })) = pair.1 else {
-                return false;
-            };
-            i == j && near(*origin, *o) && near(*across, *x) && near(*down, *y)
-        }
-        (a, b) => a == b,
-    };
-    a.away != b.away || a.covers != b.covers || !a.tablets.iter().zip(&b.tablets).all(same)
+            PenPlace::Mapped { origin, across, down },
+            PenPlace::Mapped { origin: o, across: x, down: y },
+        ) => i == j && near(origin, o) && near(across, x) && near(down, y),
+        _ => a == b,
+    }
 }

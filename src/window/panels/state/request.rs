@@ -13,6 +13,7 @@ use super::action::Action;
 
 /// What a panel asks for.
 #[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant)] // A few a frame, on the stack.
 pub enum UiRequest {
     World(Command),
     /// To a place of the session's history.
