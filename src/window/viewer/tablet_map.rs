@@ -170,8 +170,8 @@ impl TabletMap {
         self.pairs.retain(|p| p.t_us >= oldest);
         let best = (0..DELAYS.0)
             .filter_map(|i| self.try_delay(i * DELAYS.1))
-            .min_by(|a, b| a.2.total_cmp(&b.2));
-        let Some((delay, map, error)) = best else { return };
+            .min_by(|a, b| a.3.total_cmp(&b.3));
+        let Some((delay, map, error, _)) = best else { return };
         if error <= BELIEVED {
             (self.map, self.fit, self.apart) = (Some(map), (delay, error), false);
         } else if self.pairs.len() >= 2 * LEAST && error > WILD {
@@ -204,8 +204,9 @@ impl TabletMap {
         median(self.samples(delay_us).iter().map(|s| map.at(s.0).distance(s.1)).collect())
     }
 
-    /// The map with this delay, and the median distance of the pairs from it.
-    fn try_delay(&self, delay_us: u64) -> Option<(u64, ScreenMap, f64)> {
+    /// The map with this delay, and the median and the mean distance of the pairs from it. The mean
+    /// tells delays apart: while the pen rests all of them fit.
+    fn try_delay(&self, delay_us: u64) -> Option<(u64, ScreenMap, f64, f64)> {
         let all = self.samples(delay_us);
         let first = least_squares(&all)?;
         let middle = median(all.iter().map(|s| first.at(s.0).distance(s.1)).collect())?;
@@ -213,8 +214,9 @@ impl TabletMap {
         let kept: Vec<_> =
             all.into_iter().filter(|s| first.at(s.0).distance(s.1) <= limit).collect();
         let map = least_squares(&kept)?;
-        let error = median(kept.iter().map(|s| map.at(s.0).distance(s.1)).collect())?;
-        Some((delay_us, map, error))
+        let errors: Vec<f64> = kept.iter().map(|s| map.at(s.0).distance(s.1)).collect();
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        Some((delay_us, map, median(errors)?, mean))
     }
 }
 
@@ -261,12 +263,16 @@ mod tests {
         corners.into_iter().map(|c| a.at(c).distance(b.at(c))).fold(0.0, f64::max)
     }
 
-    /// A pen that wanders over its tablet for a second at 133 Hz, and a desktop that follows it
-    /// `delay_us` later in whole pixels.
+    /// A pen that goes from place to place over its tablet for a second at 133 Hz and halts at each,
+    /// as hands do, and a desktop that follows it `delay_us` later in whole pixels.
     fn hover(truth: &ScreenMap, delay_us: u64, mouse: bool) -> TabletMap {
+        let stops = [[0.3, 0.4], [0.55, 0.45], [0.5, 0.62], [0.28, 0.6], [0.42, 0.5], [0.5, 0.4]];
         let place = |t_us: u64| {
-            let t = t_us as f64 * 1e-6;
-            DVec2::new(0.4 + 0.15 * (2.1 * t).sin(), 0.5 + 0.12 * (3.3 * t + 0.4).cos())
+            let t = (t_us as f64 * 1e-6 - 0.9).max(0.0) * 4.0;
+            let (i, part) = ((t as usize).min(stops.len() - 2), t.fract());
+            let s = (part / 0.6).min(1.0);
+            let [a, b] = [stops[i], stops[i + 1]].map(|p| DVec2::new(p[0], p[1]));
+            a.lerp(b, s * s * (3.0 - 2.0 * s))
         };
         let mut map = TabletMap::default();
         for i in 0..133u64 {
