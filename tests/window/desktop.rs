@@ -166,7 +166,12 @@ fn stroke(from_us: u64, [from, to]: [(f64, f64); 2]) -> Stroke {
 #[test]
 #[allow(clippy::disallowed_methods)] // The pen moves in the time of the people who hold it.
 fn a_pen_that_the_desktop_follows_makes_each_stroke_once() {
-    let count = if long() { 200 } else { 24 };
+    // It measures what two programs make of the same moment: a loaded machine is no place for it.
+    if !long() {
+        println!("skipped: SCULPTD_LONG=1 runs it");
+        return;
+    }
+    let count = 200;
     // The first strokes are on the panel on the right: on its way there and from there to the clay the
     // pen hovers for a second, and its place is learned.
     let panel = |i: u64| stroke(300_000 + i * 600_000, [(1150.0, 600.0), (1180.0, 640.0)]);
