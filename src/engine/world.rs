@@ -297,6 +297,8 @@ impl World {
             Command::Jump(jump) => self.jump(jump),
             Command::Reopened => {
                 self.lift_all();
+                // It was of a window that is gone: who opens the session says its own.
+                self.desktop = DesktopLayout::default();
                 self.forget_steps();
             }
         }

@@ -127,7 +127,9 @@ impl WindowState {
     /// daemon sooner than the window hears of the press.
     pub(super) fn lend_to_pens(&mut self, wiring: &Wiring) {
         let busy = self.ui_state.modal.is_some() || self.ui_state.radial.is_some();
-        if busy || self.pointer.drag != Drag::None || self.tablets.in_range.is_empty() {
+        // A pen that has left in the meantime gives back what it was lent.
+        let nobody = self.tablets.in_range.is_empty() && self.pointer.lent.is_none();
+        if busy || self.pointer.drag != Drag::None || nobody {
             return;
         }
         let state = wiring.published.load();
