@@ -108,9 +108,10 @@
 //!   sculpt, reset. Waits for: time, the published state.
 //! * `sculptd-gallery`, made by `daemon::kiosk::spool`: brings finished sculptures to their place.
 //!   Waits for: the disk, the network.
-//! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the clock.
-//! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for: the
-//!   disk.
+//! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the
+//!   clock.
+//! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for:
+//!   the disk.
 //! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
@@ -124,8 +125,8 @@
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by
 //!   `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits for: a
 //!   request; a newer one replaces it.
-//! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the history.
-//!   Waits for: the disk.
+//! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the
+//!   history. Waits for: the disk.
 //!
 //! Long computations outside the tick (Booleans, thickness, repair) also use the threads of rayon's
 //! global pool.

@@ -1,7 +1,7 @@
 //! Sines, powers and turns with the same bits on every machine.
 //!
-//! The standard library's `sin`, `exp`, `powf` and their kin are the operating system's, which picks
-//! another implementation by the processor: the same stroke then makes another clay, and two
+//! The standard library's `sin`, `exp`, `powf` and their kin are the operating system's, which
+//! picks another implementation by the processor: the same stroke then makes another clay, and two
 //! machines that replay one session part ways. [`PortableMath`] is the crate `libm` (a port of
 //! musl's functions), whose arithmetic is IEEE 754 addition, multiplication and square root alone.
 //! Errors are below one unit in the last place; the ranges are those of the functions themselves.

@@ -181,8 +181,8 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
     ears(corners, &points, turn, |_, _| true, out);
 }
 
-/// Whether three corners are in line but for rounding. A triangle of such has no direction: in space
-/// it may lie in the plane of a face beside its own, over it.
+/// Whether three corners are in line but for rounding. A triangle of such has no direction: in
+/// space it may lie in the plane of a face beside its own, over it.
 fn flat_ear(points: &[Coord<f64>], i: usize, j: usize, k: usize, turn: f64) -> bool {
     let square = |a: usize, b: usize| {
         let (x, y) = (points[a].x - points[b].x, points[a].y - points[b].y);

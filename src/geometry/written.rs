@@ -219,7 +219,8 @@ impl LocalMesh {
                 }
             }
         }
-        // Along the other triangle's normal, to its plane and a little beyond, or to its other side.
+        // Along the other triangle's normal, to its plane and a little beyond, or to its other
+        // side.
         for (own, other) in [(s, t), (t, s)] {
             let [a, b, c] = self.triangles[other as usize].map(|v| self.positions[v as usize]);
             let normal = (b - a).cross(c - a).normalize_or_zero();

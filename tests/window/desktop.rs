@@ -172,8 +172,8 @@ fn a_pen_that_the_desktop_follows_makes_each_stroke_once() {
         return;
     }
     let count = 200;
-    // The first strokes are on the panel on the right: on its way there and from there to the clay the
-    // pen hovers for a second, and its place is learned.
+    // The first strokes are on the panel on the right: on its way there and from there to the clay
+    // the pen hovers for a second, and its place is learned.
     let panel = |i: u64| stroke(300_000 + i * 600_000, [(1150.0, 600.0), (1180.0, 640.0)]);
     let clay = |i: u64| {
         let (x, y) = (600.0 + (i % 7) as f64 * 12.0, 320.0 + (i % 5) as f64 * 16.0);

@@ -35,7 +35,8 @@ fn a_press_right_after_entering_or_leaving_a_panel_goes_where_it_is() {
     println!(
         "of {PRESSES} presses each, {on_clay} on the clay and {on_panel} on a panel were done"
     );
-    // Several presses in one pass of egui can be one click to it: the panel's figure is not yet whole.
+    // Several presses in one pass of egui can be one click to it: the panel's figure is not yet
+    // whole.
     let least = if long() { PRESSES } else { PRESSES * 8 / 10 };
     assert!(on_clay >= least && on_panel >= least);
 }

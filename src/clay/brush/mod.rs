@@ -2,8 +2,8 @@
 //! nothing else knows how many there are. What a brush begins with is a value, [`Presets`]: the
 //! defaults of the code, or texts that a program brings along.
 //!
-//! * [`brush_trait`], [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied. [`surface_query`]:
-//!   what a brush may ask first.
+//! * [`brush_trait`], [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied.
+//!   [`surface_query`]: what a brush may ask first.
 //! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
 //! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
 

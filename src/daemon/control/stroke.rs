@@ -39,8 +39,8 @@ impl VirtualPen {
     }
 
     /// Makes the stroke in the time that its points say, and waits until the loop has taken it.
-    /// `brush`: the brush to make it with, instead of the one in hand, and what that brush is set to
-    /// again afterwards where it is of another kind.
+    /// `brush`: the brush to make it with, instead of the one in hand, and what that brush is set
+    /// to again afterwards where it is of another kind.
     ///
     /// # Errors
     /// A point in space that is not seen, and a loop that takes nothing.

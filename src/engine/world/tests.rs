@@ -157,3 +157,17 @@ fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
         assert_eq!(recalled, set[*kind as usize], "{kind}");
     }
 }
+
+#[test]
+fn a_session_that_is_opened_again_has_no_desktop() {
+    use crate::desktop_layout::{DesktopLayout, PenPlace};
+    let plain = shapes::icosphere(1.0, 4);
+    let mut world = world(&plain);
+    let id = sculptd_devices::DeviceId(3);
+    let mut layout = DesktopLayout { away: true, ..DesktopLayout::default() };
+    layout.tablets[0] = Some((id, PenPlace::Unknown));
+    world.step(1, &[], &[Command::DesktopLayout(layout)]);
+    assert_eq!(world.desktop, layout);
+    world.step(2, &[], &[Command::Reopened]);
+    assert_eq!(world.desktop, DesktopLayout::default());
+}

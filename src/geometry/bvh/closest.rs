@@ -173,7 +173,8 @@ impl WideWork for NearestSearch<'_> {
         // What rounding the point itself may cost.
         let mut moved = p[0].abs().max(p[1].abs()).max(p[2].abs()) * 1.2e-7;
         if !corners.is_empty() {
-            // And rounding the corners: that a triangle seems nearer, and that another seems farther.
+            // And rounding the corners: that a triangle seems nearer, and that another seems
+            // farther.
             moved += 2.0 * tree.rounding();
         }
         let limit = within * within;

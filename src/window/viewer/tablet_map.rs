@@ -3,9 +3,9 @@
 //!
 //! The desktop's map is affine (an area that is cropped, turned, laid over one screen or several),
 //! so it is fitted by least squares. Two things make a pair worth less: the pointer follows the pen
-//! some milliseconds later, which matters the more the faster the pen is, and a mouse may have moved
-//! the pointer. The delay is found by trying several; pairs far from the map are left out of a
-//! second fit (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987, reweighting).
+//! some milliseconds later, which matters the more the faster the pen is, and a mouse may have
+//! moved the pointer. The delay is found by trying several; pairs far from the map are left out of
+//! a second fit (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987, reweighting).
 
 use std::collections::VecDeque;
 
@@ -20,8 +20,8 @@ const PAIRS: usize = 256;
 const LEAST: usize = 12;
 /// Places of the pen that are remembered, for looking back by the delay.
 const TRAIL: usize = 512;
-/// Delays of the pointer behind the pen that are tried: so many, by this step in microseconds. A pen
-/// at a thousand pixels a second is two pixels on in half a step.
+/// Delays of the pointer behind the pen that are tried: so many, by this step in microseconds. A
+/// pen at a thousand pixels a second is two pixels on in half a step.
 const DELAYS: (u64, u64) = (19, 4_000);
 /// A map is believed while its pairs lie within so many pixels of it, in the median.
 const BELIEVED: f64 = 3.0;
@@ -263,8 +263,8 @@ mod tests {
         corners.into_iter().map(|c| a.at(c).distance(b.at(c))).fold(0.0, f64::max)
     }
 
-    /// A pen that goes from place to place over its tablet for a second at 133 Hz and halts at each,
-    /// as hands do, and a desktop that follows it `delay_us` later in whole pixels.
+    /// A pen that goes from place to place over its tablet for a second at 133 Hz and halts at
+    /// each, as hands do, and a desktop that follows it `delay_us` later in whole pixels.
     fn hover(truth: &ScreenMap, delay_us: u64, mouse: bool) -> TabletMap {
         let stops = [[0.3, 0.4], [0.55, 0.45], [0.5, 0.62], [0.28, 0.6], [0.42, 0.5], [0.5, 0.4]];
         let place = |t_us: u64| {

@@ -203,9 +203,9 @@ fn touching_scenes_turned_in_each_precision() {
         wrong.extend(scene_faults(how, false));
         wrong.extend(scene_faults(how, true));
     }
-    // B - A of this scene is two pieces that share an edge alone, so that they are one shell or two.
-    // Volume and area are held all the same. Once the corners are rounded, the pieces share the edge
-    // only within the tolerance, and the answer says that it depends on the tolerance.
+    // B - A of this scene is two pieces that share an edge alone, so that they are one shell or
+    // two. Volume and area are held all the same. Once the corners are rounded, the pieces share
+    // the edge only within the tolerance, and the answer says that it depends on the tolerance.
     let on_an_edge = |w: &String| {
         w.starts_with("a cut through vertices and along an edge")
             && (w.contains("Double") && off_by(w) < 1e-12 || w.contains(", depends"))
