@@ -63,9 +63,31 @@ fn add_neighbours(mesh: &mut Clay, from: usize, kinds: u8) {
     }
 }
 
+/// A kernel behind one table of functions, so that the driver of a dab is compiled once and not for
+/// each brush; only the pass over one page is.
+trait PageKernel: Sync {
+    /// [`displace`], compiled for this processor.
+    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, old: &Page, before: &Page);
+}
+
+impl<K: Kernel> PageKernel for K {
+    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, old: &Page, before: &Page) {
+        dispatch(false, Displace { slot, side, old, before, kernel: self });
+    }
+}
+
 impl Clay {
     /// Lets `kernel` change what `reach` touches. See the module for what happens.
     pub fn dab<K: Kernel>(&mut self, reach: &Reach, kernel: &K, workers: &Workers) -> DabReport {
+        self.dab_pages(reach, kernel, workers)
+    }
+
+    fn dab_pages(
+        &mut self,
+        reach: &Reach,
+        kernel: &dyn PageKernel,
+        workers: &Workers,
+    ) -> DabReport {
         let now = self.clock.unwrap_or(|| 0);
         let t0 = now();
         let mut rows = 0;
@@ -86,7 +108,8 @@ impl Clay {
             let Clay { buffers, pages, history, .. } = self;
             workers.each(parallel, &mut buffers.slots, &mut buffers.sides, |slot, side| {
                 let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
-                dispatch(false, Displace { slot, side, old, before, kernel });
+                let same = |b: &&Arc<Page>| Arc::ptr_eq(&b.topology, &old.topology);
+                kernel.displace(slot, side, old, before.filter(same).unwrap_or(old));
             });
         }
         add_neighbours(self, selected, MOVED | PAINTED);
@@ -200,7 +223,7 @@ struct Displace<'a, K> {
     slot: &'a mut PageOutput,
     side: &'a mut PageTask,
     old: &'a Page,
-    before: Option<&'a Arc<Page>>,
+    before: &'a Page,
     kernel: &'a K,
 }
 
@@ -234,7 +257,7 @@ fn displace<K: Kernel>(
     slot: &mut PageOutput,
     side: &mut PageTask,
     old: &Page,
-    before: Option<&Arc<Page>>,
+    before: &Page,
     kernel: &K,
 ) {
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
@@ -242,7 +265,6 @@ fn displace<K: Kernel>(
     page.points.extend_from_slice(&old.points);
     let own = old.topology.own;
     slot.marks.resize(own, 0);
-    let before = before.filter(|b| Arc::ptr_eq(&b.topology, &old.topology)).map_or(old, |b| b);
     let mut out = PageOut {
         points: &mut page.points[..own],
         marks: &mut slot.marks,

@@ -43,8 +43,6 @@
 
 mod assembly;
 mod boxtree;
-// Its items are being documented: remove this line when they are.
-#[allow(missing_docs)]
 pub mod brush;
 mod clay;
 mod dab;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::toml_text::{from_toml, to_toml};
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_devices::calibration::Calibrations;
 use sculptd_devices::pad_actions::ActionTable;
@@ -217,11 +218,7 @@ impl Resolver {
             origins: BTreeMap::new(),
             presets: presets.clone(),
         };
-        // As text, so that a number of 32 bits has the digits that a person would write.
-        let defaults = toml::to_string(&Config::default()).unwrap_or_default();
-        if let Ok(table) = defaults.parse() {
-            resolver.lay(table, "default");
-        }
+        resolver.lay(Config::default().table(), "default");
         resolver
     }
 
@@ -233,7 +230,7 @@ impl Resolver {
 
     fn text(&mut self, text: &str, origin: &str) -> Result<(), ConfigError> {
         let invalid = |text: String| ConfigError::Invalid { origin: origin.into(), text };
-        let mut alone: Config = toml::from_str(text).map_err(|e| invalid(e.to_string()))?;
+        let mut alone: Config = from_toml(text).map_err(invalid)?;
         let table: toml::Table =
             text.parse().map_err(|e: toml::de::Error| invalid(e.to_string()))?;
         // Numbers of its own that the text does not give are those of the brush's preset.
@@ -277,7 +274,8 @@ impl Resolver {
     fn finish(mut self) -> Resolved {
         self.lay_brush();
         // Every layer was read alone before it was laid; keys do not depend on each other.
-        let mut config: Config = self.table.try_into().unwrap_or_default();
+        let text = to_toml(&self.table).unwrap_or_default();
+        let mut config: Config = from_toml(&text).unwrap_or_default();
         // The brush may be from one layer and its own numbers from another.
         config.brush = config.brush.clamped();
         config.presets = self.presets;
@@ -286,6 +284,12 @@ impl Resolver {
 }
 
 impl Config {
+    /// The same as tables of keys. By way of text, so that a number of 32 bits has the digits that
+    /// a person would write.
+    pub fn table(&self) -> toml::Table {
+        to_toml(self).ok().and_then(|text| text.parse().ok()).unwrap_or_default()
+    }
+
     /// Every number within its stated range; the message names the key, the value and the range.
     fn check(&self) -> Result<(), String> {
         fn within<T: PartialOrd + std::fmt::Display + Copy>(
@@ -358,7 +362,7 @@ mod tests {
     #[test]
     fn the_defaults_have_an_origin_and_the_values_of_the_code() {
         let resolved = Resolved::defaults(&Presets::default());
-        let in_code = toml::Table::try_from(Config::default()).expect("it serialises");
+        let in_code = Config::default().table();
         for (section, keys) in &in_code {
             for key in keys.as_table().expect("sections").keys() {
                 let origin = &resolved.origins[&format!("{section}.{key}")];

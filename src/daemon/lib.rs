@@ -35,6 +35,7 @@ pub mod systemd;
 pub mod tablet_actions;
 pub mod tick;
 pub mod tick_statistics;
+pub mod toml_text;
 pub mod trim;
 
 pub use published::{Published, Publisher};

@@ -59,8 +59,7 @@ impl Reload {
 
 /// The sections that changed and that a running loop does not take.
 fn later(old: &Config, new: &Config) -> Vec<String> {
-    let table = |c: &Config| toml::Table::try_from(c).unwrap_or_default();
-    let (old, new) = (table(old), table(new));
+    let (old, new) = (old.table(), new.table());
     new.iter()
         .filter(|(k, v)| *k != "brush" && old.get(*k) != Some(v))
         .map(|(k, _)| format!("[{k}]"))

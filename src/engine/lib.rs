@@ -18,7 +18,5 @@ pub mod hand;
 pub mod old_layout;
 pub mod payload;
 mod replaced;
-// Its items are being documented: remove this line when they are.
-#[allow(missing_docs)]
 pub mod stroke;
 pub mod world;

@@ -6,6 +6,7 @@
 
 use std::f32::consts::{PI, TAU};
 
+use sculptd_geometry::io::height_picture::{HeightPicture, read_height_picture};
 use sculptd_geometry::portable::PortableMath;
 use serde::{Deserialize, Serialize};
 
@@ -68,22 +69,14 @@ impl Picture {
     /// # Errors
     /// Says what is wrong: not a picture, too large, empty.
     pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
-        let reader = image::ImageReader::new(std::io::Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|e| format!("not a picture: {e}"))?;
-        let (width, rows) = reader.into_dimensions().map_err(|e| format!("not a picture: {e}"))?;
-        if u64::from(width) * u64::from(rows) > MOST {
-            return Err(format!("{width} x {rows} pixels; at most {MOST} are taken"));
-        }
-        let image = image::load_from_memory(bytes).map_err(|e| e.to_string())?.into_luma_alpha16();
+        let HeightPicture { width, height: rows, pixels } = read_height_picture(bytes, MOST)?;
         // What is transparent is low.
         let height = |[luma, alpha]: [u16; 2]| {
             ((u32::from(luma) * u32::from(alpha) + 32_767) / 65_535) as u16
         };
-        let heights = image.pixels().map(|p| height(p.0)).collect();
-        let opaque = image.pixels().all(|p| p.0[1] == u16::MAX);
-        let cover =
-            if opaque { Vec::new() } else { image.pixels().map(|p| p.0[1]).collect::<Vec<_>>() };
+        let heights = pixels.iter().map(|&p| height(p)).collect();
+        let opaque = pixels.iter().all(|p| p[1] == u16::MAX);
+        let cover = if opaque { Vec::new() } else { pixels.iter().map(|p| p[1]).collect() };
         let picture = Picture { width, height: rows, heights, cover };
         if picture.is_sane() { Ok(picture) } else { Err("an empty picture".into()) }
     }

@@ -44,10 +44,12 @@ pub struct CurveStroke {
 }
 
 impl CurveStroke {
+    /// The handles, in the order in which they were laid.
     pub fn points(&self) -> &[PenPoint] {
         &self.points
     }
 
+    /// Whether no handle is laid.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -57,6 +59,7 @@ impl CurveStroke {
         self.held
     }
 
+    /// Takes all handles away.
     pub fn clear(&mut self) {
         self.points.clear();
         self.held = None;

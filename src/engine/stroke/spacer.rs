@@ -159,6 +159,7 @@ fn advance(
 }
 
 impl Spacer {
+    /// At the beginning of a stroke. `aspect`: the view's width by its height.
     pub fn new(aspect: f32) -> Self {
         Spacer { last: None, leapt: false, aspect, dabs: 0, firmest: 0.0 }
     }

@@ -20,6 +20,7 @@ pub struct PenPoint {
 }
 
 impl PenPoint {
+    /// Between this point (`t` = 0) and `to` (1). A tilt that only one of them has is taken as is.
     pub fn lerp(&self, to: &PenPoint, t: f32) -> PenPoint {
         PenPoint {
             view: self.view.lerp(to.view, t),
@@ -36,6 +37,7 @@ impl PenPoint {
 /// Whether the budget of this tick allows another dab.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
+    /// Lay the next dab.
     Go,
     /// Stop here; the rest of the path is walked in the next tick.
     Pause,
@@ -78,6 +80,7 @@ impl Laid {
 
 /// What a stroke is drawn on.
 pub trait Surface {
+    /// Where the ray through a place of the view meets the surface first.
     fn pick(&mut self, view: Vec2) -> Option<Hit>;
     /// The wanted distance between dabs here, mesh units, > 0.
     fn spacing(&self, at: &PenPoint) -> f32;

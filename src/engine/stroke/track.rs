@@ -23,8 +23,11 @@ const MAX_WAITING: usize = 2048;
 /// What a pen sample means for a stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum PenEvent {
+    /// The tip touches.
     Down(PenPoint),
+    /// The tip moves while it touches.
     Move(PenPoint),
+    /// The tip is lifted.
     Up,
     /// The curve that is being laid is drawn.
     Draw,
@@ -114,8 +117,11 @@ enum Laying {
 /// What walking changed about the stroke itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Walked {
+    /// A stroke began.
     pub began: bool,
+    /// The stroke ended.
     pub ended: bool,
+    /// The budget of this tick is spent; the rest is walked in the next one.
     pub paused: bool,
 }
 
@@ -191,6 +197,7 @@ impl PenTrack {
         self.waiting.push_back(event);
     }
 
+    /// Whether a stroke is under way.
     pub fn is_open(&self) -> bool {
         self.open
     }
@@ -239,6 +246,7 @@ impl PenTrack {
         self.waiting.contains(&PenEvent::Draw)
     }
 
+    /// Whether nothing waits to be walked.
     pub fn is_idle(&self) -> bool {
         self.waiting.is_empty()
     }

@@ -9,6 +9,7 @@
 pub mod beside;
 mod format;
 mod gltf;
+pub mod height_picture;
 mod obj;
 mod off;
 mod ply;
