@@ -10,7 +10,7 @@ use sculptd_daemon::session;
 use serde_json::Value;
 
 /// Builds the library; `None` where there is no C compiler.
-fn shim(dir: &Path) -> Option<PathBuf> {
+pub(crate) fn shim(dir: &Path) -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/disk/faulty_disk.c");
     let library = dir.join("faulty_disk.so");
     let done = Command::new("cc")

@@ -6,6 +6,7 @@ mod kiosk;
 mod layout;
 mod panels;
 mod pictures;
+mod preferences;
 mod stall;
 mod versions;
 

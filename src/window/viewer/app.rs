@@ -27,7 +27,9 @@ pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
     let mut app = App { wiring, accessibility, open: None, failed: None };
     events.run_app(&mut app).map_err(|e| NoViewer::Window(e.to_string()))?;
     if let Some(mut open) = app.open {
-        open.preferences_file.keep(&open.ui_state);
+        if let Some(wrong) = open.preferences_file.keep(&open.ui_state) {
+            tracing::warn!("{wrong}");
+        }
     }
     app.failed.map_or(Ok(()), Err)
 }

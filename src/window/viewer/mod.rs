@@ -18,7 +18,7 @@ pub mod pages;
 pub mod picture;
 mod pointer;
 mod poll;
-mod preferences_file;
+pub mod preferences_file;
 pub mod preview;
 pub mod renderer;
 mod requests;

@@ -51,7 +51,10 @@ impl WindowState {
             changed |= self.ui_state.tab == Tab::Devices && devices != self.devices;
             changed |= self.ui_state.tab == Tab::Loop && !self.ui_state.hidden;
             (self.devices, self.listed_us) = (devices, now);
-            self.preferences_file.keep(&self.ui_state);
+            if let Some(wrong) = self.preferences_file.keep(&self.ui_state) {
+                self.ui_state.say(wrong, true);
+                changed = true;
+            }
         }
         match &wiring.kiosk {
             Some(screen) => {

@@ -1,49 +1,92 @@
-//! The file that keeps the preferences between runs. It is written when something changed.
+//! The file that keeps the preferences between runs. It is written when something changed. A
+//! failure to write is told once, and a file that cannot be read is set aside before it is written
+//! over.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::panels::state::{Preferences, UiState};
 use sculptd_geometry::io::write_beside;
 
+/// Where the preferences are kept, and what was last kept there.
 #[derive(Debug)]
 pub struct PreferencesFile {
     path: Option<PathBuf>,
     kept: Preferences,
+    /// What is wrong with the file, until it was told.
+    wrong: Option<String>,
+    /// The last write failed, and that was told.
+    failing: bool,
 }
 
 impl PreferencesFile {
     /// The state of the window as the person left it.
     pub fn load() -> (PreferencesFile, UiState) {
-        let path = directories::ProjectDirs::from("", "", "sculptd")
-            .map(|d| d.config_dir().join("viewer.toml"));
-        let text = path.as_ref().and_then(|p| std::fs::read_to_string(p).ok()).unwrap_or_default();
-        let prefs = Preferences::parse(&text);
+        match directories::ProjectDirs::from("", "", "sculptd") {
+            Some(d) => PreferencesFile::load_from(&d.config_dir().join("viewer.toml")),
+            None => PreferencesFile::nothing(),
+        }
+    }
+
+    /// The same from a file of this name, which need not be there.
+    pub fn load_from(path: &Path) -> (PreferencesFile, UiState) {
+        let mut wrong = None;
+        let prefs = match std::fs::read_to_string(path) {
+            Ok(text) => Preferences::read(&text).unwrap_or_else(|e| {
+                let aside = path.with_extension("toml.unreadable");
+                let kept = match std::fs::rename(path, &aside) {
+                    Ok(()) => format!("it is kept as {}", aside.display()),
+                    Err(e) => format!("it cannot be set aside: {e}"),
+                };
+                wrong = Some(format!("{}: {e}; {kept}", path.display()));
+                Preferences::default()
+            }),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Preferences::default(),
+            Err(e) => {
+                wrong = Some(format!("{}: the preferences cannot be read: {e}", path.display()));
+                Preferences::default()
+            }
+        };
         let ui_state = UiState { look: prefs.look, prefs: prefs.clone(), ..Default::default() };
-        (PreferencesFile { path, kept: prefs }, ui_state)
+        let file = PreferencesFile { path: Some(path.into()), kept: prefs, wrong, failing: false };
+        (file, ui_state)
     }
 
     /// The state of a new window, of which nothing will be kept.
     pub fn nothing() -> (PreferencesFile, UiState) {
         let ui_state = UiState::default();
-        (PreferencesFile { path: None, kept: ui_state.prefs.clone() }, ui_state)
+        let kept = ui_state.prefs.clone();
+        (PreferencesFile { path: None, kept, wrong: None, failing: false }, ui_state)
     }
 
-    /// Writes what changed; a folder that cannot be written is nobody's concern here.
-    pub fn keep(&mut self, ui_state: &UiState) {
+    /// Writes what changed. What went wrong is returned, to be shown: once, and again after a write
+    /// that went well; what was not kept is tried again at the next call.
+    pub fn keep(&mut self, ui_state: &UiState) -> Option<String> {
+        if let Some(wrong) = self.wrong.take() {
+            return Some(wrong);
+        }
         let mut now = ui_state.prefs.clone();
         now.look = ui_state.look;
         // A map is for a moment.
         now.look.map = Default::default();
         now.look.scale = self.kept.look.scale;
-        if now == self.kept {
-            return;
-        }
-        if let (Some(path), Ok(text)) = (&self.path, toml::to_string(&now)) {
+        let path = self.path.as_ref().filter(|_| now != self.kept)?;
+        let text = toml::to_string(&now).map_err(std::io::Error::other);
+        let done = text.and_then(|text| {
             if let Some(folder) = path.parent() {
-                let _ = std::fs::create_dir_all(folder);
+                std::fs::create_dir_all(folder)?;
             }
-            let _ = write_beside(path, |out| out.write_all(text.as_bytes()));
+            write_beside(path, |out| out.write_all(text.as_bytes()))
+        });
+        match done {
+            Ok(()) => {
+                (self.kept, self.failing) = (now, false);
+                None
+            }
+            Err(e) => {
+                let told = std::mem::replace(&mut self.failing, true);
+                let text = format!("{}: the preferences are not kept: {e}", path.display());
+                (!told).then_some(text)
+            }
         }
-        self.kept = now;
     }
 }

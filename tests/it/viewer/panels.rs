@@ -270,7 +270,10 @@ fn hints_are_gone_for_good_once_followed() {
     assert!(h.query_by_label_contains("Shift smooths, Ctrl carves").is_none());
     // Kept from day to day.
     let kept = toml::to_string(&h.state().ui_state.prefs).expect("plain data");
-    assert_eq!(sculptd_window::panels::state::Preferences::parse(&kept).hints.hint(), None);
+    assert_eq!(
+        sculptd_window::panels::state::Preferences::read(&kept).expect("read").hints.hint(),
+        None
+    );
 }
 
 #[test]

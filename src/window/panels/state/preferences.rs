@@ -62,12 +62,16 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// From the text of the file; what cannot be read takes its default.
-    pub fn parse(text: &str) -> Preferences {
-        let mut p: Preferences = toml::from_str(text).unwrap_or_default();
+    /// From the text of the file. A key that is not there takes its default, and a number outside
+    /// of its range the nearest one in it.
+    ///
+    /// # Errors
+    /// Names the line, where the text is not TOML or a value has the wrong type.
+    pub fn read(text: &str) -> Result<Preferences, String> {
+        let mut p: Preferences = toml::from_str(text).map_err(|e| e.to_string())?;
         p.scale = if p.scale.is_finite() { p.scale.clamp(SCALE.0, SCALE.1) } else { 1.0 };
         p.recent.truncate(RECENT);
-        p
+        Ok(p)
     }
 
     pub fn used(&mut self, path: PathBuf) {
@@ -89,11 +93,14 @@ mod tests {
             p.used(format!("/a/{i}.stl").into());
         }
         p.used("/a/9.stl".into());
-        let back = Preferences::parse(&toml::to_string(&p).expect("plain data"));
+        let back = Preferences::read(&toml::to_string(&p).expect("plain data")).expect("read");
         assert_eq!(back, p);
         assert_eq!(back.recent.len(), RECENT);
         assert_eq!(back.recent[0], PathBuf::from("/a/9.stl"));
-        assert_eq!(Preferences::parse("scale = \"x\""), Preferences::default());
-        assert_eq!(Preferences::parse("scale = 90.0").scale, SCALE.1);
+        assert!(
+            Preferences::read("light = true\nscale = \"x\"").is_err_and(|e| e.contains("line 2"))
+        );
+        assert_eq!(Preferences::read("scale = 90.0").map(|p| p.scale), Ok(SCALE.1));
+        assert_eq!(Preferences::read(""), Ok(Preferences::default()));
     }
 }
