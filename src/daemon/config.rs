@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::toml_text::{from_toml, to_toml};
+use crate::toml_text::to_toml;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_devices::calibration::Calibrations;
 use sculptd_devices::pad_actions::ActionTable;
@@ -230,7 +230,7 @@ impl Resolver {
 
     fn text(&mut self, text: &str, origin: &str) -> Result<(), ConfigError> {
         let invalid = |text: String| ConfigError::Invalid { origin: origin.into(), text };
-        let mut alone: Config = from_toml(text).map_err(invalid)?;
+        let mut alone: Config = toml::from_str(text).map_err(|e| invalid(e.to_string()))?;
         let table: toml::Table =
             text.parse().map_err(|e: toml::de::Error| invalid(e.to_string()))?;
         // Numbers of its own that the text does not give are those of the brush's preset.
@@ -275,7 +275,7 @@ impl Resolver {
         self.lay_brush();
         // Every layer was read alone before it was laid; keys do not depend on each other.
         let text = to_toml(&self.table).unwrap_or_default();
-        let mut config: Config = from_toml(&text).unwrap_or_default();
+        let mut config: Config = toml::from_str(&text).unwrap_or_default();
         // The brush may be from one layer and its own numbers from another.
         config.brush = config.brush.clamped();
         config.presets = self.presets;

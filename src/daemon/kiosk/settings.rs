@@ -4,8 +4,6 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::toml_text::from_toml;
-
 /// Texts of languages, each behind its code (`en`), in the form of `config/languages/en.toml`.
 pub type LanguageTexts<'a> = &'a [(&'a str, &'a str)];
 
@@ -55,7 +53,7 @@ impl KioskConfig {
     pub fn load(path: &Path) -> Result<Self, String> {
         let name = path.display();
         let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
-        let config: KioskConfig = from_toml(&text).map_err(|e| format!("{name}: {e}"))?;
+        let config: KioskConfig = toml::from_str(&text).map_err(|e| format!("{name}: {e}"))?;
         config.check().map_err(|e| format!("{name}: {e}"))?;
         Ok(config)
     }
@@ -102,7 +100,7 @@ impl KioskConfig {
             let name = path.display();
             if path.file_stem().is_some_and(|s| s.to_string_lossy() == self.language) {
                 let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
-                return from_toml(&text).map_err(|e| format!("{name}: {e}"));
+                return toml::from_str(&text).map_err(|e| format!("{name}: {e}"));
             }
         }
         let known = built_in.iter().find(|(n, _)| *n == self.language);
@@ -111,7 +109,7 @@ impl KioskConfig {
             let (language, codes) = (&self.language, codes.join(", "));
             format!("language = \"{language}\": expected {codes}, or one of `languages`")
         })?;
-        from_toml(text).map_err(|e| format!("{name}: {e}"))
+        toml::from_str(text).map_err(|e| format!("{name}: {e}"))
     }
 }
 
