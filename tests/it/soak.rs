@@ -106,7 +106,7 @@ struct Disk {
 impl Disk {
     fn new(at: &Path) -> Self {
         let done = std::process::Command::new("mount")
-            .args(["-t", "tmpfs", "-o", "size=192m", "tmpfs"])
+            .args(["-t", "tmpfs", "-o", "size=1g", "tmpfs"])
             .arg(at)
             .output();
         Disk { at: at.into(), mounted: done.is_ok_and(|o| o.status.success()) }
@@ -136,7 +136,38 @@ impl Drop for Disk {
     }
 }
 
-fn soak(seed: u64, ticks: u64) -> Result<(), String> {
+/// When somebody is at the pen.
+#[derive(Debug, Clone, Copy)]
+struct Calendar {
+    /// From one visit's beginning to the next one's, in ticks.
+    every: u64,
+    /// How long a visit takes.
+    visit: u64,
+    /// Visits of a day; after them it is night.
+    a_day: u64,
+    /// A day's length.
+    day: u64,
+}
+
+impl Calendar {
+    /// All the time.
+    const ALWAYS: Calendar = Calendar { every: 1, visit: 1, a_day: u64::MAX, day: u64::MAX };
+    /// An installation at 120 ticks a second: 20 visits of half a minute, one every half hour.
+    const MUSEUM: Calendar =
+        Calendar { every: 216_000, visit: 3_600, a_day: 20, day: 86_400 * 120 };
+
+    fn is_visited(&self, slot: u64) -> bool {
+        let of_day = slot % self.day;
+        of_day % self.every < self.visit && of_day / self.every < self.a_day
+    }
+}
+
+/// Open descriptors and threads of this process; zero where the system does not say.
+fn handles() -> [usize; 2] {
+    ["/proc/self/fd", "/proc/self/task"].map(|d| std::fs::read_dir(d).map_or(0, Iterator::count))
+}
+
+fn soak(seed: u64, ticks: u64, calendar: Calendar) -> Result<(), String> {
     let mut config = Resolved::defaults(sculptd::presets()).config;
     config.undo.bytes = 8 << 20;
     let dir = tempfile::tempdir().map_err(|e| e.to_string())?;
@@ -166,10 +197,27 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
     let (mut samples, mut slow, mut full_until) = (Vec::new(), 0u64, 0u64);
     let (mut dabs, mut taken) = (0u64, 0u64);
     let mut heap = [0i64; 2];
+    let mut held_open = [[0usize; 2]; 2];
+    // Slots with somebody at the pen: faults and figures follow these.
+    let visited_of = |slots: u64| match calendar.day {
+        u64::MAX => slots,
+        day => slots / day * calendar.a_day * calendar.visit,
+    };
+    let (busy_ticks, mut busy) = (visited_of(ticks), 0u64);
     let mut tick = 0;
     // Time goes on whether or not the loop does.
     for slot in 1..=ticks {
         let t_us = slot * 8333;
+        if !calendar.is_visited(slot) {
+            // The loop goes on with nobody there. The pen's lift is taken by the first of these.
+            tick += 1;
+            samples.clear();
+            receiver.drain(4096, &mut samples);
+            world.step(tick, &samples, &[]);
+            writer.tick(tick, &samples, &[], &world);
+            continue;
+        }
+        busy += 1;
         if let Some(fault) = wire.step(t_us, &mut rng, &mut sender) {
             *faults.entry(fault).or_default() += 1;
         }
@@ -179,12 +227,12 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
             *faults.entry("slow loop").or_default() += 1;
         }
         // In each half of the time the disk is full once.
-        if slot % (ticks / 2) == ticks / 6 {
+        if busy % (busy_ticks / 2) == busy_ticks / 6 {
             disk.fill();
-            full_until = slot + ticks / 20;
+            full_until = busy + (busy_ticks / 20).min(21_600);
             *faults.entry("full disk").or_default() += 1;
         }
-        if slot == full_until {
+        if busy == full_until {
             disk.empty();
         }
         // A slow loop: nothing is taken for a while, the channel fills and motion is coalesced.
@@ -230,9 +278,13 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
             _ => {}
         }
         // The first tenth fills the pools and the undo store.
-        if slot > ticks / 10 {
-            let half = usize::from(slot > ticks / 2);
+        if busy > busy_ticks / 10 {
+            let half = usize::from(busy > busy_ticks / 2);
             heap[half] = heap[half].max(live_bytes());
+            if busy % 256 == 0 {
+                let now = handles();
+                (0..2).for_each(|i| held_open[half][i] = held_open[half][i].max(now[i]));
+            }
         }
     }
     disk.empty();
@@ -246,6 +298,11 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
     if mb[1] > mb[0] * 1.05 + 4.0 {
         return Err(format!("{:.1} MB in the second half, {:.1} MB in the first", mb[1], mb[0]));
     }
+    let [before, after] = held_open;
+    if after[0] > before[0] || after[1] > before[1] {
+        return Err(format!("descriptors and threads grew from {before:?} to {after:?}"));
+    }
+    let bytes = std::fs::metadata(&path).map_or(0, |m| m.len());
     let hash = world.hash();
     let opened = session::open(&path).map_err(|e| e.to_string())?;
     if let Some(loss) = &opened.loss {
@@ -260,10 +317,28 @@ fn soak(seed: u64, ticks: u64) -> Result<(), String> {
         ));
     }
     println!(
-        "{ticks} ticks, {taken} samples, {dabs} dabs; heap {:.1} then {:.1} MB; {faults:?}",
-        mb[0], mb[1]
+        "{ticks} ticks, {busy} of them visited, {taken} samples, {dabs} dabs; heap {:.1} then \
+            {:.1} MB; descriptors and threads {before:?} then {after:?}; session {:.1} MB; {faults:?}",
+        mb[0],
+        mb[1],
+        bytes as f64 / 1e6
     );
     Ok(())
+}
+
+fn told(seed: u64, ticks: u64, calendar: Calendar, name: &str) {
+    let told = std::panic::catch_unwind(|| soak(seed, ticks, calendar))
+        .unwrap_or_else(|_| Err("a panic, above".into()));
+    if let Err(e) = told {
+        panic!(
+            "{e}; again: SCULPTD_SEED={seed} SCULPTD_TICKS={ticks} cargo test --release --test it \
+                soak::{name}"
+        );
+    }
+}
+
+fn number(key: &str) -> Option<u64> {
+    std::env::var(key).ok().and_then(|v| v.parse().ok())
 }
 
 #[test]
@@ -272,15 +347,23 @@ fn an_hour_of_faults() {
         return;
     }
     let long = std::env::var_os("SCULPTD_LONG").is_some();
-    let number = |key: &str| std::env::var(key).ok().and_then(|v| v.parse::<u64>().ok());
     let seed = number("SCULPTD_SEED").unwrap_or(20);
     let ticks = number("SCULPTD_TICKS").unwrap_or(if long { 432_000 } else { 6_000 });
-    let told = std::panic::catch_unwind(|| soak(seed, ticks))
-        .unwrap_or_else(|_| Err("a panic, above".into()));
-    if let Err(e) = told {
-        panic!(
-            "{e}; again: SCULPTD_SEED={seed} SCULPTD_TICKS={ticks} cargo test --release --test it \
-                soak"
-        );
+    told(seed, ticks, Calendar::ALWAYS, "an_hour_of_faults");
+}
+
+/// Thirty days of an installation, every tick of them stepped: visits, nights, and the same faults.
+#[test]
+fn thirty_days_of_visits() {
+    let days = number("SCULPTD_DAYS");
+    if std::env::var_os("SCULPTD_LONG").is_none() && days.is_none() {
+        println!("skipped: SCULPTD_LONG not set");
+        return;
     }
+    if passed_alone("soak::thirty_days_of_visits") {
+        return;
+    }
+    let seed = number("SCULPTD_SEED").unwrap_or(30);
+    let ticks = days.unwrap_or(30) * Calendar::MUSEUM.day;
+    told(seed, ticks, Calendar::MUSEUM, "thirty_days_of_visits");
 }
