@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::DVec3;
 use serde::Serialize;
 
 use super::distance::{Ready, solid, timed, warn};
@@ -13,7 +13,7 @@ use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::march::default_epsilon;
 use sculptd_geometry::projection::{
-    PlaneRegion, PointTest, ProjectionPlane, ProjectionSamples, area, outline, png, sample,
+    PlaneRegion, PointTest, ProjectionPlane, ProjectionSamples, area, outline_of, png, sample,
     shadow_areas, spread_directions, svg,
 };
 
@@ -23,7 +23,7 @@ pub struct ProjectArgs {
     pub mesh: PathBuf,
     /// Looked along.
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true, default_value = "0,0,-1")]
-    pub direction: Vec3,
+    pub direction: DVec3,
     /// Turns the drawing about the direction.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
     pub turn: f64,
@@ -111,7 +111,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     let job = Job::default();
     let cancelled = |e: Cancelled| Fail::Input(e.to_string());
     let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
-    let plane = ProjectionPlane::along(args.direction.as_dvec3(), args.turn.to_radians())
+    let plane = ProjectionPlane::along(args.direction, args.turn.to_radians())
         .ok_or_else(|| Fail::Usage("expected a direction that is not zero".into()))?;
     let mut out = ProjectAnswer {
         method: args.method,
@@ -130,7 +130,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     }
     let mut shown: Option<ProjectionSamples> = None;
     let polygons: Vec<PlaneRegion> = if let MethodArg::Exact = args.method {
-        let (polygons, seconds) = timed(|| outline(&solid.topology, &plane));
+        let (polygons, seconds) = timed(|| outline_of(&solid.topology, &solid.positions(), &plane));
         (out.area, out.seconds) = (area(&polygons), seconds);
         polygons
     } else {

@@ -191,10 +191,21 @@ impl Chain {
     }
 }
 
-/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent. Rings repeat their first
-/// point at the end.
+/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent beyond the rounding of its
+/// vertices to single precision. Rings repeat their first point at the end.
 pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion> {
-    let flat: Vec<DVec2> = topology.positions.iter().map(|p| plane.flat(p.as_dvec3())).collect();
+    let positions: Vec<DVec3> = topology.positions.iter().map(|p| p.as_dvec3()).collect();
+    outline_of(topology, &positions, plane)
+}
+
+/// The same with the positions of the welded vertices in double precision
+/// ([`crate::distance::DistanceSolid::positions`]).
+pub fn outline_of(
+    topology: &Topology,
+    positions: &[DVec3],
+    plane: &ProjectionPlane,
+) -> Vec<PlaneRegion> {
+    let flat: Vec<DVec2> = positions.iter().map(|&p| plane.flat(p)).collect();
     let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for &p in &flat {
         if p.is_finite() {
@@ -235,4 +246,32 @@ pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion>
         }
     }
     chain.resolve()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CentredMesh;
+    use crate::distance::DistanceSolid;
+    use crate::job::Job;
+    use crate::shapes::cuboid;
+
+    #[test]
+    fn a_million_sizes_from_the_origin_a_shadow_keeps_its_digits() {
+        let far = DVec3::new(1e6, -2e6, 5e5);
+        let (lo, hi) = (far + DVec3::new(0.1, 0.2, 0.3), far + DVec3::new(1.3, 0.9, 0.7));
+        let mesh = cuboid(lo, hi);
+        let part = CentredMesh::new(&mesh, 1.0);
+        let own: Vec<DVec3> = mesh.positions.iter().map(|p| *p - part.centre).collect();
+        let corners = part.mesh.triangles.iter().map(|t| t.map(|v| own[v as usize])).collect();
+        let solid = DistanceSolid::build(&part.mesh, &Job::default()).expect("built");
+        let solid = solid.with_corners(corners);
+        let size = hi - lo;
+        for (direction, want) in [(DVec3::Z, size.x * size.y), (DVec3::X, size.y * size.z)] {
+            let plane = ProjectionPlane::along(direction, 0.0).expect("a plane");
+            let shadow = outline_of(&solid.topology, &solid.positions(), &plane);
+            let area: f64 = shadow.iter().map(PlaneRegion::area).sum();
+            assert!((area / want - 1.0).abs() < 1e-8, "{area} instead of {want}");
+        }
+    }
 }
