@@ -95,7 +95,8 @@ struct Orientations {
 struct ProjectAnswer {
     method: MethodArg,
     area: f64,
-    /// One standard deviation; zero for `exact`.
+    /// One standard deviation; zero for `exact`, unless a warning says that the outline is drawn in
+    /// strips.
     standard_error: f64,
     polygons: usize,
     holes: usize,
@@ -130,8 +131,16 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     }
     let mut shown: Option<ProjectionSamples> = None;
     let polygons: Vec<PlaneRegion> = if let MethodArg::Exact = args.method {
-        let (polygons, seconds) = timed(|| outline_of(&solid.topology, &solid.positions(), &plane));
-        (out.area, out.seconds) = (area(&polygons), seconds);
+        let (shadow, seconds) = timed(|| outline_of(&solid.topology, &solid.positions(), &plane));
+        let polygons = shadow.regions;
+        (out.area, out.standard_error) = (area(&polygons), shadow.standard_error);
+        out.seconds = seconds;
+        if shadow.strip > 0.0 {
+            out.warnings.push(format!(
+                "the outline crosses itself too often to be resolved: it is drawn in strips {} high",
+                shadow.strip
+            ));
+        }
         polygons
     } else {
         let grid = match (args.method, &args.field) {

@@ -15,7 +15,7 @@ use super::alpha_shape::alpha_shape;
 use super::distance::DistanceSolid;
 use super::grid::DistanceGrid;
 use super::march::{MarchOutcome, march};
-pub use super::silhouette::{PlaneRegion, ProjectionPlane, outline, outline_of};
+pub use super::silhouette::{PlaneRegion, ProjectionPlane, ShadowOutline, outline, outline_of};
 use crate::bvh::Ray;
 use crate::job::{Cancelled, Job};
 pub use draw::{png, svg};
@@ -164,8 +164,9 @@ pub fn shadow_areas(
         .par_iter()
         .map(|&d| {
             job.check()?;
-            Ok(ProjectionPlane::along(d, 0.0)
-                .map_or(0.0, |plane| area(&outline_of(&solid.topology, &positions, &plane))))
+            Ok(ProjectionPlane::along(d, 0.0).map_or(0.0, |plane| {
+                area(&outline_of(&solid.topology, &positions, &plane).regions)
+            }))
         })
         .collect()
 }
