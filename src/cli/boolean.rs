@@ -16,6 +16,7 @@ use sculptd_geometry::boolean::{
 };
 use sculptd_geometry::io::{read_mesh, writable_format};
 use sculptd_geometry::job::Job;
+use sculptd_geometry::written::KnownFaces;
 use sculptd_geometry::{PolyMesh, check, repair};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -198,9 +199,11 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         ));
     }
     let mut out = BooleanAnswer::default();
-    let mut operands = Vec::new();
+    let (mut operands, mut clean) = (Vec::new(), Vec::new());
     for path in &args.meshes {
-        operands.push(operand(path, args, &job, &now, &mut out)?);
+        let (mesh, is_clean) = operand(path, args, &job, &now, &mut out)?;
+        operands.push(mesh);
+        clean.push(is_clean);
     }
     let start = now();
     let faces = match args.polygons {
@@ -228,11 +231,12 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
             options.tolerance = Some(first * factor);
         }
         let out = blank.clone();
-        let mut made = match ResultSet::of(&operands, args, &options, plane, out, &job, &now) {
-            Ok(made) => made,
-            Err(e) if best.is_none() => return Err(e),
-            Err(_) => break,
-        };
+        let mut made =
+            match ResultSet::of(&operands, &clean, args, &options, plane, out, &job, &now) {
+                Ok(made) => made,
+                Err(e) if best.is_none() => return Err(e),
+                Err(_) => break,
+            };
         let again = made.crossings > 0 && made.out.contact.near_misses > 0;
         if best.as_ref().is_none_or(|b| made.crossings < b.crossings) {
             if let (Some(first), Some(b)) = (first, &best) {
@@ -301,8 +305,10 @@ struct ReadySolid {
 }
 
 impl ResultSet {
+    /// `clean`: of each operand, whether it is closed and manifold and crosses nothing.
     fn of(
         operands: &[PolyMesh],
+        clean: &[bool],
         args: &BooleanArgs,
         options: &BooleanOptions,
         plane: Option<(DVec3, f64)>,
@@ -323,13 +329,23 @@ impl ResultSet {
         let several = solids.len() > 1;
         let lap = now();
         let (mut ready, mut crossings) = (Vec::new(), 0);
+        // Of the largest clean operand, the faces that are still there need no new comparison.
+        let largest = (0..operands.len())
+            .filter(|&n| clean[n])
+            .max_by_key(|&n| (operands[n].face_count(), operands.len() - n));
         for (name, solid, origins) in solids {
             let file = if several { named(&args.out, &name) } else { args.out.clone() };
             // Kept contact is a sheet with two sides, which a repair would part.
             let written = if args.trust || args.keep_contact {
                 None
             } else {
-                Some(ReadyMesh::of(&file, &solid.mesh, out.tolerance, job)?)
+                let of = |n: usize, face: u32| (Some(n) == largest).then_some(face);
+                let faces: Vec<Option<u32>> = match &origins {
+                    Some(all) => all.iter().map(|&(n, face)| of(n, face)).collect(),
+                    None => solid.origins.iter().map(|o| of(o.operand.into(), o.face)).collect(),
+                };
+                let known = largest.map(|n| KnownFaces { mesh: &operands[n], faces: &faces });
+                Some(ReadyMesh::of(&file, &solid.mesh, out.tolerance, known, job)?)
             };
             crossings += written.as_ref().map_or(0, |w| w.crossings);
             ready.push(ReadySolid { name, file, solid, origins, written });
@@ -456,14 +472,15 @@ fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
     });
 }
 
-/// Reads one operand, mends it where asked, and says what is wrong with it.
+/// Reads one operand, mends it where asked, and says what is wrong with it. And whether it is known
+/// to be closed and manifold, without triangles that cross.
 fn operand(
     path: &Path,
     args: &BooleanArgs,
     job: &Job,
     now: &impl Fn() -> f64,
     out: &mut BooleanAnswer,
-) -> Result<PolyMesh, Fail> {
+) -> Result<(PolyMesh, bool), Fail> {
     let mut lap = now();
     let mut phase = |out: &mut BooleanAnswer, name: &str| {
         let t = now();
@@ -493,6 +510,7 @@ fn operand(
         }
     }
     let crossed = facts.self_intersections.unwrap_or(0);
+    let mut clean = facts.closed && facts.manifold && facts.self_intersections == Some(0);
     phase(out, "look");
     // Whether the faces' directions say what is inside.
     let directed = facts.closed && facts.oriented && facts.volume.is_some_and(|v| v > 0.0);
@@ -509,6 +527,7 @@ fn operand(
         let holes = repair::fill_holes(&mut mesh, usize::MAX);
         let was = mesh.face_count();
         mesh = boolean::solve(&mesh, job)?;
+        clean = false;
         out.warnings.push(format!(
             "{}: solved by winding: {turned} faces turned, {holes:?}, {was} faces became {}",
             path.display(),
@@ -522,7 +541,7 @@ fn operand(
             path.display()
         ));
     }
-    Ok(mesh)
+    Ok((mesh, clean))
 }
 
 fn named(out: &Path, name: &str) -> PathBuf {

@@ -9,6 +9,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{left_out, read_mesh, writable_format, write_mesh};
 use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::written::KnownFaces;
 use sculptd_geometry::{boolean, check, repair, written};
 
 #[derive(Debug, Clone, clap::Args)]
@@ -73,12 +74,18 @@ pub(super) struct ReadyMesh {
 }
 
 impl ReadyMesh {
-    pub fn of(path: &Path, mesh: &PolyMesh, tolerance: f64, job: &Job) -> Result<ReadyMesh, Fail> {
+    pub fn of(
+        path: &Path,
+        mesh: &PolyMesh,
+        tolerance: f64,
+        known: Option<KnownFaces<'_>>,
+        job: &Job,
+    ) -> Result<ReadyMesh, Fail> {
         let kind = writable_format(path)?;
         if mesh.face_count() == 0 {
             return Ok(ReadyMesh { changed: None, crossings: 0 });
         }
-        let made = written::for_file(mesh, kind, tolerance, job);
+        let made = written::for_file(mesh, kind, tolerance, known, job);
         let made = made.map_err(|e: Cancelled| Fail::Input(e.to_string()))?;
         let changed = match made.mesh {
             Cow::Owned(mesh) => Some(mesh),
@@ -97,7 +104,8 @@ pub(super) fn write_checked(
     crossings: Option<f64>,
     job: &Job,
 ) -> Result<FileFacts, Fail> {
-    let ready = crossings.map(|tolerance| ReadyMesh::of(path, mesh, tolerance, job)).transpose()?;
+    let ready =
+        crossings.map(|tolerance| ReadyMesh::of(path, mesh, tolerance, None, job)).transpose()?;
     write_ready(path, mesh, ready.as_ref(), job)
 }
 

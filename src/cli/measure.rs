@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use sculptd_devices::Clock;
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub struct MeasureArgs {
     pub mesh: PathBuf,
     /// More directions to project along.
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
-    pub direction: Vec<Vec3>,
+    pub direction: Vec<DVec3>,
     #[command(flatten)]
     pub how: How,
 }
@@ -67,10 +67,10 @@ struct MeasureAnswer {
 }
 
 /// Three numbers with commas between, not all zero.
-pub fn direction(text: &str) -> Result<Vec3, String> {
-    let numbers: Vec<f32> = text.split(',').map_while(|s| s.trim().parse().ok()).collect();
+pub fn direction(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|s| s.trim().parse().ok()).collect();
     match numbers[..] {
-        [x, y, z] if text.split(',').count() == 3 => Some(Vec3::new(x, y, z)),
+        [x, y, z] if text.split(',').count() == 3 => Some(DVec3::new(x, y, z)),
         _ => None,
     }
     .filter(|d| d.is_finite() && d.length_squared() > 0.0)
@@ -116,7 +116,8 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
         directions: args
             .direction
             .iter()
-            .map(|&d| Ok(Along { direction: d.to_array(), area: along(d)? }))
+            .map(|d| d.as_vec3())
+            .map(|d| Ok(Along { direction: d.to_array(), area: along(d)? }))
             .collect::<Result<_, Fail>>()?,
         thickness: Statistics {
             min: s.min,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::DVec3;
 use serde::Serialize;
 
 use super::distance::{Ready, solid, timed, warn};
@@ -13,7 +13,7 @@ use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::march::default_epsilon;
 use sculptd_geometry::projection::{
-    PlaneRegion, PointTest, ProjectionPlane, ProjectionSamples, area, outline, png, sample,
+    PlaneRegion, PointTest, ProjectionPlane, ProjectionSamples, area, outline_of, png, sample,
     shadow_areas, spread_directions, svg,
 };
 
@@ -23,7 +23,7 @@ pub struct ProjectArgs {
     pub mesh: PathBuf,
     /// Looked along.
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true, default_value = "0,0,-1")]
-    pub direction: Vec3,
+    pub direction: DVec3,
     /// Turns the drawing about the direction.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
     pub turn: f64,
@@ -95,7 +95,8 @@ struct Orientations {
 struct ProjectAnswer {
     method: MethodArg,
     area: f64,
-    /// One standard deviation; zero for `exact`.
+    /// One standard deviation; zero for `exact`, unless a warning says that the outline is drawn in
+    /// strips.
     standard_error: f64,
     polygons: usize,
     holes: usize,
@@ -111,7 +112,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     let job = Job::default();
     let cancelled = |e: Cancelled| Fail::Input(e.to_string());
     let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
-    let plane = ProjectionPlane::along(args.direction.as_dvec3(), args.turn.to_radians())
+    let plane = ProjectionPlane::along(args.direction, args.turn.to_radians())
         .ok_or_else(|| Fail::Usage("expected a direction that is not zero".into()))?;
     let mut out = ProjectAnswer {
         method: args.method,
@@ -130,8 +131,16 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     }
     let mut shown: Option<ProjectionSamples> = None;
     let polygons: Vec<PlaneRegion> = if let MethodArg::Exact = args.method {
-        let (polygons, seconds) = timed(|| outline(&solid.topology, &plane));
-        (out.area, out.seconds) = (area(&polygons), seconds);
+        let (shadow, seconds) = timed(|| outline_of(&solid.topology, &solid.positions(), &plane));
+        let polygons = shadow.regions;
+        (out.area, out.standard_error) = (area(&polygons), shadow.standard_error);
+        out.seconds = seconds;
+        if shadow.strip > 0.0 {
+            out.warnings.push(format!(
+                "the outline crosses itself too often to be resolved: it is drawn in strips {} high",
+                shadow.strip
+            ));
+        }
         polygons
     } else {
         let grid = match (args.method, &args.field) {

@@ -46,6 +46,7 @@ pub mod decimate;
 pub mod disjoint_sets;
 pub mod distance;
 pub mod edges;
+mod fans;
 pub mod flat;
 pub mod grid;
 pub mod io;

@@ -107,52 +107,73 @@ pub fn projected_area(mesh: &TriMesh, direction: Vec3, job: &Job) -> Result<f64,
         .map(|p| p.as_dvec3())
         .map(|p| DVec2::new(p.dot(u), p.dot(v)))
         .collect();
-    let used = mesh.triangles.iter().flatten().map(|&i| flat[i as usize].y);
-    let (lo, hi) = used.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
-    let height = (hi - lo) / STRIPS as f64;
-    if height <= 0.0 || !height.is_finite() {
-        return Ok(0.0);
-    }
-    let middle = |s: usize| lo + (s as f64 + 0.5) * height;
-    // Which triangles cross the middle of each strip: counted, then filled.
-    let range = |t: &[u32; 3]| {
-        let y = t.map(|i| flat[i as usize].y);
-        let (a, b) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
-        let first = (((a - lo) / height - 0.5).ceil()).max(0.0) as usize;
-        let last = (((b - lo) / height - 0.5).floor() + 1.0).max(0.0) as usize;
-        first..last.clamp(first, STRIPS.max(first))
-    };
-    let mut starts = vec![0u32; STRIPS + 1];
-    for t in &mesh.triangles {
-        range(t).filter(|&s| s < STRIPS).for_each(|s| starts[s + 1] += 1);
-    }
-    for s in 0..STRIPS {
-        starts[s + 1] += starts[s];
-    }
+    let Some(strips) = Strips::new(&flat, &mesh.triangles, STRIPS) else { return Ok(0.0) };
     job.check()?;
-    let mut next = starts.clone();
-    let mut members = vec![0u32; starts[STRIPS] as usize];
-    for (i, t) in mesh.triangles.iter().enumerate() {
-        for s in range(t).filter(|&s| s < STRIPS) {
-            members[next[s] as usize] = i as u32;
-            next[s] += 1;
-        }
-    }
     let lengths: Vec<f64> = (0..STRIPS)
         .into_par_iter()
         .map(|s| {
             job.check()?;
-            let y = middle(s);
-            let mut spans: Vec<(f64, f64)> = members[starts[s] as usize..starts[s + 1] as usize]
-                .iter()
-                .filter_map(|&t| {
-                    crossed_at(mesh.triangles[t as usize].map(|i| flat[i as usize]), y)
-                })
-                .collect();
-            Ok(union(&mut spans))
+            Ok(union(&mut strips.spans(s, &flat, &mesh.triangles)))
         })
         .collect::<Result<_, Cancelled>>()?;
-    Ok(lengths.iter().sum::<f64>() * height)
+    Ok(lengths.iter().sum::<f64>() * strips.height)
+}
+
+/// A plane cut into strips along x, and the triangles that cross the middle of each.
+pub(crate) struct Strips {
+    /// The lower border of the lowest strip.
+    pub lo: f64,
+    /// Of each strip.
+    pub height: f64,
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl Strips {
+    /// `count` strips over all triangles, whose corners index `flat`; None where they have no
+    /// height.
+    pub fn new(flat: &[DVec2], triangles: &[[u32; 3]], count: usize) -> Option<Strips> {
+        let used = triangles.iter().flatten().map(|&i| flat[i as usize].y);
+        let (lo, hi) =
+            used.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+        let height = (hi - lo) / count as f64;
+        if height <= 0.0 || !height.is_finite() {
+            return None;
+        }
+        // Which triangles cross the middle of each strip: counted, then filled.
+        let range = |t: &[u32; 3]| {
+            let y = t.map(|i| flat[i as usize].y);
+            let (a, b) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+            let first = (((a - lo) / height - 0.5).ceil()).max(0.0) as usize;
+            let last = (((b - lo) / height - 0.5).floor() + 1.0).max(0.0) as usize;
+            first..last.clamp(first, count.max(first))
+        };
+        let mut starts = vec![0u32; count + 1];
+        for t in triangles {
+            range(t).filter(|&s| s < count).for_each(|s| starts[s + 1] += 1);
+        }
+        for s in 0..count {
+            starts[s + 1] += starts[s];
+        }
+        let mut next = starts.clone();
+        let mut members = vec![0u32; starts[count] as usize];
+        for (i, t) in triangles.iter().enumerate() {
+            for s in range(t).filter(|&s| s < count) {
+                members[next[s] as usize] = i as u32;
+                next[s] += 1;
+            }
+        }
+        Some(Strips { lo, height, starts, members })
+    }
+
+    /// Where the middle of strip `s` runs inside the triangles, one span a triangle.
+    pub fn spans(&self, s: usize, flat: &[DVec2], triangles: &[[u32; 3]]) -> Vec<(f64, f64)> {
+        let y = self.lo + (s as f64 + 0.5) * self.height;
+        self.members[self.starts[s] as usize..self.starts[s + 1] as usize]
+            .iter()
+            .filter_map(|&t| crossed_at(triangles[t as usize].map(|i| flat[i as usize]), y))
+            .collect()
+    }
 }
 
 /// Where the line at `y` runs inside a triangle.

@@ -99,6 +99,22 @@ pub fn offset(
     Ok(made.mesh())
 }
 
+/// How near the surface `made` comes to the solid's: the least distance over all of its triangles,
+/// not of its vertices alone. What [`offset`] made is nearer than it was asked for where its
+/// triangles cut across a bend.
+pub fn least_distance(
+    solid: &DistanceSolid,
+    made: &TriMesh,
+    job: &Job,
+) -> Result<f64, RemeshError> {
+    let surface = OffsetSurface {
+        points: made.positions.clone(),
+        faces: made.triangles.clone(),
+        spacing: 0.0,
+    };
+    least_wall(solid, &surface, job)
+}
+
 /// A hollowed solid.
 #[derive(Debug, Clone)]
 pub struct Hollow {

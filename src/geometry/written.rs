@@ -27,6 +27,36 @@ pub struct WrittenMesh<'a> {
     pub crossings: usize,
 }
 
+/// Faces that come from another mesh, one that is closed and manifold and crosses nothing: between
+/// those that are in the file as they are there nothing crosses, and they are not compared again.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownFaces<'a> {
+    /// The other mesh.
+    pub mesh: &'a PolyMesh,
+    /// For each face of the mesh that is written its face there, or the one that it is a part of.
+    pub faces: &'a [Option<u32>],
+}
+
+impl KnownFaces<'_> {
+    /// The triangles of `out` that are not triangles of the known mesh; `of`: the face of each.
+    fn changed(&self, out: &PolyMesh, of: &[u32]) -> Vec<u32> {
+        // Each is there once: a second one would lie on the first.
+        let mut used = vec![false; self.mesh.face_count()];
+        let mut as_known = |f: u32| {
+            let Some(Some(known)) = self.faces.get(f as usize) else { return false };
+            let (own, old) = (out.face(f as usize), self.mesh.face(*known as usize));
+            let same = |(&v, &w): (&u32, &u32)| {
+                out.positions[v as usize] == self.mesh.positions[w as usize]
+            };
+            own.len() == 3
+                && old.len() == 3
+                && own.iter().zip(old).all(same)
+                && !std::mem::replace(&mut used[*known as usize], true)
+        };
+        (0..of.len() as u32).filter(|&t| !as_known(of[t as usize])).collect()
+    }
+}
+
 /// With more crossing pairs a mesh is no rounded solid, and is left as it is.
 const MOST_PAIRS: usize = 3000;
 const ROUNDS: usize = 6;
@@ -34,7 +64,8 @@ const ROUNDS: usize = 6;
 /// `mesh` as a file with the ending `kind` will hold it (STL, GLB and glTF have single precision;
 /// they and 3MF have triangles only). Vertices move by no more than 64 steps of the format's
 /// precision or four times `tolerance`, and only where triangles cross. A polygon that a repair
-/// changes comes in triangles; the others stay.
+/// changes comes in triangles; the others stay. `known`: what need not be compared, one entry a
+/// face of `mesh`.
 ///
 /// # Errors
 /// [`Cancelled`] when the job is.
@@ -42,6 +73,7 @@ pub fn for_file<'a>(
     mesh: &'a PolyMesh,
     kind: &str,
     tolerance: f64,
+    mut known: Option<KnownFaces<'_>>,
     job: &Job,
 ) -> Result<WrittenMesh<'a>, Cancelled> {
     let single = matches!(kind, "stl" | "glb" | "gltf");
@@ -49,13 +81,20 @@ pub fn for_file<'a>(
     if matches!(kind, "stl" | "glb" | "gltf" | "3mf") && mesh.corners.len() != 3 * mesh.face_count()
     {
         out = Cow::Owned(triangulated(mesh));
+        known = None;
     }
     if single && mesh.positions.iter().any(|p| p.as_vec3().as_dvec3() != *p) {
         let rounded = mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
         out.to_mut().positions = rounded;
     }
     let (triangles, faces) = out.triangles();
-    let pairs = self_intersection::pairs(&out.positions, &triangles, job)?;
+    let pairs = match known {
+        Some(known) => {
+            let changed = known.changed(&out, &faces);
+            self_intersection::pairs_with(&out.positions, &triangles, &changed, job)?
+        }
+        None => self_intersection::pairs(&out.positions, &triangles, job)?,
+    };
     let found = pairs.len();
     if pairs.is_empty() || found > MOST_PAIRS {
         return Ok(WrittenMesh { mesh: out, found, crossings: found });
@@ -406,13 +445,13 @@ mod tests {
     fn a_ball_with_a_dented_vertex_crosses_nothing_once_written() {
         let mut mesh = icosphere(1.0, 4).to_poly();
         let job = Job::default();
-        assert_eq!(for_file(&mesh, "stl", 0.0, &job).expect("written").found, 0);
+        assert_eq!(for_file(&mesh, "stl", 0.0, None, &job).expect("written").found, 0);
         // A vertex pulled over its neighbour by a few steps of single precision.
         let edge = [mesh.corners[0], mesh.corners[1]];
         let to = mesh.positions[edge[1] as usize];
         let from = mesh.positions[edge[0] as usize];
         mesh.positions[edge[0] as usize] = to + (to - from).normalize() * 4e-6;
-        let made = for_file(&mesh, "stl", 0.0, &job).expect("written");
+        let made = for_file(&mesh, "stl", 0.0, None, &job).expect("written");
         assert!(made.found > 0 && made.crossings == 0, "{} {}", made.found, made.crossings);
         let facts = crate::check::report(&made.mesh, true, &job).expect("a report");
         assert_eq!((facts.closed, facts.manifold), (true, true));
@@ -426,13 +465,39 @@ mod tests {
         let edge = [mesh.corners[0], mesh.corners[1]];
         let (from, to) = (mesh.positions[edge[0] as usize], mesh.positions[edge[1] as usize]);
         mesh.positions[edge[0] as usize] = to + (to - from).normalize() * 4e-6;
-        let made = for_file(&mesh, "stl", 0.0, &Job::default()).expect("written");
+        let made = for_file(&mesh, "stl", 0.0, None, &Job::default()).expect("written");
         assert!(made.found > 0 && made.crossings == 0, "{} {}", made.found, made.crossings);
-        let made = for_file(&mesh, "ply", 1e-6, &Job::default()).expect("written");
+        let made = for_file(&mesh, "ply", 1e-6, None, &Job::default()).expect("written");
         assert!(made.found > 0 && made.crossings == 0, "{} {}", made.found, made.crossings);
         let kept = made.mesh.faces().filter(|f| f.len() == 4).count();
         assert!(kept + 16 > quads && kept < quads, "{kept} of {quads}");
         let facts = crate::check::report(&made.mesh, true, &Job::default()).expect("a report");
         assert_eq!((facts.closed, facts.manifold), (true, true));
+    }
+
+    #[test]
+    fn faces_of_a_clean_mesh_are_not_compared_again_and_nothing_is_missed() {
+        let job = Job::default();
+        let clean = icosphere(1.0, 12).to_poly();
+        let known: Vec<Option<u32>> = (0..clean.face_count() as u32).map(Some).collect();
+        let faces = KnownFaces { mesh: &clean, faces: &known };
+        // Beyond the repair's reach: what is found is what is left.
+        let crossings = |mesh: &PolyMesh, known| {
+            for_file(mesh, "ply", 0.0, known, &job).expect("written").crossings
+        };
+        assert_eq!(crossings(&clean, Some(faces)), 0);
+        let mut dented = clean.clone();
+        dented.positions[7] *= -1.5;
+        let all = crossings(&dented, None);
+        assert!(all > 3, "{all}");
+        assert_eq!(crossings(&dented, Some(faces)), all);
+        // A face that is there twice lies on itself, though both are as they were.
+        let mut twice = clean.clone();
+        let again: Vec<u32> = twice.face(5).to_vec();
+        twice.push_face(&again);
+        let both: Vec<Option<u32>> = known.iter().copied().chain([Some(5)]).collect();
+        let both = KnownFaces { mesh: &clean, faces: &both };
+        assert_eq!(crossings(&twice, Some(both)), crossings(&twice, None));
+        assert!(crossings(&twice, Some(both)) > 0);
     }
 }

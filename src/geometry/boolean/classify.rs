@@ -29,6 +29,8 @@ pub struct Classification {
 }
 
 const NONE: u32 = u32::MAX;
+/// Of a face with a corner beyond the other's box, until its part has a number.
+const FAR: u32 = u32::MAX - 1;
 
 impl Classification {
     /// Where a face lies; None for a face that is in pieces.
@@ -126,7 +128,11 @@ fn one_side(
 ) -> Result<(Classification, Option<String>), Cancelled> {
     let shared = |v: u32| m.shared[v as usize];
     let base = at.len() as u32;
-    let mut sets = DisjointSets::new(at.len() + pieces.len());
+    // Places beyond the other's box are in one set, whatever joins them: what hangs together with
+    // them is outside, and needs no further look.
+    let beyond = base + pieces.len() as u32;
+    let is_beyond: Vec<bool> = at.par_iter().map(|p| other.beyond(*p)).collect();
+    let mut sets = DisjointSets::new(at.len() + pieces.len() + 1);
     let mut part = vec![0; mesh.face_count()];
     pieces.iter().for_each(|p| part[p.face as usize] = NONE);
     for (f, corners) in mesh.faces().enumerate() {
@@ -138,7 +144,14 @@ fn one_side(
             continue;
         }
         // No corner of these is on the other surface.
-        corners.windows(2).for_each(|w| sets.join(w[0], w[1]));
+        if !corners.iter().any(|&v| is_beyond[v as usize]) {
+            corners.windows(2).for_each(|w| sets.join(w[0], w[1]));
+            continue;
+        }
+        part[f] = FAR;
+        for &v in corners.iter().filter(|v| !is_beyond[**v as usize]) {
+            sets.join(v, beyond);
+        }
     }
     let mut borders: Map<(u32, u32), Vec<u32>> = Map::default();
     for (i, p) in pieces.iter().enumerate().filter(|&(i, _)| !settled[i]) {
@@ -149,7 +162,7 @@ fn one_side(
             for k in 0..l.len() {
                 let (a, b) = (l[k], l[(k + 1) % l.len()]);
                 if !shared(a) {
-                    sets.join(base + i as u32, a);
+                    sets.join(base + i as u32, if is_beyond[a as usize] { beyond } else { a });
                 } else if shared(b) && !m.curve.contains_key(&(a.min(b), a.max(b))) {
                     borders.entry((a.min(b), a.max(b))).or_default().push(i as u32);
                 }
@@ -160,7 +173,7 @@ fn one_side(
         around.windows(2).for_each(|w| sets.join(base + w[0], base + w[1]));
     }
     // Number the parts, and find in each the place from which to ask.
-    let mut numbers = vec![NONE; at.len() + pieces.len()];
+    let mut numbers = vec![NONE; at.len() + pieces.len() + 1];
     let mut parts: Vec<ConnectedPart> = Vec::new();
     let mut number = |root: u32, parts: &mut Vec<ConnectedPart>| {
         let n = &mut numbers[root as usize];
@@ -170,9 +183,15 @@ fn one_side(
         }
         *n
     };
+    let far = number(sets.root(beyond), &mut parts);
+    parts[far as usize].beyond = true;
     for (f, corners) in mesh.faces().enumerate() {
         if f % 65_536 == 0 {
             job.check()?;
+        }
+        if part[f] == FAR {
+            part[f] = far;
+            continue;
         }
         if part[f] == NONE {
             continue;
@@ -200,7 +219,7 @@ fn one_side(
     // does, and is not outside as a whole.
     let asked = |n: u32| n != NONE && !parts[n as usize].beyond;
     let near: Vec<usize> = (0..pieces.len()).filter(|&i| of_piece[i] != NONE).collect();
-    let far: Vec<usize> = if parts.iter().all(|p| p.beyond) {
+    let apart: Vec<usize> = if parts.iter().all(|p| p.beyond) {
         Vec::new()
     } else {
         (0..part.len()).filter(|&f| asked(part[f])).collect()
@@ -212,7 +231,7 @@ fn one_side(
         (of_piece[i], probe(&loops, at))
     });
     let samples = samples.chain(
-        far.iter().step_by(spread(far.len())).map(|&f| (part[f], probe(&[mesh.face(f)], at))),
+        apart.iter().step_by(spread(apart.len())).map(|&f| (part[f], probe(&[mesh.face(f)], at))),
     );
     let mut doubt = None;
     for (n, (_, place)) in samples {
@@ -259,15 +278,17 @@ impl<'a> WindingOracle<'a> {
         WindingOracle { surface, bounds, around: None, eps, asked: 0, tree: None }
     }
 
+    /// Whether a place is beyond the box of the surface, where that says that it is outside.
+    fn beyond(&self, p: DVec3) -> bool {
+        let within = self.bounds.lo.cmple(p).all() && p.cmple(self.bounds.hi).all();
+        self.around.is_none() && !within
+    }
+
     fn look(&self, part: &mut ConnectedPart, loops: &[&[u32]], at: &[DVec3]) {
         if part.beyond {
             return;
         }
-        let within = |v: &u32| {
-            let p = at[*v as usize];
-            self.bounds.lo.cmple(p).all() && p.cmple(self.bounds.hi).all()
-        };
-        if self.around.is_none() && !loops[0].iter().all(within) {
+        if loops[0].iter().any(|v| self.beyond(at[*v as usize])) {
             part.beyond = true;
             return;
         }

@@ -4,9 +4,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::fans;
 use crate::PolyMesh;
 use crate::disjoint_sets::DisjointSets;
+use crate::fans;
 use crate::job::{Cancelled, Job};
 use crate::portable::PortableMath;
 use crate::triangulate::area_vector;

@@ -33,7 +33,6 @@ pub mod classify;
 mod common;
 mod curve;
 mod emit;
-mod fans;
 mod global;
 mod intersect;
 mod merge;

@@ -66,6 +66,20 @@ impl DistanceSolid {
         self
     }
 
+    /// The welded vertices of [`DistanceSolid::topology`], in double precision where the corners
+    /// were given so.
+    pub fn positions(&self) -> Vec<DVec3> {
+        let mut out: Vec<DVec3> = self.topology.positions.iter().map(|p| p.as_dvec3()).collect();
+        for (names, corners) in self.topology.triangles.iter().zip(&self.corners) {
+            for (&v, &p) in names.iter().zip(corners) {
+                if let Some(place) = out.get_mut(v as usize) {
+                    *place = p;
+                }
+            }
+        }
+        out
+    }
+
     /// The nearest point of the surface, as [`Bvh8::nearest`] has it.
     pub fn nearest_point(&self, p: DVec3, within: f64) -> Option<NearestPoint> {
         self.tree.nearest_of(p, within, &self.corners)

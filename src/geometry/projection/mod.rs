@@ -15,7 +15,7 @@ use super::alpha_shape::alpha_shape;
 use super::distance::DistanceSolid;
 use super::grid::DistanceGrid;
 use super::march::{MarchOutcome, march};
-pub use super::silhouette::{PlaneRegion, ProjectionPlane, outline};
+pub use super::silhouette::{PlaneRegion, ProjectionPlane, ShadowOutline, outline, outline_of};
 use crate::bvh::Ray;
 use crate::job::{Cancelled, Job};
 pub use draw::{png, svg};
@@ -159,12 +159,14 @@ pub fn shadow_areas(
     directions: &[DVec3],
     job: &Job,
 ) -> Result<Vec<f64>, Cancelled> {
+    let positions = solid.positions();
     directions
         .par_iter()
         .map(|&d| {
             job.check()?;
-            Ok(ProjectionPlane::along(d, 0.0)
-                .map_or(0.0, |plane| area(&outline(&solid.topology, &plane))))
+            Ok(ProjectionPlane::along(d, 0.0).map_or(0.0, |plane| {
+                area(&outline_of(&solid.topology, &positions, &plane).regions)
+            }))
         })
         .collect()
 }

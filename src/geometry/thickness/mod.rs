@@ -28,12 +28,13 @@ pub mod worst;
 
 use std::borrow::Cow;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::TriMesh;
 use crate::bvh::Bvh8;
 use crate::job::{Cancelled, Job};
+use crate::tight_frame::tight_frame;
 pub use cone::{Cone, Outliers, Weights};
 pub use ray::Correction;
 use ray::{Caster, ConeScratch, Site};
@@ -242,11 +243,44 @@ pub fn measure(
     job: &Job,
 ) -> Result<Thickness, ThicknessError> {
     settings.check()?;
+    if let Some((turned, surface)) = turned(mesh, settings) {
+        let tree = Bvh8::build(&turned.mesh, job)?;
+        let mut done = measure_prepared(Cow::Owned(turned.surface), &tree, settings, job)?;
+        done.surface = surface;
+        return Ok(done);
+    }
     let (tree, surface) = rayon::join(
         || Bvh8::build(mesh, job),
         || WeldedSurface::new(mesh, settings.crease.to_radians()),
     );
     measure_prepared(Cow::Owned(surface), &tree?, settings, job)
+}
+
+/// A mesh in another frame.
+struct TurnedMesh {
+    mesh: TriMesh,
+    surface: WeldedSurface,
+}
+
+/// The mesh in a frame in which the boxes of its triangles are small, where that makes them much
+/// smaller, and its surface as it is. Along long thin triangles that run along no axis every ray
+/// would meet every box.
+fn turned(mesh: &TriMesh, settings: &ThicknessSettings) -> Option<(TurnedMesh, WeldedSurface)> {
+    let positions: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+    if mesh.triangles.iter().flatten().any(|&v| v as usize >= positions.len()) {
+        return None;
+    }
+    let turn = tight_frame(&positions, &mesh.triangles)?;
+    let turned = TriMesh {
+        positions: positions.iter().map(|p| (turn * *p).as_vec3()).collect(),
+        triangles: mesh.triangles.clone(),
+        colours: None,
+    };
+    let of = |m: &TriMesh| WeldedSurface::new(m, settings.crease.to_radians());
+    let (own, surface) = rayon::join(|| of(&turned), || of(mesh));
+    // The same vertices and triangles, though they are rounded anew.
+    let same = own.weld == surface.weld && own.triangles == surface.triangles;
+    same.then_some((TurnedMesh { mesh: turned, surface: own }, surface))
 }
 
 /// The same with the tree and the surface at hand, for several measures of one mesh.
@@ -436,4 +470,34 @@ fn spatial_order(surface: &WeldedSurface, tree: &Bvh8) -> Vec<u32> {
         }
     }
     order
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DVec3};
+
+    use super::*;
+    use crate::shapes::cylinder;
+
+    #[test]
+    fn slivers_along_a_diagonal_are_measured_in_their_own_frame() {
+        let job = Job::default();
+        let rod = cylinder(1.0, 2000.0, 60).triangulate().0;
+        let turn = DMat3::from_axis_angle(DVec3::new(1.0, 0.3, -0.2).normalize(), 0.8);
+        let mut slanted = rod.clone();
+        for p in &mut slanted.positions {
+            *p = (turn * p.as_dvec3()).as_vec3();
+        }
+        let settings = ThicknessSettings { rays: 1, ..ThicknessSettings::default() };
+        assert!(turned(&rod, &settings).is_none());
+        assert!(turned(&slanted, &settings).is_some());
+        let of = |m: &TriMesh| measure(m, &settings, &job).expect("measured");
+        let (straight, slanted) = (of(&rod), of(&slanted));
+        for (v, (a, b)) in straight.values.iter().zip(&slanted.values).enumerate() {
+            assert!((a - b).abs() < 2e-3 || a.is_nan() && b.is_nan(), "{v}: {a} {b}");
+        }
+        // The surface is the mesh's own, not the turned one.
+        let there = turn * straight.surface.positions[0].as_dvec3();
+        assert!((slanted.surface.positions[0].as_dvec3() - there).length() < 1e-3);
+    }
 }

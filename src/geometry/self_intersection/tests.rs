@@ -4,7 +4,7 @@
 use glam::{DVec3, I64Vec3};
 
 use super::*;
-use crate::tight_frame::tight_frame;
+use crate::shapes;
 
 type Flat = (Vec<I64Vec3>, Vec<[u32; 3]>);
 
@@ -240,4 +240,65 @@ fn ribs_along_a_diagonal_are_compared_in_their_own_frame() {
     }
     assert!(want.len() > 20);
     assert_eq!(found, want);
+}
+
+/// All pairs, each two triangles compared.
+fn reference(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {
+    let (mut found, mut uses) = (Found::default(), Vec::new());
+    for t in 0..triangles.len() as u32 {
+        (0..t).for_each(|u| compare(positions, triangles, u, t, &mut found));
+        let [a, b, c] = triangles[t as usize];
+        if a != b && b != c && c != a {
+            uses.extend([(a, b), (b, c), (c, a)].map(|(a, b)| ((a.min(b), a.max(b)), t)));
+        }
+    }
+    let mut out = found.0;
+    through(positions, triangles, found.1, |_| true, &mut out);
+    uses.sort_unstable();
+    for edge in uses.chunk_by(|x, y| x.0 == y.0).filter(|e| e.len() > 1) {
+        let around: Vec<u32> = edge.iter().map(|e| e.1).collect();
+        along_shared_edge(positions, triangles, edge[0].0, &around, &mut out);
+    }
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
+#[test]
+fn folded_surfaces_cross_as_each_two_of_their_triangles_do() {
+    let mut mix = SplitMix(11);
+    let (mut some, mut clean) = (0, 0);
+    for case in 0..60u64 {
+        let mut mesh = match case % 3 {
+            0 => shapes::icosphere(8.0, 5).to_poly(),
+            1 => shapes::torus(8.0, 3.0, 14, 9),
+            _ => shapes::cuboid(DVec3::ZERO, DVec3::splat(8.0)),
+        };
+        if case % 2 == 0 {
+            // In a lattice, where nearly every case is a special one.
+            mesh.positions.iter_mut().for_each(|p| *p = p.round());
+        }
+        for _ in 0..case / 6 {
+            let v = mix.below(mesh.positions.len() as u64) as usize;
+            let by = mix.point(9) - 4;
+            mesh.positions[v] += by.as_dvec3() * if case % 4 < 2 { 0.25 } else { 1.0 };
+        }
+        let (triangles, _) = mesh.triangles();
+        let job = Job::default();
+        let found = pairs(&mesh.positions, &triangles, &job).expect("not cancelled");
+        assert_eq!(found, reference(&mesh.positions, &triangles), "case {case}");
+        some += usize::from(!found.is_empty());
+        clean += usize::from(found.is_empty());
+        // A few of the triangles, a third of them, and all.
+        for share in [40, 5, 3, 1] {
+            let mut changed: Vec<u32> = (0..triangles.len() as u32).collect();
+            changed.retain(|_| mix.below(share) == 0);
+            let mut want = found.clone();
+            let counts = |t: &u32| changed.binary_search(t).is_ok();
+            want.retain(|(t, u)| counts(t) || counts(u));
+            let got = pairs_with(&mesh.positions, &triangles, &changed, &job);
+            assert_eq!(got.expect("not cancelled"), want, "case {case}, one of {share}");
+        }
+    }
+    assert!(some > 10 && clean > 5, "{some} {clean}");
 }
