@@ -112,6 +112,9 @@
 //!   clock.
 //! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for:
 //!   the disk.
+//! * `sculptd-brushes`, made by `daemon::brush_folder`: reads a person's own brushes anew when a
+//!   file of theirs changes. Waits for: the clock. Owns: the folder as it was read. Speaks through:
+//!   the list that all clones of the presets share.
 //! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.

@@ -2,6 +2,9 @@
 
 use glam::Vec3;
 
+/// Parts of a capsule's axis that are looked at one by one.
+const STEPS: usize = 4;
+
 /// A closed part of space, mesh units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
@@ -39,7 +42,18 @@ impl Reach {
                 }
                 // A ball around the box against the axis: cheap, and never wrongly "no".
                 let (middle, half) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
-                self.distance_squared(middle) <= (radius + half) * (radius + half) * 1.000_001
+                if self.distance_squared(middle) > (radius + half) * (radius + half) * 1.000_001 {
+                    return false;
+                }
+                // The box against points of the axis: no other is further than half a step from
+                // one of them.
+                let along = to - from;
+                let far = radius + along.length() * (0.5 / STEPS as f32);
+                let far2 = far * far * 1.000_001;
+                (0..=STEPS).any(|i| {
+                    let p = from + along * (i as f32 / STEPS as f32);
+                    (p - p.clamp(lo, hi)).length_squared() <= far2
+                })
             }
         }
     }

@@ -55,6 +55,7 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     }
     let options = LiveOptions {
         presets: crate::presets().clone(),
+        brushes: None,
         demo_devices: true,
         devices: true,
         limit_s: args.limit_s,

@@ -10,6 +10,7 @@ use sculptd_geometry::io::{ReadError, WriteError};
 
 pub mod bench;
 pub mod boolean;
+pub mod brush;
 pub mod config;
 pub mod convert;
 #[cfg(unix)]
@@ -92,6 +93,14 @@ pub enum Command {
     Session {
         #[command(subcommand)]
         command: session::SessionCommand,
+    },
+    /// Your own brushes: list, save, export and import them.
+    Brush {
+        /// The folder of your own brushes, if it is not at its usual place.
+        #[arg(long, value_name = "FOLDER", global = true)]
+        brushes: Option<std::path::PathBuf>,
+        #[command(subcommand)]
+        command: brush::BrushCommand,
     },
     /// Look at the settings.
     Config {
@@ -210,6 +219,9 @@ pub fn run() -> u8 {
         None => run::run(&run::RunArgs::default(), cli.json),
         #[cfg(unix)]
         Some(Command::Ctl(args)) => ctl::run(&args, cli.json),
+        Some(Command::Brush { brushes, command }) => {
+            brush::run(&command, brushes.as_deref(), cli.json)
+        }
         Some(Command::Config { command }) => config::run(&command, cli.json),
         Some(Command::Doctor(args)) => doctor::run(&args, cli.json),
         Some(Command::Session { command }) => session::run(&command, cli.json),

@@ -11,6 +11,7 @@ use super::{Fail, Outcome, answer};
 use crate::settings::LANGUAGES;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::Summary;
+use sculptd_daemon::brush_folder::{self, BrushFolder};
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live_run::LiveOptions;
@@ -38,6 +39,10 @@ pub struct RunArgs {
     /// The brush to begin with; `sculptd ctl brushes` lists them.
     #[arg(long, value_name = "NAME")]
     pub brush: Option<BrushKind>,
+    /// The folder of your own brushes (TOML files, their pictures beside them); without it,
+    /// `brushes` in the user's data folder.
+    #[arg(long, value_name = "FOLDER")]
+    pub brushes: Option<PathBuf>,
     /// No window, even where there is a display.
     #[arg(long)]
     pub headless: bool,
@@ -144,6 +149,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let summary = if on_the_wall_clock {
         let options = LiveOptions {
             presets: crate::presets().clone(),
+            brushes: own_brushes(args.brushes.as_deref())?,
             languages: LANGUAGES,
             kiosk,
             demo_devices: false,
@@ -174,6 +180,19 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         return library::open(&next, args.config.as_deref());
     }
     report(&summary, args.stats.as_deref(), json)
+}
+
+/// The folder of a person's own brushes, read. One that was named must be there.
+fn own_brushes(named: Option<&Path>) -> Result<Option<BrushFolder>, Fail> {
+    if let Some(folder) = named {
+        std::fs::read_dir(folder).map_err(|e| Fail::io(folder, &e))?;
+    }
+    let folder = named.map(Path::to_path_buf).or_else(brush_folder::default_folder);
+    Ok(folder.map(|folder| {
+        let mut folder = BrushFolder::new(folder, crate::presets().clone());
+        folder.refresh();
+        folder
+    }))
 }
 
 /// The installation's settings, if it is one; what cannot be shown to visitors is said before any

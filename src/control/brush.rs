@@ -90,6 +90,10 @@ pub struct BrushInfo {
     pub settings: BrushSettings,
     /// Its own numbers, in the order of the setting `extra`: each with name, range and value.
     pub extra: Vec<Map<String, Value>>,
+    /// It is a person's own, from the folder of brushes. Its name serves as
+    /// [`BrushSettings::kind`] too: the brush then comes with its picture of heights.
+    #[serde(default)]
+    pub own: bool,
 }
 
 /// Parameters of a method that reads or writes one file.

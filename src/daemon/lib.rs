@@ -8,6 +8,7 @@
 
 pub mod adaptors;
 pub mod boolean_jobs;
+pub mod brush_folder;
 pub mod command_queue;
 pub mod config;
 #[cfg(unix)]

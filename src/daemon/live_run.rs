@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use crate::adaptors::{self, Adaptors};
+use crate::brush_folder::BrushFolder;
 use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
 use crate::kiosk::settings::LanguageTexts;
@@ -35,6 +36,8 @@ use sculptd_engine::world::World;
 pub struct LiveOptions {
     /// What each brush begins with.
     pub presets: Presets,
+    /// A person's own brushes: read by now, and looked after while the run lasts.
+    pub brushes: Option<BrushFolder>,
     /// What the screen of an installation says, by the language's code.
     pub languages: LanguageTexts<'static>,
     /// Visitors come and go.
@@ -125,7 +128,7 @@ impl LiveRun {
     /// Where a thread, a socket or a port cannot be had, and where the installation's settings
     /// cannot be used. A device that cannot be opened is no error: [`Adaptors::describe`] tells.
     pub fn start(
-        options: LiveOptions,
+        mut options: LiveOptions,
         config: &Config,
         begun: Begun,
         catalogue: Catalogue,
@@ -154,6 +157,13 @@ impl LiveRun {
             history.connect(live.commands.clone());
         }
         let mut notices = Vec::new();
+        if let Some(folder) = options.brushes.take() {
+            notices.extend(folder.problems().iter().map(|e| format!("brush not taken: {e}")));
+            folder.watch(stop.clone()).map_err(|source| LiveRunError::Service {
+                what: "sculptd-brushes".into(),
+                source,
+            })?;
+        }
         #[cfg(unix)]
         let _served = {
             let pen = crate::control::stroke::VirtualPen::new(&factory, clock.clone());

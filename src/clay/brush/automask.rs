@@ -44,6 +44,11 @@ impl AutoMasking {
         }
     }
 
+    /// Whether anything may be left alone.
+    pub fn is_on(&self) -> bool {
+        self.on
+    }
+
     /// 0 left alone to 1 free. `at`: where the brush has the vertex, now or at the start of the
     /// stroke.
     #[inline(always)]

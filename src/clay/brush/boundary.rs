@@ -5,6 +5,7 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::footprint::Footprint;
 use super::dab::{Dab, Grip};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
@@ -30,6 +31,10 @@ impl Brush for BoundaryBrush {
     fn reach(dab: &Dab<'_>) -> Reach {
         let radius = dab.radius * FAR;
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius }
+    }
+
+    fn footprint(&self, _: &Dab<'_>) -> Option<Footprint> {
+        None
     }
 
     /// The walk says how far it is; see `change`.

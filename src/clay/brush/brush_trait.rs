@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use super::dab::{Dab, Grip};
+use super::footprint::Footprint;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Kernel, PageIn, Reach};
@@ -128,11 +129,18 @@ pub trait Brush: Copy + Sync {
         dab.ball(1.0)
     }
 
-    /// How much it does to a vertex, 0 to 1, mask left out of account; 0 outside. `at`: where the
-    /// dab measures the vertex; for an anchored brush where it was at the start of the stroke.
+    /// What the dab covers, and how much it does there; `None` for a brush whose
+    /// [`Brush::share`] says so vertex by vertex.
+    fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
+        Some(Footprint::ball(dab))
+    }
+
+    /// How much a brush without a footprint does to a vertex, 0 to 1, mask left out of account; 0
+    /// outside. `at`: where the dab measures the vertex; for an anchored brush where it was at the
+    /// start of the stroke.
     #[inline(always)]
-    fn share(&self, dab: &Dab<'_>, _page: &PageIn<'_>, _v: usize, at: Vec3) -> f32 {
-        dab.fade((at - dab.centre).length_squared())
+    fn share(&self, _dab: &Dab<'_>, _page: &PageIn<'_>, _v: usize, _at: Vec3) -> f32 {
+        0.0
     }
 
     /// What changes at a vertex within the reach.

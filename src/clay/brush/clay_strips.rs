@@ -8,10 +8,11 @@ use glam::Vec3;
 
 use super::clay::coat;
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::{Dab, soft};
+use super::dab::Dab;
+use super::footprint::{Footprint, FootprintShape};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
-use crate::{PageIn, Reach};
+use crate::Reach;
 
 /// One dab of clay strips.
 #[derive(Debug, Clone, Copy)]
@@ -44,7 +45,7 @@ impl Brush for ClayStripsBrush {
         },
         OwnNumber {
             name: "fill",
-            value: 0.5,
+            value: 0.42,
             min: 0.01,
             max: 1.0,
             about: "the share of the way to the plane over a fifth of the radius travelled",
@@ -70,20 +71,10 @@ impl Brush for ClayStripsBrush {
         dab.ball(std::f32::consts::SQRT_2)
     }
 
-    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, at: Vec3) -> f32 {
-        let d = (at - dab.centre) / dab.radius;
-        let (x, y, z) = (d.dot(self.along), d.dot(self.across), d.dot(dab.normal));
-        if z * z >= 1.0 {
-            return 0.0;
-        }
-        let s = dab.settings;
-        let fade = |r: f32| s.falloff.at(soft(r, s.hardness), &s.curve);
-        let square = fade(x.abs()) * fade(y.abs());
-        if self.round == 0.0 {
-            return square;
-        }
-        let disc = fade((x * x + y * y).sqrt());
-        square + (disc - square) * self.round
+    fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
+        let ClayStripsBrush { along, across, round, .. } = *self;
+        let shape = FootprintShape::Square { along, across, normal: dab.normal, round };
+        Some(Footprint::of(dab, shape))
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {

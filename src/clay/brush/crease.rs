@@ -12,8 +12,8 @@ use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
+use super::footprint::{Footprint, FootprintShape};
 use super::preset::OwnNumber;
-use crate::PageIn;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// How wide the floor of the groove is rounded, in radii.
@@ -62,8 +62,8 @@ impl Brush for CreaseBrush {
         }
     }
 
-    fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, at: Vec3) -> f32 {
-        dab.fade((at - dab.centre).length_squared() + self.round)
+    fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
+        Some(Footprint::of(dab, FootprintShape::Ball { round: self.round }))
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {

@@ -7,6 +7,7 @@
 use glam::Vec3;
 
 use super::BrushSettings;
+use super::options::Method;
 use super::stamp::Lens;
 use super::weights::{facing, ln};
 use crate::Reach;
@@ -133,6 +134,16 @@ impl Dab<'_> {
     /// One of the brush's own numbers.
     pub fn extra(&self, i: usize) -> f32 {
         self.settings.extra[i]
+    }
+
+    /// The way from the dab before it, mesh units. Zero for the first dab of a stroke, after a leap
+    /// of a radius or more, and where dabs do not follow the path (dots, jitter, a held brush).
+    pub fn way(&self) -> Vec3 {
+        let path = &self.settings.path;
+        let follows =
+            matches!(path.method, Method::Space | Method::Airbrush | Method::Line | Method::Curve);
+        let near = self.motion.length_squared() < self.radius * self.radius;
+        if follows && near && path.jitter <= 0.0 { self.motion } else { Vec3::ZERO }
     }
 
     /// The stroke's direction in the tangent plane, unit length; for a stroke without one, to the

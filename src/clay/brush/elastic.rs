@@ -16,6 +16,7 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::footprint::Footprint;
 use super::dab::{Dab, Grip};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
@@ -83,6 +84,10 @@ impl Brush for ElasticBrush {
 
     fn reach(dab: &Dab<'_>) -> Reach {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius * FAR }
+    }
+
+    fn footprint(&self, _: &Dab<'_>) -> Option<Footprint> {
+        None
     }
 
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {

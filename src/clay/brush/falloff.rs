@@ -48,9 +48,12 @@ impl Falloff {
     /// The profile at `x` >= 0; `curve` matters to [`Falloff::Custom`] only.
     #[inline]
     pub fn at(self, x: f32, curve: &[f32; CURVE]) -> f32 {
-        if !(x < 1.0) {
-            return 0.0;
-        }
+        if x < 1.0 { self.within(x, curve) } else { 0.0 }
+    }
+
+    /// The profile at `x` from 0 to 1; beyond that any number, or none.
+    #[inline(always)]
+    pub(super) fn within(self, x: f32, curve: &[f32; CURVE]) -> f32 {
         let t = 1.0 - x;
         match self {
             Falloff::Gaussian => exp(x * x * -12.5),

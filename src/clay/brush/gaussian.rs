@@ -7,6 +7,7 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::footprint::Footprint;
 use super::dab::Dab;
 use super::weights::{Weights, exp};
 use crate::brush::surface_query::SurfaceQuery;
@@ -57,6 +58,10 @@ impl Kernel for GaussianBrush {
 impl Brush for GaussianBrush {
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         GaussianBrush::new(dab.centre, dab.radius, dab.normal, dab.height())
+    }
+
+    fn footprint(&self, _: &Dab<'_>) -> Option<Footprint> {
+        None
     }
 
     #[inline(always)]

@@ -104,6 +104,14 @@ impl Geodesic {
         self.find(page).and_then(|b| b.frame.get(v as usize).copied())
     }
 
+    /// How far a vertex is, its place, and the directions carried to it, where the walk has been.
+    #[inline]
+    pub fn settled(&self, (page, v): Key) -> Option<(f32, [f32; 2], [Vec3; 2])> {
+        let (block, v) = (self.find(page)?, v as usize);
+        let place = *block.place.get(v)?;
+        (!place[0].is_nan()).then(|| (block.distance[v], place, block.frame[v]))
+    }
+
     /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
     /// Says whether it was nearer.
     pub fn offer(&mut self, mesh: &Clay, key: Key, distance: f32, owner: u32) -> bool {

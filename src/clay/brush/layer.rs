@@ -1,8 +1,12 @@
 //! Layer: one coat of even height a stroke, however often the stroke passes: the greatest of all
-//! its dabs, not their sum, each measured from where the stroke found the surface.
+//! its dabs, not their sum, each measured from where the stroke found the surface. A dab covers the
+//! way from the one before it, so that the rim is that of the stroke and not of single discs,
+//! whatever the spacing.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;
+use super::footprint::{Footprint, FootprintShape};
+use crate::Reach;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of layer.
@@ -15,6 +19,14 @@ impl Brush for LayerBrush {
 
     fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         LayerBrush
+    }
+
+    fn reach(dab: &Dab<'_>) -> Reach {
+        dab.ball(1.0 + dab.way().length() / dab.radius)
+    }
+
+    fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
+        Some(Footprint::of(dab, FootprintShape::Capsule { back: -dab.way() }))
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {

@@ -1,5 +1,8 @@
 //! Levelling: what lies over or under the mean plane beneath the brush goes a share of the way to
 //! it. [`super::fill`], [`super::flatten`] and [`super::scrape`] are this brush.
+//!
+//! The plane is that of the surface as the stroke found it (unless the stroke accumulates): a plane
+//! that followed what the stroke has levelled so far would depend on how closely its dabs lie.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
@@ -23,7 +26,12 @@ impl<const SIDE: i8> Brush for LevelBrush<SIDE> {
     }];
 
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
-        LevelBrush { plane: on.plane(dab, dab.extra(0)) }
+        let plane = if dab.settings.accumulate {
+            on.plane(dab, dab.extra(0))
+        } else {
+            on.plane_before(dab, dab.extra(0))
+        };
+        LevelBrush { plane }
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {

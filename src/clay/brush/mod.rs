@@ -3,8 +3,8 @@
 //! defaults of the code, or texts that a program brings along.
 //!
 //! * [`brush_trait`], [`dab`]: what a brush is. [`tool`]: how a dab and its images are applied.
-//!   [`surface_query`]: what a brush may ask first.
-//! * [`settings`], [`options`], [`preset`], [`falloff`]: what a person sets.
+//!   [`surface_query`]: what a brush may ask first. [`footprint`]: what a dab covers.
+//! * [`settings`], [`options`], [`preset`], [`own_brush`], [`falloff`]: what a person sets.
 //! * `drag`, `palm`, `push`: the tools of hands, kernels of their own.
 
 pub mod alpha;
@@ -14,10 +14,12 @@ pub(crate) mod cotangent;
 pub mod dab;
 mod drag;
 pub mod falloff;
+pub mod footprint;
 pub mod geodesic;
 pub mod level;
 pub mod mask_all;
 pub mod options;
+pub mod own_brush;
 mod palm;
 pub mod placed_stamp;
 pub mod preset;
@@ -28,6 +30,7 @@ pub mod stamp;
 pub mod stroke_param;
 pub mod surface_query;
 pub mod tool;
+pub mod weigh;
 pub mod weights;
 
 use serde::{Deserialize, Serialize};
@@ -40,6 +43,7 @@ pub use falloff::Falloff;
 pub use gaussian::GaussianBrush;
 pub use mask_all::MaskAction;
 pub use options::{AutoMask, Measure, Method, Mirror, PathSettings, TopologySettings};
+pub use own_brush::OwnBrush;
 pub use palm::Palm;
 pub use preset::{OwnNumber, Preset, Presets};
 pub use push::Push;

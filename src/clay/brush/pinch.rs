@@ -5,22 +5,37 @@ use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
+use super::stamp::StampBy;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of pinch, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct PinchBrush {
     normal: Vec3,
+    /// Nothing but the mask and the far side takes from the footprint.
+    plain: bool,
 }
 
 impl Brush for PinchBrush {
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
-        PinchBrush { normal: on.plane(dab, 0.0).normal }
+        let s = dab.settings;
+        let plain = !s.auto.is_on() && s.stamp.by == StampBy::Off;
+        PinchBrush { normal: on.plane(dab, 0.0).normal, plain }
     }
 
+    #[inline(always)]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let d = dab.centre - spot.p;
         let flat = d - self.normal * d.dot(self.normal);
-        VertexChange::by(flat * (dab.sign * part(dab.pace, spot.weight)))
+        // The weight is that of the middle of the way, so that few large dabs and many small ones
+        // come to the same.
+        let mut weight = spot.weight;
+        if self.plain {
+            let x = 0.5 * dab.pace * weight;
+            let half = d - flat * (dab.sign * (x - 0.5 * x * x));
+            let free = 1.0 - spot.page.mask(spot.v);
+            weight = dab.fade(half.length_squared()) * free * dab.facing(spot.normal());
+        }
+        VertexChange::by(flat * (dab.sign * part(dab.pace, weight)))
     }
 }

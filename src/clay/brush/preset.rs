@@ -6,10 +6,11 @@
 //! the brush's own numbers by their names. [`Presets`] is a plain value: who has no texts uses
 //! [`Presets::default`], the defaults of the code alone.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use serde::{Deserialize, Serialize};
 
+use super::own_brush::OwnBrush;
 use super::{BrushKind, BrushSettings};
 
 /// One of the numbers that only one brush has, as the brush's code declares it: this one
@@ -98,21 +99,58 @@ fn numbers(settings: &BrushSettings) -> toml::Value {
     settings.extra.iter().map(|v| toml::Value::Float(f64::from(*v))).collect::<Vec<_>>().into()
 }
 
-/// What every brush begins with. Cloning it is cheap: the presets are shared.
-#[derive(Debug, Clone, PartialEq)]
+/// What every brush begins with, and a person's own brushes. Cloning it is cheap: all clones share
+/// both, so a list of own brushes that one of them is given is seen by all.
+#[derive(Debug, Clone)]
 pub struct Presets {
     /// In the order of [`BrushKind::ALL`].
     all: Arc<[Preset]>,
+    /// In the order in which they are listed. Never read within a tick.
+    own: Arc<RwLock<Arc<[OwnBrush]>>>,
+}
+
+impl PartialEq for Presets {
+    /// Of what the program brings along; own brushes do not count.
+    fn eq(&self, other: &Presets) -> bool {
+        self.all == other.all
+    }
 }
 
 impl Default for Presets {
-    /// The defaults of the code: [`BrushSettings::new`] of each brush.
+    /// The defaults of the code: [`BrushSettings::new`] of each brush. No own brushes.
     fn default() -> Self {
-        Presets { all: BrushKind::ALL.iter().map(|k| Preset::of_code(*k)).collect() }
+        Presets::of_all(BrushKind::ALL.iter().map(|k| Preset::of_code(*k)).collect())
     }
 }
 
 impl Presets {
+    fn of_all(all: Arc<[Preset]>) -> Presets {
+        Presets { all, own: Arc::new(RwLock::new(Vec::new().into())) }
+    }
+
+    /// The same presets, and own brushes that no clone of `self` sees.
+    #[must_use]
+    pub fn apart(&self) -> Presets {
+        Presets::of_all(self.all.clone())
+    }
+
+    /// A person's own brushes, in the order in which they are listed.
+    pub fn own(&self) -> Arc<[OwnBrush]> {
+        // The list is replaced as a whole: one that a panic left behind is whole, too.
+        self.own.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The own brush of this name.
+    pub fn own_of(&self, name: &str) -> Option<OwnBrush> {
+        self.own().iter().find(|own| own.name == name).cloned()
+    }
+
+    /// Replaces the own brushes, here and in all clones.
+    pub fn set_own(&self, mut own: Vec<OwnBrush>) {
+        own.sort_by(|a, b| (a.order, &a.name).cmp(&(b.order, &b.name)));
+        *self.own.write().unwrap_or_else(PoisonError::into_inner) = own.into();
+    }
+
     /// Reads presets from texts of TOML, each with the name of its brush. A brush without a text
     /// keeps the defaults of the code; of two texts for one brush the later one holds.
     ///
@@ -125,7 +163,7 @@ impl Presets {
             let kind: BrushKind = name.parse()?;
             all[kind as usize] = Preset::read(kind, text).map_err(|e| format!("{name}: {e}"))?;
         }
-        Ok(Presets { all: all.into() })
+        Ok(Presets::of_all(all.into()))
     }
 
     /// The preset of one brush.
@@ -136,6 +174,12 @@ impl Presets {
     /// The settings that one brush begins with.
     pub fn of(&self, kind: BrushKind) -> BrushSettings {
         self.get(kind).settings
+    }
+
+    /// An own brush in the same hand: its settings, with the mirrors of `now`.
+    #[must_use]
+    pub fn taken(&self, now: &BrushSettings, own: &OwnBrush) -> BrushSettings {
+        BrushSettings { symmetry: now.symmetry, mirror: now.mirror, ..own.settings }
     }
 
     /// Another brush in the same hand: its own settings, at the size and with the mirrors of `now`.

@@ -11,6 +11,7 @@ use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
 use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::footprint::Footprint;
 use super::dab::Dab;
 use super::weights::Weights;
 use crate::brush::surface_query::SurfaceQuery;
@@ -134,6 +135,10 @@ impl Kernel for SmoothBrush {
 impl Brush for SmoothBrush {
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         SmoothBrush::of(dab)
+    }
+
+    fn footprint(&self, _: &Dab<'_>) -> Option<Footprint> {
+        None
     }
 
     #[inline(always)]

@@ -8,10 +8,14 @@
 //! there along the edge, laid into my tangent plane at its full length. The direction of `u` is
 //! carried by the smallest turn that takes one normal to the other.
 //!
+//! The distance over the edges decides only which sample a vertex belongs to and where the walk
+//! ends: it is up to 1.4 times too long, more in one direction of the mesh than in another. How far
+//! a vertex is from the stroke is told by its coordinates ([`StrokeParameters::off_stroke`]).
+//!
 //! All is measured on the surface as it was when the stroke began, so the relief does not bend its
 //! own coordinates; a new sample touches only vertices that are nearer to it than to all before.
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use crate::brush::geodesic::{Geodesic, Key, ring};
 use crate::{Clay, Page, Reach};
@@ -27,6 +31,15 @@ pub struct StrokeSample {
     pub along: Vec3,
     /// Length of the stroke up to it, mesh units.
     pub u: f32,
+}
+
+/// A place that a stroke goes to: a point and the unit normal there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StrokePlace {
+    /// On the surface as it is; where that was when the stroke began is estimated.
+    Now(Vec3, Vec3),
+    /// On the surface as it was when the stroke began.
+    Found(Vec3, Vec3),
 }
 
 /// A stroke being unrolled.
@@ -47,20 +60,34 @@ impl StrokeParameters {
         self.walk.owner(page, v)
     }
 
+    /// How far a place is from the stroke as far as it came: from its axis, and before its first or
+    /// beyond its newest sample from that sample.
+    pub fn off_stroke(&self, [u, v]: [f32; 2]) -> f32 {
+        let newest = self.last.map_or(0.0, |last| last.u);
+        let beyond = (-u).max(u - newest).max(0.0);
+        Vec2::new(beyond, v).length()
+    }
+
     /// Samples so far.
     pub fn count(&self) -> u32 {
         self.count
     }
 
-    /// Goes on to a point on the surface as it is now. Returns whether vertices got coordinates: a
+    /// Goes on to a place on the surface; coordinates are carried as far as `radius`,
+    /// which should be a little more than the brush's, so that what lies beside the stroke between
+    /// two samples is reached from one of them. Returns whether vertices got coordinates: a
     /// stroke has no direction before its second sample, which then also serves the first. The
     /// first of the two is number [`StrokeParameters::count`] - 1.
-    pub fn step(&mut self, mesh: &Clay, stroke: u32, now: Vec3, normal: Vec3, radius: f32) -> bool {
+    pub fn step(&mut self, mesh: &Clay, stroke: u32, to: StrokePlace, radius: f32) -> bool {
         if self.stroke != stroke || self.walk.is_stale(mesh) {
             self.walk.begin(mesh);
             (self.stroke, self.last, self.count) = (stroke, None, 0);
         }
-        let Some((point, normal)) = self.as_it_was(mesh, now, normal, radius) else { return false };
+        let found = match to {
+            StrokePlace::Found(point, normal) => Some((point, normal)),
+            StrokePlace::Now(point, normal) => self.as_it_was(mesh, point, normal, radius),
+        };
+        let Some((point, normal)) = found else { return false };
         let Some(last) = self.last else {
             self.last = Some(StrokeSample { point, normal, along: Vec3::ZERO, u: 0.0 });
             return false;
@@ -145,39 +172,31 @@ impl StrokeParameters {
             let page = mesh.before(key.0);
             let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
             if !walk.is_settled(key, owner) {
-                let (mut place, mut along, mut sum) = ([0.0f32; 2], Vec3::ZERO, 0.0f32);
+                let (mut place, mut sum) = (Vec2::ZERO, 0.0f32);
+                let (mut along, mut normal) = (Vec3::ZERO, Vec3::ZERO);
                 ring(
                     |i| mesh.before(i),
                     key,
                     |other, q| {
-                        let nearer =
-                            walk.distance(other.0, other.1 as usize).is_some_and(|e| e < d);
-                        let (Some(at), Some([e, m])) =
-                            (walk.place(other.0, other.1 as usize), walk.frame(other))
-                        else {
-                            return;
-                        };
-                        if !nearer {
+                        let Some((far, at, [e, m])) = walk.settled(other) else { return };
+                        if far >= d {
                             return;
                         }
                         let w = 1.0 / (p - q).length().max(1e-20);
-                        let step = laid(m, e, p - q);
-                        place[0] += (at[0] + step[0]) * w;
-                        place[1] += (at[1] + step[1]) * w;
-                        along += turn(m, n, e) * w;
+                        place += (Vec2::from(at) + Vec2::from(laid(m, e, p - q))) * w;
+                        along += e * w;
+                        normal += m * w;
                         sum += w;
                     },
                 );
                 if !(sum > 0.0) {
                     continue;
                 }
+                // The mean of the neighbours' directions, turned as their mean normal must be.
+                let along = turn(normal.normalize_or_zero(), n, along);
                 let flat = along - n * along.dot(n);
-                walk.settle(
-                    mesh,
-                    key,
-                    [place[0] / sum, place[1] / sum],
-                    [flat.normalize_or(along), n],
-                );
+                let place = (place / sum).to_array();
+                walk.settle(mesh, key, place, [flat.normalize_or(along), n]);
             }
             ring(
                 |i| mesh.before(i),
@@ -196,7 +215,8 @@ impl StrokeParameters {
 /// A vector laid into the tangent plane of `normal` at its full length, as (along, across).
 fn laid(normal: Vec3, along: Vec3, d: Vec3) -> [f32; 2] {
     let flat = d - normal * d.dot(normal);
-    let flat = flat.normalize_or_zero() * d.length();
+    let stretch = d.length_squared() / flat.length_squared();
+    let flat = if stretch.is_finite() { flat * stretch.sqrt() } else { Vec3::ZERO };
     [flat.dot(along), flat.dot(normal.cross(along))]
 }
 

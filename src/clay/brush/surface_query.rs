@@ -7,8 +7,9 @@ use glam::{DVec3, Vec3};
 use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
 use crate::brush::geodesic::Geodesic;
-use crate::brush::stroke_param::StrokeParameters;
+use crate::brush::stroke_param::{StrokeParameters, StrokePlace};
 use crate::{Clay, Page, Reach};
+use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 
 /// Memory kept from dab to dab.
 #[derive(Debug, Default)]
@@ -50,6 +51,9 @@ impl Scratch {
     }
 }
 
+/// Vertices looked at together.
+const BLOCK: usize = 64;
+
 /// The clay before a dab.
 #[derive(Debug)]
 pub struct SurfaceQuery<'a> {
@@ -81,37 +85,84 @@ impl Plane {
     }
 }
 
+/// Sums for the mean plane of the vertices about a centre.
+struct MeanPlane {
+    centre: Vec3,
+    /// What faces away from it does not count.
+    normal: Vec3,
+    radius: f32,
+    /// Of the weighted places from the centre with the weights, and of the weighted normals.
+    sums: [[f64; 4]; 2],
+}
+
+/// Adds the own vertices of a page to the sums, compiled for this processor.
+struct AddPage<'a> {
+    mean: &'a mut MeanPlane,
+    page: &'a Page,
+}
+
+impl WideWork for AddPage<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) {
+        let AddPage { mean, page } = self;
+        let radius2 = mean.radius * mean.radius;
+        let own = page.own();
+        let blocks = page.point_rows()[..own].chunks(BLOCK);
+        let [mut point, mut normal] = mean.sums;
+        for (rows, normals) in blocks.zip(page.normal_rows()[..own].chunks(BLOCK)) {
+            let mut d2 = [f32::INFINITY; BLOCK];
+            for (row, d2) in rows.iter().zip(&mut d2) {
+                *d2 = (row.truncate() - mean.centre).length_squared();
+            }
+            if d2.iter().map(|d2| u32::from(*d2 <= radius2)).sum::<u32>() == 0 {
+                continue;
+            }
+            for ((row, n), &d2) in rows.iter().zip(normals).zip(&d2) {
+                let n = n.truncate();
+                if d2 <= radius2 && n.dot(mean.normal) > 0.0 {
+                    let w = f64::from((1.0 - d2 / radius2).max(0.0));
+                    let d = (row.truncate() - mean.centre).extend(1.0).to_array();
+                    let n = n.extend(0.0).to_array();
+                    for k in 0..4 {
+                        point[k] += f64::from(d[k]) * w;
+                        normal[k] += f64::from(n[k]) * w;
+                    }
+                }
+            }
+        }
+        mean.sums = [point, normal];
+    }
+}
+
 impl SurfaceQuery<'_> {
     /// The plane through the surface under a dab: middle and mean normal of the vertices within
     /// `normal_radius`, those near the rim counted less, those that face away not at all; moved by
     /// `offset` radii along its normal. In double precision, so that images of one dab agree to the
     /// last bits.
     pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
+        self.plane_of(dab, offset, dab.found)
+    }
+
+    /// The same through the surface as it was when the stroke began, wherever the dab is measured.
+    pub fn plane_before(&self, dab: &Dab<'_>, offset: f32) -> Plane {
+        self.plane_of(dab, offset, true)
+    }
+
+    fn plane_of(&self, dab: &Dab<'_>, offset: f32, before: bool) -> Plane {
         let radius = dab.radius * dab.settings.normal_radius;
-        let (mut point, mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO, 0.0f64);
-        let mut add = |page: &Page, v: usize, d2: f32| {
-            let n = page.normal(v);
-            if n.dot(dab.normal) > 0.0 {
-                let w = f64::from((1.0 - d2 / (radius * radius)).max(0.0));
-                point += (page.point(v) - dab.centre).as_dvec3() * w;
-                normal += n.as_dvec3() * w;
-                sum += w;
-            }
-        };
+        let mut mean =
+            MeanPlane { centre: dab.centre, normal: dab.normal, radius, sums: [[0.0; 4]; 2] };
         let reach = Reach::Sphere { centre: dab.centre, radius };
-        if dab.found {
-            self.mesh.each_page_before(&reach, |_, page| {
-                for v in 0..page.own() {
-                    let d2 = (page.point(v) - dab.centre).length_squared();
-                    if d2 <= radius * radius {
-                        add(page, v, d2);
-                    }
-                }
-            });
+        let mut add = |page: &Page| dispatch(false, AddPage { mean: &mut mean, page });
+        if before {
+            self.mesh.each_page_before(&reach, |_, page| add(page));
         } else {
-            self.mesh.each_vertex(&reach, add);
+            self.mesh.each_page(&reach, |_, page| add(page));
         }
-        let normal = normal.as_vec3().try_normalize().unwrap_or(dab.normal);
+        let [[x, y, z, sum], [nx, ny, nz, _]] = mean.sums;
+        let normal = DVec3::new(nx, ny, nz).as_vec3().try_normalize().unwrap_or(dab.normal);
+        let point = DVec3::new(x, y, z);
         let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };
         let trim = dab.settings.plane_trim;
         let trim = if trim > 0.0 { trim * dab.radius } else { f32::INFINITY };
@@ -148,7 +199,11 @@ impl SurfaceQuery<'_> {
             all.push(StrokeParameters::default());
         }
         let one = &mut all[image];
-        if one.step(self.mesh, dab.stroke, dab.centre, dab.normal, dab.radius) {
+        // What is a radius off the axis halfway between two dabs is further from both, and further
+        // still over the edges.
+        let radius = dab.radius * 1.15;
+        let place = if dab.found { StrokePlace::Found } else { StrokePlace::Now };
+        if one.step(self.mesh, dab.stroke, place(dab.centre, dab.normal), radius) {
             one.count()
         } else {
             0

@@ -3,13 +3,13 @@
 //! The relief is laid on the surface as the stroke found it, along that surface's normals:
 //! `strength * radius` high where the alpha is 1. Strokes that cross themselves do not pile up.
 
-use glam::Vec3;
-
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;
+use super::falloff::Falloff;
+use super::footprint::Footprint;
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
-use crate::{PageIn, Reach};
+use crate::Reach;
 
 /// One dab of texture, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +20,7 @@ pub struct TextureBrush {
 
 impl Brush for TextureBrush {
     const CUTS: bool = false;
+    const FOUND: bool = true;
     const OWN_NUMBERS: &'static [OwnNumber] = &[
         OwnNumber {
             name: "scale",
@@ -49,18 +50,14 @@ impl Brush for TextureBrush {
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {
-        // What a dab reaches along the surface as it was may have been raised since; and the second
-        // dab of a stroke does the first one's work as well.
-        dab.ball(1.5 + dab.strength)
+        dab.ball(wide(dab))
     }
 
-    fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
-        let far = dab.radius * (1.5 + dab.strength);
-        if self.newest > 0 && (page.before(v) - dab.centre).length_squared() < far * far {
-            1.0
-        } else {
-            0.0
-        }
+    /// All that the dab may have to do with; what it does there is told by the coordinates.
+    fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
+        let ball = Footprint::ball(dab);
+        let radius = if self.newest > 0 { dab.radius * wide(dab) } else { f32::MIN_POSITIVE };
+        Some(Footprint { radius, hardness: 0.0, falloff: Falloff::Constant, ..ball })
     }
 
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
@@ -71,7 +68,7 @@ impl Brush for TextureBrush {
         let Some([u, v]) = unroll.walk.place(spot.number, spot.v) else {
             return VertexChange::default();
         };
-        let far = unroll.walk.distance(spot.number, spot.v).unwrap_or(0.0);
+        let far = unroll.off_stroke([u, v]);
         // A square of the alpha is as wide as the brush, and `scale` times as long.
         let width = dab.radius * dab.extra(2);
         let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / width);
@@ -82,4 +79,11 @@ impl Brush for TextureBrush {
         let h = dab.whole_height() * relief * dab.fade(far * far) * spot.weight;
         VertexChange::held(spot.page.normal_before(spot.v) * h)
     }
+}
+
+/// How far a dab reaches, in radii: the second one of a stroke does the first one's work as well,
+/// and where a dab is measured on the surface as it is, that may have been raised since.
+fn wide(dab: &Dab<'_>) -> f32 {
+    let raised = if dab.found { 0.0 } else { dab.strength };
+    1.05 + 1.1 * dab.settings.spacing + raised
 }

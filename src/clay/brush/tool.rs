@@ -4,8 +4,11 @@ use glam::Vec3;
 
 use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
 use super::dab::{Dab, Grip, IMAGES};
+use super::footprint::Footprint;
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
+use super::weigh::{WeightRules, weigh};
+use super::weights::Weights;
 use crate::brush::automask::AutoMasking;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
@@ -84,17 +87,16 @@ impl Tool<'_> {
             if of == 0 || (of == 1 && plain && B::alone(&dabs[g], self)) {
                 continue;
             }
-            let mut members: [Option<(Dab<'_>, B, AutoMasking)>; IMAGES] = [const { None }; IMAGES];
+            let mut members: [Option<Member<'_, B>>; IMAGES] = [const { None }; IMAGES];
             let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let mut n = 0;
             for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
                 let mut on =
                     SurfaceQuery { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
-                members[n] = Some((
-                    dabs[i],
-                    B::ready(&dabs[i], &mut on),
-                    AutoMasking::ready(&dabs[i], &mut on),
-                ));
+                let brush = B::ready(&dabs[i], &mut on);
+                let footprint = brush.footprint(&dabs[i]);
+                let auto = AutoMasking::ready(&dabs[i], &mut on);
+                members[n] = Some(Member { dab: dabs[i], brush, footprint, auto });
                 lo = lo.min(balls[i].0 - balls[i].1);
                 hi = hi.max(balls[i].0 + balls[i].1);
                 n += 1;
@@ -130,32 +132,88 @@ fn ball(reach: &Reach) -> (Vec3, f32) {
     }
 }
 
+/// One image of a dab, made ready.
+struct Member<'a, B> {
+    dab: Dab<'a>,
+    brush: B,
+    footprint: Option<Footprint>,
+    auto: AutoMasking,
+}
+
+impl<B: Brush> Member<'_, B> {
+    /// Whether vertices are measured where the stroke found them.
+    fn before(&self) -> bool {
+        self.dab.found || matches!(B::GRIP, Grip::Anchor)
+    }
+
+    /// The share of the brush at a vertex, and its weight: the share, less what is left alone.
+    fn weight(&self, page: &PageIn<'_>, v: usize, scratch: &Scratch) -> (f32, f32) {
+        let at = if self.before() { page.before(v) } else { page.positions.get(v) };
+        let share = match &self.footprint {
+            Some(footprint) => footprint.at(at),
+            None => self.brush.share(&self.dab, page, v, at),
+        };
+        if !(share > 0.0) {
+            return (0.0, 0.0);
+        }
+        let free = if B::MASKED { 1.0 - page.mask(v) } else { 1.0 };
+        let mut weight = share * free * self.auto.share(page, v, at, scratch);
+        if matches!(B::GRIP, Grip::Surface) {
+            let before = self.dab.found;
+            let n = if before { page.normal_before(v) } else { page.normals.get(v) };
+            weight *= self.dab.facing(n);
+        }
+        (share, weight)
+    }
+}
+
 struct BrushKernel<'a, B> {
-    members: &'a [Option<(Dab<'a>, B, AutoMasking)>],
+    members: &'a [Option<Member<'a, B>>],
     scratch: &'a Scratch,
     limit: f32,
 }
 
 impl<B: Brush> Kernel for BrushKernel<'_, B> {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        Weights::with(|weights| {
+            // The weights of a single dab that leaves nothing alone are computed at once.
+            let known = match self.members {
+                [Some(Member { dab, footprint: Some(footprint), auto, .. })] if !auto.is_on() => {
+                    let surface = matches!(B::GRIP, Grip::Surface);
+                    let rules = WeightRules {
+                        before: dab.found || matches!(B::GRIP, Grip::Anchor),
+                        masked: B::MASKED,
+                        facing: surface.then_some(dab.normal),
+                    };
+                    out.visit_many(weigh(weights, page, footprint, &rules));
+                    true
+                }
+                _ => false,
+            };
+            self.change(page, known.then(|| weights.of(page)), out);
+        });
+    }
+}
+
+impl<B: Brush> BrushKernel<'_, B> {
+    /// Changes what the members have a weight at; `known`: the weights of the only one.
+    fn change(&self, page: &PageIn<'_>, known: Option<&[f32]>, out: &mut PageOut<'_>) {
         for v in 0..page.own() {
+            if known.is_some_and(|weights| !(weights[v] > 0.0)) {
+                continue;
+            }
             let p = page.positions.get(v);
             let mut sum = VertexChange::default();
             let mut within = false;
-            for (dab, brush, auto) in self.members.iter().flatten() {
-                let before = dab.found || matches!(B::GRIP, Grip::Anchor);
-                let at = if before { page.before(v) } else { p };
-                let share = brush.share(dab, page, v, at);
-                if !(share > 0.0) {
-                    continue;
-                }
-                within = true;
-                let free = if B::MASKED { 1.0 - page.mask(v) } else { 1.0 };
-                let mut weight = share * free * auto.share(page, v, at, self.scratch);
-                if matches!(B::GRIP, Grip::Surface) {
-                    let n = if dab.found { page.normal_before(v) } else { page.normals.get(v) };
-                    weight *= dab.facing(n);
-                }
+            for member in self.members.iter().flatten() {
+                let weight = match known {
+                    Some(weights) => weights[v],
+                    None => {
+                        let (share, weight) = member.weight(page, v, self.scratch);
+                        within |= share > 0.0;
+                        weight
+                    }
+                };
                 if !(weight > 0.0) {
                     continue;
                 }
@@ -164,11 +222,11 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
                     number: page.number(),
                     v,
                     p,
-                    at,
+                    at: if member.before() { page.before(v) } else { p },
                     weight,
                     scratch: self.scratch,
                 };
-                let c = brush.change(dab, &spot);
+                let c = member.brush.change(&member.dab, &spot);
                 sum.by += c.by;
                 if let Some(by) = c.held {
                     sum.held = Some(sum.held.unwrap_or(Vec3::ZERO) + by);
@@ -176,10 +234,12 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
                 sum.mask += c.mask;
                 sum.dye += c.dye;
             }
-            if !within {
-                continue;
+            if known.is_none() {
+                if !within {
+                    continue;
+                }
+                out.visit();
             }
-            out.visit();
             if let Some(by) = sum.held {
                 sum.by += page.before(v) + by - p;
             }
@@ -190,7 +250,7 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
                 out.set_mask(v, page.mask(v) + sum.mask);
             }
             if sum.dye > 0.0
-                && let Some((dab, ..)) = &self.members[0]
+                && let Some(Member { dab, .. }) = &self.members[0]
             {
                 let (old, new) = (page.colour(v), dab.settings.colour);
                 let t = sum.dye.min(1.0);

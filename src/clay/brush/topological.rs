@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::footprint::Footprint;
 use super::dab::{Dab, Grip};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
@@ -22,6 +23,10 @@ impl Brush for TopologicalBrush {
 
     fn reach(dab: &Dab<'_>) -> Reach {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
+    }
+
+    fn footprint(&self, _: &Dab<'_>) -> Option<Footprint> {
+        None
     }
 
     /// The walk says how far it is; see `change`.

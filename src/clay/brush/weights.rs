@@ -7,9 +7,9 @@ use glam::Vec3;
 use crate::{PAGE_VERTICES, PageIn};
 
 /// Vertices looked at together.
-const BLOCK: usize = 64;
+pub(super) const BLOCK: usize = 64;
 /// Own vertices of the largest page.
-const MOST: usize = PAGE_VERTICES.next_multiple_of(BLOCK);
+pub(super) const MOST: usize = PAGE_VERTICES.next_multiple_of(BLOCK);
 
 /// One page's weights, on the stack.
 #[derive(Debug)]
@@ -67,7 +67,13 @@ impl Weights {
         within as usize
     }
 
-    /// What [`Weights::sphere`] computed, one an own vertex.
+    /// Every weight, for [`super::weigh`].
+    #[inline(always)]
+    pub(super) fn all_mut(&mut self) -> &mut [f32; MOST] {
+        &mut self.weight
+    }
+
+    /// What was computed, one an own vertex.
     pub fn of(&self, page: &PageIn<'_>) -> &[f32] {
         &self.weight[..page.own().min(MOST)]
     }

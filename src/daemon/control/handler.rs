@@ -72,12 +72,18 @@ fn merge<T: Serialize + DeserializeOwned>(now: &T, named: impl Serialize) -> Res
 }
 
 /// The brush in hand with the named settings. Another brush comes with its own settings, and what
-/// else is named is laid over them.
+/// else is named is laid over them. A person's own brush may come with a picture as well.
 fn merged_brush(
     presets: &brush::Presets,
     shown: &Published,
     named: &asked::BrushSettings,
-) -> Result<brush::BrushSettings, RpcError> {
+) -> Result<(brush::BrushSettings, Option<Arc<Picture>>), RpcError> {
+    if let Some(own) = named.kind.as_deref().and_then(|name| presets.own_of(name)) {
+        let rest = asked::BrushSettings { kind: None, ..named.clone() };
+        let brush: brush::BrushSettings = merge(&presets.taken(&shown.brush, &own), rest)?;
+        brush.check().map_err(RpcError::bad_params)?;
+        return Ok((brush.clamped(), own.picture));
+    }
     let other = named.kind.as_deref().map(str::parse::<BrushKind>).transpose();
     let other = other.map_err(RpcError::bad_params)?;
     let base = match other.filter(|k| *k != shown.brush.kind) {
@@ -86,7 +92,7 @@ fn merged_brush(
     };
     let brush: brush::BrushSettings = merge(&base, named)?;
     brush.check().map_err(RpcError::bad_params)?;
-    Ok(brush.clamped())
+    Ok((brush.clamped(), None))
 }
 
 /// A path from outside: absolute, and no link at its end.
@@ -184,7 +190,10 @@ impl Handler for Host {
     }
 
     fn brush(&self, named: asked::BrushSettings) -> Result<asked::BrushSettings, RpcError> {
-        let brush = merged_brush(&self.presets, &self.published.load(), &named)?;
+        let (brush, picture) = merged_brush(&self.presets, &self.published.load(), &named)?;
+        if let Some(picture) = picture {
+            self.send(Command::Picture(picture))?;
+        }
         self.send(Command::Brush(brush))?;
         convert(brush)
     }
@@ -197,9 +206,20 @@ impl Handler for Host {
                 about: preset.about().into(),
                 settings: convert(preset.settings())?,
                 extra: convert(kind.own_numbers())?,
+                own: false,
             })
         });
-        all.collect()
+        let own = self.presets.own();
+        let own = own.iter().map(|own| {
+            Ok(asked::BrushInfo {
+                name: own.name.clone(),
+                about: own.about.clone(),
+                settings: convert(own.settings)?,
+                extra: convert(own.settings.kind.own_numbers())?,
+                own: true,
+            })
+        });
+        all.chain(own).collect()
     }
 
     fn picture(&self, params: asked::PathParams) -> Result<asked::PictureReply, RpcError> {
@@ -233,8 +253,11 @@ impl Handler for Host {
         let shown = self.published.load_full();
         let brush = params.brush.as_ref().map(|b| merged_brush(&self.presets, &shown, b));
         let brush = brush.transpose()?;
+        if let Some((_, Some(picture))) = &brush {
+            self.send(Command::Picture(picture.clone()))?;
+        }
         // With the settings that the other brush had, to be put back after the stroke.
-        let brush = brush.map(|b| {
+        let brush = brush.map(|(b, _)| {
             let kept = || self.presets.recalled(&shown.brush, &shown.kept_brushes, b.kind);
             (b, (b.kind != shown.brush.kind).then(kept))
         });

@@ -1,10 +1,12 @@
-//! The brush: which one, radius, strength, its own numbers.
+//! The brush: which one, of the program's and of a person's own, and all its settings.
 
 use egui::{Pos2, Sense, Stroke, vec2};
 
 use super::state::{Action, UiRequest, View};
 use super::theme;
-use sculptd_clay::brush::{BrushKind, BrushSettings, Method, StampBy};
+use sculptd_clay::brush::{
+    Alpha, BrushKind, BrushSettings, Falloff, Measure, Method, OwnBrush, StampBy,
+};
 use sculptd_engine::command::Command;
 
 /// Those that are shown first; the others stand under "more".
@@ -38,6 +40,36 @@ const STAMPS: [(StampBy, &str); 4] = [
     (StampBy::Dab, "Under each dab"),
     (StampBy::View, "Along the view"),
     (StampBy::Stencil, "Stencil"),
+];
+
+const FALLOFFS: [(Falloff, &str); 8] = [
+    (Falloff::Gaussian, "Gaussian"),
+    (Falloff::Smooth, "Smooth"),
+    (Falloff::Sphere, "Sphere"),
+    (Falloff::Root, "Root"),
+    (Falloff::Sharp, "Sharp"),
+    (Falloff::Linear, "Linear"),
+    (Falloff::Constant, "Constant"),
+    (Falloff::Custom, "Custom"),
+];
+
+const MEASURES: [(Measure, &str); 4] = [
+    (Measure::Off, "Off"),
+    (Measure::Brush, "Share of the brush"),
+    (Measure::Work, "Share of the object"),
+    (Measure::View, "Share of the view"),
+];
+
+const ALPHAS: [(Alpha, &str); 9] = [
+    (Alpha::Studs, "Studs"),
+    (Alpha::Scales, "Scales"),
+    (Alpha::Rope, "Rope"),
+    (Alpha::Stitches, "Stitches"),
+    (Alpha::Waves, "Waves"),
+    (Alpha::Bricks, "Bricks"),
+    (Alpha::Stone, "Stone"),
+    (Alpha::Cracks, "Cracks"),
+    (Alpha::Picture, "Loaded picture"),
 ];
 
 /// One of several, in a list that unfolds.
@@ -78,6 +110,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let chosen_below = !FIRST.contains(&view.state.brush.kind);
     let more = egui::CollapsingHeader::new("More brushes").default_open(false);
     more.show(ui, |ui| palette(ui, &mut BrushKind::ALL.iter().filter(|k| !first(k)).copied()));
+    own_brushes(ui, view, &mut brush, out);
     if chosen_below {
         ui.label(format!("Brush: {}", title(view.state.brush.kind)));
     }
@@ -97,39 +130,214 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     ));
     ui.checkbox(&mut brush.negative, "Carve")
         .on_hover_text(format!("{}; hold Ctrl for one stroke", Action::Carve.tip()));
-    egui::CollapsingHeader::new("Stroke").default_open(false).show(ui, |ui| {
-        ui.add(egui::Slider::new(&mut brush.spacing, 0.02..=1.0).text("Spacing"))
-            .on_hover_text("Distance between dabs as a share of the radius");
-        ui.add(egui::Slider::new(&mut brush.path.rope, 0.0..=0.5).text("Stabilizer"))
-            .on_hover_text(
-                "The brush follows the pen at this distance: a share of the view's height",
-            );
-        ui.add(egui::Slider::new(&mut brush.path.jitter, 0.0..=2.0).text("Jitter"))
-            .on_hover_text("How far dabs are scattered about the path, in radii");
-        choice(ui, "Method", &mut brush.path.method, &METHODS);
-        choice(ui, "Stamp", &mut brush.stamp.by, &STAMPS);
-        if brush.stamp.by != StampBy::Off {
-            ui.add(
-                egui::Slider::new(&mut brush.stamp.size, 0.05..=10.0)
-                    .logarithmic(true)
-                    .text("Stamp size"),
-            );
-            ui.add(
-                egui::Slider::new(&mut brush.stamp.turn_degrees, -180.0..=180.0)
-                    .text("Stamp angle"),
-            );
-            ui.checkbox(&mut brush.stamp.repeat, "Repeat the stamp");
-        }
-        ui.checkbox(&mut brush.auto.front_faces, "Front faces only");
-        ui.checkbox(&mut brush.auto.topology, "Only connected parts");
-        for (value, extra) in brush.extra.iter_mut().zip(brush.kind.own_numbers()) {
-            ui.add(egui::Slider::new(value, extra.min..=extra.max).text(extra.name))
-                .on_hover_text(extra.about);
-        }
-    });
+    egui::CollapsingHeader::new("Stroke").default_open(false).show(ui, |ui| path(ui, &mut brush));
+    let shape = egui::CollapsingHeader::new("Shape of a dab").default_open(false);
+    shape.show(ui, |ui| dab(ui, &mut brush));
+    let picture = egui::CollapsingHeader::new("Alpha and stamp").default_open(false);
+    picture.show(ui, |ui| stamp(ui, &mut brush));
+    let masks = egui::CollapsingHeader::new("Automatic masks").default_open(false);
+    masks.show(ui, |ui| automasks(ui, &mut brush));
+    let cuts = egui::CollapsingHeader::new("Dynamic topology").default_open(false);
+    cuts.show(ui, |ui| topology(ui, &mut brush));
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
+}
+
+/// A person's own brushes: choosing one takes its picture of heights along.
+fn own_brushes(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    brush: &mut BrushSettings,
+    out: &mut Vec<UiRequest>,
+) {
+    let own = view.presets.own();
+    if own.is_empty() {
+        return;
+    }
+    ui.label("Your own");
+    ui.horizontal_wrapped(|ui| {
+        for one in own.iter() {
+            let taken = view.presets.taken(brush, one);
+            let chosen = view.state.brush == taken.clamped();
+            let button = ui.selectable_label(chosen, &one.name);
+            if button.on_hover_text(own_hint(one)).clicked() {
+                *brush = taken;
+                if let Some(picture) = &one.picture {
+                    out.push(UiRequest::World(Command::Picture(picture.clone())));
+                }
+            }
+        }
+    });
+}
+
+fn own_hint(own: &OwnBrush) -> String {
+    let kind = title(own.settings.kind);
+    if own.about.is_empty() { kind } else { format!("{kind}: {}", own.about) }
+}
+
+/// A slider with what it means.
+fn slider(
+    ui: &mut egui::Ui,
+    value: &mut f32,
+    range: std::ops::RangeInclusive<f32>,
+    name: &str,
+    about: &str,
+) {
+    ui.add(egui::Slider::new(value, range).text(name)).on_hover_text(about);
+}
+
+fn path(ui: &mut egui::Ui, brush: &mut BrushSettings) {
+    let path = &mut brush.path;
+    slider(
+        ui,
+        &mut brush.spacing,
+        0.02..=1.0,
+        "Spacing",
+        "Distance between dabs as a share of the radius",
+    );
+    slider(
+        ui,
+        &mut path.rope,
+        0.0..=0.5,
+        "Stabilizer",
+        "The brush follows the pen at this distance: a share of the view's height",
+    );
+    slider(
+        ui,
+        &mut brush.steady,
+        0.0..=1.0,
+        "Steadiness",
+        "Length of the string by which the brush follows the pen, in radii",
+    );
+    let average = egui::Slider::new(&mut path.average, 0..=64).text("Averaged reports");
+    ui.add(average).on_hover_text("The brush goes to the mean of so many reports of the pen");
+    slider(
+        ui,
+        &mut path.jitter,
+        0.0..=2.0,
+        "Jitter",
+        "How far dabs are scattered about the path, in radii",
+    );
+    if path.jitter > 0.0 {
+        ui.add(egui::DragValue::new(&mut path.seed).prefix("Seed of the jitter: "));
+    }
+    choice(ui, "Method", &mut path.method, &METHODS);
+    ui.checkbox(&mut path.continuous, "Go on while the pen rests");
+    if path.continuous || path.method == Method::Airbrush {
+        let ticks = egui::Slider::new(&mut path.every_ticks, 1.0..=1000.0).logarithmic(true);
+        ui.add(ticks.text("Ticks between dabs at rest"));
+    }
+    ui.checkbox(&mut path.compensate, "Same strength at any spacing")
+        .on_hover_text("Strength counts over the way of the pen; off: each dab has all of it");
+    ui.checkbox(&mut brush.accumulate, "Accumulate")
+        .on_hover_text("A stroke builds upon what it has raised itself");
+    slider(
+        ui,
+        &mut brush.saturation,
+        0.0..=20.0,
+        "Limit of a stroke",
+        "How far a stroke may move a point, in heights of one full dab; 0: no limit",
+    );
+}
+
+fn dab(ui: &mut egui::Ui, brush: &mut BrushSettings) {
+    choice(ui, "Falloff", &mut brush.falloff, &FALLOFFS);
+    if brush.falloff == Falloff::Custom {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            for (i, value) in brush.curve.iter_mut().enumerate() {
+                let slider = egui::Slider::new(value, 0.0..=1.0).vertical().show_value(false);
+                ui.add(slider).on_hover_text(format!("At {i} eighths of the radius"));
+            }
+        });
+    }
+    slider(
+        ui,
+        &mut brush.hardness,
+        0.0..=0.95,
+        "Hardness",
+        "Share of the radius within which the brush works in full",
+    );
+    slider(
+        ui,
+        &mut brush.auto_smooth,
+        0.0..=1.0,
+        "Smoothing",
+        "Each dab is smoothed at this strength",
+    );
+    slider(
+        ui,
+        &mut brush.normal_radius,
+        0.05..=2.0,
+        "Averaging",
+        "Share of the radius over which the plane of the surface is averaged",
+    );
+    slider(
+        ui,
+        &mut brush.plane_trim,
+        0.0..=2.0,
+        "Plane trim",
+        "What is further from the plane stays, in radii; 0: nothing",
+    );
+    slider(ui, &mut brush.tilt, 0.0..=1.0, "Tilt", "How much a dab leans as the pen does");
+    for (value, extra) in brush.extra.iter_mut().zip(brush.kind.own_numbers()) {
+        slider(ui, value, extra.min..=extra.max, extra.name, extra.about);
+    }
+    ui.horizontal(|ui| {
+        ui.color_edit_button_srgba_unmultiplied(&mut brush.colour);
+        ui.label("Colour");
+    });
+}
+
+fn stamp(ui: &mut egui::Ui, brush: &mut BrushSettings) {
+    choice(ui, "Alpha", &mut brush.alpha, &ALPHAS);
+    let stamp = &mut brush.stamp;
+    choice(ui, "Stamp", &mut stamp.by, &STAMPS);
+    if stamp.by == StampBy::Off {
+        return;
+    }
+    ui.add(egui::Slider::new(&mut stamp.size, 0.05..=10.0).logarithmic(true).text("Stamp size"));
+    ui.add(egui::Slider::new(&mut stamp.turn_degrees, -180.0..=180.0).text("Stamp angle"));
+    ui.checkbox(&mut stamp.repeat, "Repeat the stamp");
+    if stamp.by == StampBy::Stencil {
+        for (value, name) in stamp.at.iter_mut().zip(["Stencil right", "Stencil up"]) {
+            slider(ui, value, -4.0..=4.0, name, "From the middle of the view, in its heights");
+        }
+    }
+}
+
+fn automasks(ui: &mut egui::Ui, brush: &mut BrushSettings) {
+    let auto = &mut brush.auto;
+    ui.checkbox(&mut auto.front_faces, "Front faces only");
+    ui.checkbox(&mut auto.topology, "Only connected parts");
+    ui.checkbox(&mut auto.boundary, "Borders stay")
+        .on_hover_text("The border of an open surface does not move");
+    slider(
+        ui,
+        &mut auto.normal_degrees,
+        0.0..=180.0,
+        "Normal limit",
+        "Only what turns from the dab's normal by at most so many degrees; 0: everything",
+    );
+    slider(
+        ui,
+        &mut auto.cavity,
+        -1.0..=1.0,
+        "Cavity",
+        "Above 0 only hollows are touched, below 0 only ridges",
+    );
+}
+
+fn topology(ui: &mut egui::Ui, brush: &mut BrushSettings) {
+    let topology = &mut brush.topology;
+    choice(ui, "Length of edges", &mut topology.by, &MEASURES);
+    if topology.by == Measure::Off {
+        return;
+    }
+    ui.add(egui::Slider::new(&mut topology.edge, 0.002..=1.0).logarithmic(true).text("Length"));
+    ui.checkbox(&mut topology.split, "Split longer edges");
+    ui.checkbox(&mut topology.collapse, "Collapse shorter edges");
 }
 
 /// The profile that a brush leaves on flat clay, `d` from -1 to 1 across it: drawn, not computed.

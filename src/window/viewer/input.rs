@@ -4,7 +4,7 @@
 use glam::Vec2;
 use winit::event::{MouseButton, Touch, TouchPhase};
 
-use super::pointer::{Drag, PLAIN, lent};
+use super::pointer::{Drag, PLAIN, give_back, lent};
 use super::state::WindowState;
 use super::wiring::Wiring;
 use sculptd_devices::{Body, Pen, Sample, Tool};
@@ -111,7 +111,11 @@ impl WindowState {
             if self.pointer.drag == Drag::Sculpt {
                 self.sample(false, wiring);
                 if let Some(brush) = self.pointer.lent.take() {
-                    let _ = wiring.commands.try_send(Command::Brush(brush));
+                    let state = wiring.published.load();
+                    let (lent, kept) = (state.brush.kind, &state.kept_brushes);
+                    for brush in give_back(lent, brush, &wiring.presets, kept) {
+                        let _ = wiring.commands.try_send(Command::Brush(brush));
+                    }
                 }
             }
             self.pointer.drag = Drag::None;

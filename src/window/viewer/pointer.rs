@@ -79,6 +79,19 @@ pub(super) fn lent(
     now
 }
 
+/// The brushes to be told to the world, in this order, when `brush` comes back after one of kind
+/// `lent` had its place: first the lent one as it was before, not turned round as the keys had it,
+/// because the world remembers what it puts away.
+pub(super) fn give_back(
+    lent: BrushKind,
+    brush: BrushSettings,
+    presets: &Presets,
+    kept: &[BrushSettings],
+) -> impl Iterator<Item = BrushSettings> {
+    let before = (lent != brush.kind).then(|| presets.recalled(&brush, kept, lent));
+    before.into_iter().chain([brush])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,6 +106,20 @@ mod tests {
         assert!(relaxing.kind == BrushKind::SlideRelax && relaxing.negative);
         assert!(lent(of(BrushKind::Draw), ModifiersState::CONTROL).negative);
         assert_eq!(lent(of(BrushKind::Draw), ModifiersState::empty()), of(BrushKind::Draw));
+    }
+
+    #[test]
+    fn a_lent_brush_is_put_away_as_it_was() {
+        let presets = Presets::default();
+        let draw = presets.of(BrushKind::Draw);
+        let kept = [BrushSettings { strength: 0.7, ..presets.of(BrushKind::Smooth) }];
+        let mods = ModifiersState::SHIFT | ModifiersState::CONTROL;
+        let smooth = lent(draw, mods, &presets, &kept);
+        assert!(smooth.kind == BrushKind::Smooth && smooth.negative);
+        let told: Vec<BrushSettings> = give_back(smooth.kind, draw, &presets, &kept).collect();
+        let at_size = BrushSettings { radius: draw.radius, ..kept[0] };
+        assert_eq!(told, [at_size, draw]);
+        assert_eq!(give_back(draw.kind, draw, &presets, &kept).count(), 1);
     }
 
     #[test]

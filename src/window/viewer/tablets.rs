@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2};
 
-use super::pointer::{Drag, lent};
+use super::pointer::{Drag, give_back, lent};
 use super::state::WindowState;
 use super::tablet_map::{TabletMap, Tablets};
 use super::wiring::Wiring;
@@ -137,7 +137,11 @@ impl WindowState {
         let now = lent(brush, self.mods, &wiring.presets, &state.kept_brushes);
         let before = self.pointer.lent;
         self.pointer.lent = (now != brush).then_some(brush);
-        if self.pointer.lent != before {
+        if before.is_some() && self.pointer.lent.is_none() {
+            for brush in give_back(state.brush.kind, now, &wiring.presets, &state.kept_brushes) {
+                let _ = wiring.commands.try_send(Command::Brush(brush));
+            }
+        } else if self.pointer.lent != before {
             let _ = wiring.commands.try_send(Command::Brush(now));
         }
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::Clay;
-use sculptd_clay::brush::stroke_param::{StrokeParameters, StrokeSample};
+use sculptd_clay::brush::stroke_param::{StrokeParameters, StrokePlace, StrokeSample};
 use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, Picture, PressureCurve};
 use sculptd_engine::command::Command;
 use sculptd_geometry::TriMesh;
@@ -161,7 +161,7 @@ fn a_stroke_round_a_cylinder_unrolls_along_its_arc_length() {
     for i in 0..=steps {
         let at = start + direction * (i as f32 * step);
         let n = Vec3::new(at.x.sin(), 0.0, at.x.cos());
-        unroll.step(&mesh, 7, n + Vec3::Y * at.y, n, radius);
+        unroll.step(&mesh, 7, StrokePlace::Now(n + Vec3::Y * at.y, n), radius);
     }
     let end = start + direction * (steps as f32 * step);
     let (mut worst, mut met) = (0.0f32, 0);

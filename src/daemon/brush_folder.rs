@@ -1,0 +1,296 @@
+//! The folder of a person's own brushes: one TOML file a brush
+//! ([`sculptd_clay::brush::own_brush`]), the picture of heights beside it. It is read when a run
+//! begins and again when a file in it changes. A file that cannot be used is told by its name and
+//! line; the others stay.
+//!
+//! What a session uses is in the session: choosing a brush sends its settings and its picture as
+//! commands, and neither the folder nor this module matters to a replay.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, SystemTime};
+
+use sculptd_clay::brush::{OwnBrush, Picture, Presets};
+use sculptd_geometry::io::{read_regular, write_beside};
+
+/// Brushes in a folder at most.
+const MOST: usize = 1000;
+/// Longest file of a brush, and of a picture, bytes.
+const MAX_FILE: u64 = 1 << 20;
+const MAX_PICTURE_FILE: u64 = 64 << 20;
+/// Bytes of all pictures together, as they are kept.
+const MAX_PICTURES: usize = 512 << 20;
+/// How often a running program looks whether a file has changed.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// What tells one version of a file from another: its length, and when it was written.
+type Stamp = (u64, Option<SystemTime>);
+
+fn stamp(path: &Path) -> Option<Stamp> {
+    let meta = std::fs::metadata(path).ok()?;
+    Some((meta.len(), meta.modified().ok()))
+}
+
+/// One file as it was read.
+#[derive(Debug)]
+struct ReadFile {
+    /// Of the file itself, and of its picture.
+    stamps: [Option<Stamp>; 2],
+    picture: Option<PathBuf>,
+    brush: Result<OwnBrush, String>,
+}
+
+impl ReadFile {
+    fn is_current(&self, path: &Path) -> bool {
+        self.stamps == [stamp(path), self.picture.as_deref().and_then(stamp)]
+    }
+}
+
+/// A folder of brushes, as it was read last.
+#[derive(Debug)]
+pub struct BrushFolder {
+    path: PathBuf,
+    presets: Presets,
+    files: BTreeMap<PathBuf, ReadFile>,
+}
+
+/// The user's own folder of brushes: `brushes` in the data folder.
+pub fn default_folder() -> Option<PathBuf> {
+    directories::ProjectDirs::from("", "", "sculptd").map(|d| d.data_dir().join("brushes"))
+}
+
+/// Reads one brush and its picture.
+///
+/// # Errors
+/// Names the file, and the line where one is to blame.
+pub fn read(path: &Path, presets: &Presets) -> Result<OwnBrush, String> {
+    read_both(path, presets).1
+}
+
+/// The path of the picture, where the file names one, and the brush.
+fn read_both(path: &Path, presets: &Presets) -> (Option<PathBuf>, Result<OwnBrush, String>) {
+    let named = |e: String| format!("{}: {e}", path.display());
+    let text = read_regular(path, MAX_FILE).map_err(|e| named(e.to_string()));
+    let text = text.and_then(|bytes| {
+        String::from_utf8(bytes).map_err(|_| named("expected text in UTF-8".into()))
+    });
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let brush = text.and_then(|text| {
+        OwnBrush::read(&name, &text, &|kind| presets.of(kind))
+            .map_err(|e| format!("{}:{}: {}", path.display(), e.line, e.text))
+    });
+    let mut brush = match brush {
+        Ok(brush) => brush,
+        Err(e) => return (None, Err(e)),
+    };
+    let Some(file) = &brush.picture_file else { return (None, Ok(brush)) };
+    let picture = path.with_file_name(file);
+    let decoded = read_regular(&picture, MAX_PICTURE_FILE)
+        .map_err(|e| e.to_string())
+        .and_then(|bytes| Picture::decode(&bytes))
+        .map_err(|e| named(format!("picture {}: {e}", picture.display())));
+    match decoded {
+        Ok(decoded) => {
+            brush.picture = Some(Arc::new(decoded));
+            (Some(picture), Ok(brush))
+        }
+        Err(e) => (Some(picture), Err(e)),
+    }
+}
+
+/// Writes a brush into `folder` as `NAME.toml`, and the bytes of its picture, if it has one,
+/// beside it.
+///
+/// # Errors
+/// A name that no brush may have, a file that is there and may not be replaced, and what the disk
+/// says.
+pub fn write(
+    folder: &Path,
+    brush: &OwnBrush,
+    picture: Option<&[u8]>,
+    replace: bool,
+) -> Result<PathBuf, String> {
+    let path = folder.join(format!("{}.toml", brush.name));
+    let named = |e: std::io::Error| format!("{}: {e}", path.display());
+    if !replace && path.exists() {
+        return Err(format!("{}: there is a brush of this name", path.display()));
+    }
+    let text = brush.write()?;
+    std::fs::create_dir_all(folder).map_err(named)?;
+    if let (Some(bytes), Some(file)) = (picture, &brush.picture_file) {
+        write_beside(&folder.join(file), |out| out.write_all(bytes)).map_err(named)?;
+    }
+    write_beside(&path, |out| out.write_all(text.as_bytes())).map_err(named)?;
+    Ok(path)
+}
+
+impl BrushFolder {
+    /// The folder, not read yet. It need not exist. The brushes that are read go to `presets` and
+    /// all its clones.
+    pub fn new(path: PathBuf, presets: Presets) -> Self {
+        BrushFolder { path, presets, files: BTreeMap::new() }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Reads what has changed since the last time. Whether anything has.
+    pub fn refresh(&mut self) -> bool {
+        let mut found: Vec<PathBuf> = std::fs::read_dir(&self.path)
+            .map(|all| all.filter_map(|e| e.ok().map(|e| e.path())).collect())
+            .unwrap_or_default();
+        found.retain(|p| p.extension().is_some_and(|e| e == "toml"));
+        found.sort();
+        found.truncate(MOST);
+        let before = self.files.len();
+        self.files.retain(|path, _| found.binary_search(path).is_ok());
+        let mut changed = self.files.len() != before;
+        for path in found {
+            if self.files.get(&path).is_some_and(|file| file.is_current(&path)) {
+                continue;
+            }
+            // The stamp first: what is written while it is read is read again.
+            let text_stamp = stamp(&path);
+            let (picture, brush) = read_both(&path, &self.presets);
+            let stamps = [text_stamp, picture.as_deref().and_then(stamp)];
+            self.files.insert(path, ReadFile { stamps, picture, brush });
+            changed = true;
+        }
+        if changed {
+            self.bound_pictures();
+            let brushes = self.files.values().filter_map(|f| f.brush.as_ref().ok());
+            self.presets.set_own(brushes.cloned().collect());
+        }
+        changed
+    }
+
+    /// Brushes whose pictures are beyond what may be kept are left out, in the order of names.
+    fn bound_pictures(&mut self) {
+        let mut bytes = 0;
+        for (path, file) in &mut self.files {
+            let picture = file.brush.as_ref().ok().and_then(|b| b.picture.as_ref());
+            bytes += picture.map_or(0, |p| (p.heights.len() + p.cover.len()) * 2);
+            if bytes > MAX_PICTURES && picture.is_some() {
+                let most = MAX_PICTURES >> 20;
+                let text =
+                    format!("{}: the pictures of all brushes are over {most} MiB", path.display());
+                file.brush = Err(text);
+            }
+        }
+    }
+
+    /// What is wrong with files that cannot be used, each with its name.
+    pub fn problems(&self) -> Vec<String> {
+        self.files.values().filter_map(|f| f.brush.as_ref().err().cloned()).collect()
+    }
+
+    /// Looks after the folder on a thread of its own until `stop` is raised: what changes is read,
+    /// and what is wrong with it is logged.
+    ///
+    /// # Errors
+    /// Where no thread can be had.
+    pub fn watch(mut self, stop: Arc<AtomicBool>) -> std::io::Result<()> {
+        let thread = std::thread::Builder::new().name("sculptd-brushes".into());
+        thread
+            .spawn(move || {
+                let quiet = crossbeam_channel::never::<()>();
+                while !stop.load(Relaxed) {
+                    let _ = quiet.recv_timeout(LOOK);
+                    let known = self.problems();
+                    if self.refresh() {
+                        let new = self.problems().into_iter().filter(|p| !known.contains(p));
+                        new.for_each(|p| tracing::warn!("brush not taken: {p}"));
+                        tracing::info!("own brushes: {}", self.presets.own().len());
+                    }
+                }
+            })
+            .map(drop)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings};
+
+    fn folder() -> (tempfile::TempDir, BrushFolder, Presets) {
+        let dir = tempfile::tempdir().expect("a folder");
+        let presets = Presets::default();
+        (dir, BrushFolder::new(PathBuf::new(), presets.clone()), presets)
+    }
+
+    fn names(presets: &Presets) -> Vec<String> {
+        presets.own().iter().map(|b| b.name.clone()).collect()
+    }
+
+    #[test]
+    fn a_brush_is_saved_read_again_bit_for_bit_and_forgotten_with_its_file() {
+        let (dir, mut folder, presets) = folder();
+        folder.path = dir.path().into();
+        assert!(!folder.refresh());
+        let mut settings = BrushSettings::new(BrushKind::Texture);
+        settings.strength = 0.123_456_79;
+        settings.alpha = Alpha::Picture;
+        settings.extra[1] = 0.1;
+        settings.path.jitter = 0.3;
+        let png = include_bytes!("../../tests/golden/sheet/brushes.png");
+        let bark = OwnBrush {
+            name: "bark of oak".into(),
+            about: "as it grows".into(),
+            order: -3,
+            settings,
+            picture_file: Some("oak.png".into()),
+            picture: None,
+        };
+        write(dir.path(), &bark, Some(png), false).expect("written");
+        assert!(write(dir.path(), &bark, None, false).is_err_and(|e| e.contains("bark of oak")));
+        std::fs::write(dir.path().join("a.toml"), "kind = 'clay'\n").expect("written");
+        assert!(folder.refresh() && !folder.refresh());
+        // By order, then by name.
+        assert_eq!(names(&presets), ["bark of oak", "a"]);
+        let read = presets.own_of("bark of oak").expect("there");
+        assert_eq!(read.settings, settings);
+        let picture = Picture::decode(png).expect("a picture");
+        assert_eq!(read.picture.as_deref(), Some(&picture));
+        assert_eq!(OwnBrush { picture: None, ..read }, bark);
+        std::fs::remove_file(dir.path().join("a.toml")).expect("there");
+        assert!(folder.refresh());
+        assert_eq!(names(&presets), ["bark of oak"]);
+    }
+
+    #[test]
+    fn a_broken_file_is_told_by_its_line_and_the_others_stay() {
+        let (dir, mut folder, presets) = folder();
+        folder.path = dir.path().into();
+        let broken = dir.path().join("broken.toml");
+        std::fs::write(dir.path().join("good.toml"), "kind = 'draw'\n").expect("written");
+        for (text, line, word) in [
+            ("kind = 'draw'\n[settings]\nstrengh = 0.5\n", 3, "strengh"),
+            ("kind = 'draw'\n[settings]\n\nstrength = 5.0\n", 4, "0 to 1"),
+            ("about = 'x'\nkind = 'drawn'\n", 2, "drawn"),
+            ("kind = 'draw'\nabout = \n", 2, ""),
+            ("kind = 'texture'\n[extra]\nfloor = 9.0\n", 3, "0 to 1"),
+            ("kind = 'texture'\n[extra]\nflor = 0.5\n", 3, "floor"),
+            ("kind = 'texture'\npicture = '../x.png'\n", 2, "beside"),
+        ] {
+            // Of a length of its own each time: the clock of files may be coarse.
+            std::fs::write(&broken, text).expect("written");
+            folder.files.remove(&broken);
+            assert!(folder.refresh(), "{text}");
+            let problems = folder.problems();
+            assert_eq!(problems.len(), 1, "{text}");
+            let place = format!("broken.toml:{line}: ");
+            assert!(problems[0].contains(&place) && problems[0].contains(word), "{problems:?}");
+            assert_eq!(names(&presets), ["good"]);
+        }
+        std::fs::write(&broken, "kind = 'draw'\n[settings]\nstrength = 0.25\n").expect("written");
+        assert!(folder.refresh() && folder.problems().is_empty());
+        assert_eq!(presets.own_of("broken").map(|b| b.settings.strength), Some(0.25));
+        std::fs::write(dir.path().join("clay.toml"), "kind = 'draw'\n").expect("written");
+        assert!(folder.refresh() && folder.problems()[0].contains("'clay'"));
+    }
+}
