@@ -39,6 +39,9 @@ pub mod run;
 pub mod session;
 pub mod subdivide;
 pub mod thickness;
+#[cfg(unix)]
+pub mod window;
+mod window_guard;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -86,6 +89,9 @@ pub enum Command {
     /// Ask the running daemon.
     #[cfg(unix)]
     Ctl(ctl::CtlArgs),
+    /// A window of the running daemon on this screen, where it has none or has lost its own.
+    #[cfg(unix)]
+    Window,
     /// Whether this machine can sculpt, and what to type where it cannot.
     Doctor(doctor::DoctorArgs),
     /// The session files: list them, look at one, remove old ones, save a damaged one.
@@ -210,6 +216,8 @@ pub fn run() -> u8 {
         None => run::run(&run::RunArgs::default(), cli.json),
         #[cfg(unix)]
         Some(Command::Ctl(args)) => ctl::run(&args, cli.json),
+        #[cfg(unix)]
+        Some(Command::Window) => window::run(cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),
         Some(Command::Doctor(args)) => doctor::run(&args, cli.json),
         Some(Command::Session { command }) => session::run(&command, cli.json),
@@ -228,6 +236,11 @@ pub fn run() -> u8 {
         Some(Command::Hollow(args)) => hollow::run(&args, cli.json),
         Some(Command::Man { all }) => man::run(all.as_deref(), Cli::command()),
     };
+    exit_code(outcome)
+}
+
+/// Says what went wrong, if anything did; the exit code.
+fn exit_code(outcome: Outcome) -> u8 {
     match outcome {
         Ok(()) => 0,
         Err(fail) => {

@@ -36,6 +36,7 @@ pub mod tablet_actions;
 pub mod tick;
 pub mod tick_statistics;
 pub mod trim;
+pub mod window_link;
 
 pub use published::{Published, Publisher};
 pub use tick_statistics::{Summary, TickStatistics};

@@ -8,6 +8,7 @@
 mod desktop;
 mod first_minutes;
 mod idle;
+mod lost_screen;
 mod presses;
 mod sessions;
 mod stage;

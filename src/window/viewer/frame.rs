@@ -12,6 +12,7 @@ use crate::look::Map;
 use crate::panels;
 use crate::panels::state::{UiRequest, UiState, View};
 use sculptd_daemon::Published;
+use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
 
 impl WindowState {
@@ -104,8 +105,7 @@ impl WindowState {
                 self.camera_animation = None;
             }
         } else if self.pointer.drag == Drag::None {
-            // A hand or the control socket may have turned the camera.
-            self.camera = Camera { aspect: self.camera.aspect, ..state.camera };
+            self.follow_camera(now, &state.camera);
         }
         let samples = self.gpu.samples(self.ui_state.prefs.smooth_edges);
         if samples != self.samples {
@@ -125,7 +125,9 @@ impl WindowState {
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
         self.measure(&state, own_ms, wiring);
-        self.drawn = Some(state.clone());
+        if self.drawn.replace(state.clone()).is_none() {
+            wiring.link.set_standing(WindowStanding::Open);
+        }
         for request in requests {
             self.answer(request, &state, wiring);
         }
@@ -192,6 +194,7 @@ impl WindowState {
         let f = &mut self.figures;
         f.cpu_ms += (own_ms - f.cpu_ms) * 0.1;
         f.worst_cpu_ms = f.worst_cpu_ms.max(own_ms);
+        self.since_listed.take(own_ms);
         f.drawn = self.renderer.drawn;
         f.frames_a_second = self.pacing.frames_a_second();
         f.input_to_snapshot_ms = state.figures.input_to_snapshot_ms;

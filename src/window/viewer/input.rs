@@ -111,6 +111,7 @@ impl WindowState {
             if self.pointer.drag == Drag::Sculpt {
                 self.sample(false, wiring);
                 if let Some(brush) = self.pointer.lent.take() {
+                    wiring.link.claim_lent(None);
                     let _ = wiring.commands.try_send(Command::Brush(brush));
                 }
             }
@@ -155,6 +156,7 @@ impl WindowState {
             }
             if now != brush {
                 self.pointer.lent = Some(brush);
+                wiring.link.claim_lent(self.pointer.lent);
                 let _ = wiring.commands.try_send(Command::Brush(now));
             }
             self.sample(true, wiring);

@@ -6,6 +6,7 @@
 mod app;
 mod camera_animation;
 pub mod distance_field;
+mod folder_listing;
 mod follow;
 mod frame;
 pub mod gpu;

@@ -72,6 +72,7 @@ impl WindowState {
         let desktop = self.desktop(wiring);
         if differs(&desktop, &self.tablets.sent) {
             self.tablets.sent = desktop;
+            wiring.link.claim_desktop(desktop);
             let _ = wiring.commands.try_send(Command::DesktopLayout(desktop));
         }
     }
@@ -138,6 +139,7 @@ impl WindowState {
         let before = self.pointer.lent;
         self.pointer.lent = (now != brush).then_some(brush);
         if self.pointer.lent != before {
+            wiring.link.claim_lent(self.pointer.lent);
             let _ = wiring.commands.try_send(Command::Brush(now));
         }
     }

@@ -10,10 +10,13 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec3;
 
+use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::Preview;
-use crate::panels::state::{DistanceSummary, Measured, ThicknessSummary, ThinSpot};
+use crate::panels::state::{
+    DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
+};
 use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_daemon::boolean_jobs::JoinError;
@@ -22,6 +25,7 @@ use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{Published, boolean_jobs, remesh_job, startup};
+use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
@@ -46,13 +50,10 @@ pub enum TaskReport {
     Distances(MapValues, DistanceSummary),
     Measured(Box<Measured>),
     /// A dialog's answer.
-    Chosen(Purpose, PathBuf),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    Open,
-    Export,
+    Chosen(FilePurpose, PathBuf),
+    /// The desktop offers no dialog.
+    NoDialog(FilePurpose),
+    Listed(PathBuf, FolderListing),
 }
 
 /// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is
@@ -81,6 +82,18 @@ impl Default for Tasks {
 
 fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
     let _ = std::thread::Builder::new().name(name.into()).spawn(what);
+}
+
+/// A dialog that is gone sooner was never seen: no person dismisses one so quickly.
+const NOBODY_ANSWERED_US: u64 = 300_000;
+
+/// Whether there is no session bus, by which a desktop's dialogs are asked for.
+fn no_desktop() -> bool {
+    let there = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
+    let socket = || there("XDG_RUNTIME_DIR").is_some_and(|d| Path::new(&d).join("bus").exists());
+    cfg!(all(unix, not(target_os = "macos")))
+        && there("DBUS_SESSION_BUS_ADDRESS").is_none()
+        && !socket()
 }
 
 impl Tasks {
@@ -224,26 +237,41 @@ impl Tasks {
         self.say.clone()
     }
 
-    /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where
-    /// there is no desktop.
-    pub fn open_dialog(&self, purpose: Purpose) {
+    /// Asks the desktop for a file, and says where it offers no dialog; nothing comes back if the
+    /// person changed their mind.
+    pub fn open_dialog(&self, purpose: FilePurpose, clock: Clock) {
         if self.dialog.swap(true, Relaxed) {
             return;
         }
         let (say, open) = (self.say.clone(), self.dialog.clone());
         thread("sculptd-dialog", move || {
-            let dialog = rfd::AsyncFileDialog::new()
-                .add_filter("Meshes", &["stl", "obj", "ply", "off", "glb", "gltf", "3mf"]);
+            let begun_us = clock.now_us();
+            let dialog = rfd::AsyncFileDialog::new().add_filter("Meshes", &MESH_ENDINGS);
             let chosen = match purpose {
-                Purpose::Open => pollster::block_on(dialog.pick_file()),
-                Purpose::Export => {
+                _ if no_desktop() => None,
+                FilePurpose::Open => pollster::block_on(dialog.pick_file()),
+                FilePurpose::Export => {
                     pollster::block_on(dialog.set_file_name("sculpture.stl").save_file())
                 }
             };
             open.store(false, Relaxed);
-            if let Some(file) = chosen {
-                let _ = say.send(TaskReport::Chosen(purpose, file.path().to_owned()));
-            }
+            let report = match chosen {
+                Some(file) => TaskReport::Chosen(purpose, file.path().to_owned()),
+                None if clock.now_us() - begun_us < NOBODY_ANSWERED_US => {
+                    TaskReport::NoDialog(purpose)
+                }
+                None => return,
+            };
+            let _ = say.send(report);
+        });
+    }
+
+    /// Reads a folder for the window's own file chooser.
+    pub fn list(&self, folder: PathBuf) {
+        let say = self.say.clone();
+        thread("sculptd-folder", move || {
+            let listing = list_folder(&folder);
+            let _ = say.send(TaskReport::Listed(folder, listing));
         });
     }
 
