@@ -109,7 +109,8 @@ fn a_killed_screen_ends_the_stroke_and_nothing_else() {
     // The same bits as of a run whose pen was lifted at that moment.
     let path = s.ask("status", &Value::Null)["session"].as_str().expect("a path").to_owned();
     let opened = lifted_instead(session::open(path.as_ref()).expect("readable"));
-    let until = opened.input.iter().position(|t| t.commands.contains(&Command::Undo));
+    let undoes = |c: &Command| matches!(c, Command::Undo);
+    let until = opened.input.iter().position(|t| t.commands.iter().any(undoes));
     let until = opened.input[until.expect("the undo above")].tick - 1;
     let mut run = replay::replay(&opened, Some(until), Workers::new(2), &Job::default());
     let world = &mut run.as_mut().expect("replayed").world;
