@@ -37,6 +37,8 @@ pub struct Shown {
     /// Whether there is a window.
     pub window: bool,
     pub full_screen: bool,
+    /// A large mesh that the window loads, in the place of the ball that the run begins with.
+    pub open_first: Option<PathBuf>,
     /// The sculpture begins with this run.
     pub fresh: bool,
     /// The mesh that is written at the end.
@@ -72,6 +74,7 @@ pub fn window(
         open_next: shown.open_next.clone(),
         demo_until_us: run.demo_ends_us(),
         full_screen: shown.full_screen,
+        open_first: shown.open_first.clone(),
         fresh: shown.fresh,
         link: run.window.clone(),
         thickness_presets: super::thickness::presets::all().map_err(|e| e.to_string())?,

@@ -2,7 +2,7 @@
 //! daemon says is printed.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -11,11 +11,15 @@ use super::ending::{export, stop_signal, warn_of_fault};
 use super::window_guard::guarded;
 use super::{Fail, Outcome, exit_code};
 use sculptd_daemon::Summary;
+use sculptd_daemon::command_queue::QueuedCommand;
 use sculptd_daemon::config::Config;
 use sculptd_daemon::live_run::{LiveOptions, LiveRun, LiveRunError};
-use sculptd_daemon::startup::Begun;
+use sculptd_daemon::startup::{self, Begun};
 use sculptd_daemon::window_link::WindowStanding;
 use sculptd_devices::catalogue::Catalogue;
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::payload::Payload;
+use sculptd_geometry::job::Job;
 
 impl From<LiveRunError> for Fail {
     fn from(e: LiveRunError) -> Self {
@@ -69,6 +73,15 @@ impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
     }
 }
 
+/// Loads the mesh that no window can show loading.
+fn load(run: &LiveRun, path: &Path) -> Result<(), Fail> {
+    let loaded = startup::load(Some(path), &Job::default()).map_err(Fail::from)?;
+    let new = NewClay::new(Arc::new(loaded.plain), false);
+    let built = Payload::Clay(Box::new(loaded.mesh));
+    let command = QueuedCommand::with_payload(Command::Replace(new), built);
+    run.live.commands.send(command).map_err(|e| Fail::Check(e.to_string()))
+}
+
 /// Runs until the end, then goes on with `then`: on the thread of the window, or where that is lost
 /// on another, which ends the process.
 pub fn run(
@@ -111,7 +124,12 @@ pub fn run(
         match link.standing() {
             // It was shown, so it may have set something.
             WindowStanding::Open => closing.run.window_lost(),
-            _ => link.set_standing(WindowStanding::Headless),
+            _ => {
+                link.set_standing(WindowStanding::Headless);
+                if let Some(path) = &shown.open_first {
+                    load(&closing.run, path)?;
+                }
+            }
         }
     }
     // After a window that could not open; a closed one has raised `stop`.

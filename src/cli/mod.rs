@@ -6,6 +6,7 @@ use std::io::Write;
 use std::path::Path;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use sculptd_daemon::startup::StartupError;
 use sculptd_geometry::io::{ReadError, WriteError};
 
 pub mod bench;
@@ -183,6 +184,15 @@ impl From<ReadError> for Fail {
         match &e {
             ReadError::Io { path, source } => Fail::io(path, source),
             _ => Fail::Input(e.to_string()),
+        }
+    }
+}
+
+impl From<StartupError> for Fail {
+    fn from(e: StartupError) -> Self {
+        match e {
+            StartupError::Read(e) => Fail::from(e),
+            StartupError::Build { .. } => Fail::Input(e.to_string()),
         }
     }
 }

@@ -18,7 +18,7 @@ use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live_run::LiveOptions;
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
-use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, StartupError};
+use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed};
 use sculptd_daemon::tick::Journal;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::catalogue::Catalogue;
@@ -138,7 +138,12 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         .flatten();
     let session = args.session.as_ref().or(own.as_ref());
     let fresh = !session.is_some_and(|s| s.exists());
-    let begun = begin(args.mesh.as_deref(), session.map(PathBuf::as_path), &config)?;
+    // A large mesh is loaded in sight, with its progress, once the window is there.
+    let (mesh, later) = match args.mesh.clone() {
+        Some(m) if window && fresh && kiosk.is_none() && is_large(&m) => (None, Some(m)),
+        mesh => (mesh, None),
+    };
+    let begun = begin(mesh.as_deref(), session.map(PathBuf::as_path), &config)?;
     if let Some(kiosk) =
         kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
     {
@@ -167,6 +172,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         let shown = Shown {
             window,
             full_screen: args.kiosk,
+            open_first: later,
             fresh,
             export: args.export.clone(),
             session: session.cloned(),
@@ -193,6 +199,13 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
     let summary = run_stepped(args, &config, begun, players)?;
     report(&summary, args.stats.as_deref(), json)
+}
+
+/// Bytes of a file of a mesh from which on its loading takes a while.
+const LARGE_FILE: u64 = 16 << 20;
+
+fn is_large(mesh: &Path) -> bool {
+    std::fs::metadata(mesh).is_ok_and(|m| m.is_file() && m.len() >= LARGE_FILE)
 }
 
 /// Whether a daemon that has lost its window already shows what is asked for.
@@ -253,17 +266,10 @@ pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
     }
 }
 
-pub fn rig_fail(e: StartupError) -> Fail {
-    match e {
-        StartupError::Read(e) => Fail::from(e),
-        StartupError::Build { .. } => Fail::Input(e.to_string()),
-    }
-}
-
 pub fn begin(mesh: Option<&Path>, session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
     let begun = startup::begin(mesh, session, config, &Job::default());
     let begun = begun.map_err(|e| match e {
-        BeginError::Rig(e) => rig_fail(e),
+        BeginError::Rig(e) => Fail::from(e),
         e => Fail::Input(e.to_string()),
     })?;
     for warning in &begun.warnings {

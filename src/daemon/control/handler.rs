@@ -193,7 +193,10 @@ impl Handler for Host {
 
     fn brush(&self, named: asked::BrushSettings) -> Result<asked::BrushSettings, RpcError> {
         let brush = merged_brush(&self.presets, &self.published.load(), &named)?;
-        self.send(Command::Brush(brush))?;
+        // A question changes nothing: the answer may be older than what another has just sent.
+        if named != asked::BrushSettings::default() {
+            self.send(Command::Brush(brush))?;
+        }
         convert(brush)
     }
 
@@ -257,11 +260,14 @@ impl Handler for Host {
     }
 
     fn camera(&self, named: CameraSettings) -> Result<CameraSettings, RpcError> {
+        let asks = named == CameraSettings::default();
         let camera: sculptd_engine::camera::Camera = merge(&self.published.load().camera, named)?;
         if !camera.is_sane() {
             return Err(RpcError::bad_params("no view can be made of this camera"));
         }
-        self.send(Command::Camera(camera))?;
+        if !asks {
+            self.send(Command::Camera(camera))?;
+        }
         convert(camera)
     }
 

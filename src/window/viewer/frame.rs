@@ -150,15 +150,24 @@ impl WindowState {
         let size = (size.x as u32, size.y as u32);
         let part = self.takes_copies() && self.free.is_some();
         let target = if part { self.clay_picture(size) } else { surface.clone() };
+        let pages = state.mesh.page_count();
+        let first = self.first_picture.as_ref().filter(|p| p.pages == pages);
+        let mut camera = self.camera;
+        if let Some((lo, hi)) = first.and_then(|p| p.bounds) {
+            camera.frame(lo, hi);
+        }
         let scene = Scene {
             mesh: &state.mesh,
-            camera: &self.camera,
-            brush,
-            lines,
+            camera: &camera,
+            brush: brush.filter(|_| first.is_none()),
+            lines: if first.is_some() { &[] } else { lines },
             look: self.ui_state.look,
             values: shown(&self.ui_state, &self.values, &self.distances)
                 .filter(|v| v.pages.len() == state.mesh.page_count()),
-            beside: Beside { preview: self.preview.as_ref(), overlay: Some(&self.overlay_mesh) },
+            beside: Beside {
+                preview: first.or(self.preview.as_ref()),
+                overlay: Some(&self.overlay_mesh),
+            },
         };
         let view = target.create_view(&Default::default());
         self.renderer.draw(&self.gpu, encoder, &view, size, &scene);

@@ -92,7 +92,9 @@ impl WindowState {
 
     /// Takes the reports of background tasks; `true` when there were any.
     fn take_reports(&mut self, state: &Published, wiring: &Wiring) -> bool {
-        let mut changed = false;
+        // Before the reports: a load that has ended since has reported.
+        let loading = self.tasks.progress();
+        let mut changed = loading != self.ui_state.loading;
         while let Ok(done) = self.tasks.done.try_recv() {
             changed = true;
             match done {
@@ -103,6 +105,7 @@ impl WindowState {
                     self.values = Some(values);
                     self.ui_state.walls.found = Some(about);
                 }
+                TaskReport::Read(picture) => self.first_picture = Some(picture),
                 TaskReport::Opened => self.opened = Some(wiring.clock.now_us()),
                 TaskReport::Preview(done) => self.previewed(done),
                 TaskReport::Distances(values, about) => {
@@ -122,7 +125,7 @@ impl WindowState {
                     }
                 }
                 TaskReport::Chosen(FilePurpose::Open, path) => {
-                    self.tasks.load(path, wiring.commands.clone())
+                    self.tasks.load(path, wiring.published.clone(), wiring.commands.clone());
                 }
                 TaskReport::Chosen(FilePurpose::Export, path) => {
                     self.ui_state.files.export = path.display().to_string();
@@ -130,10 +133,16 @@ impl WindowState {
                 }
             }
         }
+        if loading.is_none() && self.opened.is_none() {
+            changed |= self.first_picture.take().is_some();
+        }
+        self.ui_state.loading = loading;
         // The tick loop takes a mesh that was sent a tick or two later.
         let now = wiring.clock.now_us();
         if self.opened.is_some_and(|since| now.saturating_sub(since) > 100_000) {
             self.opened = None;
+            self.first_picture = None;
+            changed = true;
             self.before = Some(state.mesh.clone());
         }
         if self.distances.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {

@@ -38,7 +38,9 @@ impl WindowState {
                     now,
                 ));
             }
-            UiRequest::OpenMesh(path) => self.tasks.load(path, wiring.commands.clone()),
+            UiRequest::OpenMesh(path) => {
+                self.tasks.load(path, wiring.published.clone(), wiring.commands.clone());
+            }
             UiRequest::OpenSession(path) => {
                 if let Ok(mut next) = wiring.open_next.lock() {
                     *next = Some(path);

@@ -78,6 +78,8 @@ pub(super) struct WindowState {
     /// The frames since the last line of the log.
     pub(super) since_listed: FrameSum,
     pub(super) workers: SnapshotWorkers,
+    /// A mesh that was read while the clay is still made of it.
+    pub(super) first_picture: Option<Arc<Preview>>,
     /// The newest preview; what was requested, and when.
     pub(super) preview: Option<Arc<Preview>>,
     pub(super) asked_preview: Option<((u64, Similarity, MenuItem), u64)>,
@@ -223,6 +225,7 @@ impl WindowState {
             figures: FrameFigures::default(),
             since_listed: FrameSum::default(),
             workers: Default::default(),
+            first_picture: None,
             preview: None,
             asked_preview: None,
             before: None,
@@ -247,6 +250,9 @@ impl WindowState {
             tablets: Tablets::default(),
         };
         open.send_camera(wiring);
+        if let Some(path) = &wiring.open_first {
+            open.tasks.load(path.clone(), wiring.published.clone(), wiring.commands.clone());
+        }
         Ok(open)
     }
 

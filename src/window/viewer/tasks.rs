@@ -13,7 +13,7 @@ use glam::Vec3;
 use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
-use super::preview::Preview;
+use super::preview::{self, Preview};
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
 };
@@ -29,7 +29,7 @@ use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
-use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
 use sculptd_geometry::projection::PlaneRegion;
@@ -44,6 +44,8 @@ pub enum TaskReport {
     Map(MapValues, Box<ThicknessSummary>),
     /// A Boolean has ended, well or not.
     Joined,
+    /// A large mesh was read; the clay is still made of it.
+    Read(Arc<Preview>),
     /// A mesh was loaded: distances are to it from now on.
     Opened,
     Preview(Result<Option<Arc<Preview>>, String>),
@@ -65,18 +67,49 @@ struct ThicknessRequest {
     limit: f32,
 }
 
+/// A mesh on its way into the loop.
+#[derive(Debug, Clone, Default)]
+struct LoadUnderWay {
+    name: String,
+    read: Arc<Job>,
+    build: Arc<Job>,
+    ended: Arc<AtomicBool>,
+}
+
+/// The share of a load that reading takes, about.
+const READING: f32 = 0.3;
+/// Triangles from which on a mesh is shown before the clay is made of it: fewer are ready at once.
+const SHOWN_EARLY: usize = 300_000;
+
+fn read_and_build(
+    path: &Path,
+    load: &LoadUnderWay,
+    shown: &ArcSwap<Published>,
+    say: &cc::Sender<TaskReport>,
+) -> Result<startup::Loaded, startup::StartupError> {
+    let loaded = read_mesh_within(path, MAX_FILE, &load.read)?;
+    let (plain, _) = loaded.mesh.triangulate();
+    load.read.progress(1.0);
+    if plain.triangles.len() >= SHOWN_EARLY {
+        let picture = preview::of_mesh(&plain, shown.load().mesh.page_count());
+        let _ = say.send(TaskReport::Read(Arc::new(picture)));
+    }
+    startup::build(plain, loaded.warnings, path.display().to_string(), &load.build)
+}
+
 #[derive(Debug)]
 pub struct Tasks {
     say: cc::Sender<TaskReport>,
     pub done: cc::Receiver<TaskReport>,
     thickness: Option<LatestWins<ThicknessRequest>>,
     dialog: Arc<AtomicBool>,
+    load: Option<LoadUnderWay>,
 }
 
 impl Default for Tasks {
     fn default() -> Self {
         let (say, done) = cc::unbounded();
-        Tasks { say, done, thickness: None, dialog: Arc::default() }
+        Tasks { say, done, thickness: None, dialog: Arc::default(), load: None }
     }
 }
 
@@ -97,12 +130,15 @@ fn no_desktop() -> bool {
 }
 
 impl Tasks {
-    /// Reads a mesh and sends it to the loop.
-    pub fn load(&self, path: PathBuf, commands: CommandSender) {
+    /// Reads a mesh, makes clay of it and sends it to the loop; it is shown as soon as it was read.
+    pub fn load(&mut self, path: PathBuf, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         let say = self.say.clone();
+        let name = path.display().to_string();
+        let short = path.file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned());
+        let load = LoadUnderWay { name: short, ..LoadUnderWay::default() };
+        self.load = Some(load.clone());
         thread("sculptd-load", move || {
-            let name = path.display().to_string();
-            let said = match startup::load(Some(&path), &Job::default()) {
+            let said = match read_and_build(&path, &load, &shown, &say) {
                 Ok(loaded) => {
                     let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
                     for warning in loaded.warnings.iter().take(3) {
@@ -125,7 +161,15 @@ impl Tasks {
                 Err(e) => TaskReport::Message(e.to_string(), true),
             };
             let _ = say.send(said);
+            load.ended.store(true, Relaxed);
         });
+    }
+
+    /// The file that is being loaded, and how much of it is done, in steps of a fiftieth.
+    pub fn progress(&self) -> Option<(String, f32)> {
+        let load = self.load.as_ref().filter(|l| !l.ended.load(Relaxed))?;
+        let done = load.read.done() * READING + load.build.done() * (1.0 - READING);
+        Some((load.name.clone(), (done * 50.0).floor() / 50.0))
     }
 
     /// Writes the clay, each coordinate times `scale`.

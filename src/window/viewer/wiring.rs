@@ -39,6 +39,8 @@ pub struct Wiring {
     /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
     pub demo_until_us: u64,
     pub full_screen: bool,
+    /// A large mesh to load as soon as there is a window, so that its progress is seen.
+    pub open_first: Option<PathBuf>,
     /// The sculpture begins here: nobody has chosen a view of it.
     pub fresh: bool,
     /// What the run keeps for the case that this window is lost.

@@ -39,6 +39,8 @@ pub struct UiState {
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
     pub files: FilesPage,
+    /// The file that is being loaded, and how much of it is done, 0 to 1.
+    pub loading: Option<(String, f32)>,
     /// The window's own file chooser, while it is open.
     pub chooser: Option<FileChooser>,
     pub messages: Vec<Message>,
