@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout)] // Figures and skips are told on standard output.
 
 mod desktop;
+mod files;
 mod first_minutes;
 mod idle;
 mod lost_screen;

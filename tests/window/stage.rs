@@ -71,7 +71,9 @@ fn program(dir: &Path, display: &str) -> Command {
         .env("XDG_RUNTIME_DIR", dir)
         .env("XDG_CONFIG_HOME", dir)
         .env("XDG_DATA_HOME", dir.join("data"))
-        .env("HOME", dir);
+        .env("HOME", dir)
+        .env_remove("DBUS_SESSION_BUS_ADDRESS")
+        .env("SCULPTD_LOG", "info,sculptd_window=debug");
     program
 }
 

@@ -36,12 +36,7 @@ enum ChooserStep {
     Close,
 }
 
-pub fn ui(
-    ctx: &egui::Context,
-    ui_state: &mut UiState,
-    free: egui::Rect,
-    out: &mut Vec<UiRequest>,
-) {
+pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: egui::Rect, out: &mut Vec<UiRequest>) {
     let Some(chooser) = &mut ui_state.chooser else { return };
     let title = match chooser.purpose {
         FilePurpose::Open => "Open a mesh",
@@ -126,6 +121,9 @@ fn inside(ui: &mut egui::Ui, chooser: &mut FileChooser, height: f32) -> ChooserS
         let label = ui.label("Name");
         let edit = egui::TextEdit::singleline(&mut chooser.name).desired_width(f32::INFINITY);
         let typed = ui.add(edit).labelled_by(label.id);
+        if !std::mem::replace(&mut chooser.begun, true) {
+            typed.request_focus();
+        }
         if typed.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
             // A folder that is typed is gone into.
             match chooser.file() {

@@ -134,7 +134,7 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                 open.send_camera(wiring);
             }
             WindowEvent::DroppedFile(path) if wiring.kiosk.is_none() => {
-                open.tasks.load(path, wiring.published.clone(), wiring.commands.clone());
+                open.tasks.load(path, wiring);
             }
             _ => {}
         }

@@ -125,7 +125,7 @@ impl WindowState {
                     }
                 }
                 TaskReport::Chosen(FilePurpose::Open, path) => {
-                    self.tasks.load(path, wiring.published.clone(), wiring.commands.clone());
+                    self.tasks.load(path, wiring);
                 }
                 TaskReport::Chosen(FilePurpose::Export, path) => {
                     self.ui_state.files.export = path.display().to_string();

@@ -39,7 +39,7 @@ impl WindowState {
                 ));
             }
             UiRequest::OpenMesh(path) => {
-                self.tasks.load(path, wiring.published.clone(), wiring.commands.clone());
+                self.tasks.load(path, wiring);
             }
             UiRequest::OpenSession(path) => {
                 if let Ok(mut next) = wiring.open_next.lock() {

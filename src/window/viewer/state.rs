@@ -251,7 +251,7 @@ impl WindowState {
         };
         open.send_camera(wiring);
         if let Some(path) = &wiring.open_first {
-            open.tasks.load(path.clone(), wiring.published.clone(), wiring.commands.clone());
+            open.tasks.load(path.clone(), wiring);
         }
         Ok(open)
     }

@@ -14,6 +14,7 @@ use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::{self, Preview};
+use super::wiring::Wiring;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
 };
@@ -86,15 +87,20 @@ fn read_and_build(
     load: &LoadUnderWay,
     shown: &ArcSwap<Published>,
     say: &cc::Sender<TaskReport>,
+    tell: &dyn Fn(&str),
 ) -> Result<startup::Loaded, startup::StartupError> {
     let loaded = read_mesh_within(path, MAX_FILE, &load.read)?;
     let (plain, _) = loaded.mesh.triangulate();
     load.read.progress(1.0);
+    tell("read");
     if plain.triangles.len() >= SHOWN_EARLY {
         let picture = preview::of_mesh(&plain, shown.load().mesh.page_count());
         let _ = say.send(TaskReport::Read(Arc::new(picture)));
+        tell("to be shown");
     }
-    startup::build(plain, loaded.warnings, path.display().to_string(), &load.build)
+    let built = startup::build(plain, loaded.warnings, path.display().to_string(), &load.build);
+    tell("clay");
+    built
 }
 
 #[derive(Debug)]
@@ -131,14 +137,20 @@ fn no_desktop() -> bool {
 
 impl Tasks {
     /// Reads a mesh, makes clay of it and sends it to the loop; it is shown as soon as it was read.
-    pub fn load(&mut self, path: PathBuf, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
+    pub fn load(&mut self, path: PathBuf, wiring: &Wiring) {
+        let (shown, commands) = (wiring.published.clone(), wiring.commands.clone());
+        let (clock, begun_us) = (wiring.clock.clone(), wiring.clock.now_us());
         let say = self.say.clone();
         let name = path.display().to_string();
         let short = path.file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned());
         let load = LoadUnderWay { name: short, ..LoadUnderWay::default() };
         self.load = Some(load.clone());
         thread("sculptd-load", move || {
-            let said = match read_and_build(&path, &load, &shown, &say) {
+            let tell = |what: &str| {
+                let ms = (clock.now_us() - begun_us) / 1000;
+                tracing::debug!(ms, "{name}: {what}");
+            };
+            let said = match read_and_build(&path, &load, &shown, &say, &tell) {
                 Ok(loaded) => {
                     let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
                     for warning in loaded.warnings.iter().take(3) {

@@ -31,6 +31,8 @@ pub struct FileChooser {
     pub listing: Option<FolderListing>,
     /// The name of the file that is chosen or written.
     pub name: String,
+    /// The name has had the keyboard's focus.
+    pub begun: bool,
 }
 
 /// The endings of the files that are offered.
@@ -42,7 +44,7 @@ impl FileChooser {
             FilePurpose::Open => String::new(),
             FilePurpose::Export => "sculpture.stl".into(),
         };
-        FileChooser { purpose, folder, listing: None, name }
+        FileChooser { purpose, folder, listing: None, name, begun: false }
     }
 
     /// Goes to another folder, which is still to be read.
