@@ -194,8 +194,6 @@ fn a_pen_that_the_desktop_follows_makes_each_stroke_once() {
     s.seen("desktop-start");
 
     let (mut near, mut tip) = (false, false);
-    // Which strokes did not come, for whoever has to find out why.
-    let (mut drawn, mut came, mut lost) = (0u64, 0, Vec::new());
     let end_us = 300_000 + count * 600_000 + 500_000;
     let begun = Instant::now();
     loop {
@@ -215,20 +213,13 @@ fn a_pen_that_the_desktop_follows_makes_each_stroke_once() {
         if pose.tip != tip {
             tablet.button(pose.tip);
             tip = pose.tip;
-            if tip {
-                let now = s.figure("undo_steps");
-                if drawn > 0 && !on_panel(&(drawn - 1)) && now == came {
-                    lost.push(drawn - 1);
-                }
-                (drawn, came) = (drawn + 1, now);
-            }
         }
         pause(7);
     }
     let steps = |s: &Stage| s.figure("undo_steps");
     s.soon(|s| steps(s) >= expected);
     pause(500);
-    println!("{} of {expected} strokes came; those that did not: {lost:?}", steps(&s));
+    println!("{} of {expected} strokes came", steps(&s));
     assert_eq!(steps(&s), expected, "strokes: none twice, none on a panel");
     s.look("desktop-strokes");
 

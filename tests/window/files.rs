@@ -58,9 +58,13 @@ fn a_large_mesh_is_seen_while_it_loads() {
     let Some(mut s) = Stage::open(&["--mesh", &mesh]) else { return };
     s.until("something is drawn", |s| s.look("load-1").pixels().any(|p| p.0[0] > 0));
     let first = begun.elapsed();
+    // The mesh is seen, and how far it is, before there is clay of it.
+    s.until("the mesh was read", |s| s.log().contains("to be shown"));
+    pause(700);
+    s.look("load-2-progress");
     s.until("it is loaded", |s| s.figure("vertices") > 2_000_000);
     let loaded = begun.elapsed();
     println!("{bytes} bytes: the window after {first:.1?}, the clay after {loaded:.1?}");
     s.log().lines().filter(|l| l.contains("large.ply:")).for_each(|l| println!("{l}"));
-    s.look("load-2");
+    s.look("load-3-clay");
 }
