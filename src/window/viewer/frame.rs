@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::clay_picture::ClayPictureKey;
 use super::overlay;
 use super::pages::MapValues;
 use super::pointer::Drag;
@@ -111,6 +112,7 @@ impl WindowState {
         if samples != self.samples {
             self.renderer = Renderer::new(&self.gpu, self.config.format, samples);
             self.samples = samples;
+            self.clay_key = None;
         }
         self.update_overlay_mesh(&state);
         self.shots(&state);
@@ -118,7 +120,6 @@ impl WindowState {
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.draw_clay(&state, (&lines, brush), &mut encoder, &texture.texture);
-        self.uploaded = self.renderer.uploaded;
         let requests = self.panels(&state, wiring, &mut encoder, &view);
         let own_ms = (wiring.clock.now_ns() - begun_ns) as f64 / 1e6;
         self.gpu.queue.submit([encoder.finish()]);
@@ -156,21 +157,38 @@ impl WindowState {
         if let Some((lo, hi)) = first.and_then(|p| p.bounds) {
             camera.frame(lo, hi);
         }
-        let scene = Scene {
-            mesh: &state.mesh,
-            camera: &camera,
-            brush: brush.filter(|_| first.is_none()),
-            lines: if first.is_some() { &[] } else { lines },
+        let lines = if first.is_some() { &[] } else { lines };
+        let brush = brush.filter(|_| first.is_none());
+        let preview = first.or(self.preview.as_ref());
+        let key = ClayPictureKey {
+            object: (state.mesh.object_id(), state.mesh.revision()),
+            camera,
             look: self.ui_state.look,
-            values: shown(&self.ui_state, &self.values, &self.distances)
-                .filter(|v| v.pages.len() == state.mesh.page_count()),
-            beside: Beside {
-                preview: first.or(self.preview.as_ref()),
-                overlay: Some(&self.overlay_mesh),
-            },
+            brush,
+            lines: lines.to_vec(),
+            preview: preview.cloned(),
+            overlay: self.overlay_mesh.stamp,
+            values: self.map_changes,
+            size,
         };
-        let view = target.create_view(&Default::default());
-        self.renderer.draw(&self.gpu, encoder, &view, size, &scene);
+        let drawn = part && self.renderer.waiting == 0 && self.clay_key.as_ref() == Some(&key);
+        self.uploaded = 0;
+        if !drawn {
+            let scene = Scene {
+                mesh: &state.mesh,
+                camera: &camera,
+                brush,
+                lines,
+                look: self.ui_state.look,
+                values: shown(&self.ui_state, &self.values, &self.distances)
+                    .filter(|v| v.pages.len() == pages),
+                beside: Beside { preview, overlay: Some(&self.overlay_mesh) },
+            };
+            let view = target.create_view(&Default::default());
+            self.renderer.draw(&self.gpu, encoder, &view, size, &scene);
+            self.uploaded = self.renderer.uploaded;
+            self.clay_key = part.then_some(key);
+        }
         if part {
             let mut to = surface.as_image_copy();
             to.origin = wgpu::Origin3d { x: corner.x as u32, y: corner.y as u32, z: 0 };

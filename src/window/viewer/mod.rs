@@ -5,6 +5,7 @@
 
 mod app;
 mod camera_animation;
+mod clay_picture;
 pub mod distance_field;
 mod folder_listing;
 mod follow;

@@ -97,6 +97,7 @@ impl WindowState {
         let mut changed = loading != self.ui_state.loading;
         while let Ok(done) = self.tasks.done.try_recv() {
             changed = true;
+            self.map_changes += 1;
             match done {
                 TaskReport::Message(text, wrong) => self.ui_state.say(text, wrong),
                 TaskReport::Joined => self.ui_state.joining = false,

@@ -8,6 +8,7 @@ use winit::keyboard::ModifiersState;
 use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
+use super::clay_picture::ClayPictureKey;
 use super::gpu::{Gpu, NoViewer, instance};
 use super::overlay;
 use super::overlay_mesh::Triangles;
@@ -109,6 +110,10 @@ pub(super) struct WindowState {
     pub(super) free: Option<egui::Rect>,
     /// The picture of the clay, as large as the free part, where the surface takes copies.
     pub(super) clay_picture: Option<wgpu::Texture>,
+    /// What that picture was drawn from; `None`: it is to be drawn anew.
+    pub(super) clay_key: Option<ClayPictureKey>,
+    /// Counts the changes of the values of the maps.
+    pub(super) map_changes: u64,
     /// Buttons and fingers that went down on a panel and are still down.
     pub(super) held_on_panels: u32,
     pub(super) tablets: Tablets,
@@ -246,6 +251,8 @@ impl WindowState {
             drawn_kiosk: None,
             free: None,
             clay_picture: None,
+            clay_key: None,
+            map_changes: 0,
             held_on_panels: 0,
             tablets: Tablets::default(),
         };
