@@ -73,7 +73,7 @@
 //! [`sculptd_daemon::garbage_thread`] in.
 //!
 //! * main, made by the process: the window's event loop, or waits for a signal. Waits for: the
-//!   window system.
+//!   window system, with which it may be lost.
 //! * `sculptd-tick`, made by `daemon::live`: drains samples and commands, steps the world,
 //!   publishes. Waits for: its own clock only.
 //! * `sculptd-worker-N`, made by `clay::Workers`, for the tick thread: parts of a large dab. Waits
@@ -115,6 +115,8 @@
 //! * `sculptd-brushes`, made by `daemon::brush_folder`: reads a person's own brushes anew when a
 //!   file of theirs changes. Waits for: the clock. Owns: the folder as it was read. Speaks through:
 //!   the list that all clones of the presets share.
+//! * `sculptd-survivor`, made by `cli::window_guard`: goes on in the place of the main thread where
+//!   the window system has ended that. Waits for: such a loss.
 //! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
@@ -123,6 +125,8 @@
 //!   commands. Waits for: the loop's answer.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.
+//! * `sculptd-folder`, made by `window::viewer::tasks`: lists a folder for the window's own file
+//!   chooser. Waits for: the disk.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by

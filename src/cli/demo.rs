@@ -9,6 +9,7 @@ use super::ending::{close_journal, export};
 use super::live;
 use super::run::{self, seconds};
 use super::{Fail, Outcome};
+use sculptd_daemon::Summary;
 use sculptd_daemon::config::Config;
 use sculptd_daemon::demo_devices;
 use sculptd_daemon::live_run::LiveOptions;
@@ -63,12 +64,14 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     };
     let shown = Shown {
         window: true,
+        fresh: true,
         export: Some(args.export.clone()),
         session: args.session.clone(),
         ..Default::default()
     };
     let catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
-    run::report(&live::run(options, &shown, &config, begun, catalogue)?, None, json)
+    let then = move |summary: Summary| run::report(&summary, None, json);
+    live::run(options, &shown, &config, begun, catalogue, then)
 }
 
 fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outcome {

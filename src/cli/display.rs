@@ -37,6 +37,10 @@ pub struct Shown {
     /// Whether there is a window.
     pub window: bool,
     pub full_screen: bool,
+    /// A large mesh that the window loads, in the place of the ball that the run begins with.
+    pub open_first: Option<PathBuf>,
+    /// The sculpture begins with this run.
+    pub fresh: bool,
     /// The mesh that is written at the end.
     pub export: Option<PathBuf>,
     /// The session's file, for the window's title.
@@ -46,9 +50,14 @@ pub struct Shown {
     pub open_next: super::library::OpenNext,
 }
 
-/// Shows the window until it is closed or the run ends; `Err` says why there is none.
+/// Gives what shows the window until it is closed or the run ends; its `Err` says why there is
+/// none. It holds nothing of the run but handles.
 #[cfg(feature = "viewer")]
-pub fn show(run: &LiveRun, shown: &Shown, rate_hz: u32) -> Result<(), String> {
+pub fn window(
+    run: &LiveRun,
+    shown: &Shown,
+    rate_hz: u32,
+) -> Result<impl FnOnce() -> Result<(), String> + use<>, String> {
     let adaptors = run.adaptors.clone();
     let wiring = sculptd_window::viewer::Wiring {
         commands: run.live.commands.clone(),
@@ -65,13 +74,20 @@ pub fn show(run: &LiveRun, shown: &Shown, rate_hz: u32) -> Result<(), String> {
         open_next: shown.open_next.clone(),
         demo_until_us: run.demo_ends_us(),
         full_screen: shown.full_screen,
+        open_first: shown.open_first.clone(),
+        fresh: shown.fresh,
+        link: run.window.clone(),
         thickness_presets: super::thickness::presets::all().map_err(|e| e.to_string())?,
         kiosk: run.kiosk.clone(),
     };
-    sculptd_window::viewer::run(wiring).map_err(|e| e.to_string())
+    Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))
 }
 
 #[cfg(not(feature = "viewer"))]
-pub fn show(_: &LiveRun, _: &Shown, _: u32) -> Result<(), String> {
-    available()
+pub fn window(
+    _: &LiveRun,
+    _: &Shown,
+    _: u32,
+) -> Result<impl FnOnce() -> Result<(), String> + use<>, String> {
+    available().map(|()| || Ok(()))
 }

@@ -1,14 +1,25 @@
 //! One live run, with or without a window: what was asked for is handed to the daemon, what the
 //! daemon says is printed.
 
-use super::Fail;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use super::display::{self, Shown};
 use super::ending::{export, stop_signal, warn_of_fault};
+use super::window_guard::guarded;
+use super::{Fail, Outcome, exit_code};
 use sculptd_daemon::Summary;
+use sculptd_daemon::command_queue::QueuedCommand;
 use sculptd_daemon::config::Config;
 use sculptd_daemon::live_run::{LiveOptions, LiveRun, LiveRunError};
-use sculptd_daemon::startup::Begun;
+use sculptd_daemon::startup::{self, Begun};
+use sculptd_daemon::window_link::WindowStanding;
 use sculptd_devices::catalogue::Catalogue;
+use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::payload::Payload;
+use sculptd_geometry::job::Job;
 
 impl From<LiveRunError> for Fail {
     fn from(e: LiveRunError) -> Self {
@@ -20,32 +31,107 @@ impl From<LiveRunError> for Fail {
     }
 }
 
+/// What is left to do once a run is over.
+struct Closing<F> {
+    run: LiveRun,
+    export: Option<PathBuf>,
+    then: F,
+}
+
+impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
+    /// Waits for the end of the run, closes it, and goes on with `then`.
+    fn close(self) -> Outcome {
+        self.run.wait();
+        let handed_on = self.run.window.wanted().is_some();
+        let mut ended = self.run.finish().map_err(|e| Fail::Check(e.to_string()))?;
+        let mut summary = std::mem::take(&mut ended.summary);
+        let path = self.export.as_deref().filter(|_| !handed_on);
+        summary.export = export(path, &ended.world)?;
+        warn_of_fault(ended.close_session());
+        (self.then)(summary)
+    }
+
+    /// The same for a run whose window is lost; the exit code. An installation without its screen
+    /// serves nobody: it ends, and whoever watches over it starts it again.
+    fn close_without_window(self) -> u8 {
+        self.run.window_lost();
+        let kiosk = self.run.kiosk.is_some();
+        if kiosk {
+            eprintln!("sculptd: the screen is gone: the installation ends");
+            self.run.stop.store(true, Relaxed);
+        } else if self.run.window.session().is_some() {
+            eprintln!(
+                "sculptd: the screen is gone: going on without a window; `sculptd window` opens a \
+                 new one"
+            );
+        } else {
+            eprintln!("sculptd: the screen is gone: going on without a window");
+        }
+        let code = exit_code(self.close());
+        let _ = std::io::stdout().flush();
+        if kiosk { code.max(1) } else { code }
+    }
+}
+
+/// Loads the mesh that no window can show loading.
+fn load(run: &LiveRun, path: &Path) -> Result<(), Fail> {
+    let loaded = startup::load(Some(path), &Job::default()).map_err(Fail::from)?;
+    let new = NewClay::new(Arc::new(loaded.plain), false);
+    let built = Payload::Clay(Box::new(loaded.mesh));
+    let command = QueuedCommand::with_payload(Command::Replace(new), built);
+    run.live.commands.send(command).map_err(|e| Fail::Check(e.to_string()))
+}
+
+/// Runs until the end, then goes on with `then`: on the thread of the window, or where that is lost
+/// on another, which ends the process.
 pub fn run(
     options: LiveOptions,
     shown: &Shown,
     config: &Config,
     begun: Begun,
     catalogue: Catalogue,
-) -> Result<Summary, Fail> {
+    then: impl FnOnce(Summary) -> Outcome + Send + 'static,
+) -> Outcome {
+    let link = options.window.clone();
+    link.set_standing(if shown.window {
+        WindowStanding::Opening
+    } else {
+        WindowStanding::Headless
+    });
     let run = LiveRun::start(options, config, begun, catalogue, stop_signal())?;
     for notice in &run.notices {
         eprintln!("sculptd: {notice}");
     }
-    if shown.window {
-        if let Err(why) = display::show(&run, shown, config.r#loop.rate_hz) {
-            eprintln!("sculptd: going on without a window: {why}");
-        }
-    } else {
+    if !shown.window {
         for line in run.adaptors.describe() {
             eprintln!("sculptd: {line}");
         }
         eprintln!("sculptd: sculpting; end with Ctrl-C");
+        return Closing { run, export: shown.export.clone(), then }.close();
     }
-    // Without a window, or after one that could not open. A closed window has raised `stop`.
-    run.wait();
-    let mut ended = run.finish().map_err(|e| Fail::Check(e.to_string()))?;
-    let mut summary = std::mem::take(&mut ended.summary);
-    summary.export = export(shown.export.as_deref(), &ended.world)?;
-    warn_of_fault(ended.close_session());
-    Ok(summary)
+    let window = display::window(&run, shown, config.r#loop.rate_hz);
+    let closing = Closing { run, export: shown.export.clone(), then };
+    let closing = Arc::new(Mutex::new(Some(closing)));
+    let take = |all: &Mutex<Option<_>>| all.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let survivor = {
+        let closing = closing.clone();
+        move || take(&closing).map_or(101, Closing::close_without_window)
+    };
+    let seen = window.and_then(|show| guarded(show, survivor));
+    let Some(closing) = take(&closing) else { return Ok(()) };
+    if let Err(why) = seen {
+        eprintln!("sculptd: going on without a window: {why}");
+        match link.standing() {
+            // It was shown, so it may have set something.
+            WindowStanding::Open => closing.run.window_lost(),
+            _ => {
+                link.set_standing(WindowStanding::Headless);
+                if let Some(path) = &shown.open_first {
+                    load(&closing.run, path)?;
+                }
+            }
+        }
+    }
+    // After a window that could not open; a closed one has raised `stop`.
+    closing.close()
 }

@@ -6,6 +6,7 @@ use std::io::Write;
 use std::path::Path;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use sculptd_daemon::startup::StartupError;
 use sculptd_geometry::io::{ReadError, WriteError};
 
 pub mod bench;
@@ -40,6 +41,9 @@ pub mod run;
 pub mod session;
 pub mod subdivide;
 pub mod thickness;
+#[cfg(unix)]
+pub mod window;
+mod window_guard;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -87,6 +91,9 @@ pub enum Command {
     /// Ask the running daemon.
     #[cfg(unix)]
     Ctl(ctl::CtlArgs),
+    /// A window of the running daemon on this screen, where it has none or has lost its own.
+    #[cfg(unix)]
+    Window,
     /// Whether this machine can sculpt, and what to type where it cannot.
     Doctor(doctor::DoctorArgs),
     /// The session files: list them, look at one, remove old ones, save a damaged one.
@@ -190,6 +197,15 @@ impl From<ReadError> for Fail {
     }
 }
 
+impl From<StartupError> for Fail {
+    fn from(e: StartupError) -> Self {
+        match e {
+            StartupError::Read(e) => Fail::from(e),
+            StartupError::Build { .. } => Fail::Input(e.to_string()),
+        }
+    }
+}
+
 impl From<WriteError> for Fail {
     fn from(e: WriteError) -> Self {
         match &e {
@@ -222,6 +238,8 @@ pub fn run() -> u8 {
         Some(Command::Brush { brushes, command }) => {
             brush::run(&command, brushes.as_deref(), cli.json)
         }
+        #[cfg(unix)]
+        Some(Command::Window) => window::run(cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),
         Some(Command::Doctor(args)) => doctor::run(&args, cli.json),
         Some(Command::Session { command }) => session::run(&command, cli.json),
@@ -240,6 +258,11 @@ pub fn run() -> u8 {
         Some(Command::Hollow(args)) => hollow::run(&args, cli.json),
         Some(Command::Man { all }) => man::run(all.as_deref(), Cli::command()),
     };
+    exit_code(outcome)
+}
+
+/// Says what went wrong, if anything did; the exit code.
+fn exit_code(outcome: Outcome) -> u8 {
     match outcome {
         Ok(()) => 0,
         Err(fail) => {

@@ -1,6 +1,8 @@
 //! `sculptd run`: the daemon. With a display a window, without one headless; with recordings to
 //! play and nothing else, a stepped run that gives the same bits every time.
 
+#[cfg(unix)]
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::display::{self, Shown};
@@ -17,8 +19,9 @@ use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live_run::LiveOptions;
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
-use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed, StartupError};
+use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed};
 use sculptd_daemon::tick::Journal;
+use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
@@ -111,6 +114,11 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         return Err(Fail::Usage(text.into()));
     }
     let window = display::wanted(args.headless);
+    #[cfg(unix)]
+    if window && follows_lost_window(args) {
+        eprintln!("sculptd: a daemon that has lost its window is running: it opens one here");
+        return super::window::run(json);
+    }
     // Recordings that are played without a window and without visitors are stepped, so that they
     // give the same bits every time.
     let on_the_wall_clock = window || args.play_device.is_empty() || args.kiosk;
@@ -134,7 +142,13 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         .then(|| library::begin(args.mesh.as_deref()))
         .flatten();
     let session = args.session.as_ref().or(own.as_ref());
-    let begun = begin(args.mesh.as_deref(), session.map(PathBuf::as_path), &config)?;
+    let fresh = !session.is_some_and(|s| s.exists());
+    // A large mesh is loaded in sight, with its progress, once the window is there.
+    let (mesh, later) = match args.mesh.clone() {
+        Some(m) if window && fresh && kiosk.is_none() && is_large(&m) => (None, Some(m)),
+        mesh => (mesh, None),
+    };
+    let begun = begin(mesh.as_deref(), session.map(PathBuf::as_path), &config)?;
     if let Some(kiosk) =
         kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
     {
@@ -146,7 +160,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         )));
     }
     let open_next = library::OpenNext::default();
-    let summary = if on_the_wall_clock {
+    if on_the_wall_clock {
         let options = LiveOptions {
             presets: crate::presets().clone(),
             brushes: own_brushes(args.brushes.as_deref())?,
@@ -159,26 +173,37 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             settings: args.config.clone(),
             #[cfg(unix)]
             metrics: args.metrics,
+            window: WindowLink::new(session.map(PathBuf::as_path)),
         };
         let shown = Shown {
             window,
             full_screen: args.kiosk,
+            open_first: later,
+            fresh,
             export: args.export.clone(),
             session: session.cloned(),
             recent: library::recent(session.map(PathBuf::as_path)),
             open_next: open_next.clone(),
         };
-        live::run(options, &shown, &config, begun, catalogue)?
-    } else {
-        eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
-        run_stepped(args, &config, begun, players)?
-    };
-    if let Some(own) = &own {
-        library::remove_untouched(own);
+        let (link, args) = (options.window.clone(), args.clone());
+        let then = move |summary: Summary| {
+            #[cfg(unix)]
+            if let Some((screen, session)) = link.wanted().zip(link.session()) {
+                let next = next_arguments(&session, &args, json);
+                return super::window::go_on(&session, &screen, &next);
+            }
+            if let Some(own) = &own {
+                library::remove_untouched(own);
+            }
+            if let Some(next) = open_next.lock().ok().and_then(|n| n.clone()) {
+                return library::open(&next, args.config.as_deref());
+            }
+            report(&summary, args.stats.as_deref(), json)
+        };
+        return live::run(options, &shown, &config, begun, catalogue, then);
     }
-    if let Some(next) = open_next.lock().ok().and_then(|n| n.clone()) {
-        return library::open(&next, args.config.as_deref());
-    }
+    eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
+    let summary = run_stepped(args, &config, begun, players)?;
     report(&summary, args.stats.as_deref(), json)
 }
 
@@ -193,6 +218,50 @@ fn own_brushes(named: Option<&Path>) -> Result<Option<BrushFolder>, Fail> {
         folder.refresh();
         folder
     }))
+}
+
+/// Bytes of a file of a mesh from which on its loading takes a while.
+const LARGE_FILE: u64 = 16 << 20;
+
+fn is_large(mesh: &Path) -> bool {
+    std::fs::metadata(mesh).is_ok_and(|m| m.is_file() && m.len() >= LARGE_FILE)
+}
+
+/// Whether a daemon that has lost its window already shows what is asked for.
+#[cfg(unix)]
+fn follows_lost_window(args: &RunArgs) -> bool {
+    let plain = args.mesh.is_none() && args.play_device.is_empty() && !args.kiosk;
+    let whole = |p: &Path| p.canonicalize().ok();
+    let same =
+        |session: PathBuf| args.session.as_deref().is_none_or(|s| whole(s) == whole(&session));
+    plain && super::window::lost().is_some_and(same)
+}
+
+/// The arguments of the process that follows a run, to show the same session in a window: what was
+/// asked for stays, but for what the session holds already.
+#[cfg(unix)]
+fn next_arguments(session: &Path, args: &RunArgs, json: bool) -> Vec<OsString> {
+    let mut all: Vec<OsString> = Vec::new();
+    if json {
+        all.push("--json".into());
+    }
+    all.extend(["run".into(), "--session".into(), session.into()]);
+    let paths = [
+        ("--config", &args.config),
+        ("--brushes", &args.brushes),
+        ("--export", &args.export),
+        ("--stats", &args.stats),
+    ];
+    for (name, path) in paths {
+        all.extend(path.iter().flat_map(|p| [name.into(), p.into()]));
+    }
+    if let Some(seconds) = args.limit_s {
+        all.extend(["--for".into(), seconds.to_string().into()]);
+    }
+    if let Some(at) = args.metrics {
+        all.extend(["--metrics".into(), at.to_string().into()]);
+    }
+    all
 }
 
 /// The installation's settings, if it is one; what cannot be shown to visitors is said before any
@@ -221,17 +290,10 @@ pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
     }
 }
 
-pub fn rig_fail(e: StartupError) -> Fail {
-    match e {
-        StartupError::Read(e) => Fail::from(e),
-        StartupError::Build { .. } => Fail::Input(e.to_string()),
-    }
-}
-
 pub fn begin(mesh: Option<&Path>, session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
     let begun = startup::begin(mesh, session, config, &Job::default());
     let begun = begun.map_err(|e| match e {
-        BeginError::Rig(e) => rig_fail(e),
+        BeginError::Rig(e) => Fail::from(e),
         e => Fail::Input(e.to_string()),
     })?;
     for warning in &begun.warnings {
@@ -335,4 +397,27 @@ pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {
         Ok(())
     });
     Ok(())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_asked_for_stays_but_for_what_the_session_holds() {
+        let args = RunArgs {
+            mesh: Some("pig.stl".into()),
+            session: Some("old.sculpt".into()),
+            stats: Some("s.json".into()),
+            headless: true,
+            limit_s: Some(2.5),
+            play_device: vec!["pen.hid".into()],
+            ..RunArgs::default()
+        };
+        let words = next_arguments(Path::new("/a b.sculpt"), &args, true);
+        let words: Vec<_> = words.iter().map(|w| w.to_string_lossy()).collect();
+        let expected =
+            ["--json", "run", "--session", "/a b.sculpt", "--stats", "s.json", "--for", "2.5"];
+        assert_eq!(words, expected);
+    }
 }

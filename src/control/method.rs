@@ -22,7 +22,7 @@ use crate::edit::{
 use crate::event::SubscribeReply;
 use crate::status::{
     HelloParams, HelloReply, MethodsReply, NoParams, SentReply, ShutdownReply, StatusParams,
-    StatusReply,
+    StatusReply, WindowParams, WindowReply,
 };
 use crate::view::{CameraSettings, ReachParams, ReachReply};
 use crate::wire::{Code, Envelope, RpcError};
@@ -220,6 +220,9 @@ methods! {
     "reach" Reach reach(ReachParams) -> ReachReply;
     /// From now on sends a line for each change of mesh, history, brush, losses or session file.
     "subscribe" Subscribe subscribe(NoParams) -> SubscribeReply;
+    /// Opens a new window where there is none, or none any more. The daemon begins anew with the
+    /// same session, so its connections are closed and its socket is away for a moment.
+    "window" Window window(WindowParams) -> WindowReply;
     /// Ends the daemon as a signal would.
     "shutdown" Shutdown shutdown(NoParams) -> ShutdownReply;
 }

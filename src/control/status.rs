@@ -123,6 +123,28 @@ pub struct StatusReply {
     pub curve_points: u64,
     /// The session file; `null` where nothing is recorded.
     pub journal: Option<JournalStatus>,
+    /// How the window stands.
+    #[serde(default)]
+    pub window: WindowStatus,
+    /// The path of the session file, where the daemon may open a window for it.
+    #[serde(default)]
+    pub session: Option<String>,
+}
+
+/// How the window of the daemon stands.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum WindowStatus {
+    /// None was asked for, or it could not be opened.
+    #[default]
+    Headless,
+    /// It is being made.
+    Opening,
+    /// It is shown.
+    Open,
+    /// Its X server or compositor has ended; `window` opens another.
+    Lost,
 }
 
 /// Samples that were lost between a device and the loop.
@@ -157,6 +179,28 @@ pub struct JournalStatus {
     pub lost: u64,
     /// Why nothing can be written at present.
     pub fault: Option<String>,
+}
+
+/// Parameters of `window`: the variables of the environment that name the screen. `display` or
+/// `wayland_display` must be given.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct WindowParams {
+    /// `DISPLAY`: the X server.
+    pub display: Option<String>,
+    /// `WAYLAND_DISPLAY`: the compositor, as the whole path of its socket.
+    pub wayland_display: Option<String>,
+    /// `XAUTHORITY`: the file that holds the X server's cookie.
+    pub xauthority: Option<String>,
+}
+
+/// Reply of `window`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WindowReply {
+    /// The session that the new window shows.
+    pub session: String,
 }
 
 /// Reply of `shutdown`.

@@ -38,6 +38,7 @@ pub mod tick;
 pub mod tick_statistics;
 pub mod toml_text;
 pub mod trim;
+pub mod window_link;
 
 pub use published::{Published, Publisher};
 pub use tick_statistics::{Summary, TickStatistics};

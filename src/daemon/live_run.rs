@@ -24,11 +24,13 @@ use crate::startup::{Area, Begun, RecordingFeed};
 use crate::tablet_actions::TabletActions;
 use crate::tick::Journal;
 use crate::tick_statistics::Summary;
+use crate::window_link::{WindowLink, WindowStanding};
 use sculptd_clay::brush::Presets;
-use sculptd_devices::Clock;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{self, SenderFactory};
 use sculptd_devices::recording::Player;
+use sculptd_devices::{Body, Clock, Pen, Sample, Tool};
+use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
 /// What makes one live run different from another.
@@ -55,6 +57,8 @@ pub struct LiveOptions {
     /// Where the figures are served, if anywhere.
     #[cfg(unix)]
     pub metrics: Option<std::net::SocketAddr>,
+    /// How the window stands; without a session no window can follow a lost one.
+    pub window: WindowLink,
 }
 
 /// Why a live run could not be put together.
@@ -87,6 +91,8 @@ pub struct LiveRun {
     pub history: Option<Handle>,
     /// The screen of an installation, in the place of the panels.
     pub kiosk: Option<keeper::Screen>,
+    /// How the window stands.
+    pub window: WindowLink,
     /// One sentence each: what a person should know of how the run began.
     pub notices: Vec<String>,
     demo: Option<Playing>,
@@ -172,6 +178,7 @@ impl LiveRun {
                 journal: health.clone(),
                 history: history.clone(),
                 pen: Some(Arc::new(Mutex::new(pen))),
+                window: options.window.clone(),
                 ..crate::control::Host::new(
                     live.commands.clone(),
                     live.published.clone(),
@@ -182,6 +189,7 @@ impl LiveRun {
         };
         #[cfg(not(unix))]
         let _: Option<Health> = health;
+        let window = options.window.clone();
         let demo = match options.demo_devices {
             true => Some(demo_devices::playing(&clock, &factory)?),
             false => None,
@@ -204,6 +212,7 @@ impl LiveRun {
             stop,
             history,
             kiosk,
+            window,
             notices,
             demo,
             writing,
@@ -223,6 +232,29 @@ impl LiveRun {
         while self.live.is_running() && !self.stop.load(Relaxed) {
             let _ = quiet.recv_timeout(LOOK);
         }
+    }
+
+    /// The window is gone without a word of its own: what it had set is taken back, and every
+    /// stroke ends as by a lifted pen. The run goes on.
+    pub fn window_lost(&self) {
+        self.window.set_standing(WindowStanding::Lost);
+        let claims = self.window.claims();
+        let shown = self.live.published.load_full();
+        let own = [adaptors::POINTER_ID, adaptors::CONTROL_PEN_ID];
+        let pens = shown.tablets.iter().flatten().map(|t| t.0).filter(|id| !own.contains(id));
+        let lent = claims.lent.map(Command::Brush);
+        let desktop = Command::DesktopLayout(claims.desktop_without_window(pens));
+        for command in lent.into_iter().chain([desktop, Command::LiftAll]) {
+            if self.live.commands.send(command).is_err() {
+                return;
+            }
+        }
+        // The pointer has left, as a pen leaves its tablet.
+        let mut sender = self.factory.sender();
+        let body = Body::Pen(Pen { tool: Tool::Touch, ..Pen::default() });
+        let t_us = self.clock.now_us();
+        sender.push(Sample { device: adaptors::POINTER_ID, t_us, device_t_us: None, body });
+        sender.flush();
     }
 
     /// Stops the devices, then the loop, and gives what was sculpted.

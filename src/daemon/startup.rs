@@ -61,7 +61,11 @@ pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, Startup
     build(plain, loaded.warnings, path.display().to_string(), job)
 }
 
-fn build(
+/// Makes clay of a mesh that was read; `path` names it in an error.
+///
+/// # Errors
+/// Where it can be no clay, and where the job is cancelled.
+pub fn build(
     plain: TriMesh,
     mut warnings: Vec<String>,
     path: String,

@@ -1,8 +1,9 @@
 //! The window: a wgpu viewer and egui panels over snapshots of the clay.
 //!
-//! Law kept here: the window sees snapshots and sends commands; it changes nothing itself. It runs
-//! in the process of the daemon, so the loss of the X server still ends both; the session file
-//! stays.
+//! Law kept here: the window sees snapshots and sends commands; it changes nothing itself. It has
+//! the main thread of the daemon's process, and the loss of its X server or compositor costs that
+//! thread alone: `sculptd_daemon::window_link` says what is taken back, `cli::window_guard` how the
+//! process goes on.
 //!
 //! Read first: [`viewer`], then [`panels`].
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]

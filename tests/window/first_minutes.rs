@@ -141,7 +141,7 @@ fn what_would_come_is_seen_before_it_is_made() {
     s.until("the ball is there", |s| s.figure("vertices") != begun);
     s.drive(&["key", "Home"]);
     // Away from the clay, so that what is held beside it is in view.
-    s.drive(&["mousemove", "640", "360", "click", "--repeat", "6", "5"]);
+    s.drive(&["mousemove", "640", "360", "click", "--repeat", "3", "5"]);
     s.ask("take-up", &json!({ "path": tool }));
     s.seen("a2-thing");
     let (triangles, hash) = (s.figure("triangles"), s.ask("hash", &Value::Null)["hash"].clone());

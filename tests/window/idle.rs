@@ -30,8 +30,11 @@ fn threads(pid: u32) -> BTreeMap<u64, (String, f64)> {
 /// Shares of one core over `seconds`, by the threads' names.
 fn shares(s: &Stage, seconds: u64) -> BTreeMap<String, f64> {
     let pid = s.daemon.0.id();
+    let told = s.log().lines().count();
     let before = threads(pid);
     pause(seconds * 1000);
+    // Frames that were drawn in the meantime.
+    s.log().lines().skip(told).for_each(|line| println!("{line}"));
     let mut out = BTreeMap::new();
     for (id, (name, now)) in threads(pid) {
         let then = before.get(&id).map_or(0.0, |t| t.1);
@@ -43,7 +46,8 @@ fn shares(s: &Stage, seconds: u64) -> BTreeMap<String, f64> {
 /// Of the window's threads: all but those that tick and keep the session.
 fn of_the_window(shares: &BTreeMap<String, f64>) -> f64 {
     let daemon = ["sculptd-tick", "sculptd-journal", "sculptd-tail", "sculptd-history"];
-    let own = |name: &str| daemon.iter().any(|d| d.starts_with(name));
+    // Linux keeps fifteen letters of a name.
+    let own = |name: &str| daemon.iter().any(|d| d[..d.len().min(15)] == *name);
     shares.iter().filter(|(name, _)| !own(name)).map(|(_, share)| share).sum()
 }
 
@@ -81,5 +85,27 @@ fn an_idle_window_takes_no_processor() {
     pause(5000);
     let idle = shares(&s, 30);
     told("idle, 5 M triangles", &idle);
+    // What a frame costs in which nothing of the clay changes: the pointer moves, the ring with it.
+    let lines = s.log().lines().count();
+    for i in 0..200 {
+        let (x, y) = ((500 + i).to_string(), (300 + i / 2).to_string());
+        s.tool("xdotool", &["mousemove", &x, &y]);
+        pause(10);
+    }
+    pause(2000);
+    let log = s.log();
+    let figure = |line: &str, name: &str| -> f64 {
+        let value = line.split(name).nth(1).and_then(|v| v.split_whitespace().next());
+        value.and_then(|v| v.parse().ok()).unwrap_or_else(|| panic!("{name} in {line}"))
+    };
+    let (mut frames, mut total_ms) = (0.0, 0.0);
+    for line in log.lines().skip(lines).filter(|l| l.contains("mean_ms=")) {
+        let now = figure(line, "frames=");
+        assert!(now <= 61.0, "more frames in a second than the screen shows: {line}");
+        (frames, total_ms) = (frames + now, total_ms + now * figure(line, "mean_ms="));
+        println!("{line}");
+    }
+    println!("{frames} frames, {:.2} ms of the processor each", total_ms / frames.max(1.0));
+    assert!(frames > 0.0, "the ring follows the pointer");
     assert!(of_the_window(&idle) <= most, "{idle:?}");
 }

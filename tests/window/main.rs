@@ -6,8 +6,10 @@
 #![allow(clippy::print_stdout)] // Figures and skips are told on standard output.
 
 mod desktop;
+mod files;
 mod first_minutes;
 mod idle;
+mod lost_screen;
 mod presses;
 mod sessions;
 mod stage;

@@ -1,10 +1,10 @@
-//! Nothing is lost: a session is always on, whether the window is closed or its screen is killed.
+//! Nothing is lost by closing a window: a session is always on.
 
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
-use super::stage::{MIDDLE, Stage, long, pause};
+use super::stage::{Stage, long};
 
 /// The sessions of the person's data folder, the first in name first.
 fn kept(s: &Stage) -> Vec<PathBuf> {
@@ -40,31 +40,5 @@ fn closing_and_reopening_loses_nothing_and_an_untouched_session_leaves_no_file()
         s.restart(&["--session", &session]);
         assert_eq!(hash(&s), before, "after closing {i}");
         assert_eq!(versions_of(&s), versions + 1);
-    }
-}
-
-#[test]
-fn a_killed_screen_costs_no_stroke() {
-    let Some(mut s) = Stage::open(&[]) else { return };
-    s.drag((-80, -40), (80, -40));
-    s.until("the stroke is done", |s| s.figure("undo_steps") == 1);
-    let (session, first) = (kept(&s)[0].display().to_string(), hash(&s));
-    // In the middle of another.
-    let at = |dx: i32| [(MIDDLE.0 + dx).to_string(), (MIDDLE.1 + 40).to_string()];
-    let [x, y] = at(-80);
-    s.drive(&["mousemove", &x, &y, "mousedown", "1"]);
-    for dx in [-40, 0, 40] {
-        let [x, y] = at(dx);
-        s.drive(&["mousemove", &x, &y]);
-    }
-    s.until("it has begun", |s| hash(s) != first);
-    // What a crash may cost at most.
-    pause(300);
-    s.lose_screen();
-    s.begin_anew(&["--session", &session]);
-    assert_ne!(hash(&s), first, "the open stroke is there, ended as by a lifted pen");
-    if long() {
-        s.ask("undo", &Value::Null);
-        s.until("it is one step", |s| hash(s) == first);
     }
 }

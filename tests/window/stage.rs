@@ -62,16 +62,25 @@ pub fn pause(ms: u64) {
     std::thread::sleep(Duration::from_millis(ms));
 }
 
-fn start(dir: &Path, display: &str, args: &[&str]) -> Ended {
-    let daemon = Command::new(env!("CARGO_BIN_EXE_sculptd"))
-        .arg("run")
-        .args(args)
+/// The program on a screen, with a data folder and a control socket of its own.
+fn program(dir: &Path, display: &str) -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_sculptd"));
+    program
         .env("DISPLAY", display)
         .env_remove("WAYLAND_DISPLAY")
         .env("XDG_RUNTIME_DIR", dir)
         .env("XDG_CONFIG_HOME", dir)
         .env("XDG_DATA_HOME", dir.join("data"))
         .env("HOME", dir)
+        .env_remove("DBUS_SESSION_BUS_ADDRESS")
+        .env("SCULPTD_LOG", "info,sculptd_window=debug");
+    program
+}
+
+fn start(dir: &Path, display: &str, args: &[&str]) -> Ended {
+    let daemon = program(dir, display)
+        .arg("run")
+        .args(args)
         .stdout(Stdio::null())
         .stderr(std::fs::File::create(dir.join("log")).expect("a file"))
         .spawn()
@@ -186,12 +195,29 @@ impl Stage {
         let _ = self.screen.0.wait();
     }
 
-    /// The daemon ended with its screen: both begin anew, on the same data folder.
-    pub fn begin_anew(&mut self, args: &[&str]) {
-        self.until("the daemon has ended", |s| s.daemon.0.try_wait().is_ok_and(|d| d.is_some()));
+    /// Another screen in the place of one that was lost, without a window.
+    pub fn new_screen(&mut self) {
         (self.screen, self.display) = screen(self.dir.path());
-        self.daemon = start(self.dir.path(), &self.display, args);
+    }
+
+    /// Another command of the program, on the screen; whether it went well, and what it said.
+    pub fn run(&self, args: &[&str]) -> (bool, String) {
+        let out = program(self.dir.path(), &self.display).args(args).output().expect("runs");
+        let said = [out.stdout, out.stderr].concat();
+        (out.status.success(), String::from_utf8_lossy(&said).into_owned())
+    }
+
+    /// A window of the running daemon on the screen as it now is.
+    pub fn window(&mut self, args: &[&str]) {
+        let (well, said) = self.run(args);
+        assert!(well, "{said}\n{}", self.log());
+        self.last = None;
         assert!(self.shown());
+    }
+
+    /// What the daemon has said.
+    pub fn log(&self) -> String {
+        std::fs::read_to_string(self.dir.path().join("log")).unwrap_or_default()
     }
 
     pub fn tool(&self, name: &str, args: &[&str]) -> Option<String> {

@@ -13,6 +13,7 @@ use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
+use crate::window_link::{DisplayVariables, WindowStanding};
 use crate::{Published, boolean_jobs, remesh_job, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
 use sculptd_clay::live_thickness::LiveMap;
@@ -186,6 +187,13 @@ impl Handler for Host {
                 lost: h.lost.load(Relaxed),
                 fault: h.trouble(),
             }),
+            window: match self.window.standing() {
+                WindowStanding::Headless => status::WindowStatus::Headless,
+                WindowStanding::Opening => status::WindowStatus::Opening,
+                WindowStanding::Open => status::WindowStatus::Open,
+                WindowStanding::Lost => status::WindowStatus::Lost,
+            },
+            session: self.window.session().map(|p| p.display().to_string()),
         })
     }
 
@@ -194,7 +202,10 @@ impl Handler for Host {
         if let Some(picture) = picture {
             self.send(Command::Picture(picture))?;
         }
-        self.send(Command::Brush(brush))?;
+        // A question changes nothing: the answer may be older than what another has just sent.
+        if named != asked::BrushSettings::default() {
+            self.send(Command::Brush(brush))?;
+        }
         convert(brush)
     }
 
@@ -272,11 +283,14 @@ impl Handler for Host {
     }
 
     fn camera(&self, named: CameraSettings) -> Result<CameraSettings, RpcError> {
+        let asks = named == CameraSettings::default();
         let camera: sculptd_engine::camera::Camera = merge(&self.published.load().camera, named)?;
         if !camera.is_sane() {
             return Err(RpcError::bad_params("no view can be made of this camera"));
         }
-        self.send(Command::Camera(camera))?;
+        if !asks {
+            self.send(Command::Camera(camera))?;
+        }
         convert(camera)
     }
 
@@ -452,6 +466,22 @@ impl Handler for Host {
     fn subscribe(&self, _: NoParams) -> Result<event::SubscribeReply, RpcError> {
         let events = event::EventName::ALL.into();
         Ok(event::SubscribeReply { events })
+    }
+
+    fn window(&self, params: status::WindowParams) -> Result<status::WindowReply, RpcError> {
+        let named = [
+            ("DISPLAY", params.display),
+            ("WAYLAND_DISPLAY", params.wayland_display),
+            ("XAUTHORITY", params.xauthority),
+        ];
+        let given = |(name, value): (&str, Option<String>)| value.map(|v| (name.to_owned(), v));
+        let screen: DisplayVariables = named.into_iter().filter_map(given).collect();
+        if !screen.keys().any(|k| k.ends_with("DISPLAY")) {
+            return Err(RpcError::bad_params("expected `display` or `wayland_display`"));
+        }
+        let session = self.window.want(screen).map_err(|e| failed(e.to_string()))?;
+        self.stop.store(true, Relaxed);
+        Ok(status::WindowReply { session: session.display().to_string() })
     }
 
     fn shutdown(&self, _: NoParams) -> Result<status::ShutdownReply, RpcError> {

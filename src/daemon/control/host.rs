@@ -11,6 +11,7 @@ use crate::Published;
 use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::session::Health;
 use crate::session::history::Handle;
+use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::RpcError;
@@ -33,7 +34,9 @@ pub struct Host {
     pub history: Option<Handle>,
     /// The pen of `stroke`; `None`: nothing takes its samples.
     pub pen: Option<Arc<Mutex<VirtualPen>>>,
-    /// Raised by `shutdown`.
+    /// How the window stands, and whether another was asked for.
+    pub window: WindowLink,
+    /// Raised by `shutdown` and `window`.
     pub stop: Arc<AtomicBool>,
 }
 
@@ -53,6 +56,7 @@ impl Host {
             journal: None,
             history: None,
             pen: None,
+            window: WindowLink::default(),
             stop: Arc::default(),
         }
     }

@@ -4,9 +4,9 @@ use super::act::act;
 use super::state::action;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, cube, curve_stroke, devices, files, hand_menu, hints, history, legend, look,
-    masks, measure, messages, modal, preferences, pressure_curve, radial, remesh, scene, search,
-    start, symmetry, theme, timing, trim,
+    analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, hints, history,
+    legend, look, masks, measure, messages, modal, preferences, pressure_curve, radial, remesh,
+    scene, search, start, symmetry, theme, timing, trim,
 };
 
 const TABS: [(Tab, &str, &str); 8] = [
@@ -72,7 +72,9 @@ pub fn all(
     legend::ui(&ctx, ui_state, free);
     hints::ui(&ctx, &ui_state.prefs.hints, view.demo_runs, free);
     start::ui(&ctx, view, ui_state, free, out);
+    chooser::ui(&ctx, ui_state, free, out);
     files::replace(&ctx, ui_state, free, out);
+    messages::loading(&ctx, ui_state, free);
     messages::toast(&ctx, ui_state, free);
     for action in radial::ui(&ctx, ui_state).into_iter().chain(search::ui(&ctx, ui_state)) {
         act(action, &ctx, view, ui_state, out);

@@ -25,6 +25,24 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &UiState) {
     }
 }
 
+/// What is being loaded, and how far it is.
+pub fn loading(ctx: &egui::Context, ui_state: &UiState, free: egui::Rect) {
+    let Some((name, done)) = &ui_state.loading else { return };
+    let place = egui::Area::new(egui::Id::unique("loading"))
+        .fixed_pos(free.center())
+        .pivot(egui::Align2::CENTER_CENTER)
+        .interactable(false);
+    place.show(ctx, |ui| {
+        let width = (free.width() - 60.0).clamp(120.0, 360.0);
+        ui.set_max_width(width);
+        egui::Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
+            ui.label(format!("Loading {name}"));
+            let percent = format!("{:.0} %", done * 100.0);
+            ui.add(egui::ProgressBar::new(*done).desired_width(width - 20.0).text(percent));
+        });
+    });
+}
+
 pub fn toast(ctx: &egui::Context, ui_state: &mut UiState, free: egui::Rect) {
     let now = ctx.input(|i| i.time);
     let Some(last) = ui_state.messages.last_mut() else { return };

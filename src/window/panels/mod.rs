@@ -6,6 +6,7 @@
 pub mod act;
 pub mod analysis;
 pub mod brush;
+pub mod chooser;
 pub mod cube;
 pub mod curve_stroke;
 pub mod devices;

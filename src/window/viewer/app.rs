@@ -76,6 +76,11 @@ impl ApplicationHandler<AccessibilityEvent> for App {
         let now = self.wiring.clock.now_us();
         if open.pacing.poll_is_due(now) {
             open.poll(&self.wiring);
+        } else if open.pointer_is_unpaired() {
+            // Every event that waited was taken: the pointer is where it is now, and each such
+            // place is worth as much as those of a poll.
+            let state = self.wiring.published.load_full();
+            open.follow_tablets(&state, &self.wiring);
         }
         if open.pacing.frame_is_due(now) {
             open.window.request_redraw();
@@ -131,7 +136,7 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                 open.send_camera(wiring);
             }
             WindowEvent::DroppedFile(path) if wiring.kiosk.is_none() => {
-                open.tasks.load(path, wiring.commands.clone());
+                open.tasks.load(path, wiring);
             }
             _ => {}
         }

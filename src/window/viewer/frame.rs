@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::clay_picture::ClayPictureKey;
 use super::overlay;
 use super::pages::MapValues;
 use super::pointer::Drag;
@@ -12,6 +13,7 @@ use crate::look::Map;
 use crate::panels;
 use crate::panels::state::{UiRequest, UiState, View};
 use sculptd_daemon::Published;
+use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
 
 impl WindowState {
@@ -104,13 +106,13 @@ impl WindowState {
                 self.camera_animation = None;
             }
         } else if self.pointer.drag == Drag::None {
-            // A hand or the control socket may have turned the camera.
-            self.camera = Camera { aspect: self.camera.aspect, ..state.camera };
+            self.follow_camera(now, &state.camera);
         }
         let samples = self.gpu.samples(self.ui_state.prefs.smooth_edges);
         if samples != self.samples {
             self.renderer = Renderer::new(&self.gpu, self.config.format, samples);
             self.samples = samples;
+            self.clay_key = None;
         }
         self.update_overlay_mesh(&state);
         self.shots(&state);
@@ -118,14 +120,15 @@ impl WindowState {
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.draw_clay(&state, (&lines, brush), &mut encoder, &texture.texture);
-        self.uploaded = self.renderer.uploaded;
         let requests = self.panels(&state, wiring, &mut encoder, &view);
         let own_ms = (wiring.clock.now_ns() - begun_ns) as f64 / 1e6;
         self.gpu.queue.submit([encoder.finish()]);
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
         self.measure(&state, own_ms, wiring);
-        self.drawn = Some(state.clone());
+        if self.drawn.replace(state.clone()).is_none() {
+            wiring.link.set_standing(WindowStanding::Open);
+        }
         for request in requests {
             self.answer(request, &state, wiring);
         }
@@ -148,18 +151,44 @@ impl WindowState {
         let size = (size.x as u32, size.y as u32);
         let part = self.takes_copies() && self.free.is_some();
         let target = if part { self.clay_picture(size) } else { surface.clone() };
-        let scene = Scene {
-            mesh: &state.mesh,
-            camera: &self.camera,
-            brush,
-            lines,
+        let pages = state.mesh.page_count();
+        let first = self.first_picture.as_ref().filter(|p| p.pages == pages);
+        let mut camera = self.camera;
+        if let Some((lo, hi)) = first.and_then(|p| p.bounds) {
+            camera.frame(lo, hi);
+        }
+        let lines = if first.is_some() { &[] } else { lines };
+        let brush = brush.filter(|_| first.is_none());
+        let preview = first.or(self.preview.as_ref());
+        let key = ClayPictureKey {
+            object: (state.mesh.object_id(), state.mesh.revision()),
+            camera,
             look: self.ui_state.look,
-            values: shown(&self.ui_state, &self.values, &self.distances)
-                .filter(|v| v.pages.len() == state.mesh.page_count()),
-            beside: Beside { preview: self.preview.as_ref(), overlay: Some(&self.overlay_mesh) },
+            brush,
+            lines: lines.to_vec(),
+            preview: preview.cloned(),
+            overlay: self.overlay_mesh.stamp,
+            values: self.map_changes,
+            size,
         };
-        let view = target.create_view(&Default::default());
-        self.renderer.draw(&self.gpu, encoder, &view, size, &scene);
+        let drawn = part && self.renderer.waiting == 0 && self.clay_key.as_ref() == Some(&key);
+        self.uploaded = 0;
+        if !drawn {
+            let scene = Scene {
+                mesh: &state.mesh,
+                camera: &camera,
+                brush,
+                lines,
+                look: self.ui_state.look,
+                values: shown(&self.ui_state, &self.values, &self.distances)
+                    .filter(|v| v.pages.len() == pages),
+                beside: Beside { preview, overlay: Some(&self.overlay_mesh) },
+            };
+            let view = target.create_view(&Default::default());
+            self.renderer.draw(&self.gpu, encoder, &view, size, &scene);
+            self.uploaded = self.renderer.uploaded;
+            self.clay_key = part.then_some(key);
+        }
         if part {
             let mut to = surface.as_image_copy();
             to.origin = wgpu::Origin3d { x: corner.x as u32, y: corner.y as u32, z: 0 };
@@ -192,6 +221,7 @@ impl WindowState {
         let f = &mut self.figures;
         f.cpu_ms += (own_ms - f.cpu_ms) * 0.1;
         f.worst_cpu_ms = f.worst_cpu_ms.max(own_ms);
+        self.since_listed.take(own_ms);
         f.drawn = self.renderer.drawn;
         f.frames_a_second = self.pacing.frames_a_second();
         f.input_to_snapshot_ms = state.figures.input_to_snapshot_ms;

@@ -111,6 +111,7 @@ impl WindowState {
             if self.pointer.drag == Drag::Sculpt {
                 self.sample(false, wiring);
                 if let Some(brush) = self.pointer.lent.take() {
+                    wiring.link.claim_lent(None);
                     let state = wiring.published.load();
                     let (lent, kept) = (state.brush.kind, &state.kept_brushes);
                     for brush in give_back(lent, brush, &wiring.presets, kept) {
@@ -159,6 +160,7 @@ impl WindowState {
             }
             if now != brush {
                 self.pointer.lent = Some(brush);
+                wiring.link.claim_lent(self.pointer.lent);
                 let _ = wiring.commands.try_send(Command::Brush(now));
             }
             self.sample(true, wiring);

@@ -5,7 +5,9 @@
 
 mod app;
 mod camera_animation;
+mod clay_picture;
 pub mod distance_field;
+mod folder_listing;
 mod follow;
 mod frame;
 pub mod gpu;

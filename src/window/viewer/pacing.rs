@@ -111,6 +111,31 @@ impl Pacing {
     }
 }
 
+/// The window's own work on the processor over some frames, without waiting for the card.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct FrameSum {
+    frames: u32,
+    total_ms: f64,
+    worst_ms: f64,
+}
+
+impl FrameSum {
+    pub(super) fn take(&mut self, own_ms: f64) {
+        self.frames += 1;
+        self.total_ms += own_ms;
+        self.worst_ms = self.worst_ms.max(own_ms);
+    }
+
+    /// Tells the log of what was drawn, and begins anew. Nothing is told where nothing was drawn.
+    pub(super) fn tell(&mut self, (in_view, pages): (usize, usize)) {
+        let FrameSum { frames, total_ms, worst_ms } = std::mem::take(self);
+        if frames > 0 {
+            let mean_ms = total_ms / f64::from(frames);
+            tracing::debug!(frames, mean_ms, worst_ms, in_view, pages, "frames");
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,10 +2,10 @@
 //! tasks, the session's history, the devices. A frame follows only where something changed.
 
 use super::state::WindowState;
-use super::tasks::{Purpose, TaskReport};
+use super::tasks::TaskReport;
 use super::wiring::Wiring;
 use crate::look::Map;
-use crate::panels::state::{Tab, UiRequest};
+use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
 use sculptd_daemon::Published;
 use sculptd_engine::hand::HeldObject;
 
@@ -42,7 +42,9 @@ impl WindowState {
         self.follow_tablets(&state, wiring);
         let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
         changed |= self.drawn_demo != (now < wiring.demo_until_us);
-        changed |= self.camera_animation.is_some() || self.turning.is_some();
+        changed |= self.asked_camera.is_some()
+            || self.camera_animation.is_some()
+            || self.turning.is_some();
         changed |= self.take_reports(&state, wiring);
         changed |= self.follow(&state, wiring);
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
@@ -51,6 +53,7 @@ impl WindowState {
             changed |= self.ui_state.tab == Tab::Devices && devices != self.devices;
             changed |= self.ui_state.tab == Tab::Loop && !self.ui_state.hidden;
             (self.devices, self.listed_us) = (devices, now);
+            self.since_listed.tell(self.figures.drawn);
             if let Some(wrong) = self.preferences_file.keep(&self.ui_state) {
                 self.ui_state.say(wrong, true);
                 changed = true;
@@ -81,11 +84,23 @@ impl WindowState {
         }
     }
 
+    /// Where a file chooser begins: beside the file that was used last, or among the documents.
+    fn usual_folder(&self) -> std::path::PathBuf {
+        let recent = self.ui_state.prefs.recent.first().and_then(|p| p.parent());
+        let dirs = directories::UserDirs::new();
+        let own = dirs.as_ref().map(|d| d.document_dir().unwrap_or(d.home_dir()));
+        let known = [recent, own].into_iter().flatten().find(|p| p.is_dir());
+        known.map_or_else(|| "/".into(), std::path::Path::to_path_buf)
+    }
+
     /// Takes the reports of background tasks; `true` when there were any.
     fn take_reports(&mut self, state: &Published, wiring: &Wiring) -> bool {
-        let mut changed = false;
+        // Before the reports: a load that has ended since has reported.
+        let loading = self.tasks.progress();
+        let mut changed = loading != self.ui_state.loading;
         while let Ok(done) = self.tasks.done.try_recv() {
             changed = true;
+            self.map_changes += 1;
             match done {
                 TaskReport::Message(text, wrong) => self.ui_state.say(text, wrong),
                 TaskReport::Joined => self.ui_state.joining = false,
@@ -94,6 +109,7 @@ impl WindowState {
                     self.values = Some(values);
                     self.ui_state.walls.found = Some(about);
                 }
+                TaskReport::Read(picture) => self.first_picture = Some(picture),
                 TaskReport::Opened => self.opened = Some(wiring.clock.now_us()),
                 TaskReport::Preview(done) => self.previewed(done),
                 TaskReport::Distances(values, about) => {
@@ -101,19 +117,36 @@ impl WindowState {
                     self.distances = Some(values);
                 }
                 TaskReport::Measured(found) => self.ui_state.sizes.found = Some(found),
-                TaskReport::Chosen(Purpose::Open, path) => {
-                    self.tasks.load(path, wiring.commands.clone())
+                TaskReport::NoDialog(purpose) => {
+                    let folder = self.usual_folder();
+                    self.ui_state.chooser = Some(FileChooser::new(purpose, folder.clone()));
+                    self.tasks.list(folder);
                 }
-                TaskReport::Chosen(Purpose::Export, path) => {
+                TaskReport::Listed(folder, listing) => {
+                    let open = self.ui_state.chooser.as_mut();
+                    if let Some(chooser) = open.filter(|c| c.folder == folder) {
+                        chooser.listing = Some(listing);
+                    }
+                }
+                TaskReport::Chosen(FilePurpose::Open, path) => {
+                    self.tasks.load(path, wiring);
+                }
+                TaskReport::Chosen(FilePurpose::Export, path) => {
                     self.ui_state.files.export = path.display().to_string();
                     self.answer(UiRequest::Export(path), state, wiring);
                 }
             }
         }
+        if loading.is_none() && self.opened.is_none() {
+            changed |= self.first_picture.take().is_some();
+        }
+        self.ui_state.loading = loading;
         // The tick loop takes a mesh that was sent a tick or two later.
         let now = wiring.clock.now_us();
         if self.opened.is_some_and(|since| now.saturating_sub(since) > 100_000) {
             self.opened = None;
+            self.first_picture = None;
+            changed = true;
             self.before = Some(state.mesh.clone());
         }
         if self.distances.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {

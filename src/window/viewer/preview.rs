@@ -9,10 +9,10 @@ use super::pages::Vertex;
 use sculptd_clay::{Corner, Cut, Snapshot};
 use sculptd_daemon::boolean_jobs;
 use sculptd_engine::hand::{HeldObject, MenuItem, Similarity};
-use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -40,6 +40,9 @@ pub struct Preview {
     pub triangles: Vec<[u32; 3]>,
     /// Of these, how many the held object has made.
     pub made: usize,
+    /// Least and greatest corner of a mesh that was read and is not clay yet, and that the view is
+    /// framed on.
+    pub bounds: Option<(Vec3, Vec3)>,
 }
 
 /// Triangles with a tone each, joined where place and tone are the same, so that a cut has a sharp
@@ -84,7 +87,35 @@ impl TriangleGatherer {
             vertices: self.places.iter().map(vertex).collect(),
             triangles: self.triangles,
             made: self.made,
+            bounds: None,
         }
+    }
+}
+
+/// A mesh that was read, in the place of the whole object of `pages` pages: what is shown while the
+/// clay is still made of it.
+pub fn of_mesh(mesh: &TriMesh, pages: usize) -> Preview {
+    let mut normals = vec![Vec3::ZERO; mesh.positions.len()];
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        let across = (b - a).cross(c - a);
+        t.iter().for_each(|&v| normals[v as usize] += across);
+    }
+    let colour = |i: usize| mesh.colours.as_ref().and_then(|c| c.get(i)).copied().unwrap_or(PLAIN);
+    let pairs = mesh.positions.iter().zip(&normals).enumerate();
+    let vertex = |(i, (p, n)): (usize, (&Vec3, &Vec3))| {
+        Vertex::new(*p, n.normalize_or_zero(), 0.0, colour(i))
+    };
+    Preview {
+        revision: 0,
+        pages,
+        place: Similarity::NONE,
+        choice: MenuItem::Add,
+        hidden: None,
+        vertices: pairs.map(vertex).collect(),
+        triangles: mesh.triangles.clone(),
+        made: 0,
+        bounds: Some(mesh.bounds()),
     }
 }
 

@@ -274,7 +274,8 @@ impl Renderer {
         if self.pages.as_ref().is_none_or(|p| !p.fits(scene.mesh)) {
             self.pages = Some(Pages::new(&gpu.device, &gpu.queue, scene.mesh));
         }
-        let (lo, hi) = scene.mesh.bounds();
+        let framed = scene.beside.preview.and_then(|p| p.bounds);
+        let (lo, hi) = framed.unwrap_or_else(|| scene.mesh.bounds());
         let radius = if lo.cmple(hi).all() {
             (hi - scene.camera.target).abs().max((lo - scene.camera.target).abs()).length()
         } else {
@@ -379,6 +380,11 @@ impl Renderer {
         {
             self.preview.set(gpu, &new.vertices, &new.triangles);
             self.previewed = Some(new.clone());
+        }
+        // A whole mesh is large, and shown once.
+        if preview.is_none() && self.previewed.as_ref().is_some_and(|p| p.bounds.is_some()) {
+            self.preview = OverlayMesh::default();
+            self.previewed = None;
         }
         preview
     }

@@ -4,9 +4,8 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use super::camera_animation::CameraAnimation;
 use super::state::WindowState;
-use super::tasks::Purpose;
 use super::wiring::Wiring;
-use crate::panels::state::{Action, UiRequest};
+use crate::panels::state::{Action, FilePurpose, UiRequest};
 use sculptd_daemon::Published;
 use sculptd_daemon::session::history::Want;
 use sculptd_engine::command::Command;
@@ -39,7 +38,9 @@ impl WindowState {
                     now,
                 ));
             }
-            UiRequest::OpenMesh(path) => self.tasks.load(path, wiring.commands.clone()),
+            UiRequest::OpenMesh(path) => {
+                self.tasks.load(path, wiring);
+            }
             UiRequest::OpenSession(path) => {
                 if let Ok(mut next) = wiring.open_next.lock() {
                     *next = Some(path);
@@ -47,6 +48,7 @@ impl WindowState {
                 // This session is closed as by closing the window.
                 wiring.stop.store(true, Relaxed);
             }
+            UiRequest::ListFolder(folder) => self.tasks.list(folder),
             UiRequest::Export(path) => {
                 let (factor, unit) = self.ui_state.files.factor();
                 self.tasks.export(path, state.mesh.clone(), factor, unit);
@@ -73,8 +75,12 @@ impl WindowState {
                     self.tasks.outline(path, &found.outline);
                 }
             }
-            UiRequest::Do(Action::OpenMesh) => self.tasks.open_dialog(Purpose::Open),
-            UiRequest::Do(Action::Export) => self.tasks.open_dialog(Purpose::Export),
+            UiRequest::Do(Action::OpenMesh) => {
+                self.tasks.open_dialog(FilePurpose::Open, wiring.clock.clone());
+            }
+            UiRequest::Do(Action::Export) => {
+                self.tasks.open_dialog(FilePurpose::Export, wiring.clock.clone());
+            }
             UiRequest::Do(Action::Screenshot) => self.screenshot = true,
             UiRequest::Do(Action::Turntable) => self.begin_turntable(),
             UiRequest::Do(_) => {}

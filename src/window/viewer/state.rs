@@ -8,10 +8,11 @@ use winit::keyboard::ModifiersState;
 use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
+use super::clay_picture::ClayPictureKey;
 use super::gpu::{Gpu, NoViewer, instance};
 use super::overlay;
 use super::overlay_mesh::Triangles;
-use super::pacing::Pacing;
+use super::pacing::{FrameSum, Pacing};
 use super::pages::MapValues;
 use super::pointer::Pointer;
 use super::preferences_file::PreferencesFile;
@@ -40,6 +41,10 @@ pub(super) type AccessibilityEvent = egui_winit::accesskit_winit::Event;
 /// is previewed, the menu.
 pub(super) type OverlayKey = (Option<(usize, Similarity)>, Option<MenuItem>, Vec<MenuBall>);
 
+/// So long the world's camera may lie behind the one that was sent: then something else has set
+/// it.
+const CAMERA_PATIENCE_US: u64 = 500_000;
+
 /// An open window and all that it draws with.
 pub(super) struct WindowState {
     pub(super) window: Arc<Window>,
@@ -55,6 +60,10 @@ pub(super) struct WindowState {
     pub(super) mods: ModifiersState,
     /// The camera as this window last wanted it; the world's own follows a tick later.
     pub(super) camera: Camera,
+    /// The camera that was sent last and when, microseconds, until the world has it.
+    pub(super) asked_camera: Option<(Camera, u64)>,
+    /// The object is to be framed as soon as the panels are laid out.
+    pub(super) unframed: bool,
     pub(super) camera_animation: Option<CameraAnimation>,
     pub(super) ui_state: UiState,
     pub(super) tasks: Tasks,
@@ -67,7 +76,11 @@ pub(super) struct WindowState {
     pub(super) listed_us: u64,
     pub(super) uploaded: u64,
     pub(super) figures: FrameFigures,
+    /// The frames since the last line of the log.
+    pub(super) since_listed: FrameSum,
     pub(super) workers: SnapshotWorkers,
+    /// A mesh that was read while the clay is still made of it.
+    pub(super) first_picture: Option<Arc<Preview>>,
     /// The newest preview; what was requested, and when.
     pub(super) preview: Option<Arc<Preview>>,
     pub(super) asked_preview: Option<((u64, Similarity, MenuItem), u64)>,
@@ -97,6 +110,10 @@ pub(super) struct WindowState {
     pub(super) free: Option<egui::Rect>,
     /// The picture of the clay, as large as the free part, where the surface takes copies.
     pub(super) clay_picture: Option<wgpu::Texture>,
+    /// What that picture was drawn from; `None`: it is to be drawn anew.
+    pub(super) clay_key: Option<ClayPictureKey>,
+    /// Counts the changes of the values of the maps.
+    pub(super) map_changes: u64,
     /// Buttons and fingers that went down on a panel and are still down.
     pub(super) held_on_panels: u32,
     pub(super) tablets: Tablets,
@@ -181,8 +198,8 @@ impl WindowState {
         let state = wiring.published.load();
         let mut camera = state.camera;
         // A new object is seen from the front: from the side a mirrored stroke looks lopsided.
-        let untouched = state.undo_steps == 0 && state.redo_steps == 0;
-        if untouched && wiring.demo_until_us == 0 && wiring.kiosk.is_none() {
+        let from_front = wiring.fresh && wiring.demo_until_us == 0 && wiring.kiosk.is_none();
+        if from_front {
             (camera.yaw, camera.pitch) = (0.0, 0.0);
         }
         camera.aspect = size.width.max(1) as f32 / size.height.max(1) as f32;
@@ -199,6 +216,8 @@ impl WindowState {
             pointer: Pointer::default(),
             mods: ModifiersState::empty(),
             camera,
+            asked_camera: None,
+            unframed: from_front,
             camera_animation: None,
             ui_state,
             tasks: Tasks::default(),
@@ -209,7 +228,9 @@ impl WindowState {
             listed_us: 0,
             uploaded: 0,
             figures: FrameFigures::default(),
+            since_listed: FrameSum::default(),
             workers: Default::default(),
+            first_picture: None,
             preview: None,
             asked_preview: None,
             before: None,
@@ -230,10 +251,15 @@ impl WindowState {
             drawn_kiosk: None,
             free: None,
             clay_picture: None,
+            clay_key: None,
+            map_changes: 0,
             held_on_panels: 0,
             tablets: Tablets::default(),
         };
         open.send_camera(wiring);
+        if let Some(path) = &wiring.open_first {
+            open.tasks.load(path.clone(), wiring);
+        }
         Ok(open)
     }
 
@@ -262,15 +288,36 @@ impl WindowState {
 
     pub(super) fn send_camera(&mut self, wiring: &Wiring) {
         let _ = wiring.commands.try_send(Command::Camera(self.camera));
+        self.asked_camera = Some((self.camera, wiring.clock.now_us()));
         self.pacing.want();
+    }
+
+    /// Takes over the world's camera, which a hand or the control socket may have turned, but not
+    /// one that is older than what this window has asked for.
+    pub(super) fn follow_camera(&mut self, now_us: u64, worlds: &Camera) {
+        let waits = |(asked, since): (Camera, u64)| {
+            asked != *worlds && now_us.saturating_sub(since) < CAMERA_PATIENCE_US
+        };
+        if self.asked_camera.is_some_and(waits) {
+            return;
+        }
+        self.asked_camera = None;
+        self.camera = Camera { aspect: self.camera.aspect, ..*worlds };
     }
 
     /// Gives the camera the proportions of the view.
     pub(super) fn fit_camera(&mut self, wiring: &Wiring) {
         let (_, size) = self.view_rect();
         let aspect = (size.x / size.y).clamp(0.05, 20.0);
-        if (self.camera.aspect - aspect).abs() > 1e-4 {
+        // The first frame has laid out the panels: from here on the view has its proportions.
+        let frame = self.unframed && self.free.is_some();
+        if frame || (self.camera.aspect - aspect).abs() > 1e-4 {
             self.camera.aspect = aspect;
+            let (lo, hi) = wiring.published.load().mesh.bounds();
+            if frame && lo.cmple(hi).all() {
+                self.camera.frame(lo, hi);
+            }
+            self.unframed &= !frame;
             self.send_camera(wiring);
         }
     }

@@ -14,12 +14,17 @@ use glam::{DMat3, DVec2, DVec3, Vec2};
 use sculptd_devices::DeviceId;
 use sculptd_engine::desktop_layout::DesktopLayout;
 
-/// Pairs that are remembered: a few seconds of motion.
-const PAIRS: usize = 256;
+/// Pairs that are remembered: some ten seconds of motion, so that they span much of the tablet.
+const PAIRS: usize = 1024;
+/// Microseconds between two pairs: closer ones say nothing new of the map.
+const APART_US: u64 = 6_000;
+/// A new fit is made after so large a part of the pairs has come anew, and never after fewer than
+/// half of [`LEAST`].
+const FRESH: usize = 16;
 /// Pairs with which a first map is tried.
 const LEAST: usize = 12;
 /// Places of the pen that are remembered, for looking back by the delay.
-const TRAIL: usize = 512;
+const TRAIL: usize = 2048;
 /// Delays of the pointer behind the pen that are tried: so many, by this step in microseconds. A
 /// pen at a thousand pixels a second is two pixels on in half a step.
 const DELAYS: (u64, u64) = (19, 4_000);
@@ -115,12 +120,16 @@ impl TabletMap {
             return;
         }
         self.together = true;
+        if self.pairs.back().is_some_and(|p| t_us < p.t_us + APART_US) {
+            return;
+        }
         self.pairs.push_back(Pair { t_us, pointer: at });
         if self.pairs.len() > PAIRS {
             self.pairs.pop_front();
         }
         self.fresh += 1;
-        if self.fresh >= LEAST / 2 && self.pairs.len() >= LEAST {
+        let enough = (self.pairs.len() / FRESH).max(LEAST / 2);
+        if self.fresh >= enough && self.pairs.len() >= LEAST {
             self.fresh = 0;
             self.learn();
         }

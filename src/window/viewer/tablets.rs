@@ -39,6 +39,11 @@ impl WindowState {
         self.tablets.known.iter().any(|(id, map)| in_range(id) && map.owns(now, at))
     }
 
+    /// Whether the pointer has moved since it was last paired with the pens of tablets.
+    pub(super) fn pointer_is_unpaired(&self) -> bool {
+        self.pointer.inside && self.tablets.paired != Some(self.pointer.at)
+    }
+
     /// Looks at where pens and pointer are, learns, and tells the daemon what has changed.
     pub(super) fn follow_tablets(&mut self, state: &Arc<Published>, wiring: &Wiring) {
         let now = wiring.clock.now_us();
@@ -61,7 +66,7 @@ impl WindowState {
                 map.left();
             }
         }
-        if self.pointer.inside && self.tablets.paired != Some(self.pointer.at) {
+        if self.pointer_is_unpaired() {
             let moved = self.tablets.paired.replace(self.pointer.at).is_some();
             let at = self.on_screen(self.pointer.at);
             let Tablets { known, in_range, .. } = &mut self.tablets;
@@ -72,6 +77,7 @@ impl WindowState {
         let desktop = self.desktop(wiring);
         if differs(&desktop, &self.tablets.sent) {
             self.tablets.sent = desktop;
+            wiring.link.claim_desktop(desktop);
             let _ = wiring.commands.try_send(Command::DesktopLayout(desktop));
         }
     }
@@ -137,6 +143,9 @@ impl WindowState {
         let now = lent(brush, self.mods, &wiring.presets, &state.kept_brushes);
         let before = self.pointer.lent;
         self.pointer.lent = (now != brush).then_some(brush);
+        if self.pointer.lent != before {
+            wiring.link.claim_lent(self.pointer.lent);
+        }
         if before.is_some() && self.pointer.lent.is_none() {
             for brush in give_back(state.brush.kind, now, &wiring.presets, &state.kept_brushes) {
                 let _ = wiring.commands.try_send(Command::Brush(brush));

@@ -10,10 +10,14 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec3;
 
+use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
-use super::preview::Preview;
-use crate::panels::state::{DistanceSummary, Measured, ThicknessSummary, ThinSpot};
+use super::preview::{self, Preview};
+use super::wiring::Wiring;
+use crate::panels::state::{
+    DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
+};
 use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_daemon::boolean_jobs::JoinError;
@@ -22,10 +26,11 @@ use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{Published, boolean_jobs, remesh_job, startup};
+use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
-use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
 use sculptd_geometry::projection::PlaneRegion;
@@ -40,19 +45,18 @@ pub enum TaskReport {
     Map(MapValues, Box<ThicknessSummary>),
     /// A Boolean has ended, well or not.
     Joined,
+    /// A large mesh was read; the clay is still made of it.
+    Read(Arc<Preview>),
     /// A mesh was loaded: distances are to it from now on.
     Opened,
     Preview(Result<Option<Arc<Preview>>, String>),
     Distances(MapValues, DistanceSummary),
     Measured(Box<Measured>),
     /// A dialog's answer.
-    Chosen(Purpose, PathBuf),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    Open,
-    Export,
+    Chosen(FilePurpose, PathBuf),
+    /// The desktop offers no dialog.
+    NoDialog(FilePurpose),
+    Listed(PathBuf, FolderListing),
 }
 
 /// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is
@@ -64,18 +68,54 @@ struct ThicknessRequest {
     limit: f32,
 }
 
+/// A mesh on its way into the loop.
+#[derive(Debug, Clone, Default)]
+struct LoadUnderWay {
+    name: String,
+    read: Arc<Job>,
+    build: Arc<Job>,
+    ended: Arc<AtomicBool>,
+}
+
+/// The share of a load that reading takes, about.
+const READING: f32 = 0.3;
+/// Triangles from which on a mesh is shown before the clay is made of it: fewer are ready at once.
+const SHOWN_EARLY: usize = 300_000;
+
+fn read_and_build(
+    path: &Path,
+    load: &LoadUnderWay,
+    shown: &ArcSwap<Published>,
+    say: &cc::Sender<TaskReport>,
+    tell: &dyn Fn(&str),
+) -> Result<startup::Loaded, startup::StartupError> {
+    let loaded = read_mesh_within(path, MAX_FILE, &load.read)?;
+    let (plain, _) = loaded.mesh.triangulate();
+    load.read.progress(1.0);
+    tell("read");
+    if plain.triangles.len() >= SHOWN_EARLY {
+        let picture = preview::of_mesh(&plain, shown.load().mesh.page_count());
+        let _ = say.send(TaskReport::Read(Arc::new(picture)));
+        tell("to be shown");
+    }
+    let built = startup::build(plain, loaded.warnings, path.display().to_string(), &load.build);
+    tell("clay");
+    built
+}
+
 #[derive(Debug)]
 pub struct Tasks {
     say: cc::Sender<TaskReport>,
     pub done: cc::Receiver<TaskReport>,
     thickness: Option<LatestWins<ThicknessRequest>>,
     dialog: Arc<AtomicBool>,
+    load: Option<LoadUnderWay>,
 }
 
 impl Default for Tasks {
     fn default() -> Self {
         let (say, done) = cc::unbounded();
-        Tasks { say, done, thickness: None, dialog: Arc::default() }
+        Tasks { say, done, thickness: None, dialog: Arc::default(), load: None }
     }
 }
 
@@ -83,13 +123,34 @@ fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
     let _ = std::thread::Builder::new().name(name.into()).spawn(what);
 }
 
+/// A dialog that is gone sooner was never seen: no person dismisses one so quickly.
+const NOBODY_ANSWERED_US: u64 = 300_000;
+
+/// Whether there is no session bus, by which a desktop's dialogs are asked for.
+fn no_desktop() -> bool {
+    let there = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
+    let socket = || there("XDG_RUNTIME_DIR").is_some_and(|d| Path::new(&d).join("bus").exists());
+    cfg!(all(unix, not(target_os = "macos")))
+        && there("DBUS_SESSION_BUS_ADDRESS").is_none()
+        && !socket()
+}
+
 impl Tasks {
-    /// Reads a mesh and sends it to the loop.
-    pub fn load(&self, path: PathBuf, commands: CommandSender) {
+    /// Reads a mesh, makes clay of it and sends it to the loop; it is shown as soon as it was read.
+    pub fn load(&mut self, path: PathBuf, wiring: &Wiring) {
+        let (shown, commands) = (wiring.published.clone(), wiring.commands.clone());
+        let (clock, begun_us) = (wiring.clock.clone(), wiring.clock.now_us());
         let say = self.say.clone();
+        let name = path.display().to_string();
+        let short = path.file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned());
+        let load = LoadUnderWay { name: short, ..LoadUnderWay::default() };
+        self.load = Some(load.clone());
         thread("sculptd-load", move || {
-            let name = path.display().to_string();
-            let said = match startup::load(Some(&path), &Job::default()) {
+            let tell = |what: &str| {
+                let ms = (clock.now_us() - begun_us) / 1000;
+                tracing::debug!(ms, "{name}: {what}");
+            };
+            let said = match read_and_build(&path, &load, &shown, &say, &tell) {
                 Ok(loaded) => {
                     let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
                     for warning in loaded.warnings.iter().take(3) {
@@ -112,7 +173,15 @@ impl Tasks {
                 Err(e) => TaskReport::Message(e.to_string(), true),
             };
             let _ = say.send(said);
+            load.ended.store(true, Relaxed);
         });
+    }
+
+    /// The file that is being loaded, and how much of it is done, in steps of a fiftieth.
+    pub fn progress(&self) -> Option<(String, f32)> {
+        let load = self.load.as_ref().filter(|l| !l.ended.load(Relaxed))?;
+        let done = load.read.done() * READING + load.build.done() * (1.0 - READING);
+        Some((load.name.clone(), (done * 50.0).floor() / 50.0))
     }
 
     /// Writes the clay, each coordinate times `scale`.
@@ -224,26 +293,41 @@ impl Tasks {
         self.say.clone()
     }
 
-    /// Asks the desktop for a file; nothing comes back if the person changed their mind, or where
-    /// there is no desktop.
-    pub fn open_dialog(&self, purpose: Purpose) {
+    /// Asks the desktop for a file, and says where it offers no dialog; nothing comes back if the
+    /// person changed their mind.
+    pub fn open_dialog(&self, purpose: FilePurpose, clock: Clock) {
         if self.dialog.swap(true, Relaxed) {
             return;
         }
         let (say, open) = (self.say.clone(), self.dialog.clone());
         thread("sculptd-dialog", move || {
-            let dialog = rfd::AsyncFileDialog::new()
-                .add_filter("Meshes", &["stl", "obj", "ply", "off", "glb", "gltf", "3mf"]);
+            let begun_us = clock.now_us();
+            let dialog = rfd::AsyncFileDialog::new().add_filter("Meshes", &MESH_ENDINGS);
             let chosen = match purpose {
-                Purpose::Open => pollster::block_on(dialog.pick_file()),
-                Purpose::Export => {
+                _ if no_desktop() => None,
+                FilePurpose::Open => pollster::block_on(dialog.pick_file()),
+                FilePurpose::Export => {
                     pollster::block_on(dialog.set_file_name("sculpture.stl").save_file())
                 }
             };
             open.store(false, Relaxed);
-            if let Some(file) = chosen {
-                let _ = say.send(TaskReport::Chosen(purpose, file.path().to_owned()));
-            }
+            let report = match chosen {
+                Some(file) => TaskReport::Chosen(purpose, file.path().to_owned()),
+                None if clock.now_us() - begun_us < NOBODY_ANSWERED_US => {
+                    TaskReport::NoDialog(purpose)
+                }
+                None => return,
+            };
+            let _ = say.send(report);
+        });
+    }
+
+    /// Reads a folder for the window's own file chooser.
+    pub fn list(&self, folder: PathBuf) {
+        let say = self.say.clone();
+        thread("sculptd-folder", move || {
+            let listing = list_folder(&folder);
+            let _ = say.send(TaskReport::Listed(folder, listing));
         });
     }
 

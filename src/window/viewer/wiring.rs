@@ -8,6 +8,7 @@ use arc_swap::ArcSwap;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::CommandSender;
+use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
 use sculptd_geometry::thickness::preset::Preset;
@@ -38,6 +39,12 @@ pub struct Wiring {
     /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
     pub demo_until_us: u64,
     pub full_screen: bool,
+    /// A large mesh to load as soon as there is a window, so that its progress is seen.
+    pub open_first: Option<PathBuf>,
+    /// The sculpture begins here: nobody has chosen a view of it.
+    pub fresh: bool,
+    /// What the run keeps for the case that this window is lost.
+    pub link: WindowLink,
     /// The screen of an installation, in the place of the panels.
     pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
 }

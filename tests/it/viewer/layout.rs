@@ -9,9 +9,8 @@ use egui_kittest::Harness;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_window::look::Map;
-use sculptd_window::panels::Tab;
-use sculptd_window::panels::state::DistanceSummary;
-use sculptd_window::panels::state::TrialStatus;
+use sculptd_window::panels::state::{DistanceSummary, FrameFigures, TrialStatus};
+use sculptd_window::panels::{PANEL, Tab, View, all};
 
 use super::panels::{State, show, state};
 
@@ -254,4 +253,35 @@ fn the_search_the_ring_and_a_message_fit_the_smallest_screen() {
             }
         }
     }
+}
+
+#[test]
+fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
+    let mut s = state(Tab::Look);
+    s.ui_state.look.map = Map::Thickness;
+    let mut h = Harness::builder().with_size([1280.0, 720.0]).build_ui_state(
+        |ui: &mut egui::Ui, (s, free): &mut (State, Rect)| {
+            let view = View {
+                state: &s.published,
+                presets: sculptd::presets(),
+                camera: s.published.camera,
+                devices: &[],
+                session: None,
+                recent: &[],
+                uploaded: 0,
+                adapter: "an adapter",
+                frame: FrameFigures::default(),
+                demo_runs: false,
+            };
+            *free = all(ui, &view, &mut s.ui_state, &mut s.asked);
+        },
+        (s, Rect::NOTHING),
+    );
+    h.run_steps(4);
+    let free = h.state().1;
+    assert!((free.width() - (1280.0 - 2.0 * PANEL)).abs() < 20.0, "{free:?}");
+    assert!((free.center().x - 640.0).abs() < 2.0 && free.height() > 690.0, "{free:?}");
+    h.state_mut().0.ui_state.hidden = true;
+    h.run_steps(4);
+    assert!(h.state().1.width() > 1250.0, "{:?}", h.state().1);
 }

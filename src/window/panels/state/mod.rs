@@ -2,6 +2,7 @@
 //! ([`UiRequest`]) and what a person has set ([`UiState`]). It knows neither wgpu nor the panels.
 
 pub mod action;
+pub mod chooser;
 pub mod files;
 pub mod history;
 pub mod kiosk;
@@ -17,6 +18,7 @@ pub mod ui;
 pub mod view;
 
 pub use action::{Action, ActionEntry};
+pub use chooser::{FileChooser, FilePurpose, FolderEntry, FolderListing, MESH_ENDINGS};
 pub use files::{FilesPage, UNITS};
 pub use history::{HistoryVersions, KEPT, StepPicture, VersionRow};
 pub use kiosk::KioskPad;

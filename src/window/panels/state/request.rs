@@ -22,6 +22,8 @@ pub enum UiRequest {
     /// The camera comes to look at this place.
     FlyTo(Vec3),
     OpenMesh(PathBuf),
+    /// The file chooser shows this folder.
+    ListFolder(PathBuf),
     /// The mesh is written, over a file of that name too.
     Export(PathBuf),
     /// The window goes on with another session.

@@ -1,5 +1,6 @@
 //! What a person has set in the window. Nothing of it belongs to the world.
 
+use super::chooser::FileChooser;
 use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
 use super::kiosk::KioskPad;
@@ -38,6 +39,10 @@ pub struct UiState {
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
     pub files: FilesPage,
+    /// The file that is being loaded, and how much of it is done, 0 to 1.
+    pub loading: Option<(String, f32)>,
+    /// The window's own file chooser, while it is open.
+    pub chooser: Option<FileChooser>,
     pub messages: Vec<Message>,
     pub walls: WallsPage,
     pub devices: PenTrace,

@@ -1,0 +1,182 @@
+//! What a run and its window know of each other, so that the run survives the loss of the window.
+//!
+//! Laws kept here:
+//! * A window that is lost, by the end of its X server or compositor or by an error of its own,
+//!   costs the window alone: the loop, the devices, the session and the control socket go on.
+//! * What the window had set for as long as it was there is taken back: strokes end as by a lifted
+//!   pen, a brush that was lent is given back, and no pen of a tablet begins a stroke that nobody
+//!   sees.
+//! * One process can make one window. A new window therefore opens after the run has ended and its
+//!   process has begun anew, with the same session; a run without a session has nothing to carry
+//!   the sculpture over and refuses.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use sculptd_clay::brush::BrushSettings;
+use sculptd_devices::DeviceId;
+use sculptd_engine::desktop_layout::{DesktopLayout, PenPlace};
+
+/// Environment variables that name a screen, and their values.
+pub type DisplayVariables = BTreeMap<String, String>;
+
+/// How the window of a run stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WindowStanding {
+    /// None was asked for, or it could not be opened.
+    #[default]
+    Headless,
+    /// It is being made; nothing is drawn yet.
+    Opening,
+    /// It is shown.
+    Open,
+    /// Its X server or compositor has ended, or it has failed.
+    Lost,
+}
+
+/// What a window has set in the world for as long as it is there.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WindowClaims {
+    /// The desktop as the window last told it.
+    pub desktop: DesktopLayout,
+    /// The brush to go back to, while a key lends another.
+    pub lent: Option<BrushSettings>,
+}
+
+impl WindowClaims {
+    /// The desktop of a window that is lost: every pen stays where it is, and none begins a stroke.
+    /// `in_range`: tablets that no desktop may know yet.
+    pub fn desktop_without_window(
+        &self,
+        in_range: impl IntoIterator<Item = DeviceId>,
+    ) -> DesktopLayout {
+        let mut desktop = DesktopLayout { away: true, ..self.desktop };
+        for id in in_range {
+            if desktop.place(id).is_none()
+                && let Some(slot) = desktop.tablets.iter_mut().find(|t| t.is_none())
+            {
+                *slot = Some((id, PenPlace::Area));
+            }
+        }
+        desktop
+    }
+}
+
+/// The shared state of a run and its window. Cloning it gives another handle to the same.
+#[derive(Debug, Clone, Default)]
+pub struct WindowLink(Arc<Mutex<LinkState>>);
+
+#[derive(Debug, Default)]
+struct LinkState {
+    standing: WindowStanding,
+    claims: WindowClaims,
+    session: Option<PathBuf>,
+    wanted: Option<DisplayVariables>,
+}
+
+/// Why no new window can open.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoNewWindow {
+    #[error("this run keeps no session, so nothing can carry the sculpture to a new window")]
+    NoSession,
+    #[error("the window is open already")]
+    Open,
+}
+
+impl WindowLink {
+    /// Of a run that records into `session`.
+    pub fn new(session: Option<&Path>) -> Self {
+        let state = LinkState { session: session.map(Path::to_path_buf), ..Default::default() };
+        WindowLink(Arc::new(Mutex::new(state)))
+    }
+
+    /// Every value here is replaced as a whole, so a thread that panicked has left it sound.
+    fn state(&self) -> MutexGuard<'_, LinkState> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub fn standing(&self) -> WindowStanding {
+        self.state().standing
+    }
+
+    pub fn set_standing(&self, standing: WindowStanding) {
+        self.state().standing = standing;
+    }
+
+    pub fn claims(&self) -> WindowClaims {
+        self.state().claims
+    }
+
+    /// The window has told the daemon of another desktop.
+    pub fn claim_desktop(&self, desktop: DesktopLayout) {
+        self.state().claims.desktop = desktop;
+    }
+
+    /// The window has lent another brush, or given it back.
+    pub fn claim_lent(&self, lent: Option<BrushSettings>) {
+        self.state().claims.lent = lent;
+    }
+
+    /// The session that the run records into.
+    pub fn session(&self) -> Option<PathBuf> {
+        self.state().session.clone()
+    }
+
+    /// Asks for a new window on a screen; the session that it will show. The caller ends the run.
+    ///
+    /// # Errors
+    /// [`NoNewWindow`], and nothing changes.
+    pub fn want(&self, screen: DisplayVariables) -> Result<PathBuf, NoNewWindow> {
+        let mut state = self.state();
+        if matches!(state.standing, WindowStanding::Opening | WindowStanding::Open) {
+            return Err(NoNewWindow::Open);
+        }
+        let session = state.session.clone().ok_or(NoNewWindow::NoSession)?;
+        state.wanted = Some(screen);
+        Ok(session)
+    }
+
+    /// The screen of the window that was asked for.
+    pub fn wanted(&self) -> Option<DisplayVariables> {
+        self.state().wanted.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+
+    #[test]
+    fn a_lost_window_leaves_every_pen_where_it_is_and_lets_none_begin() {
+        let mapped = PenPlace::Mapped { origin: Vec2::ZERO, across: Vec2::X, down: Vec2::Y };
+        let mut claims = WindowClaims::default();
+        claims.desktop.tablets[0] = Some((DeviceId(1), mapped));
+        let desktop = claims.desktop_without_window([DeviceId(1), DeviceId(2)]);
+        assert_eq!(desktop.place(DeviceId(1)), Some(mapped));
+        for id in [1, 2] {
+            let place = desktop.place(DeviceId(id));
+            assert!(place.is_some() && !desktop.is_free(place, Vec2::splat(0.5)));
+        }
+        assert!(desktop.is_free(desktop.place(DeviceId(3)), Vec2::splat(0.5)));
+        // More pens than there are places: the first ones are held.
+        let many = claims.desktop_without_window((1..20).map(DeviceId));
+        assert!(many.tablets.iter().all(Option::is_some) && many.is_sane());
+    }
+
+    #[test]
+    fn a_new_window_needs_a_session_and_no_other_window() {
+        let without = WindowLink::default();
+        assert_eq!(without.want(DisplayVariables::new()), Err(NoNewWindow::NoSession));
+        let link = WindowLink::new(Some(Path::new("/s.sculpt")));
+        link.set_standing(WindowStanding::Open);
+        assert_eq!(link.want(DisplayVariables::new()), Err(NoNewWindow::Open));
+        assert_eq!(link.wanted(), None);
+        link.set_standing(WindowStanding::Lost);
+        let screen: DisplayVariables = [("DISPLAY".into(), ":1".into())].into();
+        assert_eq!(link.want(screen.clone()), Ok("/s.sculpt".into()));
+        assert_eq!(link.clone().wanted(), Some(screen));
+    }
+}

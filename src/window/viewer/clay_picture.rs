@@ -1,0 +1,81 @@
+//! The picture of the clay between the panels: drawn anew where something of it has changed, else
+//! copied. A tooltip, a message or a picture in the history costs no clay.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::preview::Preview;
+use super::renderer::LineEnd;
+use crate::look::Look;
+use sculptd_engine::camera::Camera;
+
+/// All that a picture of the clay is drawn from.
+#[derive(Debug, Clone)]
+pub(super) struct ClayPictureKey {
+    /// The object and its revision.
+    pub(super) object: (u32, u64),
+    pub(super) camera: Camera,
+    pub(super) look: Look,
+    pub(super) brush: Option<(Vec3, f32)>,
+    pub(super) lines: Vec<LineEnd>,
+    /// The mesh in the place of the clay, kept so that no other comes to lie at its address.
+    pub(super) preview: Option<Arc<Preview>>,
+    /// Counts the changes of the mesh over the clay.
+    pub(super) overlay: u64,
+    /// Counts the changes of the values of a map.
+    pub(super) values: u64,
+    /// Pixels.
+    pub(super) size: (u32, u32),
+}
+
+impl PartialEq for ClayPictureKey {
+    fn eq(&self, other: &Self) -> bool {
+        let same_preview = match (&self.preview, &other.preview) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        same_preview
+            && self.object == other.object
+            && self.camera == other.camera
+            && self.look == other.look
+            && self.brush == other.brush
+            && self.lines == other.lines
+            && (self.overlay, self.values, self.size) == (other.overlay, other.values, other.size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_is_drawn_makes_another_picture() {
+        let key = ClayPictureKey {
+            object: (1, 2),
+            camera: Camera::default(),
+            look: Look::default(),
+            brush: None,
+            lines: Vec::new(),
+            preview: None,
+            overlay: 0,
+            values: 0,
+            size: (800, 600),
+        };
+        assert_eq!(key, key.clone());
+        let changes: [fn(&mut ClayPictureKey); 7] = [
+            |k| k.object.1 += 1,
+            |k| k.camera.yaw += 0.1,
+            |k| k.look.wireframe = true,
+            |k| k.brush = Some((Vec3::ZERO, 1.0)),
+            |k| k.lines.push(LineEnd { place: [0.0; 3], colour: [0; 4] }),
+            |k| k.values += 1,
+            |k| k.size.0 += 1,
+        ];
+        for change in changes {
+            let mut other = key.clone();
+            change(&mut other);
+            assert_ne!(key, other);
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Files in a real window: the window's own chooser where no desktop has one, a large mesh that is
+//! seen while it loads.
+
+use std::time::Instant;
+
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::shapes;
+
+use super::stage::{Stage, long, pause};
+
+#[test]
+fn a_mesh_is_opened_and_exported_where_no_desktop_has_a_dialog() {
+    let Some(mut s) = Stage::open(&[]) else { return };
+    // The folder of the stage is the person's home.
+    let ball = s.dir.path().join("small-ball.obj");
+    write_mesh(&ball, &shapes::sphere_of_about(5_000).to_poly()).expect("written");
+    let before = s.figure("vertices");
+    s.seen("files-1-start");
+    s.drive(&["key", "ctrl+o"]);
+    s.seen("files-2-chooser");
+    s.drive(&["type", "--delay", "60", "small-ball.obj"]);
+    pause(300);
+    s.drive(&["key", "Return"]);
+    s.until("it is opened", |s| s.figure("vertices") != before);
+    s.seen("files-3-opened");
+    s.drive(&["key", "ctrl+e"]);
+    s.seen("files-4-export");
+    s.drive(&["key", "ctrl+a"]);
+    s.drive(&["type", "--delay", "60", "out.stl"]);
+    pause(300);
+    s.drive(&["key", "Return"]);
+    let out = s.dir.path().join("out.stl");
+    s.until("it is written", |_| out.exists());
+    // A file that is not there is a message, and nothing else changes.
+    let opened = s.figure("vertices");
+    s.drive(&["key", "ctrl+o"]);
+    pause(500);
+    s.drive(&["type", "--delay", "60", "no-such.obj"]);
+    pause(300);
+    s.drive(&["key", "Return"]);
+    s.seen("files-5-message");
+    assert_eq!(s.figure("vertices"), opened);
+}
+
+#[test]
+#[allow(clippy::disallowed_methods)] // What a person waits for is measured.
+fn a_large_mesh_is_seen_while_it_loads() {
+    if !long() {
+        println!("skipped: SCULPTD_LONG=1 runs it");
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("large.ply");
+    write_mesh(&path, &shapes::sphere_of_about(2_500_000).to_poly()).expect("written");
+    let bytes = std::fs::metadata(&path).expect("a file").len();
+    let begun = Instant::now();
+    let mesh = path.display().to_string();
+    let Some(mut s) = Stage::open(&["--mesh", &mesh]) else { return };
+    s.until("something is drawn", |s| s.look("load-1").pixels().any(|p| p.0[0] > 0));
+    let first = begun.elapsed();
+    // The mesh is seen, and how far it is, before there is clay of it.
+    s.until("the mesh was read", |s| s.log().contains("to be shown"));
+    pause(700);
+    s.look("load-2-progress");
+    s.until("it is loaded", |s| s.figure("vertices") > 2_000_000);
+    let loaded = begun.elapsed();
+    println!("{bytes} bytes: the window after {first:.1?}, the clay after {loaded:.1?}");
+    s.log().lines().filter(|l| l.contains("large.ply:")).for_each(|l| println!("{l}"));
+    s.look("load-3-clay");
+}
