@@ -296,8 +296,9 @@ fn surface_smooth_takes_ripples_away_and_keeps_the_height() {
     let (height, before) = as_stroke(&mesh.positions).crest();
     let mut studio = Studio::new(&mesh, trial.brush, 1);
     studio.tell(Command::Camera(Camera { orthographic: true, ..*studio.world.camera() }));
-    let points: Vec<(Vec2, f32)> =
-        (0..=100).map(|i| (studio.view(Vec3::new(0.012 * i as f32 - 0.6, 0.0, 0.0)), 0.7)).collect();
+    let points: Vec<(Vec2, f32)> = (0..=100)
+        .map(|i| (studio.view(Vec3::new(0.012 * i as f32 - 0.6, 0.0, 0.0)), 0.7))
+        .collect();
     (0..4).for_each(|_| drop(studio.stroke(&points)));
     let (now, after) = as_stroke(&studio.positions()).crest();
     println!("{before:.3} degrees at {height:.4}, then {after:.3} at {now:.4}");
@@ -337,12 +338,7 @@ fn neither_the_rate_of_reports_nor_the_spacing_changes_the_surface() {
 
 #[test]
 fn what_levels_or_draws_together_does_not_depend_on_the_spacing_either() {
-    for kind in [
-        BrushKind::Fill,
-        BrushKind::Flatten,
-        BrushKind::Scrape,
-        BrushKind::Pinch,
-    ] {
+    for kind in [BrushKind::Fill, BrushKind::Flatten, BrushKind::Scrape, BrushKind::Pinch] {
         let trial = Trial { across: 30, ..Trial::new(sculptd::presets().of(kind)) };
         let mut mesh = trial.form.mesh(trial.across);
         for p in &mut mesh.positions {
