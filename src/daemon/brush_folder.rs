@@ -213,6 +213,7 @@ impl BrushFolder {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods)] // Files as a person writes them.
 mod tests {
     use super::*;
     use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings};

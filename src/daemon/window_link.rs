@@ -177,6 +177,6 @@ mod tests {
         link.set_standing(WindowStanding::Lost);
         let screen: DisplayVariables = [("DISPLAY".into(), ":1".into())].into();
         assert_eq!(link.want(screen.clone()), Ok("/s.sculpt".into()));
-        assert_eq!(link.clone().wanted(), Some(screen));
+        assert_eq!(link.wanted(), Some(screen));
     }
 }

@@ -30,6 +30,7 @@ mod kiosk;
 mod mesh_craft;
 #[cfg(unix)]
 mod mutations;
+mod own_brushes;
 mod recovery;
 mod remesh_live;
 mod service;

@@ -34,6 +34,22 @@ fn the_border_near_the_pen_follows_it_and_the_rest_stays() {
         println!("{p}: {share} for {wanted}");
         assert!((share - wanted).abs() < 0.05, "{p}: {share} for {wanted}");
     }
+    // The border is bowed as the falloff is, with no waves upon that.
+    let mut bow: Vec<(f32, f32)> = mesh
+        .positions
+        .iter()
+        .zip(&end)
+        .filter(|(p, _)| p.x > 0.999 && p.y.abs() < 0.3)
+        .map(|(p, q)| {
+            let x = p.y.abs() / radius;
+            (p.y, q.x - p.x - drawn.x * (1.0 - x) * (1.0 - x) * (1.0 + 2.0 * x))
+        })
+        .collect();
+    bow.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let squares: f32 = bow.windows(2).map(|w| (w[1].1 - w[0].1).powi(2) / (w[1].0 - w[0].0)).sum();
+    let waviness = (squares / 0.6).sqrt().atan().to_degrees();
+    println!("{waviness:.3} degrees along {} vertices of the border", bow.len());
+    assert!(bow.len() > 25 && waviness <= 0.3, "{waviness} degrees");
     for (p, q) in mesh.positions.iter().zip(&end) {
         // A radius along the border, and from there another.
         let far = p.y.abs() > 2.0 * radius || 1.0 - p.x > radius;
