@@ -131,7 +131,10 @@ fn one(
                 }
                 match loss.last {
                     Some(last) => assert_eq!(last, TICKS, "{case}: {saved}"),
-                    None => out.untold += 1,
+                    None => {
+                        println!("{case}: {saved}");
+                        out.untold += 1;
+                    }
                 }
                 out.ticks_lost += TICKS.saturating_sub(loss.kept);
                 out.saved += 1;

@@ -24,12 +24,23 @@ fn changed(a: &[u8], b: &[u8]) -> usize {
     more + a.chunks(4096).zip(b.chunks(4096)).filter(|(a, b)| a != b).count()
 }
 
+/// The bytes of the acknowledgement in a database: its mark and two slots.
+fn acknowledged_at(db: &[u8]) -> Option<std::ops::Range<usize>> {
+    use sculptd_daemon::session::acknowledgement::{MAGIC, SLOT};
+    let at = db.windows(MAGIC.len()).position(|w| w == MAGIC)?;
+    Some(at..at + MAGIC.len() + 2 * SLOT)
+}
+
 /// What may be on the disk when the power goes between the states `a` (all of it synced) and `b`
 /// (its last writes not).
 fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
     let restarted = a.wal.len() < 32 || b.wal.len() < a.wal.len() || a.wal[..32] != b.wal[..32];
     // A log is begun again only after the database holds all of it: then the database is `b`'s.
     let mut out = if restarted { b.clone() } else { Disk { db: a.db.clone(), wal: b.wal.clone() } };
+    // The acknowledgement of `b` is written after `b` is synced, so it is never there.
+    if let Some(at) = acknowledged_at(&out.db) {
+        out.db[at.clone()].copy_from_slice(&a.db[at]);
+    }
     let old = a.wal.clone();
     // Bytes before this one were written and synced long ago; no write touches them again.
     let keep =
