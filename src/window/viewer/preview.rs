@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{UVec3, Vec3};
 
 use super::pages::Vertex;
 use sculptd_clay::{Corner, Cut, Snapshot};
@@ -92,19 +92,45 @@ impl TriangleGatherer {
     }
 }
 
+/// Cells along the longest side of a mesh that is shown before there is clay of it.
+const CELLS: f32 = 192.0;
+
 /// A mesh that was read, in the place of the whole object of `pages` pages: what is shown while the
-/// clay is still made of it.
+/// clay is still made of it. It is coarse, so that it is there at once: the vertices of each cell
+/// of a grid are one (Rossignac and Borrel, Multi-resolution 3D approximations, 1993).
 pub fn of_mesh(mesh: &TriMesh, pages: usize) -> Preview {
-    let mut normals = vec![Vec3::ZERO; mesh.positions.len()];
+    let (lo, hi) = mesh.bounds();
+    let scale = CELLS / (hi - lo).max_element().max(1e-12);
+    let last = ((hi - lo) * scale).as_uvec3();
+    let cells = last + UVec3::ONE;
+    let cell = |p: Vec3| {
+        let at = ((p - lo) * scale).as_uvec3().min(last);
+        (at.x + cells.x * (at.y + cells.y * at.z)) as usize
+    };
+    let colour = |i: usize| mesh.colours.as_ref().and_then(|c| c.get(i)).copied().unwrap_or(PLAIN);
+    let mut first = vec![u32::MAX; (cells.x * cells.y * cells.z) as usize];
+    let mut kept: Vec<(Vec3, Vec3, [u8; 4])> = Vec::new();
+    let mut name = |(i, p): (usize, &Vec3)| {
+        let slot = &mut first[cell(*p)];
+        if *slot == u32::MAX {
+            *slot = kept.len() as u32;
+            kept.push((*p, Vec3::ZERO, colour(i)));
+        }
+        *slot
+    };
+    let names: Vec<u32> = mesh.positions.iter().enumerate().map(&mut name).collect();
+    let mut triangles = Vec::new();
     for t in &mesh.triangles {
         let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
         let across = (b - a).cross(c - a);
-        t.iter().for_each(|&v| normals[v as usize] += across);
+        let [i, j, k] = t.map(|v| names[v as usize]);
+        [i, j, k].iter().for_each(|&v| kept[v as usize].1 += across);
+        if i != j && j != k && k != i {
+            triangles.push([i, j, k]);
+        }
     }
-    let colour = |i: usize| mesh.colours.as_ref().and_then(|c| c.get(i)).copied().unwrap_or(PLAIN);
-    let pairs = mesh.positions.iter().zip(&normals).enumerate();
-    let vertex = |(i, (p, n)): (usize, (&Vec3, &Vec3))| {
-        Vertex::new(*p, n.normalize_or_zero(), 0.0, colour(i))
+    let vertex = |&(p, n, colour): &(Vec3, Vec3, [u8; 4])| {
+        Vertex::new(p, n.normalize_or_zero(), 0.0, colour)
     };
     Preview {
         revision: 0,
@@ -112,10 +138,10 @@ pub fn of_mesh(mesh: &TriMesh, pages: usize) -> Preview {
         place: Similarity::NONE,
         choice: MenuItem::Add,
         hidden: None,
-        vertices: pairs.map(vertex).collect(),
-        triangles: mesh.triangles.clone(),
+        vertices: kept.iter().map(vertex).collect(),
+        triangles,
         made: 0,
-        bounds: Some(mesh.bounds()),
+        bounds: Some((lo, hi)),
     }
 }
 
@@ -189,4 +215,22 @@ fn whole(
         }
     }
     Ok(out.finish(request, None))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_geometry::shapes;
+
+    #[test]
+    fn a_large_mesh_is_shown_coarse_and_whole() {
+        let ball = shapes::sphere_of_about(400_000);
+        let shown = of_mesh(&ball, 7);
+        assert!(shown.triangles.len() * 4 < ball.triangles.len(), "{}", shown.triangles.len());
+        assert!(shown.triangles.len() > 100_000, "{}", shown.triangles.len());
+        let count = shown.vertices.len() as u32;
+        assert!(shown.triangles.iter().flatten().all(|v| *v < count));
+        assert_eq!((shown.pages, shown.bounds), (7, Some(ball.bounds())));
+        assert!(shown.hidden.is_none(), "nothing of the old object is seen");
+    }
 }
