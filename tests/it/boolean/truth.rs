@@ -236,7 +236,7 @@ fn flat_faced_results_as_files() {
         for solid in &made {
             for kind in ["stl", "obj", "ply", "3mf"] {
                 let file = folder.path().join(format!("result.{kind}"));
-                let out = written::for_file(&solid.mesh, kind, report.tolerance, &job);
+                let out = written::for_file(&solid.mesh, kind, report.tolerance, None, &job);
                 io::write_mesh(&file, &out.expect("written").mesh).expect("a file");
                 let mut read = io::read_mesh(&file, &job).expect("read").mesh;
                 repair::weld(&mut read, 0.0);
