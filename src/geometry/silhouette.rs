@@ -234,7 +234,8 @@ pub struct ShadowOutline {
 const STRIPS: usize = 512;
 
 /// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent (1e-6 where edges all but lie
-/// on each other) beyond the rounding of its vertices to single precision. Rings repeat their first point at the end.
+/// on each other) beyond the rounding of its vertices to single precision. Rings repeat their first
+/// point at the end.
 pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion> {
     let positions: Vec<DVec3> = topology.positions.iter().map(|p| p.as_dvec3()).collect();
     outline_of(topology, &positions, plane).regions
