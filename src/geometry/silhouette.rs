@@ -11,6 +11,7 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay::Overlay;
 use i_overlay::core::overlay::ShapeType::Subject;
 use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::core::solver::{Precision, Solver};
 use i_overlay::i_float::int::point::IntPoint;
 
 use rayon::prelude::*;
@@ -195,6 +196,9 @@ impl Chain {
     pub fn resolve(mut self) -> Vec<PlaneRegion> {
         let loops = self.loops();
         let mut overlay = Overlay::<i32>::new(self.edges.len());
+        // Edges that all but lie on each other are joined after a few rounds, within a millionth of
+        // the extent; with a finer precision they are resolved into thousands of slivers.
+        overlay.solver = Solver { precision: Precision::LOW, ..Solver::AUTO };
         for l in &loops {
             overlay.add_contour(l, Subject);
         }
@@ -229,8 +233,9 @@ pub struct ShadowOutline {
 /// Strips in which an outline is drawn that is not resolved.
 const STRIPS: usize = 512;
 
-/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent beyond the rounding of its
-/// vertices to single precision. Rings repeat their first point at the end.
+/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent (1e-6 where edges all but lie
+/// on each other) beyond the rounding of its vertices to single precision. Rings repeat their first
+/// point at the end.
 pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion> {
     let positions: Vec<DVec3> = topology.positions.iter().map(|p| p.as_dvec3()).collect();
     outline_of(topology, &positions, plane).regions
@@ -365,8 +370,10 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
         .iter()
         .map(|r| r.iter().map(|(a, b)| f64::from(*b) - f64::from(*a)).sum::<f64>() / chain.scale)
         .collect();
-    // Between two strips the length changes somewhere, evenly likely anywhere.
-    let spread: f64 = lengths.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    // Between two strips the length changes somewhere, evenly likely anywhere; at both ends from
+    // and to nothing.
+    let ends = [lengths.first(), lengths.last()].into_iter().flatten().map(|l| l * l);
+    let spread: f64 = lengths.windows(2).map(|w| (w[1] - w[0]).powi(2)).chain(ends).sum();
     let standard_error = strips.height * (spread / 12.0).sqrt();
     let mut regions = chain.resolve();
     for ring in regions.iter_mut().flat_map(|r| std::iter::once(&mut r.outer).chain(&mut r.holes)) {

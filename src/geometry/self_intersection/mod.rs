@@ -106,7 +106,7 @@ pub fn pairs_with(
         counts(*t) || near >= 2 && sides(*t).iter().any(|e| edges.binary_search(e).is_ok())
     };
     let all = (0..triangles.len() as u32).into_par_iter();
-    let compared: Vec<u32> = all.clone().filter(is_compared).collect();
+    let compared: Vec<u32> = all.filter(is_compared).collect();
     job.check()?;
     let boxes = TriangleBoxes::new(positions, triangles);
     let tree = BoxGroups::build(compared.par_iter().copied(), |t| boxes.of(t), job)?;
