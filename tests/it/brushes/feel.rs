@@ -348,7 +348,9 @@ fn what_levels_or_draws_together_does_not_depend_on_the_spacing_either() {
         let inner: Vec<usize> =
             (0..mesh.positions.len()).filter(|i| mesh.positions[*i].x.abs() < 0.35).collect();
         let draw = |spacing: f32| {
-            let mut studio = Studio::new(&mesh, BrushSettings { spacing, ..trial.brush }, 1);
+            let mut brush = trial.brush;
+            brush.spacing = spacing;
+            let mut studio = Studio::new(&mesh, brush, 1);
             studio.tell(Command::Camera(Camera { orthographic: true, ..*studio.world.camera() }));
             let at = |i: i32| Vec3::new(0.008 * i as f32 - 0.6, 0.0, 0.0);
             let points: Vec<_> = (0..=150).map(|i| (studio.view(at(i)), 0.7)).collect();
