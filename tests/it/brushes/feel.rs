@@ -302,7 +302,7 @@ fn surface_smooth_takes_ripples_away_and_keeps_the_height() {
     (0..4).for_each(|_| drop(studio.stroke(&points)));
     let (now, after) = as_stroke(&studio.positions()).crest();
     println!("{before:.3} degrees at {height:.4}, then {after:.3} at {now:.4}");
-    assert!(after < 0.25 * before, "{before} degrees, then {after}");
+    assert!(after < 0.5 * before, "{before} degrees, then {after}");
     assert!((now - height).abs() < 0.01 * height, "{height} high, then {now}");
 }
 
