@@ -64,8 +64,7 @@ pub struct ProjectArgs {
     pub png: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, clap::ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
 pub enum MethodArg {
     Exact,
     Sample,
@@ -93,10 +92,9 @@ struct Orientations {
 
 #[derive(Debug, Serialize)]
 struct ProjectAnswer {
-    method: MethodArg,
+    method: &'static str,
     area: f64,
-    /// One standard deviation; zero for `exact`, unless a warning says that the outline is drawn in
-    /// strips.
+    /// One standard deviation; zero for `exact`.
     standard_error: f64,
     polygons: usize,
     holes: usize,
@@ -115,7 +113,11 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
     let plane = ProjectionPlane::along(args.direction, args.turn.to_radians())
         .ok_or_else(|| Fail::Usage("expected a direction that is not zero".into()))?;
     let mut out = ProjectAnswer {
-        method: args.method,
+        method: match args.method {
+            MethodArg::Exact => "exact",
+            MethodArg::Sample => "sample",
+            MethodArg::March => "march",
+        },
         area: 0.0,
         standard_error: 0.0,
         polygons: 0,
@@ -136,6 +138,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         (out.area, out.standard_error) = (area(&polygons), shadow.standard_error);
         out.seconds = seconds;
         if shadow.strip > 0.0 {
+            out.method = "strips";
             out.warnings.push(format!(
                 "the outline crosses itself too often to be resolved: it is drawn in strips {} high",
                 shadow.strip

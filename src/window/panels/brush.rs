@@ -131,14 +131,12 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     ui.checkbox(&mut brush.negative, "Carve")
         .on_hover_text(format!("{}; hold Ctrl for one stroke", Action::Carve.tip()));
     egui::CollapsingHeader::new("Stroke").default_open(false).show(ui, |ui| path(ui, &mut brush));
-    let shape = egui::CollapsingHeader::new("Shape of a dab").default_open(false);
-    shape.show(ui, |ui| dab(ui, &mut brush));
-    let picture = egui::CollapsingHeader::new("Alpha and stamp").default_open(false);
-    picture.show(ui, |ui| stamp(ui, &mut brush));
-    let masks = egui::CollapsingHeader::new("Automatic masks").default_open(false);
-    masks.show(ui, |ui| automasks(ui, &mut brush));
-    let cuts = egui::CollapsingHeader::new("Dynamic topology").default_open(false);
-    cuts.show(ui, |ui| topology(ui, &mut brush));
+    egui::CollapsingHeader::new("More settings").default_open(false).show(ui, |ui| {
+        egui::CollapsingHeader::new("Shape of a dab").show(ui, |ui| dab(ui, &mut brush));
+        egui::CollapsingHeader::new("Alpha and stamp").show(ui, |ui| stamp(ui, &mut brush));
+        egui::CollapsingHeader::new("Automatic masks").show(ui, |ui| automasks(ui, &mut brush));
+        egui::CollapsingHeader::new("Dynamic topology").show(ui, |ui| topology(ui, &mut brush));
+    });
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
