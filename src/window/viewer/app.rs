@@ -26,10 +26,10 @@ pub fn run(wiring: Wiring) -> Result<(), NoViewer> {
     let accessibility = events.create_proxy();
     let mut app = App { wiring, accessibility, open: None, failed: None };
     events.run_app(&mut app).map_err(|e| NoViewer::Window(e.to_string()))?;
-    if let Some(mut open) = app.open {
-        if let Some(wrong) = open.preferences_file.keep(&open.ui_state) {
-            tracing::warn!("{wrong}");
-        }
+    if let Some(mut open) = app.open
+        && let Some(wrong) = open.preferences_file.keep(&open.ui_state)
+    {
+        tracing::warn!("{wrong}");
     }
     app.failed.map_or(Ok(()), Err)
 }
