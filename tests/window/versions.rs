@@ -41,7 +41,7 @@ fn the_versions_of_a_session_in_a_real_window() {
         clicks += 1;
         if clicks % 20 == 0 {
             let wheel = if clicks % 40 == 0 { "4" } else { "5" };
-            s.drive(&["mousemove", "120", &y, "click", "--repeat", "10", wheel]);
+            s.drive(&["mousemove", "120", "660", "click", "--repeat", "10", wheel]);
         }
         s.drive(&["mousemove", "120", &y, "click", "1", "mousemove", "640", "650"]);
         pause(100);
