@@ -62,6 +62,9 @@
 //!   sessions, control socket, kiosk, metrics.
 //! * `sculptd-window` (`src/window`) knows all but the command line: panels (egui) and viewer
 //!   (wgpu): they see snapshots and send commands.
+//! * `sculptd-mesh-commands` (`src/mesh_commands`) knows geometry, and the clock of the devices:
+//!   the subcommands over mesh files. They stand apart so that an edit of the clay does not compile
+//!   them.
 //! * `sculptd` (`src/main.rs`, `src/cli`) knows all: the command line: reads arguments, calls,
 //!   prints.
 //! * `src/bindings`, for other languages: `c` (a header and a shared library over geometry and

@@ -77,7 +77,7 @@ pub fn window(
         open_first: shown.open_first.clone(),
         fresh: shown.fresh,
         link: run.window.clone(),
-        thickness_presets: super::thickness::presets::all().map_err(|e| e.to_string())?,
+        thickness_presets: super::thickness_presets::all().map_err(|e| e.to_string())?,
         kiosk: run.kiosk.clone(),
     };
     Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))

@@ -21,13 +21,12 @@ use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::job::Job;
 
-impl From<LiveRunError> for Fail {
-    fn from(e: LiveRunError) -> Self {
-        match e {
-            LiveRunError::DemoDevices(_) => Fail::Check(e.to_string()),
-            LiveRunError::Kiosk(_) => Fail::Config(e.to_string()),
-            e => Fail::Permission(e.to_string()),
-        }
+/// Why the run could not start.
+fn not_started(e: LiveRunError) -> Fail {
+    match e {
+        LiveRunError::DemoDevices(_) => Fail::Check(e.to_string()),
+        LiveRunError::Kiosk(_) => Fail::Config(e.to_string()),
+        e => Fail::Permission(e.to_string()),
     }
 }
 
@@ -75,7 +74,7 @@ impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
 
 /// Loads the mesh that no window can show loading.
 fn load(run: &LiveRun, path: &Path) -> Result<(), Fail> {
-    let loaded = startup::load(Some(path), &Job::default()).map_err(Fail::from)?;
+    let loaded = startup::load(Some(path), &Job::default()).map_err(super::not_begun)?;
     let new = NewClay::new(Arc::new(loaded.plain), false);
     let built = Payload::Clay(Box::new(loaded.mesh));
     let command = QueuedCommand::with_payload(Command::Replace(new), built);
@@ -98,7 +97,8 @@ pub fn run(
     } else {
         WindowStanding::Headless
     });
-    let run = LiveRun::start(options, config, begun, catalogue, stop_signal())?;
+    let run =
+        LiveRun::start(options, config, begun, catalogue, stop_signal()).map_err(not_started)?;
     for notice in &run.notices {
         eprintln!("sculptd: {notice}");
     }

@@ -2,45 +2,35 @@
 //! prints; it decides nothing. Standard output carries the answer (with `--json` exactly one
 //! object), standard error everything else.
 
-use std::io::Write;
-use std::path::Path;
-
 use clap::{CommandFactory, Parser, Subcommand};
 use sculptd_daemon::startup::StartupError;
-use sculptd_geometry::io::{ReadError, WriteError};
+pub use sculptd_mesh_commands::{Fail, Outcome, answer};
+use sculptd_mesh_commands::{
+    boolean, convert, decimate, distance, hollow, info, measure, offset, project, remesh,
+    subdivide, thickness,
+};
 
 pub mod bench;
-pub mod boolean;
 pub mod brush;
 pub mod config;
-pub mod convert;
 #[cfg(unix)]
 pub mod ctl;
-pub mod decimate;
 pub mod demo;
 pub mod devices;
 pub mod display;
-pub mod distance;
 pub mod doctor;
 pub mod ending;
-pub mod hollow;
-pub mod info;
 pub mod library;
 mod live;
 pub mod logs;
 mod man;
-pub mod measure;
 mod memory;
-pub mod offset;
-pub mod project;
-pub mod remesh;
 #[cfg(feature = "viewer")]
 pub mod render;
 pub mod replay;
 pub mod run;
 pub mod session;
-pub mod subdivide;
-pub mod thickness;
+mod thickness_presets;
 #[cfg(unix)]
 pub mod window;
 mod window_guard;
@@ -141,82 +131,6 @@ pub enum Command {
     },
 }
 
-/// Why a command ended badly. The variant is the exit code; the text says what was expected and
-/// where.
-#[derive(Debug, thiserror::Error)]
-pub enum Fail {
-    /// 1: a check found something.
-    #[error("{0}")]
-    Check(String),
-    /// 2
-    #[error("{0}")]
-    Usage(String),
-    /// 3
-    #[error("{0}")]
-    Config(String),
-    /// 4
-    #[error("{0}")]
-    Permission(String),
-    /// 5: a device is absent.
-    #[error("{0}")]
-    Device(String),
-    /// 6: a file that can't be read or is not what it claims.
-    #[error("{0}")]
-    Input(String),
-}
-
-impl Fail {
-    pub fn code(&self) -> u8 {
-        match self {
-            Fail::Check(_) => 1,
-            Fail::Usage(_) => 2,
-            Fail::Config(_) => 3,
-            Fail::Permission(_) => 4,
-            Fail::Device(_) => 5,
-            Fail::Input(_) => 6,
-        }
-    }
-
-    /// An IO error on `path`: a refused permission is told apart from everything else.
-    pub fn io(path: &Path, e: &std::io::Error) -> Self {
-        let text = format!("{}: {e}", path.display());
-        if e.kind() == std::io::ErrorKind::PermissionDenied {
-            Fail::Permission(text)
-        } else {
-            Fail::Input(text)
-        }
-    }
-}
-
-impl From<ReadError> for Fail {
-    fn from(e: ReadError) -> Self {
-        match &e {
-            ReadError::Io { path, source } => Fail::io(path, source),
-            _ => Fail::Input(e.to_string()),
-        }
-    }
-}
-
-impl From<StartupError> for Fail {
-    fn from(e: StartupError) -> Self {
-        match e {
-            StartupError::Read(e) => Fail::from(e),
-            StartupError::Build { .. } => Fail::Input(e.to_string()),
-        }
-    }
-}
-
-impl From<WriteError> for Fail {
-    fn from(e: WriteError) -> Self {
-        match &e {
-            WriteError::Io { path, source } => Fail::io(path, source),
-            _ => Fail::Usage(e.to_string()),
-        }
-    }
-}
-
-pub type Outcome = Result<(), Fail>;
-
 /// Runs the command line; the process exits with the returned code.
 pub fn run() -> u8 {
     let cli = Cli::parse();
@@ -244,7 +158,9 @@ pub fn run() -> u8 {
         Some(Command::Doctor(args)) => doctor::run(&args, cli.json),
         Some(Command::Session { command }) => session::run(&command, cli.json),
         Some(Command::Boolean(args)) => boolean::run(&args, cli.json),
-        Some(Command::Thickness(args)) => thickness::run(&args, cli.json),
+        Some(Command::Thickness(args)) => {
+            thickness_presets::all().and_then(|presets| thickness::run(&args, &presets, cli.json))
+        }
         Some(Command::Measure(args)) => measure::run(&args, cli.json),
         Some(Command::Info(args)) => info::run(&args, cli.json),
         Some(Command::Convert(args)) => convert::run(&args, cli.json),
@@ -272,19 +188,10 @@ fn exit_code(outcome: Outcome) -> u8 {
     }
 }
 
-/// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's
-/// choice, not an error.
-pub fn answer<T: serde::Serialize>(
-    json: bool,
-    value: &T,
-    text: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-) {
-    let mut out = std::io::stdout().lock();
-    let _ = if json {
-        serde_json::to_writer(&mut out, value)
-            .map_err(std::io::Error::from)
-            .and_then(|()| writeln!(out))
-    } else {
-        text(&mut out)
-    };
+/// Why the clay could not be made ready.
+pub(crate) fn not_begun(e: StartupError) -> Fail {
+    match e {
+        StartupError::Read(e) => Fail::from(e),
+        StartupError::Build { .. } => Fail::Input(e.to_string()),
+    }
 }

@@ -95,7 +95,7 @@ fn numbered(path: &Path, frame: u32) -> PathBuf {
 }
 
 pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
-    let mut loaded = startup::load(Some(&args.mesh), &Job::default()).map_err(Fail::from)?;
+    let mut loaded = startup::load(Some(&args.mesh), &Job::default()).map_err(super::not_begun)?;
     let (width, height) = args.size;
     let (yaw, pitch) = args.view.angles();
     let mut camera = CameraConfig {

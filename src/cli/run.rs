@@ -293,7 +293,7 @@ pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
 pub fn begin(mesh: Option<&Path>, session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
     let begun = startup::begin(mesh, session, config, &Job::default());
     let begun = begun.map_err(|e| match e {
-        BeginError::Rig(e) => Fail::from(e),
+        BeginError::Rig(e) => super::not_begun(e),
         e => Fail::Input(e.to_string()),
     })?;
     for warning in &begun.warnings {

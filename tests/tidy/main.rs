@@ -8,7 +8,7 @@ mod words;
 use std::path::{Path, PathBuf};
 
 /// The crates of the workspace, and where their sources lie.
-const CRATES: [(&str, &str); 8] = [
+const CRATES: [(&str, &str); 9] = [
     ("sculptd-geometry", "src/geometry"),
     ("sculptd-devices", "devices/src"),
     ("sculptd-control", "src/control"),
@@ -16,6 +16,7 @@ const CRATES: [(&str, &str); 8] = [
     ("sculptd-engine", "src/engine"),
     ("sculptd-daemon", "src/daemon"),
     ("sculptd-window", "src/window"),
+    ("sculptd-mesh-commands", "src/mesh_commands"),
     ("sculptd", "src"),
 ];
 

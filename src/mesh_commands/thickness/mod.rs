@@ -1,7 +1,6 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
 mod batch;
-pub mod presets;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -200,18 +199,19 @@ impl How {
 }
 
 impl LimitArgs {
-    /// The preset's limits, each replaced by what was said itself.
-    pub fn limits(&self) -> Result<ThicknessLimits, Fail> {
+    /// The preset's limits, each replaced by what was said itself; `presets` are those that a
+    /// name can mean.
+    pub fn limits(&self, presets: &[Preset]) -> Result<ThicknessLimits, Fail> {
         let mut limits = ThicknessLimits::default();
         if let Some(name) = &self.preset {
-            let preset = if name.ends_with(".toml") {
+            limits = if name.ends_with(".toml") {
                 let text =
                     std::fs::read_to_string(name).map_err(|e| Fail::io(Path::new(name), &e))?;
-                Preset::read(name, &text).map_err(|e| Fail::Config(e.to_string()))?
+                let own = Preset::read(name, &text).map_err(|e| Fail::Config(e.to_string()))?;
+                ThicknessLimits::from(&own)
             } else {
-                presets::named(name).map_err(Fail::Usage)?
+                ThicknessLimits::from(named(name, presets).map_err(Fail::Usage)?)
             };
-            limits = ThicknessLimits::from(&preset);
         }
         limits.fail_below = self.fail_below.or(limits.fail_below);
         limits.warn_below = self.warn_below.or(limits.warn_below);
@@ -227,6 +227,15 @@ impl LimitArgs {
         }
         Ok(limits)
     }
+}
+
+/// The preset of this name, or a sentence that names those that exist.
+fn named<'a>(name: &str, presets: &'a [Preset]) -> Result<&'a Preset, String> {
+    let known = presets.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+    presets
+        .iter()
+        .find(|p| p.name == name)
+        .ok_or_else(|| format!("no preset is called \"{name}\"; there are {known}"))
 }
 
 /// A part read from its file.
@@ -286,8 +295,8 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
     Ok(())
 }
 
-pub fn run(args: &ThicknessArgs, json: bool) -> Outcome {
-    let limits = args.limits.limits()?;
+pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
+    let limits = args.limits.limits(presets)?;
     let job = Job::default();
     if let Some(at) = args.at {
         return match &args.meshes[..] {

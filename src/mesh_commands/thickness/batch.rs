@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{ThicknessArgs, judge, one, write_report};
-use crate::cli::{Fail, Outcome, answer};
+use crate::{Fail, Outcome, answer};
 use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::check::{ThicknessLimits, Verdict};

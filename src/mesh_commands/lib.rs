@@ -1,0 +1,111 @@
+//! The subcommands over mesh files: one module a subcommand. Each reads its arguments, calls
+//! `sculptd-geometry` and prints; it decides nothing.
+//!
+//! They stand apart from the rest of the command line because they know nothing of the clay: an
+//! edit of a brush does not compile them anew.
+//!
+//! Read first: [`Fail`] (the exit codes), [`answer`] (what goes to standard output), then
+//! [`convert`], the simplest command that reads and writes.
+
+use std::io::Write;
+use std::path::Path;
+
+use sculptd_geometry::io::{ReadError, WriteError};
+
+pub mod boolean;
+pub mod convert;
+pub mod decimate;
+pub mod distance;
+pub mod hollow;
+pub mod info;
+pub mod measure;
+pub mod offset;
+pub mod project;
+pub mod remesh;
+pub mod subdivide;
+pub mod thickness;
+
+/// Why a command ended badly. The variant is the exit code; the text says what was expected and
+/// where.
+#[derive(Debug, thiserror::Error)]
+pub enum Fail {
+    /// 1: a check found something.
+    #[error("{0}")]
+    Check(String),
+    /// 2
+    #[error("{0}")]
+    Usage(String),
+    /// 3
+    #[error("{0}")]
+    Config(String),
+    /// 4
+    #[error("{0}")]
+    Permission(String),
+    /// 5: a device is absent.
+    #[error("{0}")]
+    Device(String),
+    /// 6: a file that can't be read or is not what it claims.
+    #[error("{0}")]
+    Input(String),
+}
+
+impl Fail {
+    pub fn code(&self) -> u8 {
+        match self {
+            Fail::Check(_) => 1,
+            Fail::Usage(_) => 2,
+            Fail::Config(_) => 3,
+            Fail::Permission(_) => 4,
+            Fail::Device(_) => 5,
+            Fail::Input(_) => 6,
+        }
+    }
+
+    /// An IO error on `path`: a refused permission is told apart from everything else.
+    pub fn io(path: &Path, e: &std::io::Error) -> Self {
+        let text = format!("{}: {e}", path.display());
+        if e.kind() == std::io::ErrorKind::PermissionDenied {
+            Fail::Permission(text)
+        } else {
+            Fail::Input(text)
+        }
+    }
+}
+
+impl From<ReadError> for Fail {
+    fn from(e: ReadError) -> Self {
+        match &e {
+            ReadError::Io { path, source } => Fail::io(path, source),
+            _ => Fail::Input(e.to_string()),
+        }
+    }
+}
+
+impl From<WriteError> for Fail {
+    fn from(e: WriteError) -> Self {
+        match &e {
+            WriteError::Io { path, source } => Fail::io(path, source),
+            _ => Fail::Usage(e.to_string()),
+        }
+    }
+}
+
+/// What a command ends with.
+pub type Outcome = Result<(), Fail>;
+
+/// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's
+/// choice, not an error.
+pub fn answer<T: serde::Serialize>(
+    json: bool,
+    value: &T,
+    text: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) {
+    let mut out = std::io::stdout().lock();
+    let _ = if json {
+        serde_json::to_writer(&mut out, value)
+            .map_err(std::io::Error::from)
+            .and_then(|()| writeln!(out))
+    } else {
+        text(&mut out)
+    };
+}
