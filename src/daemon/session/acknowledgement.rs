@@ -6,6 +6,9 @@
 //! `acknowledged`. SQLite writes this page once, when the session is created, and never again, so
 //! it is never in the write-ahead log. Opening compares the input that it finds with this tick.
 //!
+//! A second such page, of the table `acknowledged_again`, says the same. A file without it is from
+//! before it was written. The newest readable slot of both counts.
+//!
 //! The row's blob: 16 bytes [`MAGIC`], then two slots of [`SLOT`] bytes that are written in turns,
 //! so that a torn write leaves the other one. A slot, little-endian: `sequence` (8), creation
 //! number (8), tick (8), the two salts of the write-ahead log (4, 4; both 0: any), chain (4), and
@@ -26,7 +29,7 @@ pub const SLOT: usize = 40;
 const WINDOW: usize = 256 << 10;
 
 /// What is known to be on the disk.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Acknowledgement {
     /// The session's creation number.
     pub identity: u64,
@@ -37,11 +40,12 @@ pub struct Acknowledgement {
     pub salts: [u32; 2],
 }
 
-/// The place of the acknowledgement in an open file.
+/// The places of the acknowledgement in an open file.
 #[derive(Debug)]
 pub struct AcknowledgementPage {
     file: Arc<File>,
-    at: u64,
+    /// Where the blobs begin: one, or two.
+    at: Vec<u64>,
     sequence: u64,
 }
 
@@ -96,10 +100,22 @@ fn newest_slot(blob: &[u8]) -> Option<(u64, Acknowledgement)> {
 /// A slot's sequence number and what it says.
 type Slot = (u64, Acknowledgement);
 
-/// Where the blob lies, and what its newest readable slot says.
-fn find(file: &File) -> Result<Option<(u64, Option<Slot>)>> {
+/// The blobs of one file.
+#[derive(Debug, Default)]
+struct Blobs {
+    /// Where those lie that have a readable slot.
+    at: Vec<u64>,
+    /// The newest of their slots.
+    newest: Option<Slot>,
+    /// One was found, readable or not.
+    any: bool,
+}
+
+/// Both blobs lie near the beginning, but in a file that came from an older layout; there they lie
+/// near each other.
+fn find(file: &File) -> Result<Blobs> {
     let mut file = file;
-    let (mut best, mut at) = (None, 0u64);
+    let (mut found, mut at) = (Blobs::default(), 0u64);
     let size = MAGIC.len() + 2 * SLOT;
     let mut window = vec![0; WINDOW + size];
     loop {
@@ -111,19 +127,18 @@ fn find(file: &File) -> Result<Option<(u64, Option<Slot>)>> {
                 n => have += n,
             }
         }
-        let found = window[..have].windows(MAGIC.len()).enumerate().filter(|w| *w.1 == MAGIC);
-        for (offset, _) in found {
-            let says = newest_slot(&window[offset..have]);
-            let better = best
-                .as_ref()
-                .is_none_or(|b: &(u64, Option<Slot>)| says.map(|s| s.0) > b.1.map(|s| s.0));
-            if better {
-                best = Some((at + offset as u64, says));
+        let ended = found.newest.is_some();
+        let starts = window[..have].windows(MAGIC.len()).enumerate().filter(|w| *w.1 == MAGIC);
+        for (offset, _) in starts.filter(|w| w.0 < WINDOW) {
+            found.any = true;
+            if let Some(slot) = newest_slot(&window[offset..have]) {
+                found.at.push(at + offset as u64);
+                found.newest = found.newest.max(Some(slot));
             }
         }
-        // It lies near the beginning, but in a file that came from an older layout.
-        if have < window.len() || best.as_ref().is_some_and(|b| b.1.is_some()) {
-            return Ok(best);
+        // One window more: the second may begin there.
+        if have < window.len() || ended || found.at.len() > 1 {
+            return Ok(found);
         }
         at += WINDOW as u64;
     }
@@ -134,24 +149,24 @@ fn find(file: &File) -> Result<Option<(u64, Option<Slot>)>> {
 /// # Errors
 /// Where the file cannot be read.
 pub fn read(path: &Path) -> Result<Acknowledged> {
-    Ok(match find(&File::open(path)?)? {
+    let found = find(&File::open(path)?)?;
+    Ok(match found.newest {
+        Some((_, a)) => Acknowledged::Known(a),
+        None if found.any => Acknowledged::Damaged,
         None => Acknowledged::Missing,
-        Some((_, None)) => Acknowledged::Damaged,
-        Some((_, Some((_, a)))) => Acknowledged::Known(a),
     })
 }
 
 impl AcknowledgementPage {
-    /// Finds the page in a file that is open for reading and writing, with what it says.
+    /// Finds the pages in a file that is open for reading and writing, with what they say.
     ///
     /// # Errors
     /// Where the file cannot be read.
     pub fn find(file: Arc<File>) -> Result<Option<(AcknowledgementPage, Acknowledgement)>> {
         let found = find(&file)?;
-        Ok(found.and_then(|(at, says)| {
-            let (sequence, a) = says?;
-            Some((AcknowledgementPage { file, at, sequence }, a))
-        }))
+        Ok(found
+            .newest
+            .map(|(sequence, a)| (AcknowledgementPage { file, at: found.at, sequence }, a)))
     }
 
     /// Writes what is on the disk now. It is not synced: an older acknowledgement is true too.
@@ -162,8 +177,11 @@ impl AcknowledgementPage {
         self.sequence += 1;
         let slot = u64::from(self.sequence % 2 == 0) * SLOT as u64;
         let mut file: &File = &self.file;
-        file.seek(SeekFrom::Start(self.at + MAGIC.len() as u64 + slot))?;
-        file.write_all(&encode(self.sequence, a))
+        for at in &self.at {
+            file.seek(SeekFrom::Start(at + MAGIC.len() as u64 + slot))?;
+            file.write_all(&encode(self.sequence, a))?;
+        }
+        Ok(())
     }
 
     /// Brings it to the disk.
@@ -175,7 +193,7 @@ impl AcknowledgementPage {
     }
 }
 
-/// Puts the row that acknowledgements are written into, in a page of its own.
+/// Puts the rows that acknowledgements are written into, each in a page of its own.
 pub(super) fn acknowledge_first(
     db: &Connection,
     identity: u64,
@@ -183,7 +201,10 @@ pub(super) fn acknowledge_first(
     chain: u32,
 ) -> rusqlite::Result<()> {
     let blob = blob(&Acknowledgement { identity, tick, chain, salts: [0, 0] });
-    db.execute("INSERT OR REPLACE INTO acknowledged (id, data) VALUES (1, ?1)", [blob])?;
+    for table in ["acknowledged", "acknowledged_again"] {
+        let put = format!("INSERT OR REPLACE INTO {table} (id, data) VALUES (1, ?1)");
+        db.execute(&put, [&blob])?;
+    }
     Ok(())
 }
 
@@ -197,19 +218,34 @@ mod tests {
         let mut file = tempfile::tempfile().expect("a file");
         file.write_all(&[9; 5000]).expect("written");
         file.write_all(&blob(&first)).expect("written");
+        file.write_all(&[9; 9000]).expect("written");
+        file.write_all(&blob(&first)).expect("written");
         let file = Arc::new(file);
         let (mut page, a) = AcknowledgementPage::find(file.clone()).expect("read").expect("there");
         assert_eq!(a, first);
+        let newest = |file: &File| find(file).expect("read").newest.expect("a slot").1;
         for tick in 1..6 {
             let a = Acknowledgement { tick, chain: 3, salts: [1, 2], ..first };
             page.write(&a).expect("written");
-            assert_eq!(find(&file).expect("read").and_then(|f| f.1).map(|f| f.1), Some(a));
+            assert_eq!(newest(&file), a);
         }
-        // The newest slot is torn: the one before it counts.
         let mut f: &File = &file;
-        f.seek(SeekFrom::Start(5000 + 16 + 20)).expect("sought");
-        f.write_all(&[0xAA; 4]).expect("written");
-        let left = find(&file).expect("read").and_then(|f| f.1).expect("a slot").1.tick;
+        let mut spoil = |at: u64, bytes: &[u8]| {
+            f.seek(SeekFrom::Start(at)).expect("sought");
+            f.write_all(bytes).expect("written");
+        };
+        // The newest slot of one page is torn, and then the page is lost: the other says the same.
+        spoil(5000 + 16 + 20, &[0xAA; 4]);
+        assert_eq!(newest(&file).tick, 5);
+        spoil(4096, &[0; 4096]);
+        assert_eq!(newest(&file).tick, 5);
+        // The newest slot of that is torn too: the one before it counts.
+        let second = 5000 + 16 + 2 * SLOT as u64 + 9000 + 16;
+        spoil(second + 20, &[0xAA; 4]);
+        let left = newest(&file).tick;
         assert!(left == 4 || left == 5, "{left}");
+        spoil(second, &[0; 2 * SLOT]);
+        let left = find(&file).expect("read");
+        assert!(left.newest.is_none() && left.any);
     }
 }

@@ -5,7 +5,9 @@
 //!   number ([`META_IDENTITY`]), and [`META_REPLAY_FROM`] where a replay from the start is
 //!   impossible;
 //! * `acknowledged`: one row in a page of its own. The last tick that reached the disk is written
-//!   into it beside SQLite, see [`super::acknowledgement`];
+//!   into it beside SQLite, see [`super::acknowledgement`]. `acknowledged_again` is the same once
+//!   more, three pages further on, so that one damaged place does not cost both; files from before
+//!   it was written have the first alone;
 //! * `input`: the samples and commands of a group of ticks a row. `number` counts from 1 without a
 //!   gap. `crc` is the CRC-32 of the creation number, `number`, `first_tick`, `last_tick` and
 //!   `data`, so that a row can be trusted alone. `chain` is the CRC-32 of the creation number and
@@ -48,6 +50,7 @@ pub const TABLES: &str = "
         chain INTEGER NOT NULL,
         data BLOB NOT NULL
     );
+    CREATE TABLE acknowledged_again (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
 ";
 
 /// Keys of `meta`.

@@ -18,17 +18,17 @@ impl Disk {
 
 pub(super) const SECTOR: usize = 512;
 
-/// Pages of the database that differ; one is the acknowledgement's.
+/// Pages of the database that differ; two are the acknowledgement's.
 fn changed(a: &[u8], b: &[u8]) -> usize {
     let more = a.len().abs_diff(b.len()) / 4096;
     more + a.chunks(4096).zip(b.chunks(4096)).filter(|(a, b)| a != b).count()
 }
 
-/// The bytes of the acknowledgement in a database: its mark and two slots.
-fn acknowledged_at(db: &[u8]) -> Option<std::ops::Range<usize>> {
+/// The bytes of the acknowledgements in a database: of each its mark and two slots.
+fn acknowledged_at(db: &[u8]) -> Vec<std::ops::Range<usize>> {
     use sculptd_daemon::session::acknowledgement::{MAGIC, SLOT};
-    let at = db.windows(MAGIC.len()).position(|w| w == MAGIC)?;
-    Some(at..at + MAGIC.len() + 2 * SLOT)
+    let marks = db.windows(MAGIC.len()).enumerate().filter(|w| *w.1 == MAGIC);
+    marks.map(|(at, _)| at..at + MAGIC.len() + 2 * SLOT).collect()
 }
 
 /// What may be on the disk when the power goes between the states `a` (all of it synced) and `b`
@@ -38,7 +38,7 @@ fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
     // A log is begun again only after the database holds all of it: then the database is `b`'s.
     let mut out = if restarted { b.clone() } else { Disk { db: a.db.clone(), wal: b.wal.clone() } };
     // The acknowledgement of `b` is written after `b` is synced, so it is never there.
-    if let Some(at) = acknowledged_at(&out.db) {
+    for at in acknowledged_at(&out.db) {
         out.db[at.clone()].copy_from_slice(&a.db[at]);
     }
     let old = a.wal.clone();
@@ -74,7 +74,7 @@ fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
     }
     // A database that was being brought up to date, with the log that it is brought up to date from
     // still there.
-    if !restarted && changed(&a.db, &b.db) > 1 && rng.below(2) == 0 {
+    if !restarted && changed(&a.db, &b.db) > 2 && rng.below(2) == 0 {
         out.wal = b.wal.clone();
         out.db = b.db.clone();
         for s in (0..a.db.len()).step_by(SECTOR) {
@@ -101,7 +101,7 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
         let (synced, a) = (script.written(), Disk::of(&script.path));
         script.group(1 + rng.below(90));
         let (newest, b) = (script.written(), Disk::of(&script.path));
-        checkpoints += u64::from(changed(&a.db, &b.db) > 1);
+        checkpoints += u64::from(changed(&a.db, &b.db) > 2);
         let at = cut(&a, &b, &mut rng);
         let path = dir.path().join("after.sculpt");
         put(&path, &at.db);
