@@ -25,9 +25,14 @@ impl Workers {
         self.count
     }
 
-    /// Starts the threads, so that the first dab does not have to.
+    /// Starts the threads, so that the first dab does not have to. The thread that calls it is the
+    /// one that will use them.
     pub fn warm(&self) {
         self.pool();
+        // rayon's queues register a thread with crossbeam's memory reclamation when it takes work
+        // from another thread's queue for the first time, and that allocates. On a busy machine
+        // this first time may be in the middle of a stroke.
+        drop(crossbeam_epoch::pin());
     }
 
     fn pool(&self) -> Option<&ThreadPool> {

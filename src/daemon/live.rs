@@ -141,6 +141,7 @@ struct Ticking {
 impl Ticking {
     fn run(mut self) -> Ended {
         raise_priority();
+        self.world.warm();
         let garbage = self.garbage.sink();
         let mut pacer = Pacer::new(self.rate_hz, self.clock.now_us());
         let sleeper = spin_sleep::SpinSleeper::default();

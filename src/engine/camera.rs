@@ -155,6 +155,20 @@ impl Camera {
         }
     }
 
+    /// Zooms by a factor about a view point: what is seen there, at whatever depth, stays there.
+    pub fn zoom_at(&mut self, factor: f32, view: Vec2) {
+        if !view.is_finite() {
+            return;
+        }
+        let before = self.distance;
+        self.zoom(factor);
+        let ndc = Vec2::new(view.x * 2.0 - 1.0, 1.0 - view.y * 2.0);
+        let (right, up) = self.axes();
+        // Along the ray through the view point every depth asks for the same step of the target.
+        let step = (self.fov_y * 0.5).portable_tan() * (before - self.distance);
+        self.target += (right * (ndc.x * self.aspect) + up * ndc.y) * step;
+    }
+
     /// The least and the largest depth before the eye that [`Camera::view_projection`] keeps.
     pub fn depth_range(&self, radius: f32) -> (f32, f32) {
         let far = (self.distance + radius * 2.0).max(1e-3);
@@ -210,6 +224,23 @@ mod tests {
                 let ray = camera.ray(view);
                 let along = (p - ray.origin).dot(ray.dir);
                 assert!((ray.origin + ray.dir * along - p).length() < 1e-3 * camera.distance);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_under_the_cursor_stays_there() {
+        for orthographic in [false, true] {
+            let begun = Camera { orthographic, yaw: 0.7, pitch: 0.3, ..Camera::default() };
+            for p in [Vec3::ZERO, Vec3::new(0.5, -0.3, 0.8), Vec3::new(-0.4, 0.6, -0.7)] {
+                let view = begun.project(p).expect("in front of the eye");
+                for factor in [0.5, 1.12, 1.8] {
+                    let mut camera = begun;
+                    camera.zoom_at(factor, view);
+                    let now = camera.project(p).expect("in front of the eye");
+                    assert!(now.distance(view) < 1e-4, "{p} by {factor}: {view} became {now}");
+                    assert_eq!(camera.distance, begun.distance / factor);
+                }
             }
         }
     }

@@ -7,6 +7,7 @@
 
 mod desktop;
 mod files;
+mod fingers;
 mod first_minutes;
 mod idle;
 mod lost_screen;
@@ -14,3 +15,4 @@ mod presses;
 mod sessions;
 mod stage;
 mod versions;
+mod x_server;

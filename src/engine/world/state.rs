@@ -25,6 +25,12 @@ impl World {
         &self.report
     }
 
+    /// Starts the workers, so that the first large dab does not have to. To be called by the thread
+    /// that steps this world.
+    pub fn warm(&self) {
+        self.workers.warm();
+    }
+
     /// The tick of the last step.
     pub fn tick(&self) -> u64 {
         self.tick

@@ -1,6 +1,6 @@
 //! What a person likes, kept from day to day.
 
-use super::state::{Action, HintsFollowed, SCALE, UiState, View};
+use super::state::{Action, HintsFollowed, SCALE, TwoFingers, UiState, View};
 use super::theme;
 
 pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
@@ -16,6 +16,14 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     ui.checkbox(&mut p.light, "Light panels");
     ui.checkbox(&mut p.speed_is_pressure, "Speed is pressure")
         .on_hover_text("For a mouse: slow strokes press harder than quick ones");
+    ui.horizontal(|ui| {
+        ui.label("Two fingers");
+        let three = "On a touch screen. Pinched they zoom; three fingers do the other, three tap \
+                     to undo, four to do it again";
+        for (two, name) in [(TwoFingers::Turn, "Turn"), (TwoFingers::Slide, "Slide")] {
+            ui.selectable_value(&mut p.two_fingers, two, name).on_hover_text(three);
+        }
+    });
     if ui.button("Show the hints again").clicked() {
         p.hints = HintsFollowed::default();
     }

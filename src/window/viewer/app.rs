@@ -74,6 +74,9 @@ impl ApplicationHandler<AccessibilityEvent> for App {
             return;
         }
         let now = self.wiring.clock.now_us();
+        if open.fingers.is_waiting() {
+            open.follow_fingers(&mut self.wiring);
+        }
         if open.pacing.poll_is_due(now) {
             open.poll(&self.wiring);
         } else if open.pointer_is_unpaired() {
@@ -128,12 +131,10 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                     MouseScrollDelta::LineDelta(_, y) => y,
                     MouseScrollDelta::PixelDelta(p) => p.y as f32 / 40.0,
                 };
-                open.camera.zoom(1.12f32.powf(steps));
-                open.send_camera(wiring);
+                open.zoom_to_pointer(1.12f32.powf(steps), wiring);
             }
             WindowEvent::PinchGesture { delta, .. } => {
-                open.camera.zoom(1.0 + delta as f32);
-                open.send_camera(wiring);
+                open.zoom_to_pointer(1.0 + delta as f32, wiring);
             }
             WindowEvent::DroppedFile(path) if wiring.kiosk.is_none() => {
                 open.tasks.load(path, wiring);

@@ -4,8 +4,10 @@
 use glam::Vec2;
 use winit::event::{MouseButton, Touch, TouchPhase};
 
+use super::fingers::{Contact, FingerAction, TouchStep};
 use super::pointer::{Drag, PLAIN, give_back, lent};
 use super::state::WindowState;
+use super::tablets::TABLETS;
 use super::wiring::Wiring;
 use sculptd_devices::{Body, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
@@ -14,7 +16,7 @@ use sculptd_engine::stroke::CurveAction;
 impl WindowState {
     /// The pointer as a pen: it says all that a pen says.
     fn sample(&mut self, tip: bool, wiring: &mut Wiring) {
-        let t_us = wiring.clock.now_us();
+        let t_us = self.pointer.t_us.unwrap_or_else(|| wiring.clock.now_us());
         let by_speed = self.pointer.speed.pressure(t_us, self.pointer.at / self.view_rect().1.y);
         let pressure = match self.pointer.force {
             Some(force) => force,
@@ -167,30 +169,83 @@ impl WindowState {
         }
     }
 
-    /// A finger is a pointer that is in range only while it touches, and may know how hard.
+    /// A touch of the screen. One that begins on a panel stays with that.
     pub(super) fn touched(&mut self, touch: &Touch, wiring: &mut Wiring) {
-        let to = Vec2::new(touch.location.x as f32, touch.location.y as f32);
-        if self.pointer.finger.is_some_and(|f| f != touch.id) {
-            return;
+        let at = Vec2::new(touch.location.x as f32, touch.location.y as f32);
+        let step = match touch.phase {
+            TouchPhase::Started if self.over_panel(at) => return,
+            TouchPhase::Started => TouchStep::Down,
+            TouchPhase::Moved => TouchStep::Moved,
+            TouchPhase::Ended => TouchStep::Up,
+            TouchPhase::Cancelled => TouchStep::Cancelled,
+        };
+        self.follow_fingers(wiring);
+        let force = touch.force.map(|f| f.normalized() as f32);
+        let contact = Contact { id: touch.id, t_us: wiring.clock.now_us(), at, force };
+        self.fingers.touch(step, contact);
+        self.follow_fingers(wiring);
+    }
+
+    /// Does what the fingers ask for.
+    pub(super) fn follow_fingers(&mut self, wiring: &mut Wiring) {
+        let now = wiring.clock.now_us();
+        let state = wiring.published.load();
+        let pen_is_near = state.tablets.iter().flatten().any(|t| TABLETS.contains(&t.0.0));
+        let scale = self.window.scale_factor() as f32;
+        self.fingers.set_up(scale, self.ui_state.prefs.two_fingers);
+        self.fingers.pen(now, pen_is_near);
+        self.fingers.tick(now);
+        for action in self.fingers.take_actions() {
+            self.finger(action, wiring);
         }
-        // A finger that begins on a panel stays with it.
-        let begins = touch.phase == TouchPhase::Started;
-        if begins && self.over_panel(to) || !begins && self.pointer.finger.is_none() {
-            return;
-        }
-        self.pointer.force = touch.force.map(|f| f.normalized() as f32);
-        match touch.phase {
-            TouchPhase::Started => {
-                self.pointer.finger = Some(touch.id);
-                self.pointer.at = to;
-                self.button(MouseButton::Left, true, wiring);
+    }
+
+    fn finger(&mut self, action: FingerAction, wiring: &mut Wiring) {
+        let height = self.view_rect().1.y;
+        match action {
+            FingerAction::Press(c) | FingerAction::Drag(c) | FingerAction::Lift(c) => {
+                (self.pointer.t_us, self.pointer.force) = (Some(c.t_us), c.force);
+                match action {
+                    FingerAction::Press(_) => {
+                        self.pointer.at = c.at;
+                        self.button(MouseButton::Left, true, wiring);
+                    }
+                    FingerAction::Drag(_) => self.moved(c.at, wiring),
+                    // It is in range only while it touches.
+                    _ => {
+                        self.button(MouseButton::Left, false, wiring);
+                        self.left(wiring);
+                        self.pointer.force = None;
+                    }
+                }
+                self.pointer.t_us = None;
+                return;
             }
-            TouchPhase::Moved => self.moved(to, wiring),
-            TouchPhase::Ended | TouchPhase::Cancelled => {
-                self.button(MouseButton::Left, false, wiring);
-                (self.pointer.finger, self.pointer.force) = (None, None);
-                self.left(wiring);
+            FingerAction::Turn(by) => {
+                self.camera.orbit(by / height);
+                self.ui_state.prefs.hints.turned = true;
+            }
+            FingerAction::Slide(by) => self.camera.pan(by / height),
+            FingerAction::Zoom { factor, about } => {
+                self.camera.zoom_at(factor, self.view_point(about));
+            }
+            FingerAction::Undo | FingerAction::Redo => {
+                let undo = action == FingerAction::Undo;
+                let command = if undo { Command::Undo } else { Command::Redo };
+                self.ui_state.prefs.hints.undone = true;
+                let _ = wiring.commands.try_send(command);
+                return;
             }
         }
+        self.camera_animation = None;
+        self.send_camera(wiring);
+    }
+
+    /// Comes nearer to, or goes away from, what is under the pointer.
+    pub(super) fn zoom_to_pointer(&mut self, factor: f32, wiring: &Wiring) {
+        let view = self.view_point(self.pointer.at);
+        self.camera_animation = None;
+        self.camera.zoom_at(factor, view);
+        self.send_camera(wiring);
     }
 }

@@ -7,6 +7,7 @@ mod app;
 mod camera_animation;
 mod clay_picture;
 pub mod distance_field;
+mod fingers;
 mod folder_listing;
 mod follow;
 mod frame;

@@ -23,7 +23,8 @@ pub struct Pointer {
     pub drag: Drag,
     /// How hard, where the window system tells.
     pub force: Option<f32>,
-    pub finger: Option<u64>,
+    /// When what is told of it happened, microseconds; `None`: now.
+    pub(super) t_us: Option<u64>,
     /// The brush as it was before Shift or Ctrl changed it for one stroke.
     pub(super) lent: Option<BrushSettings>,
     pub(super) speed: Speed,

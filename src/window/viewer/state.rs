@@ -9,6 +9,7 @@ use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
 use super::clay_picture::ClayPictureKey;
+use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, instance};
 use super::overlay;
 use super::overlay_mesh::Triangles;
@@ -117,6 +118,7 @@ pub(super) struct WindowState {
     /// Buttons and fingers that went down on a panel and are still down.
     pub(super) held_on_panels: u32,
     pub(super) tablets: Tablets,
+    pub(super) fingers: Fingers,
 }
 
 impl WindowState {
@@ -255,6 +257,7 @@ impl WindowState {
             map_changes: 0,
             held_on_panels: 0,
             tablets: Tablets::default(),
+            fingers: Fingers::default(),
         };
         open.send_camera(wiring);
         if let Some(path) = &wiring.open_first {

@@ -20,7 +20,7 @@ use sculptd_engine::command::Command;
 use sculptd_engine::desktop_layout::{DesktopLayout, MAX_COVERS, MAX_TABLETS, PenPlace};
 
 /// Ids of tablets and serial pens; the others are no devices of a desktop.
-const TABLETS: std::ops::Range<u16> = 0..200;
+pub(super) const TABLETS: std::ops::Range<u16> = 0..200;
 /// A map is sent again when it has moved by this share of the view: a third of a pixel.
 const MOVED: f32 = 2e-4;
 

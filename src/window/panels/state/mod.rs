@@ -25,7 +25,7 @@ pub use kiosk::KioskPad;
 pub use messages::Message;
 pub use operation::{BooleanTrial, Modal, ModalSetting, TrialStatus, Trim, TrimShape};
 pub use pens::PenTrace;
-pub use preferences::{HintsFollowed, Preferences, SCALE};
+pub use preferences::{HintsFollowed, Preferences, SCALE, TwoFingers};
 pub use request::UiRequest;
 pub use search::SearchBox;
 pub use sizes::{DistanceSummary, DistanceTarget, Measured, SizesPage};

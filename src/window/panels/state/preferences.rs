@@ -25,6 +25,17 @@ impl HintsFollowed {
     }
 }
 
+/// What two fingers do when they move together; three do the other. Pinched, two zoom.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TwoFingers {
+    /// They turn the view, and three slide it.
+    #[default]
+    Turn,
+    /// They slide the view, and three turn it.
+    Slide,
+}
+
 /// Smallest and largest scale of the panels.
 pub const SCALE: (f32, f32) = (0.7, 3.0);
 
@@ -41,6 +52,8 @@ pub struct Preferences {
     pub smooth_edges: bool,
     /// The speed of a pointer without pressure stands in for it.
     pub speed_is_pressure: bool,
+    /// What two fingers on a touch screen do when they move together.
+    pub two_fingers: TwoFingers,
     #[serde(alias = "done")]
     pub hints: HintsFollowed,
     pub look: Look,
@@ -54,6 +67,7 @@ impl Default for Preferences {
             light: false,
             smooth_edges: false,
             speed_is_pressure: true,
+            two_fingers: TwoFingers::default(),
             hints: HintsFollowed::default(),
             look: Look::default(),
             recent: Vec::new(),

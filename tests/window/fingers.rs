@@ -1,0 +1,63 @@
+//! Fingers on a touch screen, in a real window: one sculpts, two turn the view, three take back.
+
+use glam::DVec2;
+use serde_json::Value;
+
+use super::stage::{Stage, pause};
+use super::x_server::{Driven, Finger, SCREEN, desktop};
+
+/// Pixels of the screen as a share of it.
+fn share(x: f64, y: f64) -> DVec2 {
+    DVec2::new(x / f64::from(SCREEN.0), y / f64::from(SCREEN.1))
+}
+
+/// Fingers that land 15 ms apart, go each its way in a fifth of a second, and are lifted.
+fn go(touch: &mut Driven, ways: &[[(f64, f64); 2]]) {
+    for (n, [from, _]) in ways.iter().enumerate() {
+        touch.finger(n as u32 + 1, Finger::Begin, share(from.0, from.1));
+        pause(15);
+    }
+    for step in 1..=20 {
+        for (n, [from, to]) in ways.iter().enumerate().filter(|w| w.1[0] != w.1[1]) {
+            let part = f64::from(step) / 20.0;
+            let at = (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part);
+            touch.finger(n as u32 + 1, Finger::Move, share(at.0, at.1));
+        }
+        pause(if ways[0][0] == ways[0][1] { 3 } else { 10 });
+    }
+    for (n, [_, to]) in ways.iter().enumerate() {
+        touch.finger(n as u32 + 1, Finger::End, share(to.0, to.1));
+        pause(10);
+    }
+}
+
+#[test]
+fn one_finger_sculpts_two_turn_the_view_and_three_take_back() {
+    let Some(mut s) = Stage::on(desktop, "[devices]\nhid = false\n") else { return };
+    let mut touch = Driven::connect(&s.dir.path().join("touch.sock"));
+    s.seen("fingers-start");
+    let steps = |s: &Stage| s.figure("undo_steps");
+    let camera = |s: &Stage| s.ask("camera", &serde_json::json!({}));
+    let number = |camera: &Value, name: &str| camera[name].as_f64().expect("a number");
+
+    for n in 1..=3 {
+        let y = 280.0 + 40.0 * n as f64;
+        go(&mut touch, &[[(560.0, y), (700.0, y)]]);
+        s.until("the finger's stroke has come", |s| steps(s) == n);
+    }
+    let before = camera(&s);
+    // Apart, on the clay: nearer, and nothing is sculpted.
+    go(&mut touch, &[[(600.0, 360.0), (520.0, 360.0)], [(680.0, 360.0), (760.0, 360.0)]]);
+    s.until("the view has come nearer", |s| {
+        number(&camera(s), "distance") < 0.8 * number(&before, "distance")
+    });
+    let near = camera(&s);
+    go(&mut touch, &[[(600.0, 330.0), (700.0, 330.0)], [(600.0, 400.0), (700.0, 400.0)]]);
+    s.until("the view has turned", |s| number(&camera(s), "yaw") != number(&near, "yaw"));
+    assert_eq!(steps(&s), 3, "two fingers sculpt nothing");
+    // A tap of three fingers takes the last stroke back.
+    let tap = [(560.0, 300.0), (640.0, 280.0), (720.0, 300.0)].map(|p| [p, p]);
+    go(&mut touch, &tap);
+    s.until("the last stroke is taken back", |s| steps(s) == 2);
+    s.look("fingers-end");
+}
