@@ -1,6 +1,8 @@
 //! The pointer as a device: on the clay it sculpts, beside the clay it turns the view. A press is
 //! decided by where it happens: [`WindowState::over_panel`].
 
+use std::sync::atomic::Ordering::Relaxed;
+
 use glam::Vec2;
 use winit::event::{MouseButton, Touch, TouchPhase};
 
@@ -53,11 +55,11 @@ impl WindowState {
             Drag::Orbit => {
                 self.camera.orbit(by);
                 self.ui_state.prefs.hints.turned = true;
-                self.send_camera(wiring);
+                self.moved_view(wiring);
             }
             Drag::Pan => {
                 self.camera.pan(by);
-                self.send_camera(wiring);
+                self.moved_view(wiring);
             }
             Drag::None => self.sample(false, wiring),
         }
@@ -237,15 +239,22 @@ impl WindowState {
                 return;
             }
         }
-        self.camera_animation = None;
-        self.send_camera(wiring);
+        self.moved_view(wiring);
     }
 
     /// Comes nearer to, or goes away from, what is under the pointer.
     pub(super) fn zoom_to_pointer(&mut self, factor: f32, wiring: &Wiring) {
         let view = self.view_point(self.pointer.at);
-        self.camera_animation = None;
         self.camera.zoom_at(factor, view);
+        self.moved_view(wiring);
+    }
+
+    /// A person has moved the camera: in an installation that is a visitor who is at work.
+    fn moved_view(&mut self, wiring: &Wiring) {
+        if let Some(kiosk) = &wiring.kiosk {
+            kiosk.desk.touched.store(true, Relaxed);
+        }
+        self.camera_animation = None;
         self.send_camera(wiring);
     }
 }
