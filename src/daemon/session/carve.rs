@@ -94,13 +94,33 @@ fn varint(b: &[u8]) -> Option<(u64, usize)> {
     None
 }
 
-/// The salts in a write-ahead log's head; `None` where there is no log to speak of.
+/// The salts in a write-ahead log's head; `None` where there is no log to speak of, and where the
+/// head's checksum does not hold: a torn or damaged head says nothing, and SQLite passes such a log
+/// over.
 pub fn log_salts(path: &Path) -> Option<[u32; 2]> {
     let mut head = [0; LOG_HEAD];
     let mut log = File::open(companion(path, "-wal")).ok()?;
     log.read_exact(&mut head).ok()?;
-    (log.metadata().ok()?.len() > LOG_HEAD as u64)
+    (log.metadata().ok()?.len() > LOG_HEAD as u64 && head_holds(&head))
         .then(|| Some([u32_at(&head, 16)?, u32_at(&head, 20)?]))?
+}
+
+/// Whether the checksum of a log's head holds (SQLite, "The WAL File Format", sections 2 and 4.3:
+/// the magic number says in which order of bytes the words are summed).
+fn head_holds(head: &[u8; LOG_HEAD]) -> bool {
+    let word: fn([u8; 4]) -> u32 = match u32_at(head, 0) {
+        Some(0x377f_0682) => u32::from_le_bytes,
+        Some(0x377f_0683) => u32::from_be_bytes,
+        _ => return false,
+    };
+    let words = head[..24].chunks_exact(4).map(|b| word([b[0], b[1], b[2], b[3]]));
+    let (mut sums, mut second) = ([0u32; 2], false);
+    for word in words {
+        let (this, other) = (usize::from(second), usize::from(!second));
+        sums[this] = sums[this].wrapping_add(word).wrapping_add(sums[other]);
+        second = !second;
+    }
+    u32_at(head, 24) == Some(sums[0]) && u32_at(head, 28) == Some(sums[1])
 }
 
 impl PageImage {
@@ -413,5 +433,30 @@ impl CarvedInput {
             }
         }
         (all, identity)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    fn a_torn_head_of_a_log_has_no_salts() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("a.db");
+        let db = rusqlite::Connection::open(&path).expect("opens");
+        db.pragma_update(None, "journal_mode", "wal").expect("a log");
+        db.execute_batch("CREATE TABLE t (n); INSERT INTO t VALUES (1);").expect("written");
+        let log = companion(&path, "-wal");
+        let whole = std::fs::read(&log).expect("there");
+        let salts = log_salts(&path).expect("SQLite's own head holds");
+        assert_eq!(Some(salts[0]), u32_at(&whole, 16));
+        for bit in 0..LOG_HEAD * 8 {
+            let mut torn = whole.clone();
+            torn[bit / 8] ^= 1 << (bit % 8);
+            std::fs::write(&log, torn).expect("written");
+            assert_eq!(log_salts(&path), None, "bit {bit}");
+        }
     }
 }

