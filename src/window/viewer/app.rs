@@ -75,7 +75,7 @@ impl ApplicationHandler<AccessibilityEvent> for App {
         }
         let now = self.wiring.clock.now_us();
         if open.fingers.is_waiting() {
-            open.follow_fingers(&mut self.wiring);
+            open.tick_fingers(&mut self.wiring);
         }
         if open.pacing.poll_is_due(now) {
             open.poll(&self.wiring);

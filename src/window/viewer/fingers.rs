@@ -146,7 +146,8 @@ impl Fingers {
         }
     }
 
-    /// Time goes by: a finger that has waited long enough is a pointer.
+    /// Time goes by: a finger that has waited long enough is a pointer. To be called when no touch
+    /// is left that was not told: while a window draws, a second finger may land unheard.
     pub fn tick(&mut self, t_us: u64) {
         let State::Waiting = self.state else { return };
         let Some(finger) = self.used().next().copied() else { return };
@@ -171,7 +172,6 @@ impl Fingers {
     }
 
     fn down(&mut self, contact: Contact) {
-        self.tick(contact.t_us);
         self.down.retain(|f| f.id != contact.id);
         if self.down.len() >= MOST {
             return;
@@ -209,10 +209,7 @@ impl Fingers {
             return;
         }
         match self.state {
-            State::Waiting => {
-                self.held.push(contact);
-                self.tick(contact.t_us);
-            }
+            State::Waiting => self.held.push(contact),
             State::Pointing(id) if id == contact.id => {
                 self.actions.push(FingerAction::Drag(contact));
             }

@@ -181,22 +181,30 @@ impl WindowState {
             TouchPhase::Ended => TouchStep::Up,
             TouchPhase::Cancelled => TouchStep::Cancelled,
         };
-        self.follow_fingers(wiring);
+        self.set_up_fingers(wiring);
         let force = touch.force.map(|f| f.normalized() as f32);
         let contact = Contact { id: touch.id, t_us: wiring.clock.now_us(), at, force };
         self.fingers.touch(step, contact);
         self.follow_fingers(wiring);
     }
 
-    /// Does what the fingers ask for.
-    pub(super) fn follow_fingers(&mut self, wiring: &mut Wiring) {
-        let now = wiring.clock.now_us();
+    /// All events that waited were told: a finger that has waited long enough sculpts.
+    pub(super) fn tick_fingers(&mut self, wiring: &mut Wiring) {
+        self.set_up_fingers(wiring);
+        self.fingers.tick(wiring.clock.now_us());
+        self.follow_fingers(wiring);
+    }
+
+    fn set_up_fingers(&mut self, wiring: &Wiring) {
         let state = wiring.published.load();
         let pen_is_near = state.tablets.iter().flatten().any(|t| TABLETS.contains(&t.0.0));
         let scale = self.window.scale_factor() as f32;
         self.fingers.set_up(scale, self.ui_state.prefs.two_fingers);
-        self.fingers.pen(now, pen_is_near);
-        self.fingers.tick(now);
+        self.fingers.pen(wiring.clock.now_us(), pen_is_near);
+    }
+
+    /// Does what the fingers ask for.
+    fn follow_fingers(&mut self, wiring: &mut Wiring) {
         for action in self.fingers.take_actions() {
             self.finger(action, wiring);
         }

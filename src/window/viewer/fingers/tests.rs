@@ -278,3 +278,21 @@ fn a_finger_beside_a_pen_or_just_after_it_is_its_hand() {
     assert_eq!(presses(&before), 1);
     assert!(matches!(before.last(), Some(FingerAction::Lift(c)) if c.t_us <= 500_000));
 }
+
+#[test]
+fn a_second_finger_that_lands_while_the_window_draws_is_heard_first() {
+    let mut fingers = Fingers::default();
+    fingers.set_up(1.0, TwoFingers::Turn);
+    let contact = |id, t_us, x| Contact { id, t_us, at: Vec2::new(x, 300.0), force: None };
+    fingers.touch(TouchStep::Down, contact(1, 0, 400.0));
+    // A slow frame: what came meanwhile is told at its end, and only then the time.
+    let late = 3 * HOLD_US;
+    fingers.touch(TouchStep::Moved, contact(1, late, 404.0));
+    fingers.touch(TouchStep::Down, contact(2, late, 500.0));
+    fingers.tick(late);
+    fingers.touch(TouchStep::Moved, contact(2, late + 8_000, 600.0));
+    fingers.touch(TouchStep::Moved, contact(2, late + 16_000, 620.0));
+    let done = fingers.take_actions();
+    assert_eq!(presses(&done), 0, "{done:?}");
+    assert!(!done.is_empty());
+}
