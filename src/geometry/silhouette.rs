@@ -21,8 +21,10 @@ use super::measure::Strips;
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::job::Job;
 
-/// Half the extent of a chain in whole numbers: about 4e-9 of the extent is the smallest step.
-const REACH: f64 = (1 << 28) as f64;
+/// Half the extent of a chain in whole numbers. The smallest step is 7e-15 of the extent, 64 times
+/// what double precision rounds to, so that edges which lie on each other but for rounding become
+/// one.
+const REACH: f64 = (1u64 << 46) as f64;
 
 /// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit
 /// length.
@@ -91,7 +93,7 @@ impl PlaneRegion {
 pub struct Chain {
     centre: DVec2,
     scale: f64,
-    edges: Vec<[[i32; 2]; 2]>,
+    edges: Vec<[[i64; 2]; 2]>,
 }
 
 impl Chain {
@@ -103,13 +105,13 @@ impl Chain {
     }
 
     /// The whole-number coordinates of a point within the box.
-    pub fn whole(&self, p: DVec2) -> [i32; 2] {
-        ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i32)
+    pub fn whole(&self, p: DVec2) -> [i64; 2] {
+        ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i64)
     }
 
     /// Adds the edge from `a` to `b`; an edge of no length is none.
     #[inline]
-    pub fn push(&mut self, a: [i32; 2], b: [i32; 2]) {
+    pub fn push(&mut self, a: [i64; 2], b: [i64; 2]) {
         if a != b {
             self.edges.push([a, b]);
         }
@@ -119,11 +121,11 @@ impl Chain {
     /// kind, and they are what makes the resolution slow.
     fn cancel(&mut self) {
         let lower_first =
-            |e: &[[i32; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
+            |e: &[[i64; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
         self.edges.sort_unstable_by_key(|e| lower_first(e).0);
         let mut kept = Vec::with_capacity(self.edges.len());
         for group in self.edges.chunk_by(|a, b| lower_first(a).0 == lower_first(b).0) {
-            let net: i32 = group.iter().map(|e| lower_first(e).1).sum();
+            let net: i64 = group.iter().map(|e| lower_first(e).1).sum();
             let [a, b] = lower_first(&group[0]).0;
             kept.extend((0..net).map(|_| [a, b]));
             kept.extend((net..0).map(|_| [b, a]));
@@ -136,7 +138,7 @@ impl Chain {
     fn crosses_rarely(&self) -> bool {
         const EACH: usize = 256;
         const ALL: usize = 1_000_000;
-        let place = |p: [i32; 2]| DVec3::new(f64::from(p[0]), f64::from(p[1]), 0.0);
+        let place = |p: [i64; 2]| DVec3::new(p[0] as f64, p[1] as f64, 0.0);
         let spans: Vec<Span> = self.edges.iter().map(|e| Span::of(e.map(place))).collect();
         // A fresh job is never cancelled.
         let tree = SpanTree::build(&spans, &Job::default()).unwrap_or_default();
@@ -151,7 +153,7 @@ impl Chain {
 
     /// The edges as loops. Every point has as many edges in as out, so a walk ends only where it
     /// began.
-    fn loops(&mut self) -> Vec<Vec<IntPoint>> {
+    fn loops(&mut self) -> Vec<Vec<IntPoint<i64>>> {
         self.cancel();
         self.edges.sort_unstable();
         let edges = &self.edges;
@@ -162,7 +164,7 @@ impl Chain {
                 starts.push(i as u32);
             }
         }
-        let from = |p: [i32; 2]| starts.binary_search_by(|&i| edges[i as usize][0].cmp(&p));
+        let from = |p: [i64; 2]| starts.binary_search_by(|&i| edges[i as usize][0].cmp(&p));
         let mut next = starts.clone();
         let mut loops = Vec::new();
         for s in 0..starts.len() {
@@ -195,7 +197,7 @@ impl Chain {
     /// The region that the chain goes around, as polygons with holes.
     pub fn resolve(mut self) -> Vec<PlaneRegion> {
         let loops = self.loops();
-        let mut overlay = Overlay::<i32>::new(self.edges.len());
+        let mut overlay = Overlay::<i64>::new(self.edges.len());
         // Edges that all but lie on each other are joined after a few rounds, within a millionth of
         // the extent; with a finer precision they are resolved into thousands of slivers.
         overlay.solver = Solver { precision: Precision::LOW, ..Solver::AUTO };
@@ -203,7 +205,7 @@ impl Chain {
             overlay.add_contour(l, Subject);
         }
         let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
-        let back = |p: &IntPoint| self.centre + DVec2::new(p.x as f64, p.y as f64) / self.scale;
+        let back = |p: &IntPoint<i64>| self.centre + DVec2::new(p.x as f64, p.y as f64) / self.scale;
         shapes
             .into_iter()
             .filter_map(|shape| {
@@ -317,10 +319,10 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
         return ShadowOutline::default();
     };
     let mut chain = Chain::new(lo, hi);
-    let rows: Vec<Vec<(i32, i32)>> = (0..STRIPS)
+    let rows: Vec<Vec<(i64, i64)>> = (0..STRIPS)
         .into_par_iter()
         .map(|s| {
-            let mut spans: Vec<(i32, i32)> = strips
+            let mut spans: Vec<(i64, i64)> = strips
                 .spans(s, flat, triangles)
                 .into_iter()
                 .map(|(a, b)| {
@@ -329,7 +331,7 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
                 .filter(|(a, b)| a < b)
                 .collect();
             spans.sort_unstable();
-            let mut row: Vec<(i32, i32)> = Vec::new();
+            let mut row: Vec<(i64, i64)> = Vec::new();
             for (a, b) in spans {
                 match row.last_mut() {
                     Some(last) if a <= last.1 => last.1 = last.1.max(b),
@@ -340,8 +342,8 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
         })
         .collect();
     let border = |s: usize| chain.whole(DVec2::new(lo.x, strips.lo + s as f64 * strips.height))[1];
-    let borders: Vec<i32> = (0..=STRIPS).map(border).collect();
-    let mut marks: Vec<(i32, i32)> = Vec::new();
+    let borders: Vec<i64> = (0..=STRIPS).map(border).collect();
+    let mut marks: Vec<(i64, i64)> = Vec::new();
     for (s, &y) in borders.iter().enumerate() {
         let row = |s: Option<usize>| s.and_then(|s| rows.get(s)).map_or(&[][..], |r| r);
         let (below, above) = (row(s.checked_sub(1)), row(Some(s)));
@@ -368,7 +370,7 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
     }
     let lengths: Vec<f64> = rows
         .iter()
-        .map(|r| r.iter().map(|(a, b)| f64::from(*b) - f64::from(*a)).sum::<f64>() / chain.scale)
+        .map(|r| r.iter().map(|(a, b)| (*b - *a) as f64).sum::<f64>() / chain.scale)
         .collect();
     // Between two strips the length changes somewhere, evenly likely anywhere; at both ends from
     // and to nothing.
