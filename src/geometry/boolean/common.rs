@@ -25,6 +25,32 @@ pub struct Common {
     pub bounds: [Span; 2],
     /// Triangles whose boxes are within the tolerance of each other, ascending.
     pub pairs: Vec<(u32, u32)>,
+    /// Both operands are one surface. Then `pairs` may be those of before the points were common.
+    pub same_surface: bool,
+}
+
+/// Whether both operands are one and the same surface: the same triangles over the common points,
+/// in the same direction. Then nothing is between them, however often they cross themselves.
+fn same_surface(a: &[[u32; 3]], b: &[[u32; 3]], contact: usize) -> bool {
+    // Triangles that shrank to less are nothing.
+    let whole = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    let least_first = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {
+        least if least == a => [a, b, c],
+        least if least == b => [b, c, a],
+        _ => [c, a, b],
+    };
+    // Where no place is in contact, no triangle of one is a triangle of the other. Most pairs of
+    // solids differ in the first triangle.
+    let first = a.iter().find(whole).map(least_first);
+    if contact == 0 || first.is_none() || !b.iter().any(|t| Some(least_first(t)) == first) {
+        return false;
+    }
+    let sorted = |t: &[[u32; 3]]| {
+        let mut all: Vec<[u32; 3]> = t.iter().filter(whole).map(least_first).collect();
+        all.par_sort_unstable();
+        all
+    };
+    sorted(a) == sorted(b)
 }
 
 /// Puts places of the operands that are within `eps` of each other on one point, where the surfaces
@@ -88,12 +114,14 @@ pub fn common(
             Ok(PolyMesh { face_starts: m.face_starts.clone(), corners, ..PolyMesh::new() })
         };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
-    if again {
+    let same_surface = same_surface(&ta, &tb, points.contact.places);
+    if again && !same_surface {
         let surface = |triangles| SurfaceView { triangles, at: &points.at, base: 0 };
         pairs = broad_phase::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
     }
     lap("weld");
-    Ok(Common { points, meshes, triangles: [ta, tb], starts: [sa, sb], bounds, pairs })
+    let (triangles, starts) = ([ta, tb], [sa, sb]);
+    Ok(Common { points, meshes, triangles, starts, bounds, pairs, same_surface })
 }
 
 fn bounds(at: &[DVec3]) -> Span {
