@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use super::distance::topology::{NO_PARTNER, Topology};
 use super::measure::Strips;
+use super::snap_rounding::{WholeEdge, snap_rounded};
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::job::Job;
 
@@ -25,6 +26,9 @@ use crate::job::Job;
 /// what double precision rounds to, so that edges which lie on each other but for rounding become
 /// one.
 const REACH: f64 = (1u64 << 46) as f64;
+
+/// Steps of a resolved outline in one of a chain.
+const FINER: i64 = 256;
 
 /// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit
 /// length.
@@ -155,14 +159,11 @@ impl Chain {
         })
     }
 
-    /// How far the corners of resolved rings are from the edges that they came from, at most.
-    fn farthest(&self, tree: &SpanTree, rings: &[Vec<[i64; 2]>]) -> f64 {
-        let mut ends: Vec<[i64; 2]> = self.edges.iter().flatten().copied().collect();
-        ends.sort_unstable();
-        ends.dedup();
-        let own = |p: &&[i64; 2]| ends.binary_search(p).is_err();
-        let nearest = |&p: &[i64; 2]| {
-            let at = flat_place(p);
+    /// How far the corners of resolved shapes, in steps of one in [`FINER`], are from the edges that
+    /// they came from, at most; in steps.
+    fn farthest(&self, tree: &SpanTree, shapes: &[Vec<Vec<[i64; 2]>>]) -> f64 {
+        let nearest = |p: &[i64; 2]| {
+            let at = flat_place(*p) / FINER as f64;
             let mut reach = 4.0;
             loop {
                 let mut best = f64::INFINITY;
@@ -177,7 +178,7 @@ impl Chain {
                 reach *= 64.0;
             }
         };
-        rings.par_iter().flatten().filter(own).map(nearest).reduce(|| 0.0, f64::max)
+        shapes.par_iter().flatten().flatten().map(nearest).reduce(|| 0.0, f64::max)
     }
 
     /// The edges as loops. Every point has as many edges in as out, so a walk ends only where it
@@ -341,12 +342,18 @@ pub fn outline_of(
     chain.cancel();
     let (spans, tree) = chain.tree();
     if chain.crosses_rarely(&spans, &tree) {
-        // The tree's numbers are of the edges as they are: resolving sorts a copy of them.
-        let shapes = chain.clone().shapes();
-        let rings: Vec<Vec<[i64; 2]>> = shapes.iter().flatten().cloned().collect();
-        // Half a step is what rounding to whole numbers moves a point by.
-        let off = (chain.farthest(&tree, &rings) + 1.0) / chain.scale;
-        let regions = chain.regions(shapes);
+        let edges = snap_rounded(&chain.edges, &spans, &tree);
+        // In finer steps, so that resolving what no longer crosses joins nothing.
+        let finer = |e: WholeEdge| e.map(|p| p.map(|x| x * FINER));
+        let mut cut = Chain {
+            centre: chain.centre,
+            scale: chain.scale * FINER as f64,
+            edges: edges.into_iter().map(finer).collect(),
+        };
+        let shapes = cut.shapes();
+        // Rounding to whole numbers moves a point by less than a step.
+        let off = (chain.farthest(&tree, &shapes) + 1.0) / chain.scale;
+        let regions = cut.regions(shapes);
         let length: f64 = regions
             .iter()
             .flat_map(PlaneRegion::rings)

@@ -52,9 +52,9 @@ impl SurfaceView<'_> {
     }
 }
 
-/// Pairs of one triangle of each whose boxes, grown by `slack`, meet: ascending. The boxes are along
-/// the axes, or in a frame in which they are much smaller: triangles that are nearer to each other
-/// than `slack` are among the pairs either way.
+/// Pairs of one triangle of each whose boxes, grown by `slack`, meet: ascending. The boxes are
+/// along the axes, or in a frame in which they are much smaller: triangles that are nearer to each
+/// other than `slack` are among the pairs either way.
 pub fn pairs(
     surfaces: [SurfaceView<'_>; 2],
     bounds: [Span; 2],
