@@ -228,35 +228,24 @@ impl LocalMesh {
         count
     }
 
-    /// Whether two triangles go through each other by more than any operation moves them: each
-    /// reaches farther than the limit beyond the plane of the other on both sides, over a length
-    /// that is more than the limit.
+    /// Whether two triangles go through each other by more than any operation moves them: along
+    /// each direction that can part them (both normals, and across each two edges; the separating
+    /// axes of Gottschalk, 1996) they overlap by more than the limit.
     fn cross_deeply(&self, s: u32, t: u32) -> bool {
         let [p, q] = [s, t].map(|t| self.triangles[t as usize].map(|v| self.positions[v as usize]));
-        let normal = |c: [DVec3; 3]| (c[1] - c[0]).cross(c[2] - c[0]).normalize_or_zero();
-        let (m, n) = (normal(p), normal(q));
-        let [over_q, over_p] = [p.map(|x| (x - q[0]).dot(n)), q.map(|x| (x - p[0]).dot(m))];
-        let beyond = |h: &[f64; 3]| {
-            let (lo, hi) = h.iter().fold((0.0f64, 0.0f64), |(l, u), &x| (l.min(x), u.max(x)));
-            hi.min(-lo)
-        };
-        if beyond(&over_q).min(beyond(&over_p)) <= self.limit {
-            return false;
-        }
-        // Where each meets the line of both planes.
-        let along = m.cross(n).normalize_or_zero();
-        let span = |c: [DVec3; 3], h: [f64; 3]| {
-            let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-                if (h[i] < 0.0) != (h[j] < 0.0) {
-                    let x = (c[i] + (c[j] - c[i]) * (h[i] / (h[i] - h[j]))).dot(along);
-                    (lo, hi) = (lo.min(x), hi.max(x));
-                }
-            }
-            (lo, hi)
-        };
-        let ((a, b), (c, d)) = (span(p, over_q), span(q, over_p));
-        b.min(d) - a.max(c) > self.limit
+        let edges = |c: [DVec3; 3]| [c[1] - c[0], c[2] - c[1], c[0] - c[2]];
+        let (e, f) = (edges(p), edges(q));
+        let across = e.into_iter().flat_map(|e| f.map(|f| e.cross(f)));
+        let mut axes = [e[0].cross(e[1]), f[0].cross(f[1])].into_iter().chain(across);
+        axes.all(|axis| {
+            let Some(axis) = axis.try_normalize() else { return true };
+            let span = |c: [DVec3; 3]| {
+                let h = c.map(|x| (x - p[0]).dot(axis));
+                (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]))
+            };
+            let ((a, b), (c, d)) = (span(p), span(q));
+            (b - c).min(d - a) > self.limit
+        })
     }
 
     /// Tries what may part two triangles that cross.

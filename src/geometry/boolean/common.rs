@@ -76,13 +76,15 @@ pub fn common(
     let mut points =
         PointSet::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
     let mut names: Vec<u32> = (0..points.at.len() as u32).collect();
-    let corners = |t: &[[u32; 3]], of: &dyn Fn(&(u32, u32)) -> u32| -> Vec<u32> {
-        let mut near: Vec<u32> = pairs.iter().flat_map(|p| t[of(p) as usize]).collect();
-        near.sort_unstable();
-        near.dedup();
-        near
+    // Ascending. There may be thousands of pairs to a triangle.
+    let corners = |s: usize, t: &[[u32; 3]], of: fn(&(u32, u32)) -> u32| -> Vec<u32> {
+        let mut near = vec![false; operands[s].positions.len()];
+        for p in &pairs {
+            t[of(p) as usize].iter().for_each(|&v| near[v as usize] = true);
+        }
+        (0..near.len() as u32).filter(|&v| near[v as usize]).collect()
     };
-    let close = [corners(&ta, &|p| p.0), corners(&tb, &|p| p.1)];
+    let close = [corners(0, &ta, |p| p.0), corners(1, &tb, |p| p.1)];
     let (mut renamed, mut shrunk) = ([false; 2], [false; 2]);
     for s in 0..2 {
         job.check()?;
