@@ -11,7 +11,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::job::{Cancelled, Job};
-use crate::simd::wide::{self, Wide, WideWork};
 
 /// A box in single precision, rounded outwards.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +35,6 @@ impl RoundedBox {
         RoundedBox { lo: lo.to_array().map(down), hi: hi.to_array().map(up) }
     }
 
-    #[inline(always)]
     fn join(self, o: RoundedBox) -> RoundedBox {
         let pick = |f: fn(f32, f32) -> f32, a: [f32; 3], b: [f32; 3]| {
             [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])]
@@ -67,12 +65,10 @@ impl BoxGroup {
         out
     }
 
-    #[inline(always)]
     fn lane(&self, lane: usize) -> RoundedBox {
         RoundedBox { lo: self.lo.map(|l| l[lane]), hi: self.hi.map(|h| h[lane]) }
     }
 
-    #[inline(always)]
     fn whole(&self) -> RoundedBox {
         (0..8).fold(RoundedBox::EMPTY, |b, lane| b.join(self.lane(lane)))
     }
@@ -150,14 +146,32 @@ impl BoxGroups {
         job: &Job,
         f: impl Fn(&mut T, u32, u32) + Sync,
     ) -> Result<Vec<T>, Cancelled> {
-        (0..self.levels[0].len().div_ceil(TASK))
+        let groups = &self.levels[0];
+        (0..groups.len().div_ceil(TASK))
             .into_par_iter()
             .map(|task| {
                 job.check()?;
-                Ok(wide::dispatch(
-                    false,
-                    PairsOfTask { tree: self, task, f: &f, state: T::default() },
-                ))
+                let mut state = T::default();
+                let mut stack = Vec::with_capacity(64);
+                for own in task * TASK..groups.len().min((task + 1) * TASK) {
+                    let group = &groups[own];
+                    let lanes = self.order[own * 8..].iter().take(8).enumerate();
+                    for (lane, &t) in lanes.clone() {
+                        let later = group.meets(&group.lane(lane)) & (!1u32 << lane);
+                        each_bit(later, |other| f(&mut state, t, self.order[own * 8 + other]));
+                    }
+                    let whole = group.whole();
+                    self.descend(&whole, own + 1, &mut stack, |other| {
+                        let theirs = &groups[other];
+                        // Only those of the own eight that reach the other eight's box.
+                        let near = group.meets(&theirs.whole());
+                        for (lane, &t) in lanes.clone().filter(|l| near >> l.0 & 1 == 1) {
+                            let met = theirs.meets(&group.lane(lane));
+                            each_bit(met, |u| f(&mut state, t, self.order[other * 8 + u]));
+                        }
+                    });
+                }
+                Ok(state)
             })
             .collect()
     }
@@ -171,7 +185,6 @@ impl BoxGroups {
     }
 
     /// Calls `f` for each group of triangles from `from` on whose box meets `b`.
-    #[inline(always)]
     fn descend(
         &self,
         b: &RoundedBox,
@@ -201,44 +214,6 @@ impl BoxGroups {
                 }
             });
         }
-    }
-}
-
-/// The pairs of one task, as work that is compiled for wide registers too.
-struct PairsOfTask<'a, T, F> {
-    tree: &'a BoxGroups,
-    task: usize,
-    f: &'a F,
-    state: T,
-}
-
-impl<T, F: Fn(&mut T, u32, u32)> WideWork for PairsOfTask<'_, T, F> {
-    type Output = T;
-
-    #[inline(always)]
-    fn run<W: Wide>(self, _: W) -> T {
-        let PairsOfTask { tree, task, f, mut state } = self;
-        let (groups, order) = (&tree.levels[0], &tree.order);
-        let mut stack = Vec::with_capacity(64);
-        for own in task * TASK..groups.len().min((task + 1) * TASK) {
-            let group = &groups[own];
-            let lanes = order[own * 8..].iter().take(8).enumerate();
-            for (lane, &t) in lanes.clone() {
-                let later = group.meets(&group.lane(lane)) & (!1u32 << lane);
-                each_bit(later, |other| f(&mut state, t, order[own * 8 + other]));
-            }
-            let whole = group.whole();
-            tree.descend(&whole, own + 1, &mut stack, |other| {
-                let theirs = &groups[other];
-                // Only those of the own eight that reach the other eight's box.
-                let near = group.meets(&theirs.whole());
-                for (lane, &t) in lanes.clone().filter(|l| near >> l.0 & 1 == 1) {
-                    let met = theirs.meets(&group.lane(lane));
-                    each_bit(met, |u| f(&mut state, t, order[other * 8 + u]));
-                }
-            });
-        }
-        state
     }
 }
 
