@@ -25,8 +25,19 @@ pub struct Common {
     pub bounds: [Span; 2],
     /// Triangles whose boxes are within the tolerance of each other, ascending.
     pub pairs: Vec<(u32, u32)>,
-    /// Both operands are one surface. Then `pairs` may be those of before the points were common.
+    /// Both operands are one surface. Then `pairs` may be those of before the points were common,
+    /// until [`Common::pair_again`].
     pub same_surface: bool,
+}
+
+impl Common {
+    /// The pairs of the triangles as they are over the common points.
+    pub fn pair_again(&mut self, job: &Job) -> Result<(), Cancelled> {
+        let at = &self.points.at;
+        let surfaces = [0, 1].map(|s| SurfaceView { triangles: &self.triangles[s], at, base: 0 });
+        self.pairs = broad_phase::pairs(surfaces, self.bounds, 4.0 * self.points.tolerance(), job)?;
+        Ok(())
+    }
 }
 
 /// Whether both operands are one and the same surface: the same triangles over the common points,
@@ -71,7 +82,7 @@ pub fn common(
     let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
     let surface =
         |s: usize, triangles| SurfaceView { triangles, at: &operands[s].positions, base: 0 };
-    let mut pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
+    let pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
     lap("broad_phase");
     let mut points =
         PointSet::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
@@ -117,13 +128,13 @@ pub fn common(
         };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
     let same_surface = same_surface(&ta, &tb, points.contact.places);
+    let (triangles, starts) = ([ta, tb], [sa, sb]);
+    let mut out = Common { points, meshes, triangles, starts, bounds, pairs, same_surface };
     if again && !same_surface {
-        let surface = |triangles| SurfaceView { triangles, at: &points.at, base: 0 };
-        pairs = broad_phase::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
+        out.pair_again(job)?;
     }
     lap("weld");
-    let (triangles, starts) = ([ta, tb], [sa, sb]);
-    Ok(Common { points, meshes, triangles, starts, bounds, pairs, same_surface })
+    Ok(out)
 }
 
 fn bounds(at: &[DVec3]) -> Span {

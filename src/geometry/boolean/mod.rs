@@ -438,7 +438,7 @@ fn attempt(
         report.phases.push((name, t - clock));
         clock = t;
     };
-    let common = common::common(operands, eps, job, &mut lap)?;
+    let mut common = common::common(operands, eps, job, &mut lap)?;
     if common.same_surface {
         let solids =
             of_one_surface(operands[0], operations, options.faces.triangles(operands), job)?;
@@ -449,6 +449,7 @@ fn attempt(
             let why = doubt(&solids, volumes, slack, &common.points.at, report);
             return Ok(why.map_or(Ok(solids), Err));
         }
+        common.pair_again(job)?;
     }
     let a = Arrangement::of(common, eps, floor, None, job, &mut lap)?;
     if let Some(why) = &a.doubt {
