@@ -8,7 +8,8 @@
 shifts: each closed mesh of the folder against itself shifted by 24 lengths from 1e-16 to 1e-2 of its size, straight and
     turned, in double precision, 9 digits, 6 decimals and single precision. All four volumes must add up, the difference
     must be Manifold's (manifold3d, PyPI) within what the answer itself states, and an answer that is not Manifold's must
-    say that it depends on the tolerance. `--every N` runs each Nth scene.
+    say that it depends on the tolerance. `--every N` runs each Nth scene; `--samples N` compares the results at N places
+    near both surfaces, between them where there is room, with the winding numbers of the operands.
 parts: flat-faced parts cut by turned ones, as written in STL, OBJ, PLY and 3MF: closed, manifold, no triangles that cross,
     at most 1.05 times Manifold's triangles.
 shells: files of random overlapping and nested shells, some turned inside out, made one solid by `--solve winding`; the
@@ -69,7 +70,7 @@ def read_off(path):
     lines = Path(path).read_text().split("\n")
     n, m = map(int, lines[1].split()[:2])
     v = np.array([line.split()[:3] for line in lines[2 : 2 + n]], dtype=np.float64)
-    faces = np.array([line.split()[:4] for line in lines[2 + n : 2 + n + m]], dtype=np.int64)
+    faces = np.array([line.split()[:4] for line in lines[2 + n : 2 + n + m]], dtype=np.int64).reshape(-1, 4)
     assert (faces[:, 0] == 3).all()
     return v, faces[:, 1:]
 
@@ -123,7 +124,52 @@ def meshes(binary, folder, most, work):
             yield file.name, v, t
 
 
-def shift_fault(binary, work, v, t, length, angle, how):
+def winding(v, t, points):
+    """The winding number of a mesh at points (Van Oosterom and Strackee, 1983)."""
+    out = np.zeros(len(points))
+    if not len(t):
+        return out
+    corners = v[t]
+    for n, q in enumerate(points):
+        a, b, c = (corners[:, k] - q for k in range(3))
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        top = np.einsum("ij,ij->i", a, np.cross(b, c))
+        dot = lambda x, y: np.einsum("ij,ij->i", x, y)
+        below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+        out[n] = np.arctan2(top, below).sum() / (2 * np.pi)
+    return out
+
+
+def sample_fault(work, a, b, t, by, tolerance, count, seed):
+    """Where the results, at places near both surfaces, are not what the operands' winding numbers say; and how many
+    places were told. Left out: places within twice the tolerance of a surface, where the numbers change."""
+    rng = np.random.default_rng(seed)
+    faces = rng.integers(0, len(t), count)
+    weights = rng.dirichlet([1, 1, 1], count)
+    p = np.einsum("ij,ijk->ik", weights, a[t[faces]])
+    n = np.cross(a[t[faces, 1]] - a[t[faces, 0]], a[t[faces, 2]] - a[t[faces, 0]])
+    n /= np.maximum(np.linalg.norm(n, axis=1), 1e-300)[:, None]
+    # Between the surfaces where there is room, else just beside both.
+    between = by / 2 > 4 * tolerance
+    middle = p + np.where(rng.random(count) < 0.5, 0.5, 1.5)[:, None] * by * BY
+    beside = p + n * (4 * tolerance + by) * rng.choice([-1, 1], count)[:, None]
+    places = middle if between else beside
+    jitter = [np.zeros(3), *(2 * tolerance * np.eye(3)), *(-2 * tolerance * np.eye(3))]
+    told = [np.stack([winding(m, t, places + j) for j in jitter]) for m in (a, b)]
+    clear = np.all([(abs(w - w[0]).max(0) < 0.02) & (abs(w[0] - w[0].round()) < 0.02) for w in told], axis=0)
+    places = places[clear]
+    ina, inb = (w[0][clear] > 0.5 for w in told)
+    wanted = {"union": ina | inb, "intersection": ina & inb, "difference": ina & ~inb, "reverse-difference": inb & ~ina}
+    faults = []
+    for name, want in wanted.items():
+        v, faces = read_off(work / f"out-{name}.off")
+        wrong = int(((winding(v, faces, places) > 0.5) != want).sum())
+        if wrong:
+            faults.append(f"{name} is wrong at {wrong} of {len(places)} places")
+    return faults, len(places)
+
+
+def shift_fault(binary, work, v, t, length, angle, how, samples):
     """What is wrong with the answer, whether it was an error, and the seconds it took."""
     size = np.abs(v).max()
     a = v @ turn(angle).T
@@ -131,7 +177,7 @@ def shift_fault(binary, work, v, t, length, angle, how):
     a = stored(a, how)
     write(work / "a.ply", a, t)
     write(work / "b.ply", b, t)
-    said, error, took = command(binary, "boolean", "all", work / "a.ply", work / "b.ply", "-o", work / "out.ply")
+    said, error, took = command(binary, "boolean", "all", work / "a.ply", work / "b.ply", "-o", work / "out.off")
     if said is None:
         return f"error {error}", True, took
     va, vb, s = volume(a, t), volume(b, t), area(a, t)
@@ -151,12 +197,19 @@ def shift_fault(binary, work, v, t, length, angle, how):
         far = abs(d - theirs) > near + s * 2 * said["tolerance"]
         if far or not said["depends_on_tolerance"]:
             faults.append(f"A - B {d:.6e}, Manifold {theirs:.6e}, tolerance {said['tolerance']:.1e}, depends {said['depends_on_tolerance']}")
+    if samples:
+        wrong, told = sample_fault(work, a, b, t, length * size, said["tolerance"], samples, samples + int(-np.log10(length) * 100))
+        faults += wrong
+        shift_fault.told += told
     for name, m in made.items():
         if not (m["closed"] and m["manifold"]):
             faults.append(f"{name} closed {m['closed']} manifold {m['manifold']}")
         if m["self_intersections"]:
             faults.append(f"note: {name} crosses itself {m['self_intersections']} times")
     return "; ".join(faults), False, took
+
+
+shift_fault.told = 0
 
 
 def shifts(args, work):
@@ -174,7 +227,7 @@ def shifts(args, work):
                     break
                 angle, how = (0.0, 0.7)[way // 4], STORED[way % 4]
                 scenes += 1
-                fault, error, took = shift_fault(args.binary, work, v, t, 10.0**exponent, angle, how)
+                fault, error, took = shift_fault(args.binary, work, v, t, 10.0**exponent, angle, how, args.samples)
                 errors += error
                 slow.append((took, name, len(t)))
                 real = [f for f in fault.split("; ") if f and not f.startswith("note: ")]
@@ -182,7 +235,7 @@ def shifts(args, work):
                 wrong += bool(real) and not error
                 if fault:
                     print(f"{name} ({len(t)}) by 1e{exponent:.2f}, {angle}, {how}: {fault}", flush=True)
-    print(f"shifts: {count} meshes, {scenes} scenes, {wrong} silently wrong, {errors} errors, {crossed} with a result that crosses itself")
+    print(f"shifts: {count} meshes, {scenes} scenes, {wrong} silently wrong, {errors} errors, {crossed} with a result that crosses itself, {shift_fault.told} places told by the winding number")
     for took, name, faces in sorted(slow, reverse=True)[:8]:
         print(f"   {took:.1f} s {name} ({faces} faces)")
     return wrong
@@ -324,6 +377,7 @@ def main():
     parser.add_argument("folder", nargs="?")
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--samples", type=int, default=0)
     parser.add_argument("--faces", type=int, default=20_000)
     parser.add_argument("--count", type=int, default=None)
     parser.add_argument("--seconds", type=float, default=1e9)

@@ -63,6 +63,7 @@ pub mod self_intersection;
 pub mod shapes;
 pub mod silhouette;
 pub mod simd;
+mod snap_rounding;
 pub mod subdivide;
 pub mod thickness;
 mod tight_frame;

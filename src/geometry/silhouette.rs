@@ -18,11 +18,17 @@ use rayon::prelude::*;
 
 use super::distance::topology::{NO_PARTNER, Topology};
 use super::measure::Strips;
+use super::snap_rounding::{WholeEdge, snap_rounded};
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::job::Job;
 
-/// Half the extent of a chain in whole numbers: about 4e-9 of the extent is the smallest step.
-const REACH: f64 = (1 << 28) as f64;
+/// Half the extent of a chain in whole numbers. The smallest step is 7e-15 of the extent, 64 times
+/// what double precision rounds to, so that edges which lie on each other but for rounding become
+/// one.
+const REACH: f64 = (1u64 << 46) as f64;
+
+/// Steps of a resolved outline in one of a chain.
+const FINER: i64 = 256;
 
 /// A plane to project onto: `u` to the right, `v` up, `towards` the viewer; right-handed, of unit
 /// length.
@@ -91,7 +97,7 @@ impl PlaneRegion {
 pub struct Chain {
     centre: DVec2,
     scale: f64,
-    edges: Vec<[[i32; 2]; 2]>,
+    edges: Vec<[[i64; 2]; 2]>,
 }
 
 impl Chain {
@@ -103,13 +109,13 @@ impl Chain {
     }
 
     /// The whole-number coordinates of a point within the box.
-    pub fn whole(&self, p: DVec2) -> [i32; 2] {
-        ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i32)
+    pub fn whole(&self, p: DVec2) -> [i64; 2] {
+        ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i64)
     }
 
     /// Adds the edge from `a` to `b`; an edge of no length is none.
     #[inline]
-    pub fn push(&mut self, a: [i32; 2], b: [i32; 2]) {
+    pub fn push(&mut self, a: [i64; 2], b: [i64; 2]) {
         if a != b {
             self.edges.push([a, b]);
         }
@@ -119,11 +125,11 @@ impl Chain {
     /// kind, and they are what makes the resolution slow.
     fn cancel(&mut self) {
         let lower_first =
-            |e: &[[i32; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
+            |e: &[[i64; 2]; 2]| if e[0] <= e[1] { (*e, 1) } else { ([e[1], e[0]], -1) };
         self.edges.sort_unstable_by_key(|e| lower_first(e).0);
         let mut kept = Vec::with_capacity(self.edges.len());
         for group in self.edges.chunk_by(|a, b| lower_first(a).0 == lower_first(b).0) {
-            let net: i32 = group.iter().map(|e| lower_first(e).1).sum();
+            let net: i64 = group.iter().map(|e| lower_first(e).1).sum();
             let [a, b] = lower_first(&group[0]).0;
             kept.extend((0..net).map(|_| [a, b]));
             kept.extend((net..0).map(|_| [b, a]));
@@ -131,15 +137,19 @@ impl Chain {
         self.edges = kept;
     }
 
-    /// Whether few enough edges are near each other to be resolved: of edges in bundles, such as
-    /// the sides of slivers that lie on each other, each crosses each anew once it is rounded.
-    fn crosses_rarely(&self) -> bool {
-        const EACH: usize = 256;
-        const ALL: usize = 1_000_000;
-        let place = |p: [i32; 2]| DVec3::new(f64::from(p[0]), f64::from(p[1]), 0.0);
-        let spans: Vec<Span> = self.edges.iter().map(|e| Span::of(e.map(place))).collect();
+    /// The boxes of the edges, and a tree over them.
+    fn tree(&self) -> (Vec<Span>, SpanTree) {
+        let spans: Vec<Span> = self.edges.iter().map(|e| Span::of(e.map(flat_place))).collect();
         // A fresh job is never cancelled.
         let tree = SpanTree::build(&spans, &Job::default()).unwrap_or_default();
+        (spans, tree)
+    }
+
+    /// Whether few enough edges are near each other to be resolved: of edges in bundles, such as
+    /// the sides of slivers that lie on each other, each crosses each anew once it is rounded.
+    fn crosses_rarely(&self, spans: &[Span], tree: &SpanTree) -> bool {
+        const EACH: usize = 256;
+        const ALL: usize = 1_000_000;
         let mut left = EACH * spans.len() + ALL;
         spans.iter().all(|s| {
             let mut met = 0;
@@ -149,9 +159,31 @@ impl Chain {
         })
     }
 
+    /// How far the corners of resolved shapes, in steps of one in [`FINER`], are from the edges that
+    /// they came from, at most; in steps.
+    fn farthest(&self, tree: &SpanTree, shapes: &[Vec<Vec<[i64; 2]>>]) -> f64 {
+        let nearest = |p: &[i64; 2]| {
+            let at = flat_place(*p) / FINER as f64;
+            let mut reach = 4.0;
+            loop {
+                let mut best = f64::INFINITY;
+                tree.each_meets(&Span::of([at]).grown(reach), |e| {
+                    let [a, b] = self.edges[e as usize].map(flat_place);
+                    let t = ((at - a).dot(b - a) / a.distance_squared(b)).clamp(0.0, 1.0);
+                    best = best.min((a + (b - a) * t).distance(at));
+                });
+                if best <= reach || reach > 4.0 * REACH {
+                    return best;
+                }
+                reach *= 64.0;
+            }
+        };
+        shapes.par_iter().flatten().flatten().map(nearest).reduce(|| 0.0, f64::max)
+    }
+
     /// The edges as loops. Every point has as many edges in as out, so a walk ends only where it
     /// began.
-    fn loops(&mut self) -> Vec<Vec<IntPoint>> {
+    fn loops(&mut self) -> Vec<Vec<IntPoint<i64>>> {
         self.cancel();
         self.edges.sort_unstable();
         let edges = &self.edges;
@@ -162,7 +194,7 @@ impl Chain {
                 starts.push(i as u32);
             }
         }
-        let from = |p: [i32; 2]| starts.binary_search_by(|&i| edges[i as usize][0].cmp(&p));
+        let from = |p: [i64; 2]| starts.binary_search_by(|&i| edges[i as usize][0].cmp(&p));
         let mut next = starts.clone();
         let mut loops = Vec::new();
         for s in 0..starts.len() {
@@ -194,16 +226,27 @@ impl Chain {
 
     /// The region that the chain goes around, as polygons with holes.
     pub fn resolve(mut self) -> Vec<PlaneRegion> {
+        let shapes = self.shapes();
+        self.regions(shapes)
+    }
+
+    /// In whole numbers: of each polygon its rings.
+    fn shapes(&mut self) -> Vec<Vec<Vec<[i64; 2]>>> {
         let loops = self.loops();
-        let mut overlay = Overlay::<i32>::new(self.edges.len());
-        // Edges that all but lie on each other are joined after a few rounds, within a millionth of
-        // the extent; with a finer precision they are resolved into thousands of slivers.
+        let mut overlay = Overlay::<i64>::new(self.edges.len());
+        // Edges that all but lie on each other are joined after a few rounds, each round over three
+        // times the length; with a finer precision they are resolved into thousands of slivers.
         overlay.solver = Solver { precision: Precision::LOW, ..Solver::AUTO };
         for l in &loops {
             overlay.add_contour(l, Subject);
         }
         let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
-        let back = |p: &IntPoint| self.centre + DVec2::new(p.x as f64, p.y as f64) / self.scale;
+        let ring = |r: Vec<IntPoint<i64>>| r.into_iter().map(|p| [p.x, p.y]).collect();
+        shapes.into_iter().map(|shape| shape.into_iter().map(ring).collect()).collect()
+    }
+
+    fn regions(&self, shapes: Vec<Vec<Vec<[i64; 2]>>>) -> Vec<PlaneRegion> {
+        let back = |p: &[i64; 2]| self.centre + DVec2::new(p[0] as f64, p[1] as f64) / self.scale;
         shapes
             .into_iter()
             .filter_map(|shape| {
@@ -218,6 +261,10 @@ impl Chain {
     }
 }
 
+fn flat_place(p: [i64; 2]) -> DVec3 {
+    DVec3::new(p[0] as f64, p[1] as f64, 0.0)
+}
+
 /// A shadow.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ShadowOutline {
@@ -228,14 +275,18 @@ pub struct ShadowOutline {
     pub strip: f64,
     /// One standard deviation of the regions' area; 0 where the outline is exact.
     pub standard_error: f64,
+    /// How far the area of an exact outline may be off, in square units: the length of the rings
+    /// times how far their corners lie from the edges that they came from, rounding included. 0
+    /// where it is drawn in strips.
+    pub error_bound: f64,
 }
 
 /// Strips in which an outline is drawn that is not resolved.
 const STRIPS: usize = 512;
 
-/// The shadow of a mesh on `plane`, exact to about 4e-9 of its extent (1e-6 where edges all but lie
-/// on each other) beyond the rounding of its vertices to single precision. Rings repeat their first
-/// point at the end.
+/// The shadow of a mesh on `plane`, exact to about 1e-14 of its extent (more where edges all but
+/// lie on each other: [`ShadowOutline::error_bound`]) beyond the rounding of its vertices to single
+/// precision. Rings repeat their first point at the end.
 pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion> {
     let positions: Vec<DVec3> = topology.positions.iter().map(|p| p.as_dvec3()).collect();
     outline_of(topology, &positions, plane).regions
@@ -289,8 +340,27 @@ pub fn outline_of(
         }
     }
     chain.cancel();
-    if chain.crosses_rarely() {
-        return ShadowOutline { regions: chain.resolve(), strip: 0.0, standard_error: 0.0 };
+    let (spans, tree) = chain.tree();
+    if chain.crosses_rarely(&spans, &tree) {
+        let edges = snap_rounded(&chain.edges, &spans, &tree);
+        // In finer steps, so that resolving what no longer crosses joins nothing.
+        let finer = |e: WholeEdge| e.map(|p| p.map(|x| x * FINER));
+        let mut cut = Chain {
+            centre: chain.centre,
+            scale: chain.scale * FINER as f64,
+            edges: edges.into_iter().map(finer).collect(),
+        };
+        let shapes = cut.shapes();
+        // Rounding to whole numbers moves a point by less than a step.
+        let off = (chain.farthest(&tree, &shapes) + 1.0) / chain.scale;
+        let regions = cut.regions(shapes);
+        let length: f64 = regions
+            .iter()
+            .flat_map(PlaneRegion::rings)
+            .flat_map(|r| r.windows(2).map(|w| w[0].distance(w[1])))
+            .sum();
+        let error_bound = length * off;
+        return ShadowOutline { regions, strip: 0.0, standard_error: 0.0, error_bound };
     }
     let used =
         |t: &&[u32; 3]| t.iter().all(|&v| flat.get(v as usize).is_some_and(|p| p.is_finite()));
@@ -317,10 +387,10 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
         return ShadowOutline::default();
     };
     let mut chain = Chain::new(lo, hi);
-    let rows: Vec<Vec<(i32, i32)>> = (0..STRIPS)
+    let rows: Vec<Vec<(i64, i64)>> = (0..STRIPS)
         .into_par_iter()
         .map(|s| {
-            let mut spans: Vec<(i32, i32)> = strips
+            let mut spans: Vec<(i64, i64)> = strips
                 .spans(s, flat, triangles)
                 .into_iter()
                 .map(|(a, b)| {
@@ -329,7 +399,7 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
                 .filter(|(a, b)| a < b)
                 .collect();
             spans.sort_unstable();
-            let mut row: Vec<(i32, i32)> = Vec::new();
+            let mut row: Vec<(i64, i64)> = Vec::new();
             for (a, b) in spans {
                 match row.last_mut() {
                     Some(last) if a <= last.1 => last.1 = last.1.max(b),
@@ -340,8 +410,8 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
         })
         .collect();
     let border = |s: usize| chain.whole(DVec2::new(lo.x, strips.lo + s as f64 * strips.height))[1];
-    let borders: Vec<i32> = (0..=STRIPS).map(border).collect();
-    let mut marks: Vec<(i32, i32)> = Vec::new();
+    let borders: Vec<i64> = (0..=STRIPS).map(border).collect();
+    let mut marks: Vec<(i64, i64)> = Vec::new();
     for (s, &y) in borders.iter().enumerate() {
         let row = |s: Option<usize>| s.and_then(|s| rows.get(s)).map_or(&[][..], |r| r);
         let (below, above) = (row(s.checked_sub(1)), row(Some(s)));
@@ -368,7 +438,7 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
     }
     let lengths: Vec<f64> = rows
         .iter()
-        .map(|r| r.iter().map(|(a, b)| f64::from(*b) - f64::from(*a)).sum::<f64>() / chain.scale)
+        .map(|r| r.iter().map(|(a, b)| (*b - *a) as f64).sum::<f64>() / chain.scale)
         .collect();
     // Between two strips the length changes somewhere, evenly likely anywhere; at both ends from
     // and to nothing.
@@ -379,7 +449,7 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
     for ring in regions.iter_mut().flat_map(|r| std::iter::once(&mut r.outer).chain(&mut r.holes)) {
         ring.iter_mut().for_each(|p| *p = back(*p));
     }
-    ShadowOutline { regions, strip: strips.height, standard_error }
+    ShadowOutline { regions, strip: strips.height, standard_error, error_bound: 0.0 }
 }
 
 #[cfg(test)]
@@ -407,7 +477,37 @@ mod tests {
             let area: f64 = shadow.regions.iter().map(PlaneRegion::area).sum();
             assert!((area / want - 1.0).abs() < 1e-8, "{area} instead of {want}");
             assert_eq!((shadow.strip, shadow.standard_error), (0.0, 0.0));
+            assert!(shadow.error_bound > 0.0 && shadow.error_bound < 1e-12 * want);
         }
+    }
+
+    #[test]
+    fn edges_that_nearly_coincide_are_as_exact_as_their_bound() {
+        // Plates one over the other, each a millionth of a millionth of a degree further turned.
+        // Their union is all but the first of them.
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for i in 0..60u32 {
+            let (s, c) = (0.4 + f64::from(i) * 3e-12).sin_cos();
+            for (x, y) in [(-3.0, -2.0), (3.0, -2.0), (3.0, 2.0), (-3.0, 2.0)] {
+                positions.push(DVec3::new(c * x - s * y, s * x + c * y, f64::from(i)));
+            }
+            triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|v| v + 4 * i)));
+        }
+        let single: Vec<glam::Vec3> = positions.iter().map(|p| p.as_vec3()).collect();
+        let corners = triangles.iter().map(|t| t.map(|v: u32| positions[v as usize])).collect();
+        let mesh = crate::TriMesh { positions: single, triangles, colours: None };
+        let solid = DistanceSolid::build(&mesh, &Job::default()).expect("built");
+        let solid = solid.with_corners(corners);
+        let plane = ProjectionPlane::along(DVec3::NEG_Z, 0.0).expect("a plane");
+        let shadow = outline_of(&solid.topology, &solid.positions(), &plane);
+        let area: f64 = shadow.regions.iter().map(PlaneRegion::area).sum();
+        // The far corners sweep a triangle on each side: the sum of both halves of each side's
+        // length squared, times half the angle.
+        let angle = 59.0 * 3e-12;
+        let swept = angle * (2.0 * 9.0 + 2.0 * 4.0);
+        assert_eq!(shadow.strip, 0.0);
+        assert!(shadow.error_bound < 1e-9, "{}", shadow.error_bound);
+        assert!(area >= 24.0 - shadow.error_bound && area <= 24.0 + swept + shadow.error_bound);
     }
 
     #[test]

@@ -228,6 +228,26 @@ impl LocalMesh {
         count
     }
 
+    /// Whether two triangles go through each other by more than any operation moves them: along
+    /// each direction that can part them (both normals, and across each two edges; the separating
+    /// axes of Gottschalk, 1996) they overlap by more than the limit.
+    fn cross_deeply(&self, s: u32, t: u32) -> bool {
+        let [p, q] = [s, t].map(|t| self.triangles[t as usize].map(|v| self.positions[v as usize]));
+        let edges = |c: [DVec3; 3]| [c[1] - c[0], c[2] - c[1], c[0] - c[2]];
+        let (e, f) = (edges(p), edges(q));
+        let across = e.into_iter().flat_map(|e| f.map(|f| e.cross(f)));
+        let mut axes = [e[0].cross(e[1]), f[0].cross(f[1])].into_iter().chain(across);
+        axes.all(|axis| {
+            let Some(axis) = axis.try_normalize() else { return true };
+            let span = |c: [DVec3; 3]| {
+                let h = c.map(|x| (x - p[0]).dot(axis));
+                (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]))
+            };
+            let ((a, b), (c, d)) = (span(p), span(q));
+            (b - c).min(d - a) > self.limit
+        })
+    }
+
     /// Tries what may part two triangles that cross.
     fn repair(&mut self, s: u32, t: u32) {
         let pair = [s, t];
@@ -237,6 +257,7 @@ impl LocalMesh {
                 self.triangles[s as usize],
                 self.triangles[t as usize],
             )
+            || self.cross_deeply(s, t)
         {
             return;
         }

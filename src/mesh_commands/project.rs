@@ -96,6 +96,8 @@ struct ProjectAnswer {
     area: f64,
     /// One standard deviation; zero for `exact`.
     standard_error: f64,
+    /// How far the area of an exact outline may be off; zero for the other methods.
+    error_bound: f64,
     polygons: usize,
     holes: usize,
     points: Option<Points>,
@@ -120,6 +122,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         },
         area: 0.0,
         standard_error: 0.0,
+        error_bound: 0.0,
         polygons: 0,
         holes: 0,
         points: None,
@@ -136,7 +139,7 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         let (shadow, seconds) = timed(|| outline_of(&solid.topology, &solid.positions(), &plane));
         let polygons = shadow.regions;
         (out.area, out.standard_error) = (area(&polygons), shadow.standard_error);
-        out.seconds = seconds;
+        (out.seconds, out.error_bound) = (seconds, shadow.error_bound);
         if shadow.strip > 0.0 {
             out.method = "strips";
             out.warnings.push(format!(

@@ -61,8 +61,19 @@ impl Arrangement {
         job: &Job,
         lap: &mut dyn FnMut(&'static str),
     ) -> Result<Arrangement, Cancelled> {
-        let Common { mut points, meshes, triangles, starts, bounds, pairs } =
-            common(operands, eps, job, lap)?;
+        Arrangement::of(common(operands, eps, job, lap)?, eps, floor, around, job, lap)
+    }
+
+    /// The same, of operands that are already over common points.
+    pub(super) fn of(
+        common: Common,
+        eps: f64,
+        floor: f64,
+        around: Option<Around<'_>>,
+        job: &Job,
+        lap: &mut dyn FnMut(&'static str),
+    ) -> Result<Arrangement, Cancelled> {
+        let Common { mut points, meshes, triangles, starts, bounds, pairs, .. } = common;
         let own = points.at.len();
         job.progress(0.2);
         let meeting =

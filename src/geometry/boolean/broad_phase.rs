@@ -2,11 +2,12 @@
 //! grid over the common box rejects it at a few operations a triangle, and only the rest gets a
 //! tree.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::boolean::box_tree::{Span, SpanTree};
 use crate::job::{Cancelled, Job};
+use crate::tight_frame::tight_frame;
 
 /// Cells a side: one row is one word.
 const CELLS: usize = 128;
@@ -30,6 +31,20 @@ impl SurfaceView<'_> {
         self.triangles[t as usize].map(|v| self.at[(v - self.base) as usize])
     }
 
+    /// A frame in which the boxes of some triangles are small, where there is a better one than the
+    /// axes, and the largest error of a place in it.
+    fn tight_frame(&self, some: &[u32]) -> Option<(DMat3, f64)> {
+        if some.len() < FEW {
+            return None;
+        }
+        let corners: Vec<DVec3> = some.iter().flat_map(|&t| self.corners(t)).collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..some.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let turn = tight_frame(&corners, &triangles)?;
+        let reach = corners.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
+        Some((turn, reach * 1e-14))
+    }
+
     /// The box around a triangle.
     pub fn span(&self, t: u32) -> Span {
         let [a, b, c] = self.corners(t);
@@ -37,7 +52,9 @@ impl SurfaceView<'_> {
     }
 }
 
-/// Pairs of one triangle of each whose boxes, grown by `slack`, meet: ascending.
+/// Pairs of one triangle of each whose boxes, grown by `slack`, meet: ascending. The boxes are
+/// along the axes, or in a frame in which they are much smaller: triangles that are nearer to each
+/// other than `slack` are among the pairs either way.
 pub fn pairs(
     surfaces: [SurfaceView<'_>; 2],
     bounds: [Span; 2],
@@ -61,8 +78,16 @@ pub fn pairs(
         (first, Marked::default())
     };
     job.check()?;
+    // Of the surface of which more is left.
+    let most = usize::from(second.len() > first.len());
+    let turned = surfaces[most].tight_frame(if most == 0 { &first } else { &second });
     let side = |s: usize, left: &[u32]| {
-        let spans: Vec<Span> = left.iter().map(|&t| surfaces[s].span(t)).collect();
+        let span = |&t: &u32| match turned {
+            // Places in the other frame are off by rounding.
+            Some((turn, room)) => Span::of(surfaces[s].corners(t).map(|p| turn * p)).grown(room),
+            None => surfaces[s].span(t),
+        };
+        let spans: Vec<Span> = left.iter().map(span).collect();
         SpanTree::build(&spans, job).map(|tree| (spans, tree))
     };
     let (a, b) = rayon::join(|| side(0, &first), || side(1, &second));

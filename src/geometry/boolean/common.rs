@@ -25,6 +25,43 @@ pub struct Common {
     pub bounds: [Span; 2],
     /// Triangles whose boxes are within the tolerance of each other, ascending.
     pub pairs: Vec<(u32, u32)>,
+    /// Both operands are one surface. Then `pairs` may be those of before the points were common,
+    /// until [`Common::pair_again`].
+    pub same_surface: bool,
+}
+
+impl Common {
+    /// The pairs of the triangles as they are over the common points.
+    pub fn pair_again(&mut self, job: &Job) -> Result<(), Cancelled> {
+        let at = &self.points.at;
+        let surfaces = [0, 1].map(|s| SurfaceView { triangles: &self.triangles[s], at, base: 0 });
+        self.pairs = broad_phase::pairs(surfaces, self.bounds, 4.0 * self.points.tolerance(), job)?;
+        Ok(())
+    }
+}
+
+/// Whether both operands are one and the same surface: the same triangles over the common points,
+/// in the same direction. Then nothing is between them, however often they cross themselves.
+fn same_surface(a: &[[u32; 3]], b: &[[u32; 3]], contact: usize) -> bool {
+    // Triangles that shrank to less are nothing.
+    let whole = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    let least_first = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {
+        least if least == a => [a, b, c],
+        least if least == b => [b, c, a],
+        _ => [c, a, b],
+    };
+    // Where no place is in contact, no triangle of one is a triangle of the other. Most pairs of
+    // solids differ in the first triangle.
+    let first = a.iter().find(whole).map(least_first);
+    if contact == 0 || first.is_none() || !b.iter().any(|t| Some(least_first(t)) == first) {
+        return false;
+    }
+    let sorted = |t: &[[u32; 3]]| {
+        let mut all: Vec<[u32; 3]> = t.iter().filter(whole).map(least_first).collect();
+        all.par_sort_unstable();
+        all
+    };
+    sorted(a) == sorted(b)
 }
 
 /// Puts places of the operands that are within `eps` of each other on one point, where the surfaces
@@ -45,18 +82,20 @@ pub fn common(
     let ((mut ta, mut sa), (mut tb, mut sb)) = (a?, b?);
     let surface =
         |s: usize, triangles| SurfaceView { triangles, at: &operands[s].positions, base: 0 };
-    let mut pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
+    let pairs = broad_phase::pairs([surface(0, &ta), surface(1, &tb)], bounds, slack, job)?;
     lap("broad_phase");
     let mut points =
         PointSet::new([&operands[0].positions[..], &operands[1].positions[..]].concat(), eps);
     let mut names: Vec<u32> = (0..points.at.len() as u32).collect();
-    let corners = |t: &[[u32; 3]], of: &dyn Fn(&(u32, u32)) -> u32| -> Vec<u32> {
-        let mut near: Vec<u32> = pairs.iter().flat_map(|p| t[of(p) as usize]).collect();
-        near.sort_unstable();
-        near.dedup();
-        near
+    // Ascending. There may be thousands of pairs to a triangle.
+    let corners = |s: usize, t: &[[u32; 3]], of: fn(&(u32, u32)) -> u32| -> Vec<u32> {
+        let mut near = vec![false; operands[s].positions.len()];
+        for p in &pairs {
+            t[of(p) as usize].iter().for_each(|&v| near[v as usize] = true);
+        }
+        (0..near.len() as u32).filter(|&v| near[v as usize]).collect()
     };
-    let close = [corners(&ta, &|p| p.0), corners(&tb, &|p| p.1)];
+    let close = [corners(0, &ta, |p| p.0), corners(1, &tb, |p| p.1)];
     let (mut renamed, mut shrunk) = ([false; 2], [false; 2]);
     for s in 0..2 {
         job.check()?;
@@ -88,12 +127,14 @@ pub fn common(
             Ok(PolyMesh { face_starts: m.face_starts.clone(), corners, ..PolyMesh::new() })
         };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
-    if again {
-        let surface = |triangles| SurfaceView { triangles, at: &points.at, base: 0 };
-        pairs = broad_phase::pairs([surface(&ta), surface(&tb)], bounds, slack, job)?;
+    let same_surface = same_surface(&ta, &tb, points.contact.places);
+    let (triangles, starts) = ([ta, tb], [sa, sb]);
+    let mut out = Common { points, meshes, triangles, starts, bounds, pairs, same_surface };
+    if again && !same_surface {
+        out.pair_again(job)?;
     }
     lap("weld");
-    Ok(Common { points, meshes, triangles: [ta, tb], starts: [sa, sb], bounds, pairs })
+    Ok(out)
 }
 
 fn bounds(at: &[DVec3]) -> Span {

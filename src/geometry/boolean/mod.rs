@@ -438,7 +438,20 @@ fn attempt(
         report.phases.push((name, t - clock));
         clock = t;
     };
-    let a = Arrangement::new(operands, eps, floor, None, job, &mut lap)?;
+    let mut common = common::common(operands, eps, job, &mut lap)?;
+    if common.same_surface {
+        let solids =
+            of_one_surface(operands[0], operations, options.faces.triangles(operands), job)?;
+        if let Some(solids) = solids {
+            lap("emit");
+            report.contact = common.points.contact;
+            let slack = floor.max(8.0 * report.contact.farthest);
+            let why = doubt(&solids, volumes, slack, &common.points.at, report);
+            return Ok(why.map_or(Ok(solids), Err));
+        }
+        common.pair_again(job)?;
+    }
+    let a = Arrangement::of(common, eps, floor, None, job, &mut lap)?;
     if let Some(why) = &a.doubt {
         return Ok(Err(why.clone()));
     }
@@ -512,6 +525,37 @@ fn attempt(
     report.cut = a.curve();
     job.progress(1.0);
     Ok(Ok(solids))
+}
+
+/// The results where both operands are one surface: the first operand, or nothing. None where the
+/// operand is not a closed manifold as it is.
+fn of_one_surface(
+    operand: &PolyMesh,
+    operations: &[Operation],
+    triangles: bool,
+    job: &Job,
+) -> Result<Option<Vec<BooleanSolid>>, Cancelled> {
+    let mut solids = Vec::with_capacity(operations.len());
+    for &operation in operations {
+        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
+        if operation.takes(0, Placement::Same, false).is_some() {
+            if triangles && operand.faces().any(|f| f.len() != 3) {
+                return Ok(None);
+            }
+            mesh.face_starts = operand.face_starts.clone();
+            mesh.corners = operand.corners.clone();
+            origins.extend(
+                (0..operand.face_count() as u32).map(|face| FaceOrigin { operand: 0, face }),
+            );
+        }
+        let facts = emit::finish(&mut mesh, &operand.positions, job)?;
+        if !facts.closed {
+            return Ok(None);
+        }
+        attributes::carry(&mut mesh, &origins, [operand, operand]);
+        solids.push(BooleanSolid { operation, mesh, origins, facts });
+    }
+    Ok(Some(solids))
 }
 
 /// What the volumes say against the results; `eps`: how far a surface may have moved.

@@ -1,6 +1,7 @@
 //! Orthographic projection of a solid: its shadow's outline and area, by three methods.
 //!
-//! *Exact*: the silhouette edges resolved into polygons, right to about 4e-9 of the extent.
+//! *Exact*: the silhouette edges resolved into polygons, right to about 1e-14 of the extent,
+//! or to the bound that it states where edges nearly coincide.
 //! *Sample*: random points of the plane, told inside from outside by rays; the area has the
 //! standard error of a binomial share, the outline is the points' alpha shape. *March*: the same
 //! with rays through a sampled distance; those that pass nearer to the surface than the samples are

@@ -18,13 +18,16 @@ use crate::{CentredMesh, TriMesh};
 /// Worst spots that are told.
 pub const SPOTS: usize = 10;
 
-/// Places to measure at that a coarse part is given.
+/// Places to measure at that a coarse part is given, about.
 const PLACES: usize = 20_000;
+/// More than this many are too many: long thin triangles take several times what their area says.
+const MOST_PLACES: usize = 50_000;
 
 /// Puts places to measure on walls that have none. `spacing` is the longest edge that stays,
 /// millimetres; without it, a part of which more than half of the vertices lie on sharp edges (by
 /// `crease`, degrees) gets about 20,000 of them, other parts none.
 pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) {
+    let told = spacing.is_some();
     let spacing = spacing.or_else(|| {
         if mesh.triangles.len() > PLACES {
             return None;
@@ -34,9 +37,16 @@ pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) {
         let area = measures(mesh).area as f32;
         (sharp * 2 > s.sharp.len()).then(|| (area * 2.0 / PLACES as f32).sqrt())
     });
-    if let Some(spacing) = spacing.filter(|s| *s > 0.0 && s.is_finite()) {
-        *mesh = refine(mesh, spacing);
+    let Some(mut spacing) = spacing.filter(|s| *s > 0.0 && s.is_finite()) else { return };
+    let mut fine = refine(mesh, spacing);
+    for _ in 0..4 {
+        if told || fine.positions.len() <= MOST_PLACES {
+            break;
+        }
+        spacing *= (fine.positions.len() as f32 / (1.5 * PLACES as f32)).sqrt();
+        fine = refine(mesh, spacing);
     }
+    *mesh = fine;
 }
 
 /// Limits, millimetres. A value fails when it is strictly below, or strictly above.

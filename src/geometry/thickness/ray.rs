@@ -99,6 +99,9 @@ impl Caster<'_> {
         self.tree.closest_hit(Ray::new(site.point, dir), |t| self.faces(site, t))
     }
 
+    // Called for every triangle that a ray meets, from code of another feature set, which is why it
+    // is not inlined without being told.
+    #[inline(always)]
     fn faces(&self, site: &Site<'_>, t: u32) -> bool {
         self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.owns(t)
     }
