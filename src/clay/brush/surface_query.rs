@@ -199,9 +199,8 @@ impl SurfaceQuery<'_> {
             all.push(StrokeParameters::default());
         }
         let one = &mut all[image];
-        // What is a radius off the axis halfway between two dabs is further from both, and further
-        // still over the edges.
-        let radius = dab.radius * 1.15;
+        // What is a radius off the axis halfway between two dabs is further from both.
+        let radius = dab.radius * 1.05;
         let place = if dab.found { StrokePlace::Found } else { StrokePlace::Now };
         if one.step(self.mesh, dab.stroke, place(dab.centre, dab.normal), radius) {
             one.count()
