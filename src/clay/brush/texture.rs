@@ -8,8 +8,8 @@ use super::dab::Dab;
 use super::falloff::Falloff;
 use super::footprint::Footprint;
 use super::preset::OwnNumber;
-use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of texture, made ready.
 #[derive(Debug, Clone, Copy)]
