@@ -135,8 +135,9 @@ impl Geodesic {
         nearer
     }
 
-    /// Offers a vertex to a source that makes a chart, at a distance that is only estimated: it goes
-    /// to the nearest source, or to the next one where it lies ahead of a source, beyond `u` there.
+    /// Offers a vertex to a source that makes a chart, at a distance that is only estimated: it
+    /// goes to the nearest source, or to the next one where it lies ahead of a source, beyond `u`
+    /// there.
     pub fn offer_ahead(
         &mut self,
         mesh: &Clay,

@@ -6,7 +6,8 @@
 //! outwards in the order of distance, a vertex takes the mean of what its neighbours say so far,
 //! each weighing 1 / its distance, and each says: my own place, and from there along the edge, laid
 //! into my tangent plane at its full length. The direction of `u` is carried by the smallest turn
-//! that takes one normal to the other. How far a vertex is from a sample is told by its coordinates.
+//! that takes one normal to the other. How far a vertex is from a sample is told by its
+//! coordinates.
 //!
 //! A vertex is in the chart of the sample that is nearest, and what lies between two samples is in
 //! both of theirs: it takes a mean that goes over from the one to the other along the stroke, so
@@ -80,8 +81,8 @@ impl StrokeParameters {
         self.walk.owner(page, v)
     }
 
-    /// How far a place is from the stroke as far as it came: from its axis, and before its beginning
-    /// or beyond its end from that.
+    /// How far a place is from the stroke as far as it came: from its axis, and before its
+    /// beginning or beyond its end from that.
     pub fn off_stroke(&self, [u, v]: [f32; 2]) -> f32 {
         let beyond = (-u).max(u - self.length).max(0.0);
         Vec2::new(beyond, v).length()

@@ -10,8 +10,8 @@
 //!
 //! The law: **within a run, a dab is never further than the spacing from the one before it.** A run
 //! goes on
-//! * where the surface is seen without a break along the path: the next dab lies 0.97 of the spacing
-//!   on, or 0.94 to 1 of it where the surface is too broken to aim;
+//! * where the surface is seen without a break along the path: the next dab lies 0.97 of the
+//!   spacing on, or 0.94 to 1 of it where the surface is too broken to aim;
 //! * where it leaps, and what is hidden by a crest is at most [`BRIDGED`] spacings wide, brink to
 //!   far side: one more dab is laid on the brink, and if the far side is still too far, others on
 //!   the hidden clay between, found straight below the line of sight over it, until it is not.
