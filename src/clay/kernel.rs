@@ -59,6 +59,16 @@ impl<'a> PageIn<'a> {
         &self.page.normals
     }
 
+    /// [`PageIn::rows`] when the open undo step began.
+    pub fn rows_before(&self) -> &'a [Vec4] {
+        self.before.point_rows()
+    }
+
+    /// [`PageIn::normal_rows`] when the open undo step began.
+    pub fn normal_rows_before(&self) -> &'a [Vec4] {
+        self.before.normal_rows()
+    }
+
     /// An own or a halo vertex by local index.
     #[inline(always)]
     pub fn point(&self, local: u16) -> Vec3 {
@@ -217,6 +227,22 @@ impl PageOut<'_> {
     pub fn set_colour(&mut self, v: usize, colour: [u8; 4]) {
         self.colours.push((v as u16, colour));
         self.marks[v] |= PAINTED;
+    }
+
+    /// Adds `by`, one a vertex, to the own vertices from `first` on. A sum that is not finite, or
+    /// the same as before, changes nothing.
+    #[inline(always)]
+    pub fn push_block(&mut self, first: usize, by: &[Vec4]) {
+        let rows = &mut self.points[first..first + by.len()];
+        let marks = &mut self.marks[first..first + by.len()];
+        for ((row, mark), by) in rows.iter_mut().zip(marks).zip(by) {
+            let new = *row + *by;
+            if new.is_finite() {
+                let differs = new.cmpne(*row);
+                *mark |= if differs.any() { MOVED } else { 0 };
+                *row = Vec4::select(differs, new, *row);
+            }
+        }
     }
 
     /// Adds `offset * weights[v]` to every own vertex: the way for brushes whose offset has one

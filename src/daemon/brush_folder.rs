@@ -273,6 +273,20 @@ mod tests {
             ("kind = 'draw'\n[settings]\nstrengh = 0.5\n", 3, "strengh"),
             ("kind = 'draw'\n[settings]\n\nstrength = 5.0\n", 4, "0 to 1"),
             ("about = 'x'\nkind = 'drawn'\n", 2, "drawn"),
+            // Keys with one ending.
+            (
+                "kind = 'draw'\n[settings.pressure_strength]\ngamma = 1.0\n\n\
+                 [settings.pressure_radius]\ngamma = 90.0\n",
+                6,
+                "gamma",
+            ),
+            (
+                "kind = 'draw'\n[settings]\npressure_strength = { gamma = 1.0 }\n\
+                 pressure_radius = { at_zero = 1.0, gamma = 90.0 }\n",
+                4,
+                "gamma",
+            ),
+            ("kind = 'texture'\n[settings]\nnormal_radius = 0.4\nradius = 9.0\n", 4, "radius"),
             ("kind = 'draw'\nabout = \n", 2, ""),
             ("kind = 'texture'\n[extra]\nfloor = 9.0\n", 3, "0 to 1"),
             ("kind = 'texture'\n[extra]\nflor = 0.5\n", 3, "floor"),

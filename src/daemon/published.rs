@@ -9,7 +9,7 @@ use arc_swap::ArcSwap;
 use glam::Vec3;
 
 use crate::tick_statistics::{Losses, Percentiles};
-use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{GarbageSink, Snapshot};
 use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
@@ -30,6 +30,8 @@ pub struct Published {
     pub brush: BrushSettings,
     /// What each brush was set to when it was last exchanged for another.
     pub kept_brushes: Arc<Vec<BrushSettings>>,
+    /// The picture of heights of the alpha `picture`, where one was loaded.
+    pub picture: Option<Arc<Picture>>,
     /// Brush radius in mesh units at full pressure.
     pub brush_radius: f32,
     /// Bounding radius of the work when it was put in place.
@@ -107,6 +109,7 @@ impl Published {
             camera: *world.camera(),
             brush: *world.brush(),
             kept_brushes: world.kept_brushes().clone(),
+            picture: world.picture().cloned(),
             brush_radius: world.brush_radius(),
             extent: world.extent(),
             middle: world.middle(),

@@ -1,11 +1,12 @@
 //! What a brush says of each vertex: [`Brush`] from a dab makes itself ready, and then tells for
 //! each vertex what changes.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::dab::{Dab, Grip};
 use super::footprint::Footprint;
 use super::preset::OwnNumber;
+use super::weigh::Triples;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Kernel, PageIn, Reach};
 
@@ -69,6 +70,37 @@ impl VertexContext<'_> {
         match (ring.next(), ring.last(), self.page.is_open(self.v)) {
             (Some(a), Some(b), true) => (self.page.point(a) + self.page.point(b)) * 0.5,
             _ => self.p,
+        }
+    }
+}
+
+/// Neighbouring vertices of a page that a brush looks at together, 64 at most, as rows of
+/// one length. Where the weight is 0 nothing is changed, whatever the brush says.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockContext<'a> {
+    /// Places as they are; the fourth lane is the mask.
+    pub rows: &'a [Vec4],
+    /// Normals as they are.
+    pub normals: &'a [Vec4],
+    /// Places as the stroke found them.
+    pub rows_before: &'a [Vec4],
+    /// Normals as the stroke found them.
+    pub normals_before: &'a [Vec4],
+    /// See [`VertexContext::weight`].
+    pub weights: &'a [f32],
+}
+
+impl<'a> BlockContext<'a> {
+    /// The own vertices of `page` from `first` on, as many as there are weights.
+    #[inline(always)]
+    pub fn new(page: &PageIn<'a>, first: usize, weights: &'a [f32]) -> BlockContext<'a> {
+        let range = first..first + weights.len();
+        BlockContext {
+            rows: &page.rows()[range.clone()],
+            normals: &page.normal_rows()[range.clone()],
+            rows_before: &page.rows_before()[range.clone()],
+            normals_before: &page.normal_rows_before()[range],
+            weights,
         }
     }
 }
@@ -145,6 +177,14 @@ pub trait Brush: Copy + Sync {
 
     /// What changes at a vertex within the reach.
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange;
+
+    /// Whether [`Brush::change_block`] says what [`Brush::change`] does.
+    const BLOCKS: bool = false;
+
+    /// [`Brush::change`] of a block of vertices at once, by a loop without a branch, for a brush
+    /// that only moves them from where they are: `by` comes as zeros and takes the way of each.
+    #[inline(always)]
+    fn change_block(&self, _dab: &Dab<'_>, _block: &BlockContext<'_>, _by: &mut Triples) {}
 
     /// A faster way for a dab without images that overlap and without options; false: there is
     /// none.

@@ -18,13 +18,19 @@ struct Block {
     page: u32,
     /// One an own vertex; infinite where nobody came.
     distance: Vec<f32>,
-    /// Coordinates on a texture, where it has them.
+    /// Coordinates on a texture, where it has them: those of its source.
     place: Vec<[f32; 2]>,
+    /// The coordinates that are told: between those of two sources.
+    told: Vec<[f32; 2]>,
     /// The surface's own directions carried along: `u` and normal.
     frame: Vec<[Vec3; 2]>,
     /// Which source reached it, and which one it took its coordinates from; 0: none.
     owner: Vec<[u32; 2]>,
 }
+
+/// The share of an estimated distance below which another estimate is worth a new place in the
+/// order of a walk.
+const WORTH: f32 = 0.9;
 
 /// One walk. Its memory is used again by the next.
 #[derive(Debug, Default)]
@@ -67,6 +73,7 @@ impl Geodesic {
                 page: 0,
                 distance: Vec::with_capacity(PAGE_VERTICES),
                 place: Vec::with_capacity(PAGE_VERTICES),
+                told: Vec::with_capacity(PAGE_VERTICES),
                 frame: Vec::with_capacity(PAGE_VERTICES),
                 owner: Vec::with_capacity(PAGE_VERTICES),
             });
@@ -80,6 +87,8 @@ impl Geodesic {
         block.distance.resize(own, f32::INFINITY);
         block.place.clear();
         block.place.resize(own, [f32::NAN; 2]);
+        block.told.clear();
+        block.told.resize(own, [f32::NAN; 2]);
         block.frame.clear();
         block.frame.resize(own, [Vec3::ZERO; 2]);
         block.owner.clear();
@@ -96,7 +105,7 @@ impl Geodesic {
     /// The texture's coordinates at a vertex.
     #[inline]
     pub fn place(&self, page: u32, v: usize) -> Option<[f32; 2]> {
-        self.find(page).and_then(|b| b.place.get(v).copied()).filter(|p| !p[0].is_nan())
+        self.find(page).and_then(|b| b.told.get(v).copied()).filter(|p| !p[0].is_nan())
     }
 
     /// The directions carried to a vertex: along `u`, and the normal.
@@ -104,12 +113,11 @@ impl Geodesic {
         self.find(page).and_then(|b| b.frame.get(v as usize).copied())
     }
 
-    /// How far a vertex is, its place, and the directions carried to it, where the walk has been.
+    /// A vertex's place and the directions carried to it, where it has them from this source.
     #[inline]
-    pub fn settled(&self, (page, v): Key) -> Option<(f32, [f32; 2], [Vec3; 2])> {
+    pub fn settled_by(&self, (page, v): Key, owner: u32) -> Option<([f32; 2], [Vec3; 2])> {
         let (block, v) = (self.find(page)?, v as usize);
-        let place = *block.place.get(v)?;
-        (!place[0].is_nan()).then(|| (block.distance[v], place, block.frame[v]))
+        (block.owner.get(v)?[1] == owner).then(|| (block.place[v], block.frame[v]))
     }
 
     /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
@@ -125,6 +133,60 @@ impl Geodesic {
             self.heap.push(Reverse((distance.to_bits(), key.0, key.1)));
         }
         nearer
+    }
+
+    /// Offers a vertex to a source that makes a chart, at a distance that is only estimated: it
+    /// goes to the nearest source, or to the next one where it lies ahead of a source, beyond `u`
+    /// there.
+    pub fn offer_ahead(
+        &mut self,
+        mesh: &Clay,
+        key: Key,
+        (owner, u): (u32, f32),
+        distance: impl FnOnce() -> f32,
+        most: f32,
+    ) {
+        let block = self.block(mesh, key.0);
+        let v = key.1 as usize;
+        let [reached, source] = block.owner[v];
+        if source == owner {
+            return;
+        }
+        let d = distance();
+        let old = block.distance[v];
+        let ahead = source + 1 == owner && block.place[v][0] > u;
+        let wanted = match reached == owner {
+            true => d < old * WORTH,
+            false => ahead || d < old,
+        };
+        if wanted && d < most {
+            block.distance[v] = d;
+            block.owner[v][0] = owner;
+            self.heap.push(Reverse((d.to_bits(), key.0, key.1)));
+        }
+    }
+
+    /// A vertex that was taken is not as far as the way to it told.
+    pub fn set_distance(&mut self, mesh: &Clay, key: Key, distance: f32) {
+        self.block(mesh, key.0).distance[key.1 as usize] = distance;
+    }
+
+    /// Lets the walk go on from a vertex again, from where it is now.
+    pub fn requeue(&mut self, key: Key) {
+        if let Some(d) = self.distance(key.0, key.1 as usize) {
+            self.heap.push(Reverse((d.to_bits(), key.0, key.1)));
+        }
+    }
+
+    /// A vertex that has its source's coordinates tells others.
+    pub fn tell(&mut self, mesh: &Clay, key: Key, place: [f32; 2]) {
+        self.block(mesh, key.0).told[key.1 as usize] = place;
+    }
+
+    /// The source that a vertex has its coordinates from (0: none), and these.
+    pub fn source(&self, (page, v): Key) -> (u32, [f32; 2]) {
+        let at = |b: &Block| Some((b.owner.get(v as usize)?[1], *b.place.get(v as usize)?));
+        self.find(page).and_then(at).unwrap_or((0, [f32::NAN; 2]))
     }
 
     /// Whether the mesh has other pages than when the walk began.
@@ -146,6 +208,7 @@ impl Geodesic {
     pub fn settle(&mut self, mesh: &Clay, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
         let block = self.block(mesh, key.0);
         block.place[key.1 as usize] = place;
+        block.told[key.1 as usize] = place;
         block.frame[key.1 as usize] = frame;
         let owner = &mut block.owner[key.1 as usize];
         owner[1] = owner[0];

@@ -3,9 +3,10 @@
 //! way from the one before it, so that the rim is that of the stroke and not of single discs,
 //! whatever the spacing.
 
-use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::Dab;
 use super::footprint::{Footprint, FootprintShape};
+use super::weigh::Triples;
 use crate::Reach;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -16,6 +17,7 @@ pub struct LayerBrush;
 impl Brush for LayerBrush {
     const CUTS: bool = false;
     const FOUND: bool = true;
+    const BLOCKS: bool = true;
 
     fn ready(_: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
         LayerBrush
@@ -38,6 +40,18 @@ impl Brush for LayerBrush {
             VertexChange::by(normal * ((goal - so_far) * dab.sign))
         } else {
             VertexChange::default()
+        }
+    }
+
+    #[inline(always)]
+    fn change_block(&self, dab: &Dab<'_>, block: &BlockContext<'_>, by: &mut Triples) {
+        let height = dab.whole_height().abs();
+        let now = block.rows.iter().zip(block.rows_before).zip(block.normals_before);
+        for (i, (((p, before), normal), weight)) in now.zip(block.weights).enumerate() {
+            let normal = normal.truncate();
+            let so_far = (p.truncate() - before.truncate()).dot(normal) * dab.sign;
+            let more = height * weight - so_far;
+            by.set(i, normal * (more.max(0.0) * dab.sign));
         }
     }
 }

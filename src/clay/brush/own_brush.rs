@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Deserialize;
+use toml::de::{DeTable, DeValue};
 
 use super::{BrushKind, BrushSettings, Picture};
 
@@ -101,14 +102,19 @@ fn table_of(settings: &BrushSettings) -> Result<toml::Table, String> {
     text.parse().map_err(|e: toml::de::Error| e.to_string())
 }
 
-/// The line on which a key of a table is set; the first line where it is not found.
-fn line_of(text: &str, key: &str) -> usize {
-    let key = key.rsplit('.').next().unwrap_or(key);
-    let sets = |line: &str| {
-        let rest = line.trim_start().strip_prefix(key).map(str::trim_start);
-        rest.is_some_and(|rest| rest.starts_with('=')) || line.contains(&format!("{key} ="))
-    };
-    text.lines().position(sets).map_or(1, |line| line + 1)
+/// The line on which the last key of a path of tables is set, or as far as the path is there.
+fn line_of(text: &str, path: &[&str]) -> usize {
+    let Ok(whole) = DeTable::parse(text) else { return 1 };
+    let (mut table, mut at) = (whole.get_ref(), 0);
+    for key in path {
+        let Some((set, value)) = table.iter().find(|(k, _)| k.get_ref() == key) else { break };
+        at = set.span().start;
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => break,
+        }
+    }
+    text[..at].matches('\n').count() + 1
 }
 
 impl OwnBrush {
@@ -136,7 +142,7 @@ impl OwnBrush {
         };
         if let Some(key) = ["kind", "extra"].into_iter().find(|k| named.contains_key(*k)) {
             let text = format!("settings.{key}: this is written outside of [settings]");
-            return Err(wrong(line_of(source, key), text));
+            return Err(wrong(line_of(source, &["settings", key]), text));
         }
         let base = preset(file.kind);
         let mut table = table_of(&base).map_err(|e| wrong(1, e))?;
@@ -148,21 +154,29 @@ impl OwnBrush {
             let Some(own) = own else {
                 let names: Vec<_> = file.kind.own_numbers().iter().map(|n| n.name).collect();
                 let text = format!("extra.{key}: expected one of [{}]", names.join(", "));
-                return Err(wrong(line_of(source, key), text));
+                return Err(wrong(line_of(source, &["extra", key.as_str()]), text));
             };
             settings.extra[own] = *value;
         }
         settings.check().map_err(|e| {
-            let key = e.strip_prefix("brush.").unwrap_or(&e).split(" =").next().unwrap_or("");
-            let key = key.trim_start_matches("extra (").trim_end_matches(')');
-            wrong(line_of(source, key), e.strip_prefix("brush.").unwrap_or(&e).to_string())
+            let e = e.strip_prefix("brush.").unwrap_or(&e);
+            let key = e.split(" =").next().unwrap_or("");
+            // `extra (scale)`, or `path.jitter`, or `curve[3]`.
+            let line = match key.strip_prefix("extra (") {
+                Some(own) => line_of(source, &["extra", own.trim_end_matches(')')]),
+                None => {
+                    let keys = key.split('[').next().unwrap_or(key).split('.');
+                    line_of(source, &Vec::from_iter(["settings"].into_iter().chain(keys)))
+                }
+            };
+            wrong(line, e.to_string())
         })?;
         if let Some(picture) = &file.picture
             && (picture.is_empty() || picture.starts_with('.') || picture.contains(['/', '\\']))
         {
             let text =
                 format!("picture = '{picture}': expected the name of a file beside this one");
-            return Err(wrong(line_of(source, "picture"), text));
+            return Err(wrong(line_of(source, &["picture"]), text));
         }
         Ok(OwnBrush {
             name: name.into(),

@@ -3,9 +3,12 @@
 
 use glam::Vec3;
 
-use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
+use super::footprint::Footprint;
 use super::stamp::StampBy;
+use super::weigh::{Triples, faded};
+use super::weights::BLOCK;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of pinch, made ready.
@@ -17,6 +20,8 @@ pub struct PinchBrush {
 }
 
 impl Brush for PinchBrush {
+    const BLOCKS: bool = true;
+
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         let s = dab.settings;
         let plain = !s.auto.is_on() && s.stamp.by == StampBy::Off;
@@ -37,5 +42,31 @@ impl Brush for PinchBrush {
             weight = dab.fade(half.length_squared()) * free * dab.facing(spot.normal());
         }
         VertexChange::by(flat * (dab.sign * part(dab.pace, weight)))
+    }
+
+    #[inline(always)]
+    fn change_block(&self, dab: &Dab<'_>, block: &BlockContext<'_>, by: &mut Triples) {
+        by.fill(block.rows, |p| {
+            let d = dab.centre - p;
+            d - self.normal * d.dot(self.normal)
+        });
+        let mut weight = [0.0; BLOCK];
+        weight[..block.weights.len()].copy_from_slice(block.weights);
+        if self.plain {
+            let mut away = [0.0; BLOCK];
+            for (i, (row, away)) in block.rows.iter().zip(&mut away).enumerate() {
+                let x = 0.5 * dab.pace * weight[i];
+                let d = dab.centre - row.truncate();
+                let half = d - by.get(i) * (dab.sign * (x - 0.5 * x * x));
+                *away = half.length_squared().sqrt() / dab.radius;
+            }
+            let fade = faded(&Footprint::ball(dab), away);
+            for (i, (row, n)) in block.rows.iter().zip(block.normals).enumerate() {
+                weight[i] = fade[i] * (1.0 - row.w) * dab.facing(n.truncate());
+            }
+        }
+        for i in 0..BLOCK {
+            by.set(i, by.get(i) * (dab.sign * part(dab.pace, weight[i])));
+        }
     }
 }

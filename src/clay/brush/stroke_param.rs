@@ -2,15 +2,22 @@
 //! Schmidt, Grimm, Wyvill 2006, "Interactive decal compositing with discrete exponential maps").
 //!
 //! Each vertex near the stroke gets `(u, v)`: `u` along the stroke by arc length, `v` across it, 0
-//! on the axis. It belongs to the stroke's sample that is nearest over the edges. From there
-//! coordinates are carried outwards in the order of distance: a vertex takes the mean of what its
-//! nearer neighbours say, each weighing 1 / its distance, and each says: my own place, and from
-//! there along the edge, laid into my tangent plane at its full length. The direction of `u` is
-//! carried by the smallest turn that takes one normal to the other.
+//! on the axis. Each sample of the stroke makes a chart about itself: coordinates are carried
+//! outwards in the order of distance, a vertex takes the mean of what its neighbours say so far,
+//! each weighing 1 / its distance, and each says: my own place, and from there along the edge, laid
+//! into my tangent plane at its full length. The direction of `u` is carried by the smallest turn
+//! that takes one normal to the other. How far a vertex is from a sample is told by its
+//! coordinates.
 //!
-//! The distance over the edges decides only which sample a vertex belongs to and where the walk
-//! ends: it is up to 1.4 times too long, more in one direction of the mesh than in another. How far
-//! a vertex is from the stroke is told by its coordinates ([`StrokeParameters::off_stroke`]).
+//! A vertex is in the chart of the sample that is nearest, and what lies between two samples is in
+//! both of theirs: it takes a mean that goes over from the one to the other along the stroke, so
+//! that how closely the samples lie decides little. With `u1` and `u2` what two samples at `s1` and
+//! `s2` say, a sample at `s` between would say `u1 + (u2 - u1) (s - s1) / (s2 - s1)`; the vertex
+//! lies beside the one that says `s` itself.
+//!
+//! Samples lie [`STEP`] apart along the stroke, by arc length from its beginning, wherever dabs
+//! lie: between two dabs the path is the cubic that touches the surface at both. The direction of
+//! the stroke at a sample is that of the parabola through it and the two before it.
 //!
 //! All is measured on the surface as it was when the stroke began, so the relief does not bend its
 //! own coordinates; a new sample touches only vertices that are nearer to it than to all before.
@@ -42,6 +49,13 @@ pub enum StrokePlace {
     Found(Vec3, Vec3),
 }
 
+/// The way between two samples, in the radii that coordinates are carried.
+const STEP: f32 = 0.19;
+/// Samples that one dab may add; a longer way is a leap of the path.
+const MOST: f32 = 16.0;
+/// How fast charts may differ along the stroke: more is a fold, where coordinates are not one.
+const FOLD: f32 = 0.7;
+
 /// A stroke being unrolled.
 #[derive(Debug, Default)]
 pub struct StrokeParameters {
@@ -50,6 +64,13 @@ pub struct StrokeParameters {
     /// Which stroke it is.
     stroke: u32,
     last: Option<StrokeSample>,
+    /// The sample before the last one.
+    before: Option<StrokeSample>,
+    /// Where the stroke stands, the normal there, and its length up to there.
+    end: Option<(Vec3, Vec3)>,
+    length: f32,
+    /// Where along the stroke the next sample lies.
+    next: f32,
     /// Samples so far; a vertex remembers which one it belongs to.
     count: u32,
 }
@@ -60,11 +81,10 @@ impl StrokeParameters {
         self.walk.owner(page, v)
     }
 
-    /// How far a place is from the stroke as far as it came: from its axis, and before its first or
-    /// beyond its newest sample from that sample.
+    /// How far a place is from the stroke as far as it came: from its axis, and before its
+    /// beginning or beyond its end from that.
     pub fn off_stroke(&self, [u, v]: [f32; 2]) -> f32 {
-        let newest = self.last.map_or(0.0, |last| last.u);
-        let beyond = (-u).max(u - newest).max(0.0);
+        let beyond = (-u).max(u - self.length).max(0.0);
         Vec2::new(beyond, v).length()
     }
 
@@ -75,41 +95,72 @@ impl StrokeParameters {
 
     /// Goes on to a place on the surface; coordinates are carried as far as `radius`,
     /// which should be a little more than the brush's, so that what lies beside the stroke between
-    /// two samples is reached from one of them. Returns whether vertices got coordinates: a
-    /// stroke has no direction before its second sample, which then also serves the first. The
-    /// first of the two is number [`StrokeParameters::count`] - 1.
+    /// two samples is reached from one of them. Returns whether vertices have coordinates: a
+    /// stroke has no direction before its second sample, which then also serves the first.
     pub fn step(&mut self, mesh: &Clay, stroke: u32, to: StrokePlace, radius: f32) -> bool {
         if self.stroke != stroke || self.walk.is_stale(mesh) {
             self.walk.begin(mesh);
-            (self.stroke, self.last, self.count) = (stroke, None, 0);
+            (self.stroke, self.last, self.before) = (stroke, None, None);
+            (self.end, self.length, self.next, self.count) = (None, 0.0, 0.0, 0);
         }
         let found = match to {
             StrokePlace::Found(point, normal) => Some((point, normal)),
             StrokePlace::Now(point, normal) => self.as_it_was(mesh, point, normal, radius),
         };
         let Some((point, normal)) = found else { return false };
-        let Some(last) = self.last else {
-            self.last = Some(StrokeSample { point, normal, along: Vec3::ZERO, u: 0.0 });
+        let Some((from, old)) = self.end.replace((point, normal)) else {
+            self.sample(mesh, point, normal, radius);
             return false;
         };
-        let way = point - last.point;
-        let flat = way - normal * way.dot(normal);
-        let Some(direction) = flat.try_normalize() else { return false };
-        let along = if last.along == Vec3::ZERO {
-            // The first sample takes the direction of the second.
-            let back = turn(normal, last.normal, direction);
-            let first = StrokeSample { along: back, ..last };
-            self.spread(mesh, &first, radius);
-            direction
-        } else {
-            // Between the segment before and this one.
-            let before = turn(last.normal, normal, last.along);
-            (direction + before).try_normalize().unwrap_or(direction)
+        let way = point - from;
+        let chord = way.length();
+        if !(chord > 0.0) {
+            return self.count > 1;
+        }
+        // Of an arc whose normals turn by so much.
+        let bend = (normal - old).dot(way) / chord;
+        let length = chord * (1.0 + bend * bend / 24.0);
+        if length > MOST * STEP * radius {
+            self.next = self.length + length;
+        }
+        let touching = |n: Vec3| flat(way, n).unwrap_or(way / chord) * chord;
+        let (t0, t1) = (touching(old), touching(normal));
+        while self.next <= self.length + length {
+            let t = (self.next - self.length) / length;
+            let (t2, t3) = (t * t, t * t * t);
+            let bow = t0 * (t3 - 2.0 * t2 + t) + t1 * (t3 - t2);
+            let at = from + way * (3.0 * t2 - 2.0 * t3) + bow;
+            let up = old.lerp(normal, t).try_normalize().unwrap_or(normal);
+            self.sample(mesh, at, up, radius);
+        }
+        self.length += length;
+        self.count > 1
+    }
+
+    /// The next sample of the stroke.
+    fn sample(&mut self, mesh: &Clay, point: Vec3, normal: Vec3, radius: f32) {
+        let mut sample = StrokeSample { point, normal, along: Vec3::ZERO, u: self.next };
+        self.next += STEP * radius;
+        let Some(last) = self.last else {
+            self.last = Some(sample);
+            return;
         };
-        let sample = StrokeSample { point, normal, along, u: last.u + way.length() };
+        let Some(step) = flat(point - last.point, normal) else { return };
+        sample.along = step;
+        if let Some(before) = self.before {
+            let bend = flat(last.point - before.point, normal).map_or(Vec3::ZERO, |s| step - s);
+            // Beyond 60 degrees it is a corner and no curve.
+            if bend.length_squared() < 1.0 {
+                sample.along = (step + bend * 0.5).try_normalize().unwrap_or(step);
+            }
+        } else {
+            // The first sample takes the direction of the second.
+            let first = StrokeSample { along: turn(normal, last.normal, step), ..last };
+            self.spread(mesh, &first, radius);
+        }
+        self.before = Some(last);
         self.spread(mesh, &sample, radius);
         self.last = Some(sample);
-        true
     }
 
     /// The point as it was when the stroke began: moved back as its neighbourhood was moved.
@@ -138,10 +189,11 @@ impl StrokeParameters {
         Some((now - moved / sum, turned.try_normalize()?))
     }
 
-    /// Carries coordinates from a sample to every vertex that is nearer to it than to those before.
+    /// Carries coordinates from a sample to every vertex that is nearer to it than to those before,
+    /// or that lies ahead of the one before it.
     pub fn spread(&mut self, mesh: &Clay, from: &StrokeSample, radius: f32) {
         self.count += 1;
-        let owner = self.count;
+        let (owner, before) = (self.count, self.before.map_or(f32::INFINITY, |b| b.u));
         let walk = &mut self.walk;
         let mut seed: Option<(f32, Key)> = None;
         let look = |number: u32, page: &Page| {
@@ -155,20 +207,34 @@ impl StrokeParameters {
         let near = Reach::Sphere { centre: from.point, radius };
         mesh.each_page_before(&near, look);
         let Some((_, key)) = seed else { return };
+        // Takes coordinates in this chart, and tells what lies between it and the one before.
+        let settle = |walk: &mut Geodesic, key: Key, place: [f32; 2], frame: [Vec3; 2]| {
+            let (source, old) = walk.source(key);
+            walk.settle(mesh, key, place, frame);
+            walk.set_distance(mesh, key, Vec2::new(place[0] - from.u, place[1]).length());
+            let step = from.u - before;
+            if source + 1 == owner && source > 0 && step > 0.0 {
+                let drift = ((place[0] - old[0]) / step).clamp(-FOLD, FOLD);
+                let t = ((old[0] - before) / step / (1.0 - drift)).clamp(0.0, 1.0);
+                walk.tell(mesh, key, Vec2::from(old).lerp(Vec2::from(place), t).to_array());
+            }
+        };
         // The vertices about the sample are measured from it.
         let start = |walk: &mut Geodesic, key: Key| {
             let page = mesh.before(key.0);
             let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
             let d = (p - from.point).length();
-            if walk.offer(mesh, key, d, owner) {
+            walk.offer_ahead(mesh, key, (owner, before), || d, f32::INFINITY);
+            if walk.owner(key.0, key.1 as usize) == owner && !walk.is_settled(key, owner) {
                 let at = laid(from.normal, from.along, p - from.point);
                 let place = [from.u + at[0], at[1]];
-                walk.settle(mesh, key, place, [turn(from.normal, n, from.along), n]);
+                settle(walk, key, place, [turn(from.normal, n, from.along), n]);
+                walk.requeue(key);
             }
         };
         start(walk, key);
         ring(|i| mesh.before(i), key, |to, _| start(walk, to));
-        while let Some((key, d)) = walk.take() {
+        while let Some((key, _)) = walk.take() {
             let page = mesh.before(key.0);
             let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
             if !walk.is_settled(key, owner) {
@@ -178,10 +244,7 @@ impl StrokeParameters {
                     |i| mesh.before(i),
                     key,
                     |other, q| {
-                        let Some((far, at, [e, m])) = walk.settled(other) else { return };
-                        if far >= d {
-                            return;
-                        }
+                        let Some((at, [e, m])) = walk.settled_by(other, owner) else { return };
                         let w = 1.0 / (p - q).length().max(1e-20);
                         place += (Vec2::from(at) + Vec2::from(laid(m, e, p - q))) * w;
                         along += e * w;
@@ -196,20 +259,27 @@ impl StrokeParameters {
                 let along = turn(normal.normalize_or_zero(), n, along);
                 let flat = along - n * along.dot(n);
                 let place = (place / sum).to_array();
-                walk.settle(mesh, key, place, [flat.normalize_or(along), n]);
+                settle(walk, key, place, [flat.normalize_or(along), n]);
             }
+            let Some((at, [e, m])) = walk.settled_by(key, owner) else { continue };
             ring(
                 |i| mesh.before(i),
                 key,
                 |to, q| {
-                    let e = d + (q - p).length();
-                    if e < radius {
-                        walk.offer(mesh, to, e, owner);
-                    }
+                    let far = || {
+                        let [u, v] = laid(m, e, q - p);
+                        Vec2::new(at[0] + u - from.u, at[1] + v).length()
+                    };
+                    walk.offer_ahead(mesh, to, (owner, before), far, radius);
                 },
             );
         }
     }
+}
+
+/// The direction of a vector in the plane of a normal.
+fn flat(d: Vec3, normal: Vec3) -> Option<Vec3> {
+    (d - normal * d.dot(normal)).try_normalize()
 }
 
 /// A vector laid into the tangent plane of `normal` at its full length, as (along, across).

@@ -8,8 +8,8 @@ use super::dab::Dab;
 use super::falloff::Falloff;
 use super::footprint::Footprint;
 use super::preset::OwnNumber;
-use crate::brush::surface_query::SurfaceQuery;
 use crate::Reach;
+use crate::brush::surface_query::SurfaceQuery;
 
 /// One dab of texture, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -81,9 +81,9 @@ impl Brush for TextureBrush {
     }
 }
 
-/// How far a dab reaches, in radii: the second one of a stroke does the first one's work as well,
-/// and where a dab is measured on the surface as it is, that may have been raised since.
+/// How far a dab reaches, in radii: it does again what lies between the last two samples of the
+/// stroke, and where a dab is measured on the surface as it is, that may have been raised since.
 fn wide(dab: &Dab<'_>) -> f32 {
     let raised = if dab.found { 0.0 } else { dab.strength };
-    1.05 + 1.1 * dab.settings.spacing + raised
+    1.05 + 1.1 * dab.settings.spacing.max(0.2) + raised
 }

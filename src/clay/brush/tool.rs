@@ -1,17 +1,18 @@
 //! Applies a dab and its images to the clay.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
+use super::brush_trait::{BlockContext, Brush, RunKernel, VertexChange, VertexContext};
 use super::dab::{Dab, Grip, IMAGES};
 use super::footprint::Footprint;
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
-use super::weigh::{WeightRules, weigh};
-use super::weights::Weights;
+use super::weigh::{Triples, WeightRules, weigh};
+use super::weights::{BLOCK, Weights};
 use crate::brush::automask::AutoMasking;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
+use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 
 /// The clay in a brush's hand.
 #[derive(Debug)]
@@ -190,8 +191,46 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
                 }
                 _ => false,
             };
-            self.change(page, known.then(|| weights.of(page)), out);
+            match self.members {
+                [Some(Member { dab, brush, .. })]
+                    if B::BLOCKS && known && self.limit == f32::INFINITY =>
+                {
+                    let weights = weights.of(page);
+                    dispatch(false, ChangeBlocks { brush, dab, page, weights, out });
+                }
+                _ => self.change(page, known.then(|| weights.of(page)), out),
+            }
         });
+    }
+}
+
+/// [`Brush::change_block`] over a page, compiled for this processor.
+struct ChangeBlocks<'a, 'b, B> {
+    brush: &'a B,
+    dab: &'a Dab<'a>,
+    page: &'a PageIn<'a>,
+    weights: &'a [f32],
+    out: &'a mut PageOut<'b>,
+}
+
+impl<B: Brush> WideWork for ChangeBlocks<'_, '_, B> {
+    type Output = ();
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) {
+        for (b, weights) in self.weights.chunks(BLOCK).enumerate() {
+            if weights.iter().fold(0, |bits, w| bits | w.to_bits()) == 0 {
+                continue;
+            }
+            let mut by = Triples::ZERO;
+            let block = BlockContext::new(self.page, b * BLOCK, weights);
+            self.brush.change_block(self.dab, &block, &mut by);
+            let mut rows = [Vec4::ZERO; BLOCK];
+            for (i, (row, weight)) in rows.iter_mut().zip(weights).enumerate() {
+                let by = by.get(i).extend(0.0);
+                *row = if *weight > 0.0 { by } else { Vec4::ZERO };
+            }
+            self.out.push_block(b * BLOCK, &rows[..weights.len()]);
+        }
     }
 }
 
@@ -293,4 +332,74 @@ fn held(before: Vec3, p: Vec3, by: Vec3, limit: f32, grip: Grip) -> Vec3 {
     let root = (b * b - a * c).max(0.0).sqrt();
     let s = if b > 0.0 { -c / (b + root) } else { (root - b) / a };
     before + (from + by * s.clamp(0.0, 1.0)).clamp_length_max(limit)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::brush::stamp::Lens;
+    use crate::brush::{BrushKind, BrushSettings};
+    use sculptd_geometry::job::Job;
+    use sculptd_geometry::shapes;
+
+    /// Three dabs of a stroke over a ball that is masked in part.
+    fn stroke(settings: &BrushSettings) -> Vec<Vec3> {
+        let mut mesh = Clay::build(&shapes::sphere_of_about(20_000), &Job::default()).expect("ok");
+        let (workers, mut scratch) = (Workers::new(1), Scratch::default());
+        mesh.begin_step();
+        for i in 0..3 {
+            let centre = Vec3::new(0.05 * i as f32, 0.0, 1.0).normalize();
+            let first = Dab {
+                settings,
+                centre,
+                normal: centre,
+                touch: centre,
+                found: settings.kind.found() && !settings.accumulate,
+                radius: 0.4,
+                strength: 0.3,
+                span: 0.6,
+                pace: 0.0,
+                heading: Vec3::X * 0.5,
+                pass: 0,
+                sign: if i == 2 { -1.0 } else { 1.0 },
+                motion: Vec3::X * (0.05 * i.min(1) as f32),
+                last: Vec3::ZERO,
+                eye: Vec3::Z,
+                right: Vec3::X,
+                lens: Lens::default(),
+                hand: 1.0,
+                image: 0,
+                travelled: 0.05 * i as f32,
+                stroke: 1,
+            };
+            let dab = Dab { pace: first.pace_of(first.strength), ..first };
+            let report = DabReport::default();
+            let mut tool =
+                Tool { mesh: &mut mesh, workers: &workers, scratch: &mut scratch, report };
+            if i == 0 {
+                let centre = Vec3::new(0.2, 0.1, 1.0).normalize();
+                let mask = Dab { centre, normal: centre, radius: 0.2, strength: 0.7, ..dab };
+                BrushKind::Mask.apply(&[mask], &mut tool);
+            }
+            settings.kind.apply(&[dab], &mut tool);
+            assert!(tool.report.moved > 100, "{}: {:?}", settings.kind, tool.report);
+        }
+        mesh.to_tri().positions
+    }
+
+    #[test]
+    fn blocks_of_vertices_move_as_single_vertices_do_to_the_bit() {
+        for kind in [BrushKind::Pinch, BrushKind::Layer] {
+            for hardness in [0.0, 0.4] {
+                let blocks = BrushSettings { kind, hardness, ..BrushSettings::default() };
+                // A limit that is never reached is held vertex by vertex.
+                let single = BrushSettings { saturation: 1e6, ..blocks };
+                let blocks = stroke(&BrushSettings { accumulate: false, ..blocks });
+                let single = stroke(&BrushSettings { accumulate: false, ..single });
+                assert!(blocks == single, "{kind}, hardness {hardness}");
+            }
+        }
+    }
 }

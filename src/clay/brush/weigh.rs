@@ -1,7 +1,7 @@
 //! The weights of a page's vertices under a [`Footprint`], for every brush: loops over plain
 //! arrays, the same bits as [`Footprint::at`] gives one at a time.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::dab::soft;
 use super::falloff::Falloff;
@@ -53,9 +53,10 @@ impl WideWork for Weigh<'_> {
             let rows = &page.rows()[first..first + weights.len()];
             let mut d = Triples::NOWHERE;
             if rules.before {
-                (0..rows.len()).for_each(|i| d.set(i, page.before(first + i) - foot.centre));
+                let rows = &page.rows_before()[first..first + rows.len()];
+                d.fill(rows, |p| p - foot.centre);
             } else {
-                rows.iter().enumerate().for_each(|(i, r)| d.set(i, r.truncate() - foot.centre));
+                d.fill(rows, |p| p - foot.centre);
             }
             let Triples([x, y, z]) = &d;
             let d2 = |i: usize| x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
@@ -72,10 +73,9 @@ impl WideWork for Weigh<'_> {
             let Some(normal) = rules.facing else { continue };
             let mut n = Triples::NOWHERE;
             if rules.before {
-                (0..rows.len()).for_each(|i| n.set(i, page.normal_before(first + i)));
+                n.fill(&page.normal_rows_before()[first..first + rows.len()], |n| n);
             } else {
-                let normals = &page.normal_rows()[first..first + rows.len()];
-                normals.iter().enumerate().for_each(|(i, r)| n.set(i, r.truncate()));
+                n.fill(&page.normal_rows()[first..first + rows.len()], |n| n);
             }
             let Triples([x, y, z]) = &n;
             for (i, weight) in weights.iter_mut().enumerate() {
@@ -87,14 +87,35 @@ impl WideWork for Weigh<'_> {
 }
 
 /// The x, the y and the z of a block of vertices, each in a row.
-struct Triples([[f32; BLOCK]; 3]);
+#[derive(Debug)]
+pub struct Triples([[f32; BLOCK]; 3]);
 
 impl Triples {
     /// Outside of every footprint.
     const NOWHERE: Triples = Triples([[f32::INFINITY; BLOCK]; 3]);
+    /// Zeros.
+    pub const ZERO: Triples = Triples([[0.0; BLOCK]; 3]);
 
+    /// Takes what `of` makes of the first three lanes of each row; 64 rows at most.
     #[inline(always)]
-    fn set(&mut self, i: usize, v: Vec3) {
+    pub fn fill(&mut self, rows: &[Vec4], of: impl Fn(Vec3) -> Vec3) {
+        let [x, y, z] = &mut self.0;
+        for (((row, x), y), z) in rows.iter().zip(x).zip(y).zip(z) {
+            let v = of(row.truncate());
+            (*x, *y, *z) = (v.x, v.y, v.z);
+        }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Vec3 {
+        let [x, y, z] = &self.0;
+        Vec3::new(x[i], y[i], z[i])
+    }
+
+    /// Sets one of them.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, v: Vec3) {
         (self.0[0][i], self.0[1][i], self.0[2][i]) = (v.x, v.y, v.z);
     }
 
@@ -150,7 +171,7 @@ fn shares(foot: &Footprint, d: &Triples) -> [f32; BLOCK] {
 
 /// The profile at distances in radii.
 #[inline(always)]
-fn faded(foot: &Footprint, mut x: [f32; BLOCK]) -> [f32; BLOCK] {
+pub(super) fn faded(foot: &Footprint, mut x: [f32; BLOCK]) -> [f32; BLOCK] {
     if foot.hardness > 0.0 {
         x.iter_mut().for_each(|x| *x = soft(*x, foot.hardness));
     }

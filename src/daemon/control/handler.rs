@@ -9,6 +9,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::host::{Host, locked};
+use super::stroke::LentBrush;
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
@@ -264,13 +265,11 @@ impl Handler for Host {
         let shown = self.published.load_full();
         let brush = params.brush.as_ref().map(|b| merged_brush(&self.presets, &shown, b));
         let brush = brush.transpose()?;
-        if let Some((_, Some(picture))) = &brush {
-            self.send(Command::Picture(picture.clone()))?;
-        }
         // With the settings that the other brush had, to be put back after the stroke.
-        let brush = brush.map(|(b, _)| {
-            let kept = || self.presets.recalled(&shown.brush, &shown.kept_brushes, b.kind);
-            (b, (b.kind != shown.brush.kind).then(kept))
+        let brush = brush.map(|(settings, picture)| {
+            let kind = settings.kind;
+            let kept = || self.presets.recalled(&shown.brush, &shown.kept_brushes, kind);
+            LentBrush { settings, picture, kept: (kind != shown.brush.kind).then(kept) }
         });
         let link = self.link();
         match pen.try_lock() {

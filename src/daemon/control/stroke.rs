@@ -1,6 +1,7 @@
 //! A stroke as a request: its points become samples of a virtual pen, which take the same way as
 //! those of a tablet. So they are recorded, replayed and bounded like any other.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use glam::{Vec2, Vec3};
@@ -8,7 +9,7 @@ use glam::{Vec2, Vec3};
 use super::loop_link::LoopLink;
 use crate::Published;
 use crate::adaptors::CONTROL_PEN_ID;
-use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_control::RpcError;
 use sculptd_control::brush::{StrokeParams, StrokePoint, StrokeReply};
 use sculptd_devices::queue::{Sender, SenderFactory};
@@ -32,6 +33,22 @@ pub struct VirtualPen {
     clock: Clock,
 }
 
+/// A brush for one stroke.
+#[derive(Debug)]
+pub struct LentBrush {
+    /// What the stroke is made with.
+    pub settings: BrushSettings,
+    /// The picture of heights that the brush brings along.
+    pub picture: Option<Arc<Picture>>,
+    /// What the brush of this kind is set to again afterwards, where it is not the one in hand.
+    pub kept: Option<BrushSettings>,
+}
+
+/// What does what no picture does: flat, and lowest.
+fn no_picture() -> Arc<Picture> {
+    Arc::new(Picture { width: 1, height: 1, heights: vec![0], cover: Vec::new() })
+}
+
 impl VirtualPen {
     /// A pen on the loop's channel. `clock` is the one that the loop runs by.
     pub fn new(factory: &SenderFactory, clock: Clock) -> Self {
@@ -39,8 +56,7 @@ impl VirtualPen {
     }
 
     /// Makes the stroke in the time that its points say, and waits until the loop has taken it.
-    /// `brush`: the brush to make it with, instead of the one in hand, and what that brush is set
-    /// to again afterwards where it is of another kind.
+    /// `brush`: the brush to make it with, instead of the one in hand.
     ///
     /// # Errors
     /// A point in space that is not seen, and a loop that takes nothing.
@@ -48,18 +64,24 @@ impl VirtualPen {
         &mut self,
         link: LoopLink<'_>,
         stroke: &StrokeParams,
-        brush: Option<(BrushSettings, Option<BrushSettings>)>,
+        brush: Option<LentBrush>,
     ) -> Result<StrokeReply, RpcError> {
         let shown = link.published.load_full();
         let points = in_view(&shown, stroke)?;
-        if let Some((brush, _)) = brush {
-            link.send(Command::Brush(brush))?;
+        if let Some(lent) = &brush {
+            if let Some(picture) = &lent.picture {
+                link.send(Command::Picture(picture.clone()))?;
+            }
+            link.send(Command::Brush(lent.settings))?;
         }
         let drawn = self.send_samples(link, &points, shown.camera.aspect);
-        if let Some((_, kept)) = brush {
-            // Whatever came of it: the brush in hand is the person's, and so is what the other
-            // brush was set to. A stroke that follows finds it in place.
-            if let Some(kept) = kept {
+        if let Some(lent) = brush {
+            // Whatever came of it: the brush in hand is the person's, and so are the picture and
+            // what the other brush was set to. A stroke that follows finds them in place.
+            if lent.picture.is_some() {
+                link.send(Command::Picture(shown.picture.clone().unwrap_or_else(no_picture)))?;
+            }
+            if let Some(kept) = lent.kept {
                 link.send(Command::Brush(kept))?;
             }
             link.send(Command::Brush(shown.brush))?;

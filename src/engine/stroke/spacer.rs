@@ -10,8 +10,8 @@
 //!
 //! The law: **within a run, a dab is never further than the spacing from the one before it.** A run
 //! goes on
-//! * where the surface is seen without a break along the path: the next dab lies 0.94 to 1 of the
-//!   spacing on;
+//! * where the surface is seen without a break along the path: the next dab lies 0.97 of the
+//!   spacing on, or 0.94 to 1 of it where the surface is too broken to aim;
 //! * where it leaps, and what is hidden by a crest is at most [`BRIDGED`] spacings wide, brink to
 //!   far side: one more dab is laid on the brink, and if the far side is still too far, others on
 //!   the hidden clay between, found straight below the line of sight over it, until it is not.
@@ -32,6 +32,13 @@ use sculptd_geometry::portable::PortableMath;
 /// A dab is accepted between these shares of the spacing: never above one, so that the law holds
 /// with room for rounding.
 const ACCEPT: std::ops::RangeInclusive<f32> = 0.94..=1.0;
+/// Where in that the dabs of a path without breaks all lie: steps of one length, for what a dab
+/// lays down stands for the step before it, and steps of two lengths in turn would make waves.
+const EVEN: std::ops::RangeInclusive<f32> = 0.965..=0.975;
+/// The share of the spacing that is aimed at.
+const AIM: f32 = 0.97;
+/// So many steps of the search look for [`EVEN`] by linear interpolation.
+const AIMED: u32 = 6;
 /// Hidden clay up to so many spacings from brink to far side is crossed within a run.
 pub const BRIDGED: f32 = 2.0;
 /// No dab on a brink that is nearer to the last one than this share of the spacing.
@@ -48,7 +55,7 @@ const FAINT: f32 = 0.5;
 const JUMPED: f32 = 4.0;
 /// Bisection steps for one dab: 2^-20 of a spacing as it is seen, or what single precision can tell
 /// apart.
-const MAX_BISECTIONS: u32 = 20;
+const MAX_BISECTIONS: u32 = AIMED + 20;
 /// Steps over a stretch with no surface, in heights of the view.
 const BLIND_STEP: f32 = 0.004;
 
@@ -110,41 +117,47 @@ enum Step {
     End,
 }
 
-/// The next point a spacing away along a path from `start`, by advancing `step` and bisecting.
-/// `seek` says what is met.
+/// The next point a spacing away along a path from `start`, by advancing `step` and narrowing down
+/// where the spacing is reached. `seek` says what is met.
 fn advance(
     start: f32,
-    mut step: f32,
+    step: f32,
     here: Option<Sight>,
     seek: &mut dyn FnMut(f32) -> Option<Sight>,
 ) -> Step {
     let off = |s: &Option<Sight>| s.map_or(f32::INFINITY, |s| s.off);
     let (mut low, mut low_at) = (here, start);
     match here {
-        Some(here) if ACCEPT.contains(&here.off) => return Step::Dab(here),
+        Some(here) if (*EVEN.start()..=*ACCEPT.end()).contains(&here.off) => {
+            return Step::Dab(here);
+        }
         // The surface moved under the pen since.
         Some(here) if here.off > 1.0 => return Step::Leap(Sight { off: 0.0, ..here }, here),
         _ => {}
     }
     loop {
-        let mut high_at = (low_at + step.max(1e-5)).min(1.0);
+        // Onward by what is missing, at least a tenth of a step, so that the walk always ends.
+        let missing = if low.is_some() { (AIM - off(&low)).clamp(0.1, 1.0) } else { 1.0 };
+        let mut high_at = (low_at + (step * missing).max(1e-5)).min(1.0);
         let mut high = seek(high_at);
-        if off(&high) < *ACCEPT.start() {
+        if off(&high) < *EVEN.start() {
             if high_at >= 1.0 {
                 return Step::End;
             }
-            // Onward by what is missing, at least a tenth of a step, so that the walk always ends.
-            step *= (1.0 - off(&high)).clamp(0.1, 1.0);
             (low, low_at) = (high, high_at);
             continue;
         }
-        for _ in 0..MAX_BISECTIONS {
-            let mid_at = 0.5 * (low_at + high_at);
-            if ACCEPT.contains(&off(&high)) || mid_at <= low_at || mid_at >= high_at {
+        for k in 0..MAX_BISECTIONS {
+            let good = if k < AIMED { &EVEN } else { &ACCEPT };
+            let share = (AIM - off(&low)) / (off(&high) - off(&low));
+            let aimed = k < AIMED && high.is_some() && share.is_finite();
+            let share = if aimed { share.clamp(0.1, 0.9) } else { 0.5 };
+            let mid_at = low_at + share * (high_at - low_at);
+            if good.contains(&off(&high)) || mid_at <= low_at || mid_at >= high_at {
                 break;
             }
             let mid = seek(mid_at);
-            if off(&mid) < *ACCEPT.start() {
+            if off(&mid) < *EVEN.start() {
                 (low, low_at) = (mid, mid_at);
             } else {
                 (high, high_at) = (mid, mid_at);
@@ -152,6 +165,7 @@ fn advance(
         }
         return match (low, high) {
             (_, Some(high)) if high.off <= *ACCEPT.end() => Step::Dab(high),
+            (Some(low), _) if low.off >= *ACCEPT.start() => Step::Dab(low),
             (Some(low), Some(high)) => Step::Leap(low, high),
             _ => Step::Lost(high_at),
         };

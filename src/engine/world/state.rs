@@ -10,7 +10,7 @@ use crate::command::{Command, Jump};
 use crate::hand::{HandTools, HeldObject, Pose, Volume};
 use crate::payload::{Payload, PayloadId};
 use crate::stroke::{CurveStroke, PenPoint};
-use sculptd_clay::brush::{BrushKind, BrushSettings};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Picture};
 use sculptd_clay::{Clay, GarbageSink, Grafted};
 use sculptd_devices::{DeviceId, Hands};
 
@@ -64,6 +64,11 @@ impl World {
     /// The brush and its settings.
     pub fn brush(&self) -> &BrushSettings {
         &self.brush
+    }
+
+    /// The picture of heights of the alpha `picture`, where one was loaded.
+    pub fn picture(&self) -> Option<&Arc<Picture>> {
+        self.scratch.picture.as_ref()
     }
 
     /// What each brush was set to when it was last exchanged for another; the brush in use is not

@@ -250,6 +250,8 @@ impl StrokeContext<'_> {
             _ => normal,
         };
         let moved = self.stroke.last.map_or(Vec3::ZERO, |last| hit.position - last);
+        // Measured where dabs are: where the stroke raised the clay, its places lie aside of those.
+        let measured = self.stroke.last_measured.map_or(Vec3::ZERO, |last| centre - last);
         let mut span = share;
         if drag.is_none() {
             self.stroke.travelled += moved.length();
@@ -258,7 +260,7 @@ impl StrokeContext<'_> {
         }
         let pressure = if drag.is_none() { self.stroke.pressure } else { at.pressure };
         let strength = s.strength * s.pressure_strength.factor(pressure);
-        let (motion, last) = drag.unwrap_or((moved, Vec3::ZERO));
+        let (motion, last) = drag.unwrap_or((measured, Vec3::ZERO));
         let ray = self.camera.ray(at.view);
         let first = Dab {
             settings: s,
