@@ -70,9 +70,10 @@ def read_off(path):
     lines = Path(path).read_text().split("\n")
     n, m = map(int, lines[1].split()[:2])
     v = np.array([line.split()[:3] for line in lines[2 : 2 + n]], dtype=np.float64)
-    faces = np.array([line.split()[:4] for line in lines[2 + n : 2 + n + m]], dtype=np.int64).reshape(-1, 4)
-    assert (faces[:, 0] == 3).all()
-    return v, faces[:, 1:]
+    rings = [[int(x) for x in line.split()] for line in lines[2 + n : 2 + n + m]]
+    # Corners from the first on; a polygon as a fan.
+    fans = [(r[1], r[k], r[k + 1]) for r in rings for k in range(2, r[0])]
+    return v, np.array(fans, dtype=np.int64).reshape(-1, 3)
 
 
 def volume(v, t):

@@ -159,8 +159,8 @@ impl Chain {
         })
     }
 
-    /// How far the corners of resolved shapes, in steps of one in [`FINER`], are from the edges that
-    /// they came from, at most; in steps.
+    /// How far the corners of resolved shapes, in steps of one in [`FINER`], are from the edges
+    /// that they came from, at most; in steps.
     fn farthest(&self, tree: &SpanTree, shapes: &[Vec<Vec<[i64; 2]>>]) -> f64 {
         let nearest = |p: &[i64; 2]| {
             let at = flat_place(*p) / FINER as f64;

@@ -21,7 +21,7 @@ fn orient([ax, ay]: [i64; 2], [bx, by]: [i64; 2], [cx, cy]: [i64; 2]) -> i128 {
 
 /// The whole point next to where two edges cross, both beyond their ends; within a tenth of a step
 /// of what rounding the exact point gives.
-fn crossing([a, b]: WholeEdge, [c, d]: WholeEdge) -> Option<[i64; 2]> {
+fn meeting_point([a, b]: WholeEdge, [c, d]: WholeEdge) -> Option<[i64; 2]> {
     let (p, q) = (orient(c, d, a), orient(c, d, b));
     let (r, s) = (orient(a, b, c), orient(a, b, d));
     let opposite = |x: i128, y: i128| (x > 0 && y < 0) || (x < 0 && y > 0);
@@ -48,7 +48,7 @@ pub fn snap_rounded(edges: &[WholeEdge], spans: &[Span], tree: &SpanTree) -> Vec
         let mut found = Vec::new();
         tree.each_meets(&spans[i], |j| {
             if (j as usize) > i {
-                found.extend(crossing(edges[i], edges[j as usize]));
+                found.extend(meeting_point(edges[i], edges[j as usize]));
             }
         });
         found
@@ -122,7 +122,7 @@ mod tests {
         cut.dedup();
         for (i, &e) in cut.iter().enumerate() {
             for &f in &cut[i + 1..] {
-                assert_eq!(crossing(e, f), None, "{e:?} {f:?}");
+                assert_eq!(meeting_point(e, f), None, "{e:?} {f:?}");
             }
         }
     }
