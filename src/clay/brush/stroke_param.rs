@@ -51,8 +51,8 @@ pub enum StrokePlace {
 
 /// The way between two samples, in the radii that coordinates are carried.
 const STEP: f32 = 0.19;
-/// Samples that one dab may add; a longer way is a leap of the path.
-const MOST: f32 = 16.0;
+/// Samples that one dab may add: the spacing is a radius at most, and a longer way is a leap.
+const MOST: f32 = 6.0;
 /// How fast charts may differ along the stroke: more is a fold, where coordinates are not one.
 const FOLD: f32 = 0.7;
 

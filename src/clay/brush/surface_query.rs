@@ -206,11 +206,7 @@ impl SurfaceQuery<'_> {
         } else {
             StrokePlace::Now(dab.centre, dab.normal)
         };
-        if one.step(self.mesh, dab.stroke, place, radius) {
-            one.count()
-        } else {
-            0
-        }
+        if one.step(self.mesh, dab.stroke, place, radius) { one.count() } else { 0 }
     }
 }
 
