@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::garbage::{Garbage, GarbageSink};
-use super::page::Page;
+use super::page::{Page, PageTopology};
 
 /// Pages kept for reuse, at most; 512-vertex pages take about 25 KB each.
 const KEPT: usize = 2048;
@@ -18,6 +18,10 @@ pub(super) struct Pool {
     free: Vec<Arc<Page>>,
     /// Replaced, oldest first; somebody may still read them.
     waiting: VecDeque<Arc<Page>>,
+    /// Topologies that nobody holds any more; their contents are old.
+    topologies: Vec<Arc<PageTopology>>,
+    /// What a page holds that has none.
+    blank: Arc<PageTopology>,
     /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
     leaves: usize,
@@ -33,6 +37,8 @@ impl Pool {
             waiting: VecDeque::with_capacity(KEPT),
             rows,
             leaves,
+            topologies: Vec::with_capacity(KEPT),
+            blank: Arc::default(),
             sink: GarbageSink::default(),
         };
         for _ in 0..count {
@@ -51,6 +57,7 @@ impl Pool {
         let mut page = Page {
             points: Vec::with_capacity(self.rows),
             normals: Vec::with_capacity(self.rows),
+            topology: self.blank.clone(),
             ..Page::default()
         };
         page.tree.reset(self.leaves);
@@ -60,6 +67,11 @@ impl Pool {
     /// A page that nobody else holds; its contents are old.
     pub(super) fn take(&mut self) -> Arc<Page> {
         self.free.pop().unwrap_or_else(|| self.fresh())
+    }
+
+    /// A topology that nobody else holds; its contents are old.
+    pub(super) fn take_topology(&mut self) -> Arc<PageTopology> {
+        self.topologies.pop().unwrap_or_default()
     }
 
     /// Gives back a page that nobody else holds.
@@ -76,17 +88,28 @@ impl Pool {
     pub(super) fn reclaim(&mut self, count: usize) {
         for _ in 0..count.min(self.waiting.len()) {
             let Some(mut page) = self.waiting.pop_front() else { return };
-            if Arc::get_mut(&mut page).is_none() {
+            if let Some(free) = Arc::get_mut(&mut page) {
+                // The last page that lets go of a topology leaves it here.
+                let mut topology = std::mem::replace(&mut free.topology, self.blank.clone());
+                if Arc::get_mut(&mut topology).is_some() {
+                    if self.topologies.len() < KEPT {
+                        self.topologies.push(topology);
+                    } else {
+                        self.sink.discard(Garbage::Shared(topology));
+                    }
+                }
+                if self.free.len() < KEPT {
+                    self.free.push(page);
+                } else {
+                    self.sink.discard(Garbage::Shared(page));
+                }
+            } else {
                 if self.waiting.len() < KEPT {
                     self.waiting.push_back(page);
                 } else {
                     // Its reader will free it.
                     self.sink.discard(Garbage::Shared(page));
                 }
-            } else if self.free.len() < KEPT {
-                self.free.push(page);
-            } else {
-                self.sink.discard(Garbage::Shared(page));
             }
         }
     }
@@ -94,5 +117,6 @@ impl Pool {
     pub(super) fn bytes(&self) -> usize {
         self.free.iter().map(|p| p.bytes()).sum::<usize>()
             + self.waiting.iter().map(|p| p.bytes()).sum::<usize>()
+            + self.topologies.iter().map(|t| t.bytes()).sum::<usize>()
     }
 }
