@@ -143,6 +143,28 @@ impl PageTopology {
         true
     }
 
+    /// Makes room for a page of about `own` vertices, so that it can be written again and again
+    /// without asking for more.
+    pub(super) fn reserve(&mut self, own: usize) {
+        fn room<T>(of: &mut Vec<T>, count: usize) {
+            of.clear();
+            of.reserve(count);
+        }
+        room(&mut self.ids, own);
+        room(&mut self.kinds, own);
+        room(&mut self.triangles, own * 5 / 2);
+        room(&mut self.triangle_ids, own * 5 / 2);
+        room(&mut self.rings, own * 7);
+        room(&mut self.ring_starts, own + 1);
+        room(&mut self.ring_blocks, own.div_ceil(BLOCK) + 1);
+        room(&mut self.leaf_blocks, own);
+        room(&mut self.loose, own);
+        room(&mut self.halo_sources, own);
+        room(&mut self.neighbours, 64);
+        self.hexes.reserve(own);
+        self.leaves.reserve(own * 5 / 2 / LEAF, own * 6);
+    }
+
     /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index
     /// there.
     pub fn halo_home(&self, k: usize) -> (u32, u16) {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::garbage::{Garbage, GarbageSink};
 use super::page::{Page, PageTopology};
+use crate::assembly::PAGE_VERTICES;
 
 /// Pages kept for reuse, at most; 512-vertex pages take about 25 KB each.
 const KEPT: usize = 2048;
@@ -22,6 +23,8 @@ pub(super) struct Pool {
     topologies: Vec<Arc<PageTopology>>,
     /// What a page holds that has none.
     blank: Arc<PageTopology>,
+    /// The page that stands where there was none before: one for all.
+    nothing: Arc<Page>,
     /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
     leaves: usize,
@@ -39,6 +42,7 @@ impl Pool {
             leaves,
             topologies: Vec::with_capacity(KEPT),
             blank: Arc::default(),
+            nothing: Arc::new(Page::nothing()),
             sink: GarbageSink::default(),
         };
         for _ in 0..count {
@@ -69,9 +73,27 @@ impl Pool {
         self.free.pop().unwrap_or_else(|| self.fresh())
     }
 
-    /// A topology that nobody else holds; its contents are old.
-    pub(super) fn take_topology(&mut self) -> Arc<PageTopology> {
-        self.topologies.pop().unwrap_or_default()
+    /// A page with a topology that nobody else holds either; their contents are old.
+    pub(super) fn take_whole(&mut self) -> Arc<Page> {
+        let mut page = self.take();
+        if let Some(page) = Arc::get_mut(&mut page) {
+            let mut topology = self.topologies.pop().unwrap_or_default();
+            if let Some(topology) = Arc::get_mut(&mut topology) {
+                topology.reserve(PAGE_VERTICES);
+            }
+            page.topology = topology;
+            page.points.clear();
+            page.normals.clear();
+            page.points.reserve(2 * PAGE_VERTICES);
+            page.normals.reserve(2 * PAGE_VERTICES);
+            page.tree.reset(PAGE_VERTICES / 2);
+        }
+        page
+    }
+
+    /// The page that stands where there was none before.
+    pub(super) fn nothing(&self) -> Arc<Page> {
+        self.nothing.clone()
     }
 
     /// Gives back a page that nobody else holds.
@@ -81,6 +103,9 @@ impl Pool {
 
     /// A page that the clay no longer shows; readers and steps may still hold it.
     pub(super) fn retire(&mut self, page: Arc<Page>) {
+        if Arc::ptr_eq(&page, &self.nothing) {
+            return;
+        }
         self.waiting.push_back(page);
     }
 

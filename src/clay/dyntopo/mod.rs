@@ -23,6 +23,7 @@ use std::sync::Arc;
 
 use super::clay::Clay;
 use super::page::Page;
+use super::pool::Pool;
 use super::workers::Workers;
 use crate::assembly::splice::remake;
 use crate::assembly::{Cut, Grafted};
@@ -70,7 +71,7 @@ impl Clay {
             return cuts;
         }
         edit.clear(pages.len());
-        let budget = cuts.work + room;
+        let budget = cuts.work.saturating_add(room);
         let mut pass = Pass { edit, queues, pages, balls, cuts, budget };
         pass.run(found);
         cuts = pass.cuts;
@@ -114,8 +115,8 @@ impl Clay {
         let Clay { topology, pages, pool, buffers, empty, next_vertex, next_triangle, .. } = self;
         let TopologyBuffers { edit, rebuild, .. } = topology;
         let blank = &buffers.blank;
-        rebuild.lay_out(edit, pages, pool, blank, [next_vertex, next_triangle], |pages| {
-            empty_page(empty, pages)
+        rebuild.lay_out(edit, pages, pool, blank, [next_vertex, next_triangle], |pages, pool| {
+            empty_page(empty, pages, pool)
         });
         cuts.work += PAGE_WRITE * rebuild.writes.len();
         let sound = rebuild.write_all(edit, pages, pool, workers);
@@ -149,7 +150,7 @@ impl Clay {
     }
 
     pub(super) fn push_empty(&mut self) {
-        self.pages.push(Arc::new(Page::nothing()));
+        self.pages.push(self.pool.nothing());
     }
 
     /// Makes a cut where the clay is, around it, as it was when the cut was computed: part of the
@@ -208,7 +209,7 @@ impl Clay {
 }
 
 /// The number of a page without vertices: one that was emptied, or a new one.
-fn empty_page(empty: &mut Vec<u32>, pages: &mut Vec<Arc<Page>>) -> u32 {
+fn empty_page(empty: &mut Vec<u32>, pages: &mut Vec<Arc<Page>>, pool: &Pool) -> u32 {
     while let Some(i) = empty.pop() {
         if pages[i as usize].own() == 0 {
             // Emptied, filled again by undo, emptied again: then it is noted twice, and must
@@ -217,7 +218,7 @@ fn empty_page(empty: &mut Vec<u32>, pages: &mut Vec<Arc<Page>>) -> u32 {
             return i;
         }
     }
-    pages.push(Arc::new(Page::nothing()));
+    pages.push(pool.nothing());
     pages.len() as u32 - 1
 }
 

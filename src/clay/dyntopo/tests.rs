@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::brush::{GaussianBrush, SmoothBrush};
-use crate::{Clay, Cuts, Detail, Ray, Reach, Workers};
+use crate::brush::stamp::Lens;
+use crate::brush::{BrushKind, BrushSettings, Dab, GaussianBrush, Grip, Scratch, SmoothBrush, Tool};
+use crate::{Clay, Cuts, DabReport, Detail, Hit, Ray, Reach, Workers};
 use sculptd_geometry::{TriMesh, job::Job, shapes};
 
 /// Numbers between 0 and 1 that only the seed decides.
@@ -80,6 +81,92 @@ fn dab(clay: &mut Clay, dice: &mut Dice, workers: &Workers, sum: &mut Cuts) {
         clay.dab(&reach, &GaussianBrush::new(hit.position, radius, hit.normal, height), workers);
     }
     clay.end_step();
+}
+
+/// One dab of a random brush that lies on the surface, at its own strength.
+fn random_brush(clay: &mut Clay, hit: &Hit, radius: f32, dice: &mut Dice, workers: &Workers) {
+    let kinds: Vec<_> = BrushKind::ALL.iter().filter(|k| k.grip() == Grip::Surface).collect();
+    let kind = *kinds[(dice.next() * kinds.len() as f32) as usize];
+    let settings = BrushSettings { radius, ..BrushSettings::new(kind) };
+    let along = hit.normal.any_orthonormal_vector();
+    let right = hit.normal.cross(along);
+    let lens = Lens {
+        eye: hit.position + hit.normal * 3.0,
+        right,
+        up: along,
+        back: hit.normal,
+        half: 0.4,
+        parallel: false,
+    };
+    let dab = Dab {
+        settings: &settings,
+        centre: hit.position,
+        normal: hit.normal,
+        touch: hit.position,
+        found: false,
+        radius,
+        strength: settings.strength * 0.5,
+        span: 1.0,
+        pace: 0.0,
+        heading: along * 0.5,
+        pass: 0,
+        sign: if dice.next() < 0.5 { 1.0 } else { -1.0 },
+        motion: along * (0.2 * radius),
+        last: Vec3::ZERO,
+        eye: hit.normal,
+        right,
+        lens,
+        hand: 1.0,
+        image: 0,
+        travelled: radius,
+        stroke: 1,
+    };
+    let dab = Dab { pace: dab.pace_of(settings.strength * 0.5), ..dab };
+    let mut scratch = Scratch::default();
+    let mut tool = Tool { mesh: clay, workers, scratch: &mut scratch, report: DabReport::default() };
+    kind.apply(&[dab], &mut tool);
+}
+
+#[test]
+fn random_brushes_leave_a_closed_surface() {
+    let rounds = if std::env::var_os("SCULPTD_LONG").is_some() { 1000 } else { 8 };
+    let start = shapes::sphere_of_about(8_000);
+    let mut clay = Clay::build(&start, &Job::default()).unwrap();
+    clay.set_undo_bytes(64 << 20);
+    let workers = Workers::new(2);
+    let (mut dice, mut sum, mut worst) = (Dice(77), Cuts::default(), (180.0f64, 0));
+    for round in 0..rounds {
+        let (before, steps) = (clay.hash(), clay.undo_steps());
+        for _ in 0..100 {
+            let from = dice.direction();
+            let Some(hit) = clay.pick(Ray { origin: from * 5.0, dir: -from }) else { continue };
+            let radius = 0.06 + 0.2 * dice.next();
+            let edge = radius * (0.08 + 0.2 * dice.next());
+            let ball = Detail { centre: hit.position, radius, edge, split: true, collapse: true };
+            clay.begin_step();
+            random_brush(&mut clay, &hit, radius, &mut dice, &workers);
+            let budget = 500 + (dice.next() * 4000.0) as usize;
+            let cuts = clay.adapt_topology(&[ball], budget, &workers);
+            sum.splits += cuts.splits;
+            sum.collapses += cuts.collapses;
+            sum.flips += cuts.flips;
+            clay.end_step();
+        }
+        clay.verify_invariants().unwrap_or_else(|e| panic!("round {round}: {e}"));
+        let (euler, least, valence) = checked(&clay.to_tri());
+        assert_eq!(euler, 2, "round {round}");
+        worst = (worst.0.min(least), worst.1.max(valence));
+        if round % 50 == 1 && clay.undo_steps() >= steps + 90 {
+            let (after, made) = (clay.hash(), clay.undo_steps() - steps);
+            (0..made).for_each(|_| assert!(clay.undo()));
+            assert_eq!(clay.hash(), before);
+            (0..made).for_each(|_| assert!(clay.redo()));
+            assert_eq!(clay.hash(), after);
+        }
+    }
+    println!("{} dabs: {sum:?}, {} vertices, {worst:?}", rounds * 100, clay.vertex_count());
+    assert!(worst.1 <= 12, "{} neighbours", worst.1);
+    assert!(sum.splits > 100 && sum.collapses > 100 && sum.flips > 100, "{sum:?}");
 }
 
 #[test]

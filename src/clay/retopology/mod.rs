@@ -10,7 +10,8 @@ pub(crate) mod edit;
 pub(crate) mod operations;
 pub(crate) mod rebuild;
 pub(crate) mod scan;
-pub(crate) mod shape;
+mod shape;
+mod write_page;
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -88,7 +89,7 @@ pub const PAGE_WRITE: usize = 24;
 pub(crate) struct TopologyBuffers {
     pub(crate) edit: edit::Edit,
     pub(crate) queues: operations::Queues,
-    pub(crate) rebuild: rebuild::Rebuild,
+    pub(crate) rebuild: rebuild::PageRebuild,
     /// One for each page that is looked through.
     pub(crate) scans: Vec<scan::PageScan>,
     pub(crate) pages: Vec<u32>,

@@ -4,57 +4,26 @@
 //! 1. Who lives where: a vertex that is gone leaves its place to a new one, else to the page's
 //!    last. A page beyond [`PAGE_VERTICES`] is parted along the k-d order. Pages whose halo names
 //!    a vertex that has another place are written as well.
-//! 2. Each page by one task: halo, rings, triangles, leaves, normals, tree.
+//! 2. Each page by one task ([`super::write_page`]): halo, rings, triangles, leaves, normals, tree.
 //! 3. Halos take over the normals. A page beside, where nothing else changed, keeps its topology.
 
 use std::sync::Arc;
 
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
 use super::edit::{Edit, NONE};
+use super::write_page::{PageWrite, WriteInput, WriteTask, canonical, owner, survives};
 use crate::assembly::{PAGE_VERTICES, order};
-use crate::boxtree::LEAF;
-use crate::normals;
-use crate::page::{BREAK, Neighbour, Page, PageTopology, Ring};
+use crate::page::{BREAK, Page};
 use crate::pool::Pool;
 use crate::workers::Workers;
 
 /// Pages below which one thread writes them alone.
 const PARALLEL: usize = 6;
 
-/// A page to be written.
-#[derive(Debug)]
-pub(crate) struct PageWrite {
-    slot: u32,
-    /// Handles of its vertices, in order.
-    own: Vec<u32>,
-    /// Triangles that it gets, and their numbers.
-    given: Vec<([u32; 3], u32)>,
-    /// Its vertices were put in order anew: so are its triangles.
-    reorder: bool,
-    pub(crate) page: Arc<Page>,
-    /// It is too tangled for a page.
-    failed: bool,
-}
-
-/// The memory of one task.
-#[derive(Debug, Default)]
-pub(crate) struct WriteTask {
-    /// The halo: page and local index, and the handle. Ascending.
-    foreign: Vec<(u64, u32)>,
-    seen: Vec<u16>,
-    /// For each row the last triangle that has it.
-    anchor: Vec<u32>,
-    triangles: Vec<([u16; 3], u32)>,
-    given: Vec<(u32, u32, [u16; 3])>,
-    sorted: Vec<([u16; 3], u32)>,
-    items: Vec<order::Item>,
-    rows: Vec<Vec4>,
-}
-
 /// Pages to be written, and the memory for it.
 #[derive(Debug, Default)]
-pub(crate) struct Rebuild {
+pub(crate) struct PageRebuild {
     pub(crate) writes: Vec<PageWrite>,
     spare: Vec<PageWrite>,
     tasks: Vec<WriteTask>,
@@ -70,25 +39,7 @@ pub(crate) struct Rebuild {
     relocated: bool,
 }
 
-/// What all tasks read.
-struct Shared<'a> {
-    edit: &'a Edit,
-    pages: &'a [Arc<Page>],
-    relocated: bool,
-}
-
-/// A triangle from its least vertex on.
-fn canonical([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    }
-}
-
-impl Rebuild {
+impl PageRebuild {
     fn write(&mut self, slot: u32, pool: &mut Pool, blank: &Arc<Page>) -> usize {
         let mut write = self.spare.pop().unwrap_or_else(|| PageWrite {
             slot: 0,
@@ -102,10 +53,7 @@ impl Rebuild {
         write.own.clear();
         write.given.clear();
         (write.reorder, write.failed) = (false, false);
-        write.page = pool.take();
-        if let Some(page) = Arc::get_mut(&mut write.page) {
-            page.topology = pool.take_topology();
-        }
+        write.page = pool.take_whole();
         if self.write_of.len() <= slot as usize {
             self.write_of.resize(slot as usize + 1, NONE);
         }
@@ -127,7 +75,7 @@ impl Rebuild {
         pool: &mut Pool,
         blank: &Arc<Page>,
         next: [&mut u32; 2],
-        mut new_page: impl FnMut(&mut Vec<Arc<Page>>) -> u32,
+        mut new_page: impl FnMut(&mut Vec<Arc<Page>>, &Pool) -> u32,
     ) {
         self.write_of.clear();
         self.relocated = false;
@@ -223,7 +171,7 @@ impl Rebuild {
         pool: &mut Pool,
         blank: &Arc<Page>,
         w: usize,
-        new_page: &mut impl FnMut(&mut Vec<Arc<Page>>) -> u32,
+        new_page: &mut impl FnMut(&mut Vec<Arc<Page>>, &Pool) -> u32,
     ) {
         self.relocated = true;
         let mut own = std::mem::take(&mut self.writes[w].own);
@@ -246,7 +194,7 @@ impl Rebuild {
             let to = match part {
                 0 => w,
                 _ => {
-                    let slot = edit.new_slot(new_page(pages));
+                    let slot = edit.new_slot(new_page(pages, pool));
                     self.write(slot, pool, blank)
                 }
             };
@@ -315,12 +263,12 @@ impl Rebuild {
         pool: &mut Pool,
         workers: &Workers,
     ) -> bool {
-        let shared = Shared { edit, pages, relocated: self.relocated };
+        let shared = WriteInput { edit, pages, relocated: self.relocated };
         let parallel = self.writes.len() >= PARALLEL;
         while self.tasks.len() < self.writes.len() {
             self.tasks.push(WriteTask::default());
         }
-        let Rebuild { writes, tasks, write_of, indices, .. } = self;
+        let PageRebuild { writes, tasks, write_of, indices, .. } = self;
         workers.each(parallel, writes, tasks, |write, task| task.write(write, &shared));
         if writes.iter().any(|w| w.failed) {
             return false;
@@ -353,7 +301,7 @@ impl Rebuild {
 
     /// Pages beside, where only copies of normals are out of date.
     fn patch(&mut self, edit: &Edit, pages: &[Arc<Page>], pool: &mut Pool) {
-        let Rebuild { writes, write_of, beside, patches, .. } = self;
+        let PageRebuild { writes, write_of, beside, patches, .. } = self;
         let written = |page: u32| {
             let slot = edit.known_slot(page)?;
             write_of.get(slot as usize).filter(|&&w| w != NONE).map(|&w| w as usize)
@@ -398,7 +346,7 @@ impl Rebuild {
 
     /// Hands each new page to `put` with its number, and keeps the memory.
     pub(crate) fn drain(&mut self, edit: &Edit, blank: &Arc<Page>, mut put: impl FnMut(u32, Arc<Page>)) {
-        let Rebuild { writes, spare, patches, .. } = self;
+        let PageRebuild { writes, spare, patches, .. } = self;
         for mut w in writes.drain(..) {
             put(edit.slots[w.slot as usize].page, std::mem::replace(&mut w.page, blank.clone()));
             spare.push(w);
@@ -407,234 +355,3 @@ impl Rebuild {
     }
 }
 
-/// The slot of the page that is home to a triangle: where two of its corners are at home, or else
-/// the first page of three.
-fn owner(edit: &Edit, corners: [u32; 3]) -> u32 {
-    let [a, b, c] = corners.map(|h| edit.home[h as usize]);
-    if b == c {
-        b
-    } else if a == b || a == c {
-        a
-    } else {
-        let page = |s: u32| edit.slots[s as usize].page;
-        [b, c].into_iter().fold(a, |best, s| if page(s) < page(best) { s } else { best })
-    }
-}
-
-/// Whether a triangle of before is still there, and not among the created.
-fn survives(edit: &Edit, corners: [u32; 3]) -> bool {
-    !corners.iter().all(|&h| edit.is_changed(h))
-        || (edit.has_triangle(corners)
-            && edit.created.binary_search(&canonical(corners)).is_err())
-}
-
-impl WriteTask {
-    fn write(&mut self, write: &mut PageWrite, shared: &Shared<'_>) {
-        let PageWrite { slot, own, given, reorder, page, failed } = write;
-        let Some(page) = Arc::get_mut(page) else { return };
-        let Some(t) = Arc::get_mut(&mut page.topology) else { return };
-        *failed = !(self.vertices(*slot, own, t, shared)
-            && self.triangles(*slot, given, *reorder, t, own, shared)
-            && t.index_with(&mut self.seen));
-        if *failed {
-            return;
-        }
-        page.tree.reset(t.triangles.len().div_ceil(LEAF));
-        page.points.clear();
-        page.normals.clear();
-        let everyone = own.iter().copied().chain(self.foreign.iter().map(|f| f.1));
-        for h in everyone {
-            let i = h as usize;
-            let (point, colour) = if shared.edit.is_placed(h) {
-                (shared.edit.points[i], f32::from_bits(shared.edit.colours[i]))
-            } else {
-                let s = &shared.edit.slots[shared.edit.source[i] as usize];
-                let from = &shared.pages[s.page as usize];
-                let row = (h - s.base) as usize;
-                (from.points[row], from.normals[row].w)
-            };
-            page.points.push(point);
-            page.normals.push(Vec3::ZERO.extend(colour));
-        }
-        if own.is_empty() {
-            (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-            return;
-        }
-        normals::all(page);
-        page.refit(u32::MAX);
-    }
-
-    /// The local index of a vertex in the page that is written.
-    fn translate(&self, slot: u32, own: usize, edit: &Edit, h: u32) -> u16 {
-        let i = h as usize;
-        if edit.home[i] == slot {
-            return edit.local[i];
-        }
-        let key = key(edit, h);
-        (own + self.foreign.partition_point(|f| f.0 < key)) as u16
-    }
-
-    /// Halo, rings, numbers.
-    fn vertices(
-        &mut self,
-        slot: u32,
-        own: &[u32],
-        t: &mut PageTopology,
-        shared: &Shared<'_>,
-    ) -> bool {
-        let Shared { edit, pages, .. } = *shared;
-        self.foreign.clear();
-        for &h in own {
-            each_neighbour(edit, pages, h, |n, _| {
-                if edit.home[n as usize] != slot {
-                    self.foreign.push((key(edit, n), n));
-                }
-            });
-        }
-        self.foreign.sort_unstable();
-        self.foreign.dedup();
-        if own.len() + self.foreign.len() >= BREAK as usize {
-            return false;
-        }
-        t.own = own.len();
-        t.halo_sources.clear();
-        t.neighbours.clear();
-        for (k, f) in self.foreign.iter().enumerate() {
-            let page = (f.0 >> 16) as u32;
-            if t.neighbours.last().is_none_or(|n| n.page != page) {
-                t.neighbours.push(Neighbour { page, first: k as u32 });
-            }
-            t.halo_sources.push(f.0 as u16);
-        }
-        t.ids.clear();
-        t.kinds.clear();
-        t.hexes.clear();
-        t.rings.clear();
-        t.ring_starts.clear();
-        for (v, &h) in own.iter().enumerate() {
-            let start = t.rings.len();
-            each_neighbour(edit, pages, h, |n, flag| {
-                t.rings.push(self.translate(slot, own.len(), edit, n) | flag);
-            });
-            let (kind, id) = if edit.source[h as usize] == NONE {
-                (Ring::Closed, edit.number[h as usize])
-            } else {
-                let s = &edit.slots[edit.source[h as usize] as usize];
-                let old = &pages[s.page as usize].topology;
-                let local = (h - s.base) as usize;
-                (old.kinds[local], old.ids[local])
-            };
-            t.ids.push(id);
-            t.kinds.push(kind);
-            match (kind, &t.rings[start..]) {
-                (Ring::Closed, &[a, b, c, d, e, f]) if t.hexes.len() == v => {
-                    t.hexes.push([a, b, c, d, e, f]);
-                    t.rings.clear();
-                }
-                _ => t.ring_starts.push(start.min(u16::MAX as usize) as u16),
-            }
-        }
-        t.ring_starts.push(t.rings.len().min(u16::MAX as usize) as u16);
-        t.rings.len() <= u16::MAX as usize
-    }
-
-    fn triangles(
-        &mut self,
-        slot: u32,
-        given: &[([u32; 3], u32)],
-        reorder: bool,
-        t: &mut PageTopology,
-        own: &[u32],
-        shared: &Shared<'_>,
-    ) -> bool {
-        let Shared { edit, pages, relocated } = *shared;
-        self.anchor.clear();
-        self.anchor.resize(own.len() + self.foreign.len(), NONE);
-        self.triangles.clear();
-        let s = edit.slots[slot as usize];
-        if s.own > 0 {
-            let old = &pages[s.page as usize].topology;
-            for (corners, &id) in old.triangles.iter().zip(&old.triangle_ids) {
-                let corners = corners.map(|v| edit.of_row(slot, v as usize));
-                if !survives(edit, corners) || (relocated && owner(edit, corners) != slot) {
-                    continue;
-                }
-                let local = corners.map(|h| self.translate(slot, own.len(), edit, h));
-                let at = self.triangles.len() as u32;
-                local.iter().for_each(|&v| self.anchor[v as usize] = at);
-                self.triangles.push((local, id));
-            }
-        }
-        // What is new lies beside what it shares a vertex with.
-        self.given.clear();
-        for &(corners, id) in given {
-            let local = corners.map(|h| self.translate(slot, own.len(), edit, h));
-            let anchors = local.map(|v| self.anchor[v as usize]);
-            let anchor = anchors.into_iter().filter(|&a| a != NONE).max().unwrap_or(NONE);
-            self.given.push((anchor, id, local));
-        }
-        let kept = self.triangles.len();
-        if reorder || 2 * self.given.len() > kept {
-            self.triangles.extend(self.given.iter().map(|g| (g.2, g.1)));
-            self.items.clear();
-            let place = |v: u16| match usize::from(v).checked_sub(own.len()) {
-                None => point(edit, pages, own[v as usize]),
-                Some(k) => point(edit, pages, self.foreign[k].1),
-            };
-            for (k, (corners, _)) in self.triangles.iter().enumerate() {
-                let [a, b, c] = corners.map(place);
-                let middle = a.min(b).min(c) * 0.5 + a.max(b).max(c) * 0.5;
-                self.items.push((middle, k as u32));
-            }
-            order::order_runs(&mut self.items, LEAF);
-            self.sorted.clear();
-            self.sorted.extend(self.items.iter().map(|i| self.triangles[i.1 as usize]));
-            std::mem::swap(&mut self.sorted, &mut self.triangles);
-        } else if !self.given.is_empty() {
-            self.given.sort_unstable();
-            self.sorted.clear();
-            let mut next = 0;
-            for k in 0..kept {
-                self.sorted.push(self.triangles[k]);
-                while self.given.get(next).is_some_and(|g| g.0 == k as u32) {
-                    self.sorted.push((self.given[next].2, self.given[next].1));
-                    next += 1;
-                }
-            }
-            self.sorted.extend(self.given[next..].iter().map(|g| (g.2, g.1)));
-            std::mem::swap(&mut self.sorted, &mut self.triangles);
-        }
-        t.triangles.clear();
-        t.triangle_ids.clear();
-        t.triangles.extend(self.triangles.iter().map(|t| t.0));
-        t.triangle_ids.extend(self.triangles.iter().map(|t| t.1));
-        true
-    }
-}
-
-/// Where a vertex is in the new pages, as a number that orders the halo.
-fn key(edit: &Edit, h: u32) -> u64 {
-    let page = edit.slots[edit.home[h as usize] as usize].page;
-    u64::from(page) << 16 | u64::from(edit.local[h as usize])
-}
-
-fn point(edit: &Edit, pages: &[Arc<Page>], h: u32) -> Vec3 {
-    if edit.is_placed(h) {
-        return edit.points[h as usize].truncate();
-    }
-    let s = &edit.slots[edit.source[h as usize] as usize];
-    pages[s.page as usize].point((h - s.base) as usize)
-}
-
-/// Calls `visit` with the neighbours of a vertex in order, and the flag of the ring's entry.
-fn each_neighbour(edit: &Edit, pages: &[Arc<Page>], h: u32, mut visit: impl FnMut(u32, u16)) {
-    if edit.has_ring(h) {
-        edit.ring(h).iter().for_each(|&n| visit(n, 0));
-        return;
-    }
-    let slot = edit.source[h as usize];
-    let s = &edit.slots[slot as usize];
-    for &row in pages[s.page as usize].topology.ring((h - s.base) as usize) {
-        visit(edit.of_row(slot, (row & !BREAK) as usize), row & BREAK);
-    }
-}

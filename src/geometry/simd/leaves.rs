@@ -29,6 +29,15 @@ impl Leaves {
         Some(Leaves { corners, ends, rows })
     }
 
+    /// Forgets all leaves and makes room for so many leaves and corners.
+    pub fn reserve(&mut self, leaves: usize, corners: usize) {
+        self.corners.clear();
+        self.ends.clear();
+        self.rows = 0;
+        self.corners.reserve(corners);
+        self.ends.reserve(leaves);
+    }
+
     /// Leaves of `each` triangles in a row. `seen` has an entry for each row, all `u16::MAX`; what
     /// was met is another number afterwards. False where there are more corners than 16 bits
     /// count.

@@ -32,6 +32,12 @@ impl Hexes {
         self.rows = 0;
     }
 
+    /// Forgets all rings and makes room for so many.
+    pub fn reserve(&mut self, count: usize) {
+        self.clear();
+        self.rings.reserve(count);
+    }
+
     /// Adds the ring of the next vertex.
     pub fn push(&mut self, ring: [u16; 6]) {
         self.rings.push(ring);

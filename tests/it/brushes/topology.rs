@@ -72,15 +72,9 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
                 let radius = 0.08 + 0.25 * dice.next();
                 let edge = 0.03 + 0.09 * dice.next();
                 mesh.begin_step();
-                let detail = Detail {
-                    centre: hit.position,
-                    radius,
-                    edge,
-                    split: true,
-                    collapse: true,
-                    most: 500,
-                };
-                let cuts = mesh.adapt_topology(&detail);
+                let centre = hit.position;
+                let detail = Detail { centre, radius, edge, split: true, collapse: true };
+                let cuts = mesh.adapt_topology(&[detail], 2000, &one);
                 splits += cuts.splits;
                 collapses += cuts.collapses;
                 flips += cuts.flips;
@@ -163,10 +157,10 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
         edge: 0.04,
         split: true,
         collapse: true,
-        most: 100_000,
     };
+    let two = Workers::new(2);
     for _ in 0..3 {
-        mesh.adapt_topology(&detail);
+        mesh.adapt_topology(&[detail], usize::MAX, &two);
     }
     mesh.verify_invariants().expect("in order");
     let end = mesh.to_tri();
@@ -192,7 +186,7 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     // The other way: all of it drawn together.
     let coarse = Detail { edge: 0.2, split: false, ..detail };
     for _ in 0..6 {
-        mesh.adapt_topology(&coarse);
+        mesh.adapt_topology(&[coarse], usize::MAX, &two);
     }
     mesh.verify_invariants().expect("in order");
     let within =
