@@ -42,12 +42,7 @@ impl Clay {
     /// ([`Cuts::work`]) and a little more: the pages of the balls are looked through whatever it
     /// is, and a quarter of it is for operations. Sixteen balls at most are looked at in one call.
     /// Part of the open undo step, if there is one.
-    pub fn adapt_topology(
-        &mut self,
-        balls: &[Detail],
-        budget: usize,
-        workers: &Workers,
-    ) -> Cuts {
+    pub fn adapt_topology(&mut self, balls: &[Detail], budget: usize, workers: &Workers) -> Cuts {
         let used = self.next_vertex.max(self.next_triangle);
         if used >= LAST_NUMBER || !balls.iter().all(Detail::is_sane) {
             return Cuts::default();
@@ -172,7 +167,6 @@ impl Clay {
         self.replace_pages(made.pages);
         Some(Grafted { written, shared: self.pages.len() - written })
     }
-
 
     /// New pages take the old ones' places, as after a dab.
     fn replace_pages(&mut self, built: Vec<(u32, Arc<Page>)>) {

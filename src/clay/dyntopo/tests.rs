@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use crate::brush::stamp::Lens;
-use crate::brush::{BrushKind, BrushSettings, Dab, GaussianBrush, Grip, Scratch, SmoothBrush, Tool};
+use crate::brush::{
+    BrushKind, BrushSettings, Dab, GaussianBrush, Grip, Scratch, SmoothBrush, Tool,
+};
 use crate::{Clay, Cuts, DabReport, Detail, Hit, Ray, Reach, Workers};
 use sculptd_geometry::{TriMesh, job::Job, shapes};
 
@@ -55,8 +57,7 @@ fn checked(mesh: &TriMesh) -> (i64, f64, u32) {
         assert_eq!(steps, about[v as usize], "vertex {v} has several fans");
     }
     assert!(about.iter().all(|n| *n > 0), "a vertex without triangles");
-    let euler =
-        mesh.positions.len() as i64 - edges.len() as i64 / 2 + mesh.triangles.len() as i64;
+    let euler = mesh.positions.len() as i64 - edges.len() as i64 / 2 + mesh.triangles.len() as i64;
     (euler, least, about.into_iter().max().unwrap_or(0))
 }
 
@@ -123,7 +124,8 @@ fn random_brush(clay: &mut Clay, hit: &Hit, radius: f32, dice: &mut Dice, worker
     };
     let dab = Dab { pace: dab.pace_of(settings.strength * 0.5), ..dab };
     let mut scratch = Scratch::default();
-    let mut tool = Tool { mesh: clay, workers, scratch: &mut scratch, report: DabReport::default() };
+    let mut tool =
+        Tool { mesh: clay, workers, scratch: &mut scratch, report: DabReport::default() };
     kind.apply(&[dab], &mut tool);
 }
 
@@ -247,8 +249,7 @@ fn topology_is_the_same_bits_with_any_number_of_workers() {
 
 #[test]
 fn a_small_budget_comes_to_the_same_detail_in_several_calls() {
-    let detail =
-        Detail { centre: Vec3::Z, radius: 0.6, edge: 0.04, split: true, collapse: true };
+    let detail = Detail { centre: Vec3::Z, radius: 0.6, edge: 0.04, split: true, collapse: true };
     let one = Workers::new(1);
     let mut clay = Clay::build(&shapes::icosphere(1.0, 16), &Job::default()).unwrap();
     let mut calls = 0;

@@ -136,7 +136,14 @@ impl Edit {
         let entries = t.rings.len() + 6 * t.hexes.len();
         let rows = own + t.halo_sources.len();
         let tangled = entries.max(rows).max(t.triangles.len()) > MOST_ENTRIES;
-        self.slots.push(EditPage { page, base, own: own as u32, halo: NONE, dirty: false, tangled });
+        self.slots.push(EditPage {
+            page,
+            base,
+            own: own as u32,
+            halo: NONE,
+            dirty: false,
+            tangled,
+        });
         self.slot_of[page as usize] = s + 1;
         s
     }

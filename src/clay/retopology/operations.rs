@@ -175,7 +175,8 @@ impl Pass<'_> {
         self.cuts.work += 1;
         let Some((c, d)) = self.wings(a, b) else { return };
         let e = &self.edit;
-        if self.length2(a, b) != length || [c, d].iter().any(|&v| e.ring(v).len() >= MOST_NEIGHBOURS)
+        if self.length2(a, b) != length
+            || [c, d].iter().any(|&v| e.ring(v).len() >= MOST_NEIGHBOURS)
         {
             return;
         }
@@ -183,7 +184,8 @@ impl Pass<'_> {
         let middle: Vec4 = (e.points[a as usize] + e.points[b as usize]) * 0.5;
         let m = middle.truncate();
         let old = sine2(pa, pb, pc).min(sine2(pb, pa, pd));
-        let new = sine2(pa, m, pc).min(sine2(m, pb, pc)).min(sine2(pb, m, pd)).min(sine2(m, pa, pd));
+        let new =
+            sine2(pa, m, pc).min(sine2(m, pb, pc)).min(sine2(pb, m, pd)).min(sine2(m, pa, pd));
         if new < LEAST && new < old {
             return;
         }
@@ -357,10 +359,7 @@ impl Pass<'_> {
         let (n, m): (Vec3, Vec3) = (normal(pa, pb, pc), normal(pb, pa, pd));
         let faces = (n + m).normalize_or_zero();
         let flat = n.dot(m) > FLAT || old < LEAST;
-        if !flat
-            || normal(pa, pd, pc).dot(faces) < FLAT
-            || normal(pd, pb, pc).dot(faces) < FLAT
-        {
+        if !flat || normal(pa, pd, pc).dot(faces) < FLAT || normal(pd, pb, pc).dot(faces) < FLAT {
             return;
         }
         let e = &mut *self.edit;

@@ -345,7 +345,12 @@ impl PageRebuild {
     }
 
     /// Hands each new page to `put` with its number, and keeps the memory.
-    pub(crate) fn drain(&mut self, edit: &Edit, blank: &Arc<Page>, mut put: impl FnMut(u32, Arc<Page>)) {
+    pub(crate) fn drain(
+        &mut self,
+        edit: &Edit,
+        blank: &Arc<Page>,
+        mut put: impl FnMut(u32, Arc<Page>),
+    ) {
         let PageRebuild { writes, spare, patches, .. } = self;
         for mut w in writes.drain(..) {
             put(edit.slots[w.slot as usize].page, std::mem::replace(&mut w.page, blank.clone()));
@@ -354,4 +359,3 @@ impl PageRebuild {
         patches.drain(..).for_each(|(number, page)| put(number, page));
     }
 }
-

@@ -52,7 +52,10 @@ impl PageScan {
             let bits = if p.w >= PROTECTED {
                 0
             } else {
-                balls.iter().enumerate().fold(0, |bits, (i, b)| bits | u16::from(b.contains(at)) << i)
+                balls
+                    .iter()
+                    .enumerate()
+                    .fold(0, |bits, (i, b)| bits | u16::from(b.contains(at)) << i)
             };
             any |= bits;
             bits
@@ -63,8 +66,7 @@ impl PageScan {
         for corners in &t.triangles {
             let rows = corners.map(usize::from);
             let inside = rows.map(|r| self.inside[r]);
-            let edge_inside =
-                [inside[0] & inside[1], inside[1] & inside[2], inside[2] & inside[0]];
+            let edge_inside = [inside[0] & inside[1], inside[1] & inside[2], inside[2] & inside[0]];
             if edge_inside == [0; 3] {
                 continue;
             }

@@ -78,8 +78,7 @@ pub(super) fn owner(edit: &Edit, corners: [u32; 3]) -> u32 {
 /// Whether a triangle of before is still there, and not among the created.
 pub(super) fn survives(edit: &Edit, corners: [u32; 3]) -> bool {
     !corners.iter().all(|&h| edit.is_changed(h))
-        || (edit.has_triangle(corners)
-            && edit.created.binary_search(&canonical(corners)).is_err())
+        || (edit.has_triangle(corners) && edit.created.binary_search(&canonical(corners)).is_err())
 }
 
 impl WriteTask {
