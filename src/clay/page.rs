@@ -159,10 +159,10 @@ impl PageTopology {
         room(&mut self.ring_blocks, own.div_ceil(BLOCK) + 1);
         room(&mut self.leaf_blocks, own);
         room(&mut self.loose, own);
-        room(&mut self.halo_sources, own);
+        room(&mut self.halo_sources, 2 * own);
         room(&mut self.neighbours, 64);
         self.hexes.reserve(own);
-        self.leaves.reserve(own * 5 / 2 / LEAF, own * 6);
+        self.leaves.reserve(own * 5 / 2 / LEAF, own * 8);
     }
 
     /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index

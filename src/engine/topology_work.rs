@@ -10,10 +10,10 @@
 
 use sculptd_clay::{Clay, Cuts, Detail, Workers};
 
-/// Counted operations of a tick; a thousand take about one and a half milliseconds.
-const TICK_BUDGET: u64 = 2_400;
+/// Counted operations of a tick: about two milliseconds on one core.
+const TICK_BUDGET: u64 = 1_600;
 /// What is left to topology where the dabs of the tick have used the budget up.
-const LEAST_BUDGET: u64 = 600;
+const LEAST_BUDGET: u64 = 400;
 /// Vertices that dabs visit in the time of one operation.
 const VISITS: u64 = 16;
 /// Balls that one pass looks at together.

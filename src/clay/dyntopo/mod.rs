@@ -89,7 +89,7 @@ impl Clay {
             |p| touched.push(p as u32),
         );
         while scans.len() < touched.len() {
-            scans.push(PageScan::default());
+            scans.push(PageScan::new());
         }
         let parallel = touched.len() >= PARALLEL;
         workers.each(parallel, touched, scans, |page, scan| {

@@ -43,8 +43,8 @@ impl PageRebuild {
     fn write(&mut self, slot: u32, pool: &mut Pool, blank: &Arc<Page>) -> usize {
         let mut write = self.spare.pop().unwrap_or_else(|| PageWrite {
             slot: 0,
-            own: Vec::with_capacity(PAGE_VERTICES + 64),
-            given: Vec::with_capacity(256),
+            own: Vec::with_capacity(4 * PAGE_VERTICES),
+            given: Vec::with_capacity(4 * PAGE_VERTICES),
             reorder: false,
             page: blank.clone(),
             failed: false,
@@ -266,7 +266,7 @@ impl PageRebuild {
         let shared = WriteInput { edit, pages, relocated: self.relocated };
         let parallel = self.writes.len() >= PARALLEL;
         while self.tasks.len() < self.writes.len() {
-            self.tasks.push(WriteTask::default());
+            self.tasks.push(WriteTask::new());
         }
         let PageRebuild { writes, tasks, write_of, indices, .. } = self;
         workers.each(parallel, writes, tasks, |write, task| task.write(write, &shared));

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::shape::{FLIP_BELOW, sine2};
 use super::{Detail, PROTECTED};
+use crate::assembly::PAGE_VERTICES;
 use crate::page::Page;
 
 /// Balls that are looked at in one pass, at most.
@@ -39,6 +40,12 @@ pub(crate) struct PageScan {
 }
 
 impl PageScan {
+    /// With room for any page that is not tangled.
+    pub(crate) fn new() -> PageScan {
+        let found = Vec::with_capacity(4 * PAGE_VERTICES);
+        PageScan { page: 0, found, inside: Vec::with_capacity(4 * PAGE_VERTICES) }
+    }
+
     /// Finds each triangle's longest edge where it is too long, its shortest where it is too
     /// short, and its longest where the triangle is badly shaped. An edge of two such triangles
     /// is found twice.

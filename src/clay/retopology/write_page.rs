@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{Vec3, Vec4};
 
 use super::edit::{Edit, NONE};
-use crate::assembly::order;
+use crate::assembly::{PAGE_VERTICES, order};
 use crate::boxtree::LEAF;
 use crate::normals;
 use crate::page::{BREAK, Neighbour, Page, PageTopology, Ring};
@@ -82,6 +82,22 @@ pub(super) fn survives(edit: &Edit, corners: [u32; 3]) -> bool {
 }
 
 impl WriteTask {
+    /// With room for any page that is not tangled, or tasks would grow one by one, long into a
+    /// stroke.
+    pub(super) fn new() -> WriteTask {
+        let most = 4 * PAGE_VERTICES;
+        WriteTask {
+            foreign: Vec::with_capacity(most),
+            seen: Vec::with_capacity(most),
+            anchor: Vec::with_capacity(most),
+            triangles: Vec::with_capacity(most),
+            given: Vec::with_capacity(most),
+            sorted: Vec::with_capacity(most),
+            items: Vec::with_capacity(most),
+            rows: Vec::with_capacity(most),
+        }
+    }
+
     /// Writes the page, all but the normals of its halo.
     pub(super) fn write(&mut self, write: &mut PageWrite, shared: &WriteInput<'_>) {
         let PageWrite { slot, own, given, reorder, page, failed } = write;

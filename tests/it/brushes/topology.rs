@@ -195,3 +195,31 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     assert!(within(&coarse) * 4 < within(&end), "{} of {}", within(&coarse), within(&end));
     checked(&coarse);
 }
+
+#[test]
+fn what_is_carried_over_is_done_within_half_a_second() {
+    let mut brush = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Clay) };
+    brush.topology.by = Measure::Brush;
+    for edge in [0.15, 0.05] {
+        brush.topology.edge = edge;
+        let start = shapes::sphere_of_about(158_762);
+        let mut studio = Studio::new(&start, brush, 2);
+        for (view, pressure) in s_curve() {
+            studio.sample(view, pressure, true);
+        }
+        let (last, _) = s_curve()[s_curve().len() - 1];
+        studio.sample(last, 0.0, false);
+        let mut ticks = 1;
+        studio.rest(1);
+        while studio.paused {
+            studio.rest(1);
+            ticks += 1;
+            assert!(ticks <= 60, "with edge {edge}");
+        }
+        println!("edge {edge}: {ticks} ticks after the pen was lifted");
+        studio.world.verify_invariants().expect("in order");
+        assert_eq!(checked(&studio.world.mesh().to_tri()).0, 2);
+        studio.tell(Command::Undo);
+        assert_eq!(studio.world.mesh().to_tri(), start);
+    }
+}
