@@ -151,13 +151,7 @@ fn cuts_are_taken_back_by_undo_and_done_again_by_redo() {
 fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     let start = shapes::icosphere(1.0, 16);
     let mut mesh = Clay::build(&start, &Job::default()).expect("builds");
-    let detail = Detail {
-        centre: Vec3::Z,
-        radius: 0.6,
-        edge: 0.04,
-        split: true,
-        collapse: true,
-    };
+    let detail = Detail { centre: Vec3::Z, radius: 0.6, edge: 0.04, split: true, collapse: true };
     let two = Workers::new(2);
     for _ in 0..3 {
         mesh.adapt_topology(&[detail], usize::MAX, &two);
