@@ -17,6 +17,7 @@ use super::snapshot::{Snapshot, Totals, hash, to_tri};
 use super::undo::History;
 use crate::assembly::{BuildError, Built, build};
 use crate::multires::Levels;
+use crate::retopology::TopologyBuffers;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
@@ -28,6 +29,7 @@ pub struct Clay {
     pub(super) history: History,
     pub(super) pool: Pool,
     pub(super) buffers: DabBuffers,
+    pub(super) topology: TopologyBuffers,
     pub(super) order: Vec<u32>,
     pub(super) stale: Stale,
     spines: SpinePool,
@@ -96,6 +98,7 @@ impl Clay {
             // A page of a strange mesh may be huge: then pooled pages grow on use instead.
             pool: Pool::new(rows.min(2048), leaves.min(512), (count / 16).clamp(8, 512)),
             buffers: DabBuffers::new(count, rows.min(2048)),
+            topology: TopologyBuffers::default(),
             order: Vec::with_capacity(256),
             stale: Stale::new(count),
             spines: SpinePool::new(&pages),

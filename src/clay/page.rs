@@ -57,40 +57,40 @@ pub struct PageTopology {
     /// How many vertices are the page's own.
     pub own: usize,
     /// The own vertices' numbers in the mesh that was loaded.
-    pub ids: Box<[u32]>,
+    pub ids: Vec<u32>,
     /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight
     /// make a leaf.
-    pub triangles: Box<[[u16; 3]]>,
+    pub triangles: Vec<[u16; 3]>,
     /// The triangles' numbers in the mesh that was loaded.
-    pub triangle_ids: Box<[u32]>,
+    pub triangle_ids: Vec<u32>,
     /// The rings of the first own vertices: they have a closed one of six each, as most vertices of
     /// most meshes have.
     pub hexes: Hexes,
     /// The rings of the others: vertex `hexes.len() + i` has `rings[ring_starts[i]..ring_starts[i +
     /// 1]]`.
-    pub ring_starts: Box<[u16]>,
+    pub ring_starts: Vec<u16>,
     /// The rings' local indices, with [`BREAK`] bits.
-    pub rings: Box<[u16]>,
+    pub rings: Vec<u16>,
     /// How the triangles lie about each own vertex.
-    pub kinds: Box<[Ring]>,
+    pub kinds: Vec<Ring>,
     /// The vertices of each leaf of the page's tree. This and what comes after follows from the
     /// rest when a page is made or read.
     #[serde(skip)]
     pub leaves: Leaves,
     /// For each 32 own vertices the blocks that they and their rings lie in.
     #[serde(skip)]
-    pub ring_blocks: Box<[u32]>,
+    pub ring_blocks: Vec<u32>,
     /// For each eight leaves of the page's tree the blocks that their vertices lie in.
     #[serde(skip)]
-    pub leaf_blocks: Box<[u32]>,
+    pub leaf_blocks: Vec<u32>,
     /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does
     /// not know them.
     #[serde(skip)]
-    pub loose: Box<[u16]>,
+    pub loose: Vec<u16>,
     /// Local index of each halo vertex in its home page.
-    pub halo_sources: Box<[u16]>,
+    pub halo_sources: Vec<u16>,
     /// The homes of the halo, ascending. Neighbourhood is mutual.
-    pub neighbours: Box<[Neighbour]>,
+    pub neighbours: Vec<Neighbour>,
 }
 
 impl PageTopology {
@@ -110,38 +110,59 @@ impl PageTopology {
     /// does not know. False where the leaves have too many corners.
     #[must_use]
     pub(super) fn index(&mut self) -> bool {
-        let each_once = |eight: &[[u16; 3]]| {
-            let mut some: Vec<u16> = eight.iter().flatten().copied().collect();
-            some.sort_unstable();
-            some.dedup();
-            some
-        };
-        let Some(leaves) = Leaves::new(self.triangles.chunks(LEAF).map(each_once)) else {
+        self.index_with(&mut Vec::new())
+    }
+
+    /// As [`PageTopology::index`], with memory that the caller keeps: allocates nothing where the
+    /// topology had room before.
+    #[must_use]
+    pub(super) fn index_with(&mut self, seen: &mut Vec<u16>) -> bool {
+        seen.clear();
+        seen.resize(self.own + self.halo_sources.len(), u16::MAX);
+        let PageTopology { own, triangles, leaves, leaf_blocks, loose, .. } = self;
+        if !leaves.refill(triangles, LEAF, seen) {
             return false;
-        };
-        self.leaves = leaves;
-        self.ring_blocks = (0..self.own.div_ceil(BLOCK))
-            .map(|b| {
-                (b * BLOCK..self.own.min((b + 1) * BLOCK)).fold(block_of(b * BLOCK), |bits, v| {
-                    self.ring(v)
-                        .iter()
-                        .fold(bits, |bits, &k| bits | block_of((k & !BREAK) as usize))
-                })
-            })
-            .collect();
-        self.leaf_blocks = self
-            .triangles
-            .chunks(8 * LEAF)
-            .map(|some| some.iter().flatten().fold(0, |bits, &v| bits | block_of(v as usize)))
-            .collect();
-        let mut known = vec![false; self.own];
-        for &v in self.triangles.iter().flatten() {
-            if let Some(known) = known.get_mut(v as usize) {
-                *known = true;
-            }
         }
-        self.loose = (0..self.own as u16).filter(|&v| !known[v as usize]).collect();
+        leaf_blocks.clear();
+        leaf_blocks.extend(
+            triangles
+                .chunks(8 * LEAF)
+                .map(|some| some.iter().flatten().fold(0, |bits, &v| bits | block_of(v as usize))),
+        );
+        loose.clear();
+        // The leaves have met every vertex of a triangle.
+        loose.extend((0..*own as u16).filter(|&v| seen[v as usize] == u16::MAX));
+        let mut blocks = std::mem::take(&mut self.ring_blocks);
+        blocks.clear();
+        blocks.extend((0..self.own.div_ceil(BLOCK)).map(|b| {
+            (b * BLOCK..self.own.min((b + 1) * BLOCK)).fold(block_of(b * BLOCK), |bits, v| {
+                self.ring(v).iter().fold(bits, |bits, &k| bits | block_of((k & !BREAK) as usize))
+            })
+        }));
+        self.ring_blocks = blocks;
         true
+    }
+
+    /// Makes room for a page of about `own` vertices, so that it can be written again and again
+    /// without asking for more.
+    pub(super) fn reserve(&mut self, own: usize) {
+        fn room<T>(of: &mut Vec<T>, count: usize) {
+            of.clear();
+            of.reserve(count);
+        }
+        room(&mut self.ids, own);
+        room(&mut self.kinds, own);
+        room(&mut self.triangles, own * 5 / 2);
+        room(&mut self.triangle_ids, own * 5 / 2);
+        room(&mut self.rings, own * 7);
+        room(&mut self.ring_starts, own + 1);
+        room(&mut self.ring_blocks, own.div_ceil(BLOCK) + 1);
+        room(&mut self.leaf_blocks, own);
+        room(&mut self.loose, own);
+        room(&mut self.halo_sources, 2 * own);
+        room(&mut self.neighbours, 64);
+        self.hexes.reserve(own);
+        self.leaves.reserve(own * 5 / 2 / LEAF, own * 8);
     }
 
     /// Home page of halo vertex `k` (counted from the first halo vertex), and its local index
@@ -230,6 +251,17 @@ impl Page {
             hi: self.hi,
             revision: self.revision,
         }
+    }
+
+    /// Makes this page the same as `other`, in the memory that it has.
+    pub(super) fn fill_from(&mut self, other: &Page) {
+        self.topology.clone_from(&other.topology);
+        self.points.clear();
+        self.points.extend_from_slice(&other.points);
+        self.normals.clear();
+        self.normals.extend_from_slice(&other.normals);
+        self.tree.copy_from(&other.tree);
+        (self.lo, self.hi) = (other.lo, other.hi);
     }
 
     /// What stands still while the page is only displaced.

@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::garbage::{Garbage, GarbageSink};
-use super::page::Page;
+use super::page::{Page, PageTopology};
+use crate::assembly::PAGE_VERTICES;
 
 /// Pages kept for reuse, at most; 512-vertex pages take about 25 KB each.
 const KEPT: usize = 2048;
@@ -18,6 +19,12 @@ pub(super) struct Pool {
     free: Vec<Arc<Page>>,
     /// Replaced, oldest first; somebody may still read them.
     waiting: VecDeque<Arc<Page>>,
+    /// Topologies that nobody holds any more; their contents are old.
+    topologies: Vec<Arc<PageTopology>>,
+    /// What a page holds that has none.
+    blank: Arc<PageTopology>,
+    /// The page that stands where there was none before: one for all.
+    nothing: Arc<Page>,
     /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
     leaves: usize,
@@ -33,6 +40,9 @@ impl Pool {
             waiting: VecDeque::with_capacity(KEPT),
             rows,
             leaves,
+            topologies: Vec::with_capacity(KEPT),
+            blank: Arc::default(),
+            nothing: Arc::new(Page::nothing()),
             sink: GarbageSink::default(),
         };
         for _ in 0..count {
@@ -51,6 +61,7 @@ impl Pool {
         let mut page = Page {
             points: Vec::with_capacity(self.rows),
             normals: Vec::with_capacity(self.rows),
+            topology: self.blank.clone(),
             ..Page::default()
         };
         page.tree.reset(self.leaves);
@@ -62,6 +73,29 @@ impl Pool {
         self.free.pop().unwrap_or_else(|| self.fresh())
     }
 
+    /// A page with a topology that nobody else holds either; their contents are old.
+    pub(super) fn take_whole(&mut self) -> Arc<Page> {
+        let mut page = self.take();
+        if let Some(page) = Arc::get_mut(&mut page) {
+            let mut topology = self.topologies.pop().unwrap_or_default();
+            if let Some(topology) = Arc::get_mut(&mut topology) {
+                topology.reserve(PAGE_VERTICES);
+            }
+            page.topology = topology;
+            page.points.clear();
+            page.normals.clear();
+            page.points.reserve(2 * PAGE_VERTICES);
+            page.normals.reserve(2 * PAGE_VERTICES);
+            page.tree.reset(PAGE_VERTICES / 2);
+        }
+        page
+    }
+
+    /// The page that stands where there was none before.
+    pub(super) fn nothing(&self) -> Arc<Page> {
+        self.nothing.clone()
+    }
+
     /// Gives back a page that nobody else holds.
     pub(super) fn give_back(&mut self, page: Arc<Page>) {
         self.free.push(page);
@@ -69,6 +103,9 @@ impl Pool {
 
     /// A page that the clay no longer shows; readers and steps may still hold it.
     pub(super) fn retire(&mut self, page: Arc<Page>) {
+        if Arc::ptr_eq(&page, &self.nothing) {
+            return;
+        }
         self.waiting.push_back(page);
     }
 
@@ -76,17 +113,28 @@ impl Pool {
     pub(super) fn reclaim(&mut self, count: usize) {
         for _ in 0..count.min(self.waiting.len()) {
             let Some(mut page) = self.waiting.pop_front() else { return };
-            if Arc::get_mut(&mut page).is_none() {
+            if let Some(free) = Arc::get_mut(&mut page) {
+                // The last page that lets go of a topology leaves it here.
+                let mut topology = std::mem::replace(&mut free.topology, self.blank.clone());
+                if Arc::get_mut(&mut topology).is_some() {
+                    if self.topologies.len() < KEPT {
+                        self.topologies.push(topology);
+                    } else {
+                        self.sink.discard(Garbage::Shared(topology));
+                    }
+                }
+                if self.free.len() < KEPT {
+                    self.free.push(page);
+                } else {
+                    self.sink.discard(Garbage::Shared(page));
+                }
+            } else {
                 if self.waiting.len() < KEPT {
                     self.waiting.push_back(page);
                 } else {
                     // Its reader will free it.
                     self.sink.discard(Garbage::Shared(page));
                 }
-            } else if self.free.len() < KEPT {
-                self.free.push(page);
-            } else {
-                self.sink.discard(Garbage::Shared(page));
             }
         }
     }
@@ -94,5 +142,6 @@ impl Pool {
     pub(super) fn bytes(&self) -> usize {
         self.free.iter().map(|p| p.bytes()).sum::<usize>()
             + self.waiting.iter().map(|p| p.bytes()).sum::<usize>()
+            + self.topologies.iter().map(|t| t.bytes()).sum::<usize>()
     }
 }

@@ -14,7 +14,9 @@ use sculptd_clay::brush::stamp::Lens;
 use sculptd_clay::brush::{
     BrushKind, BrushSettings, Dab, Measure, PressureCurve, Scratch, Tool, TopologySettings,
 };
-use sculptd_clay::{Clay, DabReport, Hit, PhaseTimes, Ray, Reach, Workers, bytes_to_build};
+use sculptd_clay::{
+    Clay, Cuts, DabReport, Detail, Hit, PhaseTimes, Ray, Reach, Workers, bytes_to_build,
+};
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::pacer::Pacer;
 use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics};
@@ -40,7 +42,8 @@ pub struct BenchArgs {
     /// Which brush, by its name, with its preset; `turns` changes between gaussian and smooth.
     #[arg(long, value_name = "NAME", default_value = "gaussian")]
     pub brush: BenchBrush,
-    /// Cut triangles under the stroke to edges of this share of the radius; 0.002 to 1.
+    /// Dynamic topology with edges of this share of the radius, under single dabs (all of it done
+    /// within the dab) and under the stroke (in the tick's budget); 0.002 to 1.
     #[arg(long, value_name = "EDGE")]
     pub topology: Option<f32>,
     /// Single dabs to measure.
@@ -112,6 +115,15 @@ struct Phases {
     bvh: Spread,
     publish: Spread,
     undo: Spread,
+    topology: Spread,
+}
+
+/// Edges changed by a single dab, on average.
+#[derive(Debug, Serialize)]
+struct TopologyChanges {
+    splits: f64,
+    collapses: f64,
+    flips: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -123,6 +135,8 @@ struct BenchAnswer {
     dab_us: Spread,
     first_dab_us: f64,
     phases_us: Phases,
+    topology_a_dab: TopologyChanges,
+    vertices_at_end: usize,
     tick_ms: Percentiles,
     tick_dabs: u64,
     tick_affected: f64,
@@ -170,6 +184,12 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
     let dabs = single_dabs(&mut mesh, args, radius, &workers);
     let (vertices, triangles) = (mesh.vertex_count(), mesh.triangle_count());
     let stroke = stroke(mesh, args, radius, workers);
+    let mean = |sum: usize| sum as f64 / dabs.total.len().max(1) as f64;
+    let topology_a_dab = TopologyChanges {
+        splits: mean(dabs.cuts.splits),
+        collapses: mean(dabs.cuts.collapses),
+        flips: mean(dabs.cuts.flips),
+    };
 
     let affected = dabs.affected / dabs.total.len().max(1);
     let phase = |of: fn(&PhaseTimes) -> u64| spread(dabs.phases.iter().map(of).collect());
@@ -189,7 +209,10 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
             bvh: phase(|p| p.bvh),
             publish: phase(|p| p.publish),
             undo: phase(|p| p.undo),
+            topology: spread(dabs.topology),
         },
+        topology_a_dab,
+        vertices_at_end: stroke.vertices,
         tick_ms: stroke.figures.tick_ms(),
         tick_dabs: stroke.figures.dabs,
         tick_affected: stroke.figures.vertices_moved as f64 / stroke.figures.dabs.max(1) as f64,
@@ -225,9 +248,16 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
             ("bvh", &p.bvh),
             ("publish", &p.publish),
             ("undo", &p.undo),
+            ("topology", &p.topology),
         ] {
             writeln!(out, "  {name:<9}{:8.1} us  p99 {:8.1}", s.p50, s.p99)?;
         }
+        let c = &report.topology_a_dab;
+        writeln!(
+            out,
+            "edges    {:.0} split, {:.0} collapsed, {:.0} flipped a dab; {} vertices at the end",
+            c.splits, c.collapses, c.flips, report.vertices_at_end
+        )?;
         let t = &report.tick_ms;
         writeln!(
             out,
@@ -284,6 +314,8 @@ fn radius_for(mesh: &Clay, affected: usize) -> f32 {
 struct Dabs {
     total: Vec<u64>,
     phases: Vec<PhaseTimes>,
+    topology: Vec<u64>,
+    cuts: Cuts,
     affected: usize,
     first: u64,
 }
@@ -349,6 +381,16 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
         let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
         settings.kind.apply(&[one_dab(&settings, &hit, &ray, sign, i)], &mut tool);
         let report = tool.report;
+        let t2 = now_ns();
+        if let Some(edge) = args.topology {
+            let (edge, centre) = (edge * radius, hit.position);
+            let ball = Detail { centre, radius, edge, split: true, collapse: true };
+            let cuts = mesh.adapt_topology(&[ball], usize::MAX, workers);
+            out.cuts.splits += cuts.splits;
+            out.cuts.collapses += cuts.collapses;
+            out.cuts.flips += cuts.flips;
+        }
+        out.topology.push(now_ns() - t2);
         if i % STROKE == STROKE - 1 {
             mesh.end_step();
         }
@@ -379,6 +421,7 @@ struct Stroke {
     figures: TickStatistics,
     workers: usize,
     tree_growth: f32,
+    vertices: usize,
 }
 
 /// A pen that circles over the view, one dab's distance a tick, through the world.
@@ -447,5 +490,10 @@ fn stroke(mesh: Clay, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke
         pacer.done(clock().now_us());
         figures.overruns = pacer.overruns;
     }
-    Stroke { figures, workers: count, tree_growth: world.mesh().tree_growth() }
+    Stroke {
+        figures,
+        workers: count,
+        tree_growth: world.mesh().tree_growth(),
+        vertices: world.mesh().vertex_count(),
+    }
 }

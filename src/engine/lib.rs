@@ -19,4 +19,5 @@ pub mod old_layout;
 pub mod payload;
 mod replaced;
 pub mod stroke;
+mod topology_work;
 pub mod world;

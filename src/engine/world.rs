@@ -4,7 +4,8 @@
 //! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
 //! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same
 //!   samples and commands, same bits, with any number of workers.
-//! * One step is bounded: dabs stop at the budget and go on in the next step.
+//! * One step is bounded: dabs stop at the budget and go on in the next step, and so does dynamic
+//!   topology, whose budget is what dabs leave.
 
 mod saved;
 mod state;
@@ -24,6 +25,7 @@ use crate::hand::{Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, 
 use crate::payload::{Payload, PayloadStore};
 use crate::replaced::ReplacedClay;
 use crate::stroke::{CurveAction, PenTrack};
+use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, Reach, Workers};
@@ -44,7 +46,7 @@ pub struct StepReport {
     pub dabs: u64,
     /// Summed over dabs: a vertex moved by two dabs counts twice.
     pub vertices_moved: u64,
-    /// Path points still waiting because the budget was spent.
+    /// Path points or dynamic topology still waiting because the budget was spent.
     pub paused: bool,
     /// A pen rests on the clay and its brush goes on by time: ticks without input matter.
     pub resting: bool,
@@ -98,6 +100,8 @@ pub struct World {
     /// Where the pens are in the view, and where they may begin.
     desktop: DesktopLayout,
     scratch: Scratch,
+    /// Where triangles are still to be brought to their size.
+    topology: TopologyWork,
     /// Strokes begun.
     strokes: u32,
     hands: HandTools,
@@ -141,6 +145,7 @@ impl World {
             pens: Vec::with_capacity(MAX_PENS),
             desktop: DesktopLayout::default(),
             scratch: Scratch::default(),
+            topology: TopologyWork::new(),
             strokes: 0,
             hands: HandTools::new(options.hands),
             last_hands: None,
@@ -354,13 +359,15 @@ impl World {
     }
 
     /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must
-    /// see the strokes ended.
+    /// see the strokes ended. Topology that was carried over is not: it has no bound here, and the
+    /// clay is sound without it.
     fn lift_all(&mut self) {
         for seat in &mut self.pens {
             seat.track.lift();
         }
         self.hands.lift();
         self.advance_strokes(u64::MAX);
+        self.topology.clear();
         self.close();
     }
 
@@ -456,17 +463,23 @@ impl World {
     }
 
     fn sculpt(&mut self) {
-        self.advance_strokes(self.options.dab_budget);
+        let left = self.advance_strokes(self.options.dab_budget);
+        if !self.topology.is_empty() {
+            let visited = self.options.dab_budget - left;
+            self.topology.run(&mut self.mesh, &self.workers, visited);
+            self.report.paused |= !self.topology.is_empty();
+        }
         let active = self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle())
-            || self.hands.is_touching();
+            || self.hands.is_touching()
+            || !self.topology.is_empty();
         if !active {
             self.close();
         }
     }
 
     /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
-    /// visited.
-    fn advance_strokes(&mut self, budget: u64) {
+    /// visited. Returns what is left of it.
+    fn advance_strokes(&mut self, budget: u64) -> u64 {
         let goes_on = self.goes_on_by_time();
         let every = self.brush.path.every_ticks as u32;
         let mut clay = StrokeContext {
@@ -480,6 +493,7 @@ impl World {
             extent: self.extent,
             report: &mut self.report,
             left: budget,
+            topology: &mut self.topology,
         };
         for seat in &mut self.pens {
             if seat.track.begins() {
@@ -508,10 +522,11 @@ impl World {
         }
         let mut left = clay.left;
         while left > 0 {
-            let Some(act) = self.hands.next_act() else { return };
+            let Some(act) = self.hands.next_act() else { return left };
             left = self.by_hand(&act, left);
         }
         self.report.paused |= self.hands.has_waiting();
+        left
     }
 
     /// Whether dabs go on while a pen rests.

@@ -127,7 +127,7 @@ pub(crate) fn assemble(
         }
     }
     order::order_runs(&mut mine, LEAF);
-    let triangles: Box<[[u16; 3]]> = mine.iter().map(|m| locals[m.1 as usize]).collect();
+    let triangles: Vec<[u16; 3]> = mine.iter().map(|m| locals[m.1 as usize]).collect();
 
     let everyone = || own.iter().copied().chain(halo.iter().map(|h| h.2));
     let points: Vec<Vec4> = everyone().map(|v| tri.positions[v as usize].extend(0.0)).collect();
@@ -142,15 +142,15 @@ pub(crate) fn assemble(
     tree.reset(triangles.len().div_ceil(LEAF));
     let mut topology = PageTopology {
         own: count,
-        ids: own.into(),
+        ids: own,
         triangle_ids: mine.iter().map(|m| touching[m.1 as usize]).collect(),
         triangles,
         hexes: Hexes::new(hexes),
-        ring_starts: ring_starts.into(),
-        rings: rings.into(),
-        kinds: kinds.into(),
+        ring_starts,
+        rings,
+        kinds,
         halo_sources: halo.iter().map(|h| h.1).collect(),
-        neighbours: neighbours.into(),
+        neighbours,
         ..PageTopology::default()
     };
     if !topology.index() {

@@ -60,7 +60,7 @@ pub(crate) fn order(
 }
 
 /// Orders `items` so that each run of `cell` is compact; all runs but the last are full.
-pub(super) fn order_runs(items: &mut [Item], cell: usize) {
+pub(crate) fn order_runs(items: &mut [Item], cell: usize) {
     let cells = items.len().div_ceil(cell);
     let n = items.len();
     order(items, 0, cells, &|c| (c * cell).min(n));

@@ -62,9 +62,9 @@ pub enum Measure {
     View,
 }
 
-/// Triangles cut to a wanted size under the brush, before each dab. Not for brushes that hold or
-/// count from where the stroke began (grab and its kin, layer, texture, a saturated stroke): new
-/// vertices were nowhere then.
+/// Triangles cut to a wanted size under the brush, after the dabs of a tick. Not for brushes that
+/// hold or count from where the stroke began (grab and its kin, layer, texture, a saturated
+/// stroke): new vertices were nowhere then.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TopologySettings {

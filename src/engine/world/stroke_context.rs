@@ -6,15 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::StepReport;
 use crate::camera::Camera;
 use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
+use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::dab::IMAGES;
 use sculptd_clay::brush::restore::Restore;
 use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
 use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
 use sculptd_geometry::portable::{PortableMath, turn_matrix};
-
-/// Edges that one dab may split or collapse: about a page's worth; the next dab goes on where this
-/// one stopped.
-const MOST_CUTS: usize = 2000;
 
 /// The way over which the direction of a stroke is averaged, in radii.
 const HEADING: f32 = 0.5;
@@ -163,6 +160,7 @@ pub(super) struct StrokeContext<'a> {
     pub(super) extent: f32,
     pub(super) report: &'a mut StepReport,
     pub(super) left: u64,
+    pub(super) topology: &'a mut TopologyWork,
     pub(super) stroke: Stroke,
 }
 
@@ -328,7 +326,6 @@ impl StrokeContext<'_> {
         if !(strength > 0.0) {
             return;
         }
-        self.cut(&dabs[..count], hit);
         let mut tool = Tool {
             mesh: self.mesh,
             workers: self.workers,
@@ -340,10 +337,11 @@ impl StrokeContext<'_> {
         self.report.dabs += count as u64;
         self.report.vertices_moved += done.moved as u64;
         self.left = self.left.saturating_sub(done.affected as u64 + 1);
+        self.ask_for_topology(&dabs[..count], hit);
     }
 
-    /// Cuts the triangles under a dab and its images to the wanted size, where the brush is set to.
-    fn cut(&mut self, dabs: &[Dab<'_>], hit: &Hit) {
+    /// Asks for the wanted size of triangles under a dab and its images, where the brush is set to.
+    fn ask_for_topology(&mut self, dabs: &[Dab<'_>], hit: &Hit) {
         let t = &self.brush.topology;
         let measure = match t.by {
             Measure::Off => return,
@@ -358,17 +356,13 @@ impl StrokeContext<'_> {
             return;
         }
         for dab in dabs {
-            let detail = Detail {
+            self.topology.add(Detail {
                 centre: dab.centre,
                 radius: dab.radius,
                 edge: t.edge * measure,
                 split: t.split,
                 collapse: t.collapse,
-                most: MOST_CUTS,
-            };
-            let cuts = self.mesh.adapt_topology(&detail);
-            self.left =
-                self.left.saturating_sub(8 * (cuts.splits + cuts.collapses + cuts.flips) as u64);
+            });
         }
     }
 

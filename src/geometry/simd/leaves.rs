@@ -8,9 +8,9 @@ use glam::{Mat4, Vec4};
 pub struct Leaves {
     /// Each leaf's filled up to a multiple of four with its last one: a loop that turns two or
     /// three times is foreseen.
-    corners: Box<[u16]>,
+    corners: Vec<u16>,
     /// Where each leaf's end.
-    ends: Box<[u16]>,
+    ends: Vec<u16>,
     rows: usize,
 }
 
@@ -26,7 +26,46 @@ impl Leaves {
             ends.push(u16::try_from(corners.len()).ok()?);
         }
         let rows = corners.iter().max().map_or(0, |&most| most as usize + 1);
-        Some(Leaves { corners: corners.into(), ends: ends.into(), rows })
+        Some(Leaves { corners, ends, rows })
+    }
+
+    /// Forgets all leaves and makes room for so many leaves and corners.
+    pub fn reserve(&mut self, leaves: usize, corners: usize) {
+        self.corners.clear();
+        self.ends.clear();
+        self.rows = 0;
+        self.corners.reserve(corners);
+        self.ends.reserve(leaves);
+    }
+
+    /// Leaves of `each` triangles in a row. `seen` has an entry for each row, all `u16::MAX`; what
+    /// was met is another number afterwards. False where there are more corners than 16 bits
+    /// count.
+    ///
+    /// # Panics
+    /// When a corner has no entry in `seen`.
+    #[must_use]
+    pub fn refill(&mut self, triangles: &[[u16; 3]], each: usize, seen: &mut [u16]) -> bool {
+        self.corners.clear();
+        self.ends.clear();
+        self.rows = 0;
+        for (leaf, some) in triangles.chunks(each).enumerate() {
+            let first = self.corners.len();
+            for &v in some.iter().flatten() {
+                let met = &mut seen[v as usize];
+                if *met != leaf as u16 {
+                    *met = leaf as u16;
+                    self.corners.push(v);
+                    self.rows = self.rows.max(v as usize + 1);
+                }
+            }
+            let last = self.corners.last().copied().unwrap_or(0);
+            let whole = first + (self.corners.len() - first).next_multiple_of(4);
+            self.corners.resize(whole, last);
+            let Ok(end) = u16::try_from(whole) else { return false };
+            self.ends.push(end);
+        }
+        true
     }
 
     /// The number of leaves.

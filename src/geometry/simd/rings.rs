@@ -14,7 +14,7 @@ use glam::{Vec4, Vec4Swizzles};
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 #[serde(from = "Vec<[u16; 6]>", into = "Vec<[u16; 6]>")]
 pub struct Hexes {
-    rings: Box<[[u16; 6]]>,
+    rings: Vec<[u16; 6]>,
     rows: usize,
 }
 
@@ -23,7 +23,26 @@ impl Hexes {
     pub fn new(rings: Vec<[u16; 6]>) -> Self {
         let rows =
             rings.iter().flatten().max().map_or(0, |&most| most as usize + 1).max(rings.len());
-        Hexes { rings: rings.into(), rows }
+        Hexes { rings, rows }
+    }
+
+    /// Forgets all rings and keeps their memory.
+    pub fn clear(&mut self) {
+        self.rings.clear();
+        self.rows = 0;
+    }
+
+    /// Forgets all rings and makes room for so many.
+    pub fn reserve(&mut self, count: usize) {
+        self.clear();
+        self.rings.reserve(count);
+    }
+
+    /// Adds the ring of the next vertex.
+    pub fn push(&mut self, ring: [u16; 6]) {
+        self.rings.push(ring);
+        let most = ring.iter().fold(0, |most, &v| most.max(v));
+        self.rows = self.rows.max(most as usize + 1).max(self.rings.len());
     }
 
     /// Vertices that have their ring here.
@@ -62,7 +81,7 @@ impl From<Vec<[u16; 6]>> for Hexes {
 
 impl From<Hexes> for Vec<[u16; 6]> {
     fn from(hexes: Hexes) -> Self {
-        hexes.rings.into()
+        hexes.rings
     }
 }
 

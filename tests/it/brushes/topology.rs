@@ -72,15 +72,9 @@ fn ten_thousand_random_dabs_leave_a_closed_surface_without_slivers() {
                 let radius = 0.08 + 0.25 * dice.next();
                 let edge = 0.03 + 0.09 * dice.next();
                 mesh.begin_step();
-                let detail = Detail {
-                    centre: hit.position,
-                    radius,
-                    edge,
-                    split: true,
-                    collapse: true,
-                    most: 500,
-                };
-                let cuts = mesh.adapt_topology(&detail);
+                let centre = hit.position;
+                let detail = Detail { centre, radius, edge, split: true, collapse: true };
+                let cuts = mesh.adapt_topology(&[detail], 2000, &one);
                 splits += cuts.splits;
                 collapses += cuts.collapses;
                 flips += cuts.flips;
@@ -157,16 +151,10 @@ fn cuts_are_taken_back_by_undo_and_done_again_by_redo() {
 fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     let start = shapes::icosphere(1.0, 16);
     let mut mesh = Clay::build(&start, &Job::default()).expect("builds");
-    let detail = Detail {
-        centre: Vec3::Z,
-        radius: 0.6,
-        edge: 0.04,
-        split: true,
-        collapse: true,
-        most: 100_000,
-    };
+    let detail = Detail { centre: Vec3::Z, radius: 0.6, edge: 0.04, split: true, collapse: true };
+    let two = Workers::new(2);
     for _ in 0..3 {
-        mesh.adapt_topology(&detail);
+        mesh.adapt_topology(&[detail], usize::MAX, &two);
     }
     mesh.verify_invariants().expect("in order");
     let end = mesh.to_tri();
@@ -192,7 +180,7 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     // The other way: all of it drawn together.
     let coarse = Detail { edge: 0.2, split: false, ..detail };
     for _ in 0..6 {
-        mesh.adapt_topology(&coarse);
+        mesh.adapt_topology(&[coarse], usize::MAX, &two);
     }
     mesh.verify_invariants().expect("in order");
     let within =
@@ -200,4 +188,32 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     let coarse = mesh.to_tri();
     assert!(within(&coarse) * 4 < within(&end), "{} of {}", within(&coarse), within(&end));
     checked(&coarse);
+}
+
+#[test]
+fn what_is_carried_over_is_done_within_half_a_second() {
+    let mut brush = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Clay) };
+    brush.topology.by = Measure::Brush;
+    for edge in [0.15, 0.05] {
+        brush.topology.edge = edge;
+        let start = shapes::sphere_of_about(158_762);
+        let mut studio = Studio::new(&start, brush, 2);
+        for (view, pressure) in s_curve() {
+            studio.sample(view, pressure, true);
+        }
+        let (last, _) = s_curve()[s_curve().len() - 1];
+        studio.sample(last, 0.0, false);
+        let mut ticks = 1;
+        studio.rest(1);
+        while studio.paused {
+            studio.rest(1);
+            ticks += 1;
+            assert!(ticks <= 60, "with edge {edge}");
+        }
+        println!("edge {edge}: {ticks} ticks after the pen was lifted");
+        studio.world.verify_invariants().expect("in order");
+        assert_eq!(checked(&studio.world.mesh().to_tri()).0, 2);
+        studio.tell(Command::Undo);
+        assert_eq!(studio.world.mesh().to_tri(), start);
+    }
 }
