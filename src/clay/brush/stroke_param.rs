@@ -266,9 +266,12 @@ impl StrokeParameters {
                 |i| mesh.before(i),
                 key,
                 |to, q| {
+                    // No way over a surface is shorter than the straight one. Where relief is so steep
+                    // that coordinates fold, this alone keeps the walk within the radius.
                     let far = || {
                         let [u, v] = laid(m, e, q - p);
-                        Vec2::new(at[0] + u - from.u, at[1] + v).length()
+                        let told = Vec2::new(at[0] + u - from.u, at[1] + v).length();
+                        told.max((q - from.point).length())
                     };
                     walk.offer_ahead(mesh, to, (owner, before), far, radius);
                 },
