@@ -266,8 +266,8 @@ impl StrokeParameters {
                 |i| mesh.before(i),
                 key,
                 |to, q| {
-                    // No way over a surface is shorter than the straight one. Where relief is so steep
-                    // that coordinates fold, this alone keeps the walk within the radius.
+                    // No way over a surface is shorter than the straight one. Where relief is so
+                    // steep that coordinates fold, this alone keeps the walk within the radius.
                     let far = || {
                         let [u, v] = laid(m, e, q - p);
                         let told = Vec2::new(at[0] + u - from.u, at[1] + v).length();
