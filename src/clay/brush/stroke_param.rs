@@ -15,7 +15,7 @@
 //! `s2` say, a sample at `s` between would say `u1 + (u2 - u1) (s - s1) / (s2 - s1)`; the vertex
 //! lies beside the one that says `s` itself.
 //!
-//! Samples lie [`STEP`] apart along the stroke, by arc length from its beginning, wherever dabs
+//! Samples lie `STEP` apart along the stroke, by arc length from its beginning, wherever dabs
 //! lie: between two dabs the path is the cubic that touches the surface at both. The direction of
 //! the stroke at a sample is that of the parabola through it and the two before it.
 //!
