@@ -12,7 +12,8 @@ use super::acknowledgement::acknowledge_first;
 use super::carve::is_without_content;
 use super::connection::{companion, in_use};
 use super::format::{
-    META_IDENTITY, META_SETTINGS, META_START, META_SUMS, Settings, TABLES, chain_start, spare_blob,
+    META_IDENTITY, META_SETTINGS, META_START, META_SUMS, Settings, TABLES, TABLES_OF_COPIES,
+    chain_start, spare_blob,
 };
 use super::shared_memory_log::new_creation_number;
 use super::{APPLICATION_ID, VERSION};
@@ -23,6 +24,9 @@ use sculptd_geometry::TriMesh;
 const HALF_MADE_BYTES: u64 = 64 << 10;
 
 /// Why a session cannot be made or gone on with.
+/// Bytes between the two copies of the start: more than one bad place of a disk.
+const GAP: u32 = 32 << 10;
+
 #[derive(Debug, thiserror::Error)]
 pub enum CreateError {
     #[error("{path}: exists already; a session is never overwritten")]
@@ -147,6 +151,7 @@ impl SessionDraft {
             db.execute_batch("BEGIN")?;
             db.execute_batch(TABLES)?;
             db.execute_batch(super::history::store::TABLES)?;
+            db.execute_batch(TABLES_OF_COPIES)?;
             acknowledge_first(&db, identity, 0, chain_start(identity))?;
             let mut put = db.prepare("INSERT INTO meta (key, value) VALUES (?1, ?2)")?;
             put.execute((META_IDENTITY, identity.to_le_bytes().as_slice()))?;
@@ -154,11 +159,12 @@ impl SessionDraft {
             put.execute((META_SETTINGS, &settings))?;
             put.execute((META_SUMS, &sums))?;
             let mut copy = db.prepare("INSERT INTO spare (data) VALUES (?1)")?;
-            for (key, value) in
-                [(META_SETTINGS, &settings), (META_SUMS, &sums), (META_START, &mesh)]
-            {
-                copy.execute([spare_blob(key, value)])?;
-            }
+            copy.execute([spare_blob(META_SETTINGS, &settings)])?;
+            copy.execute([spare_blob(META_SUMS, &sums)])?;
+            // The first start ends where the second would begin, and a bad place of a disk is
+            // larger than a page.
+            db.execute("INSERT INTO spare (data) VALUES (zeroblob(?1))", [GAP])?;
+            copy.execute([spare_blob(META_START, &mesh)])?;
             db.execute_batch("COMMIT")
         };
         all().map_err(store)?;

@@ -6,8 +6,8 @@
 //!   impossible;
 //! * `acknowledged`: one row in a page of its own. The last tick that reached the disk is written
 //!   into it beside SQLite, see [`super::acknowledgement`]. `acknowledged_again` is the same once
-//!   more, three pages further on, so that one damaged place does not cost both; files from before
-//!   it was written have the first alone;
+//!   more, pages further on, so that one damaged place does not cost both; files from before it was
+//!   written have the first alone;
 //! * `input`: the samples and commands of a group of ticks a row. `number` counts from 1 without a
 //!   gap. `crc` is the CRC-32 of the creation number, `number`, `first_tick`, `last_tick` and
 //!   `data`, so that a row can be trusted alone. `chain` is the CRC-32 of the creation number and
@@ -41,7 +41,6 @@ use super::VERSION;
 pub const TABLES: &str = "
     CREATE TABLE meta (key TEXT PRIMARY KEY, value BLOB NOT NULL) WITHOUT ROWID;
     CREATE TABLE acknowledged (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
-    CREATE TABLE spare (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
     CREATE TABLE input (
         number INTEGER PRIMARY KEY,
         first_tick INTEGER NOT NULL,
@@ -50,7 +49,13 @@ pub const TABLES: &str = "
         chain INTEGER NOT NULL,
         data BLOB NOT NULL
     );
+";
+
+/// The tables of what is written twice. They come after all others, so that their pages lie far
+/// from those of the first copies: a bad place of a disk is larger than a page.
+pub const TABLES_OF_COPIES: &str = "
     CREATE TABLE acknowledged_again (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
+    CREATE TABLE spare (id INTEGER PRIMARY KEY, data BLOB NOT NULL);
 ";
 
 /// Keys of `meta`.

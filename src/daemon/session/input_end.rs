@@ -9,7 +9,7 @@ use super::VERSION;
 use super::acknowledgement::acknowledge_first;
 use super::format::{
     InputRow, META_IDENTITY, META_REPLAY_FROM, META_SETTINGS, META_START, META_SUMS, ReplayFrom,
-    Settings, TABLES, append, chain_start, v3,
+    Settings, TABLES, TABLES_OF_COPIES, append, chain_start, v3,
 };
 use super::shared_memory_log::{self, FileIdentity, SharedMemoryLog};
 use sculptd_engine::old_layout::from_bytes;
@@ -98,6 +98,7 @@ pub(super) fn upgrade(db: &mut Connection) -> rusqlite::Result<()> {
     }
     let all = db.transaction()?;
     all.execute_batch(&TABLES.replace("CREATE TABLE meta (", "CREATE TABLE IF NOT EXISTS meta ("))?;
+    all.execute_batch(TABLES_OF_COPIES)?;
     for table in ["node", "side", "checkpoint", "pin"] {
         let known = "SELECT count(*) FROM sqlite_schema WHERE name = ?1";
         if all.query_row(known, [table], |r| r.get::<_, i64>(0))? == 0 {

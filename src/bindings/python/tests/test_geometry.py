@@ -287,6 +287,9 @@ class LongWork(unittest.TestCase):
         self.assertGreater(during, min(took / 0.2, 5))
 
     def test_an_interrupt_stops_the_work(self):
+        # A program that a shell has put into the background is begun with interrupts ignored.
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
         main = threading.main_thread().ident
         timer = threading.Timer(0.2, lambda: signal.pthread_kill(main, signal.SIGINT))
         timer.start()
