@@ -16,7 +16,8 @@ const TICK_BUDGET: u64 = 1_600;
 const LEAST_BUDGET: u64 = 400;
 /// Vertices that dabs visit in the time of one operation.
 const VISITS: u64 = 16;
-/// Balls that one pass looks at together.
+/// Balls that one pass looks at together: those that a few ticks of a stroke leave, so that pages
+/// which they share are looked through once.
 const TOGETHER: usize = 8;
 /// Balls that wait, at most. They lie a quarter of a radius apart, so a stroke of 250 radii fits;
 /// beyond it the oldest is dropped, and its triangles keep their size until the next stroke there.
