@@ -33,6 +33,7 @@ impl Brush for BlobBrush {
         BlobBrush { heart: plane.point - plane.normal * (dab.radius * dab.extra(0)), along }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let away = spot.at - self.heart;
         let out = (away - self.along * away.dot(self.along)).normalize_or_zero();

@@ -38,11 +38,13 @@ impl Brush for BoundaryBrush {
     }
 
     /// The walk says how far it is; see `change`.
+    #[inline]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         let far = dab.radius * FAR;
         if (page.before(v) - dab.centre).length_squared() < far * far { 1.0 } else { 0.0 }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let walk = spot.scratch.walk(dab.image);
         let behind = walk.and_then(|w| w.distance(spot.number, spot.v));

@@ -41,6 +41,7 @@ impl Brush for ClayBrush {
         ClayBrush { plane, pace: dab.pace_of(dab.extra(1)) }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         coat(&self.plane, dab.sign, self.pace, spot)
     }

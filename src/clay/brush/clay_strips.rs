@@ -77,6 +77,7 @@ impl Brush for ClayStripsBrush {
         Some(Footprint::of(dab, shape))
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         coat(&self.plane, dab.sign, self.pace, spot)
     }

@@ -66,6 +66,7 @@ impl Brush for CreaseBrush {
         Some(Footprint::of(dab, FootprintShape::Ball { round: self.round }))
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let w = spot.weight;
         // Sharper than it is pinched: the groove's floor is a line.

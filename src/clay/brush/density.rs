@@ -18,6 +18,7 @@ impl Brush for DensityBrush {
         DensityBrush(RelaxBrush::ready(dab, on))
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         self.0.change(dab, spot)
     }

@@ -21,6 +21,7 @@ impl Drag {
 }
 
 impl Kernel for Drag {
+    #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for i in 0..page.own() {
             let p = page.positions.get(i);

@@ -19,6 +19,7 @@ impl Brush for DrawBrush {
         DrawBrush { offset: on.plane(dab, 0.0).normal * dab.height() }
     }
 
+    #[inline]
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::by(self.offset * spot.weight)
     }

@@ -90,12 +90,14 @@ impl Brush for ElasticBrush {
         None
     }
 
+    #[inline]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         let far = (page.before(v) - dab.centre).length() / (dab.radius * FAR);
         // The last tenth fades out, so that the cut leaves no step.
         ((1.0 - far) * 10.0).clamp(0.0, 1.0)
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let before = spot.page.before(spot.v);
         VertexChange::held(self.at(before - dab.centre) * spot.weight)

@@ -21,6 +21,7 @@ impl Brush for GrabBrush {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::held(dab.motion * (dab.strength * dab.sign * spot.weight))
     }

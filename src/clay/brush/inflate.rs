@@ -15,6 +15,7 @@ impl Brush for InflateBrush {
         InflateBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::by(spot.normal_at(dab) * (dab.height() * spot.weight))
     }

@@ -31,6 +31,7 @@ impl Brush for LayerBrush {
         Some(Footprint::of(dab, FootprintShape::Capsule { back: -dab.way() }))
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let normal = spot.page.normal_before(spot.v);
         // How high the stroke has raised it, in the direction of the brush.

@@ -34,6 +34,7 @@ impl<const SIDE: i8> Brush for LevelBrush<SIDE> {
         LevelBrush { plane }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
         if SIDE != 0 && h * dab.sign * f32::from(SIDE) <= 0.0 {

@@ -15,6 +15,7 @@ impl Brush for MaskBrush {
         MaskBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::mask(dab.sign * dab.strength * dab.span * spot.weight)
     }

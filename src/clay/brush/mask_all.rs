@@ -48,6 +48,7 @@ pub struct MaskAll {
 }
 
 impl Kernel for MaskAll {
+    #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for v in 0..page.own() {
             let m = page.mask(v);

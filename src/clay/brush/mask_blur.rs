@@ -30,6 +30,7 @@ impl Brush for MaskBlurBrush {
         MaskBlurBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let m = spot.page.mask(spot.v);
         let by = if dab.sign > 0.0 {

@@ -20,6 +20,7 @@ impl Brush for NudgeBrush {
         NudgeBrush { by: flat.clamp_length_max(dab.radius) * (dab.strength * dab.sign) }
     }
 
+    #[inline]
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::by(self.by * spot.weight)
     }

@@ -13,6 +13,7 @@ impl Brush for PaintBrush {
         PaintBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange { dye: part(dab.pace, spot.weight), ..VertexChange::default() }
     }

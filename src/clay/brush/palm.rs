@@ -28,6 +28,7 @@ impl Palm {
 }
 
 impl Kernel for Palm {
+    #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for i in 0..page.own() {
             let p = page.positions.get(i);

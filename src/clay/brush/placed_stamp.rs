@@ -55,6 +55,7 @@ impl PlacedStamp {
     }
 
     /// The share of the brush that goes through at a point, 0 to 1.
+    #[inline]
     pub fn share(&self, p: Vec3, picture: Option<&Picture>) -> f32 {
         let at = match self.stamp.by {
             StampBy::Dab => {

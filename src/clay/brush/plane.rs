@@ -55,6 +55,7 @@ impl Brush for PlaneBrush {
         }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
         let most = if h > 0.0 { self.above } else { self.below };

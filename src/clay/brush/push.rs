@@ -30,6 +30,7 @@ impl Push {
 }
 
 impl Kernel for Push {
+    #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for i in 0..page.own() {
             let p = page.positions.get(i);

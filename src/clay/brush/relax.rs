@@ -14,6 +14,7 @@ impl Brush for RelaxBrush {
         RelaxBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (n, d) = (spot.normal(), spot.middle() - spot.p);
         VertexChange::by((d - n * d.dot(n)) * (dab.evening(dab.strength) * spot.weight))

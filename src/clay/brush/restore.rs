@@ -15,6 +15,7 @@ pub struct Restore {
 }
 
 impl Kernel for Restore {
+    #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for v in 0..page.own() {
             let before = page.before(v);

@@ -21,6 +21,7 @@ impl Brush for SharpenBrush {
         SharpenBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (page, v) = (spot.page, spot.v);
         if !page.is_closed(v) {

@@ -18,6 +18,7 @@ impl Brush for SimplifyBrush {
         SimplifyBrush(RelaxBrush::ready(dab, on))
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         self.0.change(dab, spot)
     }

@@ -27,6 +27,7 @@ impl Brush for SlideRelaxBrush {
         SlideRelaxBrush { by: (dab.sign > 0.0).then(|| dab.motion.clamp_length_max(dab.radius)) }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         if !spot.page.is_closed(spot.v) {
             return VertexChange::default();

@@ -97,38 +97,37 @@ pub(super) fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
 }
 
 impl Kernel for SmoothBrush {
-    #[inline]
+    #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         let radius2 = self.radius * self.radius;
         let (mut who, mut sums) = ([0u16; BLOCK], [Vec4::ZERO; BLOCK]);
-        Weights::with(|w| {
-            let fade = |d2: f32| {
-                let fade = 1.0 - d2 / radius2;
-                self.lambda * (fade * fade)
-            };
-            out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
-            let weights = w.of(page);
-            for first in (0..weights.len()).step_by(BLOCK) {
-                let (mut count, mut regular) = (0, 0);
-                for (v, &w) in weights.iter().enumerate().skip(first).take(BLOCK) {
-                    who[count] = v as u16;
-                    count += usize::from(w != 0.0);
-                    regular += usize::from(w != 0.0 && v < page.regular());
-                }
-                page.cotangents_of(&who[..regular], &mut sums[..regular]);
-                for (i, &v) in who[..count].iter().enumerate() {
-                    let (v, p) = (v as usize, page.point(v));
-                    let (sum, all) = if i < regular {
-                        (sums[i].truncate(), sums[i].w)
-                    } else {
-                        around(page, v, p)
-                    };
-                    if all > 0.0 {
-                        out.set(v, p + sum * (weights[v] / all));
-                    }
+        let w = &mut Weights::zero();
+        let fade = |d2: f32| {
+            let fade = 1.0 - d2 / radius2;
+            self.lambda * (fade * fade)
+        };
+        out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
+        let weights = w.of(page);
+        for first in (0..weights.len()).step_by(BLOCK) {
+            let (mut count, mut regular) = (0, 0);
+            for (v, &w) in weights.iter().enumerate().skip(first).take(BLOCK) {
+                who[count] = v as u16;
+                count += usize::from(w != 0.0);
+                regular += usize::from(w != 0.0 && v < page.regular());
+            }
+            page.cotangents_of(&who[..regular], &mut sums[..regular]);
+            for (i, &v) in who[..count].iter().enumerate() {
+                let (v, p) = (v as usize, page.point(v));
+                let (sum, all) = if i < regular {
+                    (sums[i].truncate(), sums[i].w)
+                } else {
+                    around(page, v, p)
+                };
+                if all > 0.0 {
+                    out.set(v, p + sum * (weights[v] / all));
                 }
             }
-        });
+        }
     }
 }
 
@@ -147,6 +146,7 @@ impl Brush for SmoothBrush {
         if fade > 0.0 { fade * fade } else { 0.0 }
     }
 
+    #[inline]
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (sum, weights) = around(spot.page, spot.v, spot.p);
         if weights > 0.0 {

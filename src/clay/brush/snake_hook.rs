@@ -15,6 +15,7 @@ impl Brush for SnakeHookBrush {
         SnakeHookBrush
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::by(dab.motion * (dab.strength * dab.sign * spot.weight))
     }

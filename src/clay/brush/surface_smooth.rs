@@ -28,6 +28,7 @@ impl Brush for SurfaceSmoothBrush {
         SurfaceSmoothBrush { factor: if dab.pass == 0 { lambda } else { back } }
     }
 
+    #[inline]
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let (sum, weights) = around(spot.page, spot.v, spot.p);
         if weights > 0.0 && !spot.page.is_border(spot.v) {

@@ -60,6 +60,7 @@ impl Brush for TextureBrush {
         Some(Footprint { radius, hardness: 0.0, falloff: Falloff::Constant, ..ball })
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let Some(unroll) = spot.scratch.unrolled(dab.image) else { return VertexChange::default() };
         if unroll.owner(spot.number, spot.v) + 1 < self.newest {

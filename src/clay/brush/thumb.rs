@@ -26,6 +26,7 @@ impl Brush for ThumbBrush {
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius * 1.01 }
     }
 
+    #[inline]
     fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         VertexChange::held(self.by * spot.weight)
     }

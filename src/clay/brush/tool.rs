@@ -176,31 +176,30 @@ struct BrushKernel<'a, B> {
 
 impl<B: Brush> Kernel for BrushKernel<'_, B> {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
-        Weights::with(|weights| {
-            // The weights of a single dab that leaves nothing alone are computed at once.
-            let known = match self.members {
-                [Some(Member { dab, footprint: Some(footprint), auto, .. })] if !auto.is_on() => {
-                    let surface = matches!(B::GRIP, Grip::Surface);
-                    let rules = WeightRules {
-                        before: dab.found || matches!(B::GRIP, Grip::Anchor),
-                        masked: B::MASKED,
-                        facing: surface.then_some(dab.normal),
-                    };
-                    out.visit_many(weigh(weights, page, footprint, &rules));
-                    true
-                }
-                _ => false,
-            };
-            match self.members {
-                [Some(Member { dab, brush, .. })]
-                    if B::BLOCKS && known && self.limit == f32::INFINITY =>
-                {
-                    let weights = weights.of(page);
-                    dispatch(false, ChangeBlocks { brush, dab, page, weights, out });
-                }
-                _ => self.change(page, known.then(|| weights.of(page)), out),
+        let weights = &mut Weights::zero();
+        // The weights of a single dab that leaves nothing alone are computed at once.
+        let known = match self.members {
+            [Some(Member { dab, footprint: Some(footprint), auto, .. })] if !auto.is_on() => {
+                let surface = matches!(B::GRIP, Grip::Surface);
+                let rules = WeightRules {
+                    before: dab.found || matches!(B::GRIP, Grip::Anchor),
+                    masked: B::MASKED,
+                    facing: surface.then_some(dab.normal),
+                };
+                out.visit_many(weigh(weights, page, footprint, &rules));
+                true
             }
-        });
+            _ => false,
+        };
+        match self.members {
+            [Some(Member { dab, brush, .. })]
+                if B::BLOCKS && known && self.limit == f32::INFINITY =>
+            {
+                let weights = weights.of(page);
+                dispatch(false, ChangeBlocks { brush, dab, page, weights, out });
+            }
+            _ => self.change(page, known.then(|| weights.of(page)), out),
+        }
     }
 }
 

@@ -30,6 +30,7 @@ impl Brush for TopologicalBrush {
     }
 
     /// The walk says how far it is; see `change`.
+    #[inline]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius {
             1.0
@@ -38,6 +39,7 @@ impl Brush for TopologicalBrush {
         }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let walk = spot.scratch.walk(dab.image);
         let Some(d) = walk.and_then(|w| w.distance(spot.number, spot.v)) else {

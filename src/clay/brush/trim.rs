@@ -32,6 +32,7 @@ impl Brush for TrimBrush {
         }
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let h = self.plane.height(spot.p);
         if h * dab.sign <= 0.0 {

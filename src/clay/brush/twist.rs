@@ -26,6 +26,7 @@ impl Brush for TwistBrush {
         dab.ball(1.01)
     }
 
+    #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let arm = spot.page.before(spot.v) - dab.centre;
         let turned = turn_about(dab.normal, self.angle * spot.weight) * arm;

@@ -18,10 +18,12 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Calls `work` with room for one page's weights.
+    /// Room for one page's weights. A closure that took it would be a function of its own, which the
+    /// compiler may leave outside of what [`sculptd_geometry::simd::wide::dispatch`] compiles for
+    /// the processor.
     #[inline(always)]
-    pub fn with<T>(work: impl FnOnce(&mut Weights) -> T) -> T {
-        work(&mut Weights { weight: [0.0; MOST] })
+    pub fn zero() -> Weights {
+        Weights { weight: [0.0; MOST] }
     }
 
     /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) *
@@ -74,6 +76,7 @@ impl Weights {
     }
 
     /// What was computed, one an own vertex.
+    #[inline]
     pub fn of(&self, page: &PageIn<'_>) -> &[f32] {
         &self.weight[..page.own().min(MOST)]
     }
@@ -110,6 +113,7 @@ pub fn exp(x: f32) -> f32 {
 
 /// The natural logarithm of `x` in 0.001 to 1, by Halley's iteration on [`exp`], to the precision
 /// of that.
+#[inline]
 pub fn ln(x: f32) -> f32 {
     let mut y = x - 1.0;
     for _ in 0..8 {
