@@ -37,7 +37,8 @@ fn search<W: Wide>(w: W, ray: &BoxRay, page: &Page, number: u32, best: &mut Opti
                     pack.v[c][2][lane] = p.z;
                 }
             }
-            let hits = w.triangles(&ray.ready, &pack, far);
+            let mut hits = w.triangles(&ray.ready, &pack, far);
+            ray.ready.settle_all(&pack, far, |_| true, &mut hits);
             let mut mask = hits.mask;
             while mask != 0 {
                 let i = mask.trailing_zeros() as usize & 3;

@@ -1,6 +1,9 @@
 //! The log: to standard error, as text for a person or one JSON object a line for a machine.
 
-use tracing_subscriber::EnvFilter;
+use std::io::IsTerminal;
+
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::prelude::*;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum LogFormat {
@@ -9,16 +12,28 @@ pub enum LogFormat {
     Json,
 }
 
-/// Begins logging. `SCULPTD_LOG` says how much (e.g. `debug`, or `sculptd::daemon=trace`); without
-/// it, `info`.
+/// Begins logging. `SCULPTD_LOG` says how much: a level, or levels by crate and module (`debug`,
+/// `info,sculptd_daemon::session=trace`). Without it, and where it cannot be read, `info`.
 pub fn begin(format: LogFormat) {
-    let filter = EnvFilter::try_from_env("SCULPTD_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
-    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    let wanted = std::env::var("SCULPTD_LOG").unwrap_or_default();
+    let parsed = match wanted.trim() {
+        "" => Ok(Targets::new().with_default(LevelFilter::INFO)),
+        wanted => wanted.parse(),
+    };
+    let (filter, refused) = match parsed {
+        Ok(filter) => (filter, None),
+        Err(e) => (Targets::new().with_default(LevelFilter::INFO), Some(e)),
+    };
+    let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
+    let log = tracing_subscriber::registry();
     // A second begin in one process (tests) keeps the first.
     let _ = match format {
-        LogFormat::Text => {
-            log.with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr())).try_init()
-        }
-        LogFormat::Json => log.json().try_init(),
+        LogFormat::Text => log
+            .with(lines.with_ansi(std::io::stderr().is_terminal()).with_filter(filter))
+            .try_init(),
+        LogFormat::Json => log.with(lines.json().with_filter(filter)).try_init(),
     };
+    if let Some(e) = refused {
+        tracing::warn!("SCULPTD_LOG={wanted:?} is not a filter ({e}): logging at info");
+    }
 }

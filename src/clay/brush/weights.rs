@@ -18,9 +18,9 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Room for one page's weights. A closure that took it would be a function of its own, which the
-    /// compiler may leave outside of what [`sculptd_geometry::simd::wide::dispatch`] compiles for
-    /// the processor.
+    /// Room for one page's weights. A closure that took it would be a function of its own, which
+    /// the compiler may leave outside of what [`sculptd_geometry::simd::wide::dispatch`] compiles
+    /// for the processor.
     #[inline(always)]
     pub fn zero() -> Weights {
         Weights { weight: [0.0; MOST] }

@@ -5,6 +5,8 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use obvhs::splits::split_aabbs_preset;
+use obvhs::triangle::Triangle;
 
 use super::collapse::CollapsePlan;
 use super::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode};
@@ -17,7 +19,12 @@ const REINSERTION: f32 = 0.02;
 /// less.
 pub(super) const PAD: f32 = 1e-6;
 
-pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
+/// The boxes' area over the triangles' area from which on long slanted triangles are put into
+/// several boxes. Triangles of good shape have about 1.5, whichever way they lie.
+const SLANTED: f32 = 6.0;
+
+/// `several`: whether a triangle may be in several leaves.
+pub(super) fn build(mesh: &TriMesh, several: bool, job: &Job) -> Result<Bvh8, Cancelled> {
     let corners = |t: u32| -> Option<[Vec3; 3]> {
         let [a, b, c] = mesh.triangles[t as usize].map(|v| mesh.positions.get(v as usize).copied());
         Some([a?, b?, c?]).filter(|c| {
@@ -39,6 +46,10 @@ pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
         return Ok(tree);
     }
     job.check()?;
+    if several {
+        used = split(&mut boxes, used, corners);
+        job.check()?;
+    }
     let count = boxes.len();
     // A search threshold above 0 ruins the tree of long thin triangles, the surface of most
     // mechanical parts.
@@ -71,6 +82,33 @@ pub(super) fn build(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
     maker.root();
     tree.stack = maker_stack(maker.depth);
     Ok(tree)
+}
+
+/// Puts the triangles of `used` that fill little of their boxes into several boxes each, where many
+/// do; the triangle of each box. ("Early split clipping": Ernst and Greiner 2007, as `obvhs` does
+/// it.)
+fn split(
+    boxes: &mut Vec<Aabb>,
+    used: Vec<u32>,
+    corners: impl Fn(u32) -> Option<[Vec3; 3]>,
+) -> Vec<u32> {
+    let triangles: Vec<Triangle> = used
+        .iter()
+        .filter_map(|&t| corners(t))
+        .map(|[a, b, c]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() })
+        .collect();
+    let area = |t: &Triangle| (t.v1 - t.v0).cross(t.v2 - t.v0).length() * 0.5;
+    let filled: f64 = triangles.iter().map(|t| f64::from(area(t))).sum();
+    let halves = boxes.iter().map(|b| b.half_area());
+    let (all, most) =
+        halves.fold((0.0f64, 0.0f32), |(all, most), a| (all + f64::from(a), most.max(a)));
+    if all <= filled * f64::from(SLANTED) || !all.is_finite() {
+        return used;
+    }
+    let mean = (all / boxes.len() as f64) as f32;
+    let mut of: Vec<u32> = (0..used.len() as u32).collect();
+    split_aabbs_preset(boxes, &mut of, &triangles, mean, most);
+    of.into_iter().map(|i| used[i as usize]).collect()
 }
 
 /// Seven wait on each level.

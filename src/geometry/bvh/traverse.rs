@@ -161,7 +161,8 @@ pub(super) fn nearest_of<W: Wide>(
     best: &mut Option<TreeHit>,
     accept: impl Fn(u32) -> bool,
 ) -> f32 {
-    let hits = w.triangles(ready, pack, t_max);
+    let mut hits = w.triangles(ready, pack, t_max);
+    ready.settle_all(pack, t_max, &accept, &mut hits);
     let mut mask = hits.mask;
     while mask != 0 {
         let i = mask.trailing_zeros() as usize & 3;
@@ -244,7 +245,8 @@ impl<V: FnMut(TreeHit) -> bool> WideWork for EachHit<'_, V> {
         let tree = self.tree;
         walk(w, tree, self.ray, self.stack, |ready, pack, t_max| {
             let pack = &tree.packs[pack as usize];
-            let hits = w.triangles(ready, pack, t_max);
+            let mut hits = w.triangles(ready, pack, t_max);
+            ready.settle_all(pack, t_max, |_| true, &mut hits);
             let mut mask = hits.mask;
             while mask != 0 {
                 let i = mask.trailing_zeros() as usize & 3;

@@ -8,9 +8,11 @@
 //! vertices are sheared into a frame in which the ray is the z axis. The product terms of an edge
 //! function are rounded monotonically, so the sign of their difference is exact or the difference
 //! is zero; zero counts as inside on both sides. So a ray cannot slip through an edge or a vertex
-//! of a closed surface.
+//! of a closed surface. The signs say which triangle is met; where on the ray is another matter: the
+//! weights of a sliver's corners are known to its length squared over its area, in roundings. What
+//! that leaves unsure is computed again in double precision ([`Prepared`]).
 
-use glam::Vec4;
+use glam::{DVec3, Vec4};
 
 use super::rings::{Hexes, Rows};
 
@@ -46,6 +48,7 @@ pub const LEAF: u32 = 1 << 31;
 #[derive(Debug, Clone, Copy)]
 pub struct Prepared {
     origin: [f32; 3],
+    dir: [f32; 3],
     inverse: [f32; 3],
     /// The same for the far sides, so much larger that rounding never loses a box.
     wider: [f32; 3],
@@ -96,6 +99,7 @@ impl Prepared {
         let s = dir.map(|d| d.is_sign_negative() as usize * 3);
         Prepared {
             origin,
+            dir,
             inverse,
             wider: inverse.map(|x| x * WIDEN),
             near: [s[0], 1 + s[1], 2 + s[2]],
@@ -106,7 +110,65 @@ impl Prepared {
             t_min,
         }
     }
+
+    /// Where the ray meets the plane of triangle `i` of `pack`, of which the signs say that it meets
+    /// the triangle: not before its first corner and not behind its last, for the signs may be wrong
+    /// by a rounding of the corners. `known` is what single precision gave, for a triangle seen
+    /// exactly edge on.
+    #[inline(never)]
+    fn settle(&self, pack: &Pack, i: usize, known: [f32; 3]) -> [f32; 3] {
+        let d = DVec3::from_array(self.dir.map(f64::from));
+        let corner = |c: usize| {
+            DVec3::from_array(std::array::from_fn(|a| {
+                f64::from(pack.v[c][a][i]) - f64::from(self.origin[a])
+            }))
+        };
+        let [a, b, c] = [0, 1, 2].map(corner);
+        let (to_b, to_c) = (b - a, c - a);
+        let p = d.cross(to_c);
+        let det = to_b.dot(p);
+        // From the first corner to the ray's origin, which is 0.
+        let q = (-a).cross(to_b);
+        let (u, v, t) = (-a.dot(p) / det, d.dot(q) / det, to_c.dot(q) / det);
+        if !(u.is_finite() && v.is_finite() && t.is_finite()) {
+            return known;
+        }
+        let ends = DVec3::new(a.dot(d), b.dot(d), c.dot(d)) / d.length_squared();
+        let weights = DVec3::new(1.0 - u - v, u, v).max(DVec3::ZERO);
+        let all = weights.element_sum();
+        let t = t.max(ends.min_element()).min(ends.max_element());
+        [t as f32, (weights.y / all) as f32, (weights.z / all) as f32]
+    }
+
+    /// Decides the lanes of `hits.unsure` that `accept` takes (it is told the triangle's id): what
+    /// single precision wrote there is replaced, and is a hit where it lies on the part of the ray
+    /// that counts.
+    #[inline(always)]
+    pub fn settle_all(
+        &self,
+        pack: &Pack,
+        t_max: f32,
+        accept: impl Fn(u32) -> bool,
+        hits: &mut PackHits,
+    ) {
+        while hits.unsure != 0 {
+            let i = hits.unsure.trailing_zeros() as usize & 3;
+            hits.unsure &= hits.unsure - 1;
+            if !accept(pack.id[i]) {
+                continue;
+            }
+            [hits.t[i], hits.u[i], hits.v[i]] =
+                self.settle(pack, i, [hits.t[i], hits.u[i], hits.v[i]]);
+            let counts = hits.t[i] >= self.t_min && hits.t[i] <= t_max;
+            hits.mask |= u32::from(counts) << i;
+        }
+    }
 }
+
+/// Single precision is sure of a hit where the roundings of the corners' weights, which are the
+/// triangle's length squared over its area, seen along the ray, move the hit by at most this many
+/// roundings of the farthest corner's distance: some 1e-6 of that.
+const SURE: f32 = 1.0;
 
 /// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3), and one rounding more of
 /// its own product.
@@ -121,6 +183,9 @@ const WIDE: f32 = 0.1;
 pub struct PackHits {
     /// Bit `i` is set where the ray meets triangle `i`.
     pub mask: u32,
+    /// Bit `i` is set where it meets the triangle's line of sight and single precision cannot say
+    /// where: to be decided by [`Prepared::settle_all`].
+    pub unsure: u32,
     /// In lengths of the ray's direction, for the lanes in `mask`.
     pub t: [f32; 4],
     /// Weights of the second and the third corner.
@@ -134,7 +199,8 @@ pub trait Wide: Copy {
     /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it
     /// enters each.
     fn boxes(self, ray: &Prepared, node: &WideNode, t_max: f32, near: &mut [f32; 8]) -> u32;
-    /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included.
+    /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included, and
+    /// which are left to [`Prepared::settle_all`].
     fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
     /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which
     /// is finite: an unused box is infinitely far.
@@ -192,7 +258,7 @@ impl Wide for PortableLanes {
 
     #[inline(always)]
     fn triangles(self, r: &Prepared, p: &Pack, t_max: f32) -> PackHits {
-        let mut out = PackHits { mask: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
+        let mut out = PackHits { mask: 0, unsure: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
         for i in 0..4 {
             let corner = |c: usize| {
                 let z = p.v[c][r.k[2]][i] - r.origin[r.k[2]];
@@ -207,12 +273,16 @@ impl Wide for PortableLanes {
             let same = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
             let det = (u + v) + w;
             let t = ((u * az + v * bz) + w * cz) / det;
-            if same && det != 0.0 && t >= r.t_min && t <= t_max {
-                out.mask |= 1 << i;
-                out.t[i] = t;
-                out.u[i] = v / det;
-                out.v[i] = w / det;
+            if !same || det == 0.0 {
+                continue;
             }
+            (out.t[i], out.u[i], out.v[i]) = (t, v / det, w / det);
+            let size = [ax, ay, bx, by, cx, cy].map(f32::abs).into_iter().fold(0.0, max);
+            let (low, high) = (min(min(az, bz), cz), max(max(az, bz), cz));
+            let far = max(high.abs(), low.abs());
+            let unsure = (size * size) * (high - low) > (far * SURE) * det.abs();
+            out.mask |= u32::from(!unsure && t >= r.t_min && t <= t_max) << i;
+            out.unsure |= u32::from(unsure) << i;
         }
         out
     }
@@ -279,7 +349,7 @@ impl Wide for PortableLanes {
 mod avx2 {
     use super::super::rings::{self, Hexes, Rows};
     use super::super::token::Avx2;
-    use super::{Pack, PackHits, Prepared, WIDE, Wide, WideNode};
+    use super::{Pack, PackHits, Prepared, SURE, WIDE, Wide, WideNode};
     use glam::Vec4;
     use std::arch::x86_64::*;
 
@@ -311,7 +381,7 @@ mod avx2 {
 
         #[inline(always)]
         fn triangles(self, r: &Prepared, p: &Pack, t_max: f32) -> PackHits {
-            let mut out = PackHits { mask: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
+            let mut out = PackHits { mask: 0, unsure: 0, t: [0.0; 4], u: [0.0; 4], v: [0.0; 4] };
             // SAFETY: the token proves AVX2 (and so SSE); `k` is below 3, as only `Prepared::new`
             // makes it; all loads and stores are within their arrays.
             unsafe {
@@ -348,10 +418,24 @@ mod avx2 {
                     _mm_cmp_ps::<_CMP_GE_OQ>(t, _mm_set1_ps(r.t_min)),
                     _mm_cmp_ps::<_CMP_LE_OQ>(t, _mm_set1_ps(t_max)),
                 );
-                let hit =
-                    _mm_and_ps(_mm_and_ps(same, within), _mm_cmp_ps::<_CMP_NEQ_OQ>(det, zero));
-                out.mask = _mm_movemask_ps(hit) as u32;
-                if out.mask != 0 {
+                let met = _mm_and_ps(same, _mm_cmp_ps::<_CMP_NEQ_OQ>(det, zero));
+                let abs = |x| _mm_andnot_ps(_mm_set1_ps(-0.0), x);
+                let most = |a, b, c| _mm_max_ps(_mm_max_ps(a, b), c);
+                let size =
+                    _mm_max_ps(most(abs(ax), abs(bx), abs(cx)), most(abs(ay), abs(by), abs(cy)));
+                let (low, high) = (_mm_min_ps(_mm_min_ps(az, bz), cz), most(az, bz, cz));
+                let far = _mm_max_ps(abs(high), abs(low));
+                let unsure = _mm_and_ps(
+                    met,
+                    _mm_cmp_ps::<_CMP_GT_OQ>(
+                        _mm_mul_ps(_mm_mul_ps(size, size), _mm_sub_ps(high, low)),
+                        _mm_mul_ps(_mm_mul_ps(far, _mm_set1_ps(SURE)), abs(det)),
+                    ),
+                );
+                out.unsure = _mm_movemask_ps(unsure) as u32;
+                let sure = _mm_andnot_ps(unsure, _mm_and_ps(met, within));
+                out.mask = _mm_movemask_ps(sure) as u32;
+                if out.mask | out.unsure != 0 {
                     _mm_storeu_ps(out.t.as_mut_ptr(), t);
                     _mm_storeu_ps(out.u.as_mut_ptr(), _mm_div_ps(v, det));
                     _mm_storeu_ps(out.v.as_mut_ptr(), _mm_div_ps(w, det));

@@ -244,13 +244,13 @@ pub fn measure(
 ) -> Result<Thickness, ThicknessError> {
     settings.check()?;
     if let Some((turned, surface)) = turned(mesh, settings) {
-        let tree = Bvh8::build(&turned.mesh, job)?;
+        let tree = Bvh8::build_for_rays(&turned.mesh, job)?;
         let mut done = measure_prepared(Cow::Owned(turned.surface), &tree, settings, job)?;
         done.surface = surface;
         return Ok(done);
     }
     let (tree, surface) = rayon::join(
-        || Bvh8::build(mesh, job),
+        || Bvh8::build_for_rays(mesh, job),
         || WeldedSurface::new(mesh, settings.crease.to_radians()),
     );
     measure_prepared(Cow::Owned(surface), &tree?, settings, job)
@@ -357,11 +357,14 @@ pub fn measure_prepared(
         area_values[t as usize] = centroids[t as usize].value;
     }
     if settings.at == MeasuredPlaces::VerticesAndFaces {
+        let mut seen = vec![false; surface.triangles.len()];
         let order: Vec<u32> = tree
             .packs()
             .iter()
             .flat_map(|p| p.id)
-            .filter(|&t| t != crate::bvh::NO_TRIANGLE)
+            .filter(|&t| {
+                seen.get_mut(t as usize).is_some_and(|seen| !std::mem::replace(seen, true))
+            })
             .collect();
         let faces = scattered(&order, surface.triangles.len(), job, (0.8, 0.98), at_face)?;
         face_values = faces.iter().map(|v| v.value).collect();

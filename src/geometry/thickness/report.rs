@@ -204,12 +204,13 @@ fn histogram(out: &mut String, a: &ThicknessAnswer) {
     let counts = &a.summary.histogram;
     let most = counts.iter().copied().fold(0.0f64, f64::max);
     let most = if most > 0.0 { most } else { 1.0 };
-    let max = a.summary.max.unwrap_or(0.0);
+    let max = a.summary.histogram_top.unwrap_or(0.0);
+    let beyond = if a.summary.max > a.summary.histogram_top { " and above" } else { "" };
     let _ = write!(
         out,
         "<h2>Histogram</h2><svg role=img width=720 height=230 viewBox=\"0 0 720 \
             230\" aria-label=\"Area by thickness from 0 \
-         to {max:.3} millimetres in 100 classes; the same numbers are in the table below\">"
+         to {max:.3} millimetres{beyond} in 100 classes; the same numbers are in the table below\">"
     );
     for (i, &c) in counts.iter().enumerate() {
         let h = 190.0 * c / most;
@@ -239,7 +240,7 @@ fn histogram(out: &mut String, a: &ThicknessAnswer) {
         "<line x1=5 x2=712 y1=200 y2=200 stroke=\"#333\"/><g font-size=13 \
             font-family=sans-serif><text x=0 y=218>none, 0</text>\
          <text x=362 y=218 text-anchor=middle>{:.3}</text><text x=712 y=218 \
-         text-anchor=end>{max:.3} mm</text></g></svg>",
+         text-anchor=end>{max:.3} mm{beyond}</text></g></svg>",
         max * 0.5
     );
     out.push_str(
@@ -251,7 +252,9 @@ fn histogram(out: &mut String, a: &ThicknessAnswer) {
         let class = if i == 0 {
             "no value".into()
         } else {
-            format!("{:.3} to {:.3} mm", max * (i - 1) as f32 / 100.0, max * i as f32 / 100.0)
+            let beyond = if i + 1 == counts.len() { beyond } else { "" };
+            let (from, to) = (max * (i - 1) as f32 / 100.0, max * i as f32 / 100.0);
+            format!("{from:.3} to {to:.3} mm{beyond}")
         };
         let _ = write!(out, "<tr><th scope=row>{class}<td class=n>{c:.3}");
     }

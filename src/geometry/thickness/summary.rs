@@ -6,15 +6,16 @@ use glam::Vec3;
 use super::{Correction, Reason, Thickness, ThicknessMethod};
 
 /// Classes of the histogram: the first is the area without a value, the other hundred run from 0 to
-/// the maximum.
+/// [`ThicknessSummary::histogram_top`].
 pub const CLASSES: usize = 101;
 
 /// The statistics of a map of thickness. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct ThicknessSummary {
-    /// Over the vertices with a value; `null` where none has one.
+    /// Over the vertices with a value; `null` where none has one. Faces do not count: the middle of
+    /// a sliver between two sharp edges is as near to another wall as the sliver is wide.
     pub min: Option<f32>,
-    /// The largest value.
+    /// The largest value of a vertex or, where all its corners lie on sharp edges, a face.
     pub max: Option<f32>,
     /// The mean over the area, see [`Thickness::area_values`].
     pub mean: Option<f32>,
@@ -22,8 +23,13 @@ pub struct ThicknessSummary {
     pub median: Option<f32>,
     /// Share of the vertices that belong to a face and have a value, 0 to 1.
     pub valid: f32,
-    /// The area in each of [`CLASSES`] classes, in the square of the unit.
+    /// The area in each of [`CLASSES`] classes, in the square of the unit. The last class also
+    /// holds what is thicker than its end.
     pub histogram: Vec<f64>,
+    /// Where the last class ends: the maximum, or a twentieth above what 99 of 100 parts of the
+    /// area stay below, where that is less. So the rims of a plate, which are as thick as the plate
+    /// is long, do not press the walls into one class.
+    pub histogram_top: Option<f32>,
     /// Where the smallest value is.
     pub thinnest: Option<[f32; 3]>,
     /// Where the largest value is.
@@ -49,6 +55,15 @@ pub struct MissingCounts {
     pub edge: u64,
 }
 
+/// Over the area that has values; `None` where none has.
+#[derive(Default)]
+struct AreaStatistics {
+    mean: Option<f32>,
+    median: Option<f32>,
+    /// 99 of 100 parts of the area are thinner.
+    most: Option<f32>,
+}
+
 impl Thickness {
     /// Values of the welded vertices, each once, with their position.
     fn each(&self) -> impl Iterator<Item = (f32, Reason, Vec3)> + '_ {
@@ -63,8 +78,9 @@ impl Thickness {
         })
     }
 
-    /// The statistics. Least and most are over the welded vertices; mean, median and histogram are
-    /// weighted by area, so that a finer mesh of the same part says the same.
+    /// The statistics. Mean, median and histogram are weighted by area, so that a finer mesh of the
+    /// same part says the same; the most is over the values that those are made of too, so that no
+    /// mean lies above it.
     pub fn summary(&self) -> ThicknessSummary {
         let mut missing = MissingCounts::default();
         let mut edge_vertices = 0;
@@ -82,14 +98,24 @@ impl Thickness {
                 Reason::NothingAhead | Reason::Measured => missing.nothing_ahead += 1,
             }
         }
-        known.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (mean, median) = self.by_area();
         let n = known.len();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut thickest = known.last().copied();
+        for (t, &value) in self.area_values.iter().enumerate() {
+            if let Some([a, b, c]) = self.surface.corners(t)
+                && thickest.is_none_or(|most| value > most.0)
+                && value.is_finite()
+            {
+                thickest = Some((value, (a + b + c) / 3.0));
+            }
+        }
+        let AreaStatistics { mean, median, most } = self.by_area();
         let absent = missing.nothing_ahead + missing.no_normal + missing.edge;
-        let max = known.last().map(|v| v.0);
+        let max = thickest.map(|v| v.0);
+        let top = max.map(|max| most.map_or(max, |most| (most * 1.05).min(max)));
         let mut histogram = vec![0.0f64; CLASSES];
         for (value, area) in self.areas() {
-            let share = value / max.filter(|&m| m > 0.0).unwrap_or(1.0);
+            let share = value / top.filter(|&m| m > 0.0).unwrap_or(1.0);
             let class = if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 };
             histogram[class] += area;
         }
@@ -100,8 +126,9 @@ impl Thickness {
             median,
             valid: n as f32 / (n as f32 + absent as f32).max(1.0),
             histogram,
+            histogram_top: top,
             thinnest: known.first().map(|v| v.1.to_array()),
-            thickest: known.last().map(|v| v.1.to_array()),
+            thickest: thickest.map(|v| v.1.to_array()),
             missing,
             edge_vertices,
             error_bound: self.error_bound(),
@@ -115,21 +142,23 @@ impl Thickness {
         })
     }
 
-    /// Mean and median over the area that has values; `None` where none has.
-    fn by_area(&self) -> (Option<f32>, Option<f32>) {
+    fn by_area(&self) -> AreaStatistics {
         let mut known: Vec<(f32, f64)> = self.areas().filter(|v| v.0.is_finite()).collect();
         known.sort_by(|a, b| a.0.total_cmp(&b.0));
         let all: f64 = known.iter().map(|v| v.1).sum();
         if !(all > 0.0) {
-            return (None, None);
+            return AreaStatistics::default();
         }
         let sum: f64 = known.iter().map(|&(v, area)| v as f64 * area).sum();
-        let mut below = 0.0;
-        let median = known.iter().find(|v| {
-            below += v.1;
-            below >= all * 0.5
-        });
-        (Some((sum / all) as f32), median.or(known.last()).map(|v| v.0))
+        let share = |share: f64| {
+            let mut below = 0.0;
+            let found = known.iter().find(|v| {
+                below += v.1;
+                below >= all * share
+            });
+            found.or(known.last()).map(|v| v.0)
+        };
+        AreaStatistics { mean: Some((sum / all) as f32), median: share(0.5), most: share(0.99) }
     }
 
     /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three
@@ -285,6 +314,7 @@ mod tests {
             assert!((s.median.expect("walls") - 3.0).abs() < 1e-3, "{:?}", s.median);
             assert!((s.mean.expect("walls") / mean - 1.0).abs() < 0.01, "{:?}", s.mean);
             assert!((s.histogram.iter().sum::<f64>() - 21_200.0).abs() < 1.0);
+            assert!(s.min <= s.median && s.median <= s.max && s.mean <= s.max, "{s:?}");
         }
     }
 
