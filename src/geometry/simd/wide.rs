@@ -8,9 +8,9 @@
 //! vertices are sheared into a frame in which the ray is the z axis. The product terms of an edge
 //! function are rounded monotonically, so the sign of their difference is exact or the difference
 //! is zero; zero counts as inside on both sides. So a ray cannot slip through an edge or a vertex
-//! of a closed surface. The signs say which triangle is met; where on the ray is another matter: the
-//! weights of a sliver's corners are known to its length squared over its area, in roundings. What
-//! that leaves unsure is computed again in double precision ([`Prepared`]).
+//! of a closed surface. The signs say which triangle is met; where on the ray is another matter:
+//! the weights of a sliver's corners are known to its length squared over its area, in roundings.
+//! What that leaves unsure is computed again in double precision ([`Prepared::settle_all`]).
 
 use glam::{DVec3, Vec4};
 
@@ -111,10 +111,10 @@ impl Prepared {
         }
     }
 
-    /// Where the ray meets the plane of triangle `i` of `pack`, of which the signs say that it meets
-    /// the triangle: not before its first corner and not behind its last, for the signs may be wrong
-    /// by a rounding of the corners. `known` is what single precision gave, for a triangle seen
-    /// exactly edge on.
+    /// Where the ray meets the plane of triangle `i` of `pack`, of which the signs say that it
+    /// meets the triangle: not before its first corner and not behind its last, for the signs may
+    /// be wrong by a rounding of the corners. `known` is what single precision gave, for a triangle
+    /// seen exactly edge on.
     #[inline(never)]
     fn settle(&self, pack: &Pack, i: usize, known: [f32; 3]) -> [f32; 3] {
         let d = DVec3::from_array(self.dir.map(f64::from));
