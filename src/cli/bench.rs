@@ -19,7 +19,7 @@ use sculptd_clay::{
 };
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::pacer::Pacer;
-use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics};
+use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics, thread_cpu_ns};
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
@@ -138,6 +138,7 @@ struct BenchAnswer {
     topology_a_dab: TopologyChanges,
     vertices_at_end: usize,
     tick_ms: Percentiles,
+    tick_cpu_ms: Percentiles,
     tick_dabs: u64,
     tick_affected: f64,
     ticks: u64,
@@ -214,6 +215,7 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         topology_a_dab,
         vertices_at_end: stroke.vertices,
         tick_ms: stroke.figures.tick_ms(),
+        tick_cpu_ms: stroke.figures.tick_cpu_ms(),
         tick_dabs: stroke.figures.dabs,
         tick_affected: stroke.figures.vertices_moved as f64 / stroke.figures.dabs.max(1) as f64,
         ticks: stroke.figures.ticks,
@@ -482,11 +484,11 @@ fn stroke(mesh: Clay, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke
         let turn = (tick / half) as usize;
         let change = [Command::Brush(settings(turn / 2, turn % 2 == 1))];
         let commands = if tick % half == 1 { &change[..] } else { &[] };
-        let begun = now_ns();
+        let (begun, begun_cpu) = (now_ns(), thread_cpu_ns());
         let report = *world.step(tick, &[sample], commands);
         shown.replace(world.snapshot());
         let took = now_ns() - begun;
-        figures.tick(&report, took);
+        figures.tick(&report, took, thread_cpu_ns() - begun_cpu);
         pacer.done(clock().now_us());
         figures.overruns = pacer.overruns;
     }

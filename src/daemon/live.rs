@@ -19,7 +19,7 @@ use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::tablet_actions::TabletActions;
 use crate::tick::{Journal, in_order_of_time, published_figures};
-use crate::tick_statistics::TickStatistics;
+use crate::tick_statistics::{TickStatistics, thread_cpu_ns};
 use sculptd_clay::Grafted;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
@@ -174,7 +174,7 @@ impl Ticking {
             if let Some(actions) = &mut self.actions {
                 actions.take(&mut samples, &self.world, &mut commands);
             }
-            let begun = self.clock.now_ns();
+            let (begun, begun_cpu) = (self.clock.now_ns(), thread_cpu_ns());
             let report = *self.world.step(tick, &samples, &commands);
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, &self.world);
@@ -191,7 +191,7 @@ impl Ticking {
             }
             discard_commands(&mut commands, &garbage);
             let stepped = self.clock.now_ns() - begun;
-            figures.tick(&report, stepped);
+            figures.tick(&report, stepped, thread_cpu_ns() - begun_cpu);
             let mut shown = published_figures(&figures, &self.receiver, stepped);
             shown.garbage_overflows = self.garbage.overflowed();
             if let Some(sample) = samples.last() {
