@@ -112,11 +112,19 @@ impl DabBuffers {
             bvh_ns: 0,
         };
         let side = PageTask {
-            incoming: Vec::with_capacity(16),
+            incoming: Vec::with_capacity(64),
             rows: Vec::with_capacity(self.rows),
             colours: Vec::new(),
         };
         (slot, side)
+    }
+
+    /// Makes room for so many pages in the clay, and for dabs that write many of them.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        self.slot_of.reserve(pages.saturating_sub(self.slot_of.len()));
+        self.slots.reserve(256);
+        self.sides.reserve(256);
+        self.spare.reserve(256);
     }
 
     pub(super) fn grow(&mut self, pages: usize) {

@@ -15,6 +15,7 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::{BoxTree, LEAF};
+use crate::assembly::PAGE_VERTICES;
 use sculptd_geometry::simd::leaves::Leaves;
 use sculptd_geometry::simd::rings::Hexes;
 
@@ -342,6 +343,20 @@ impl Page {
     /// The clay's revision that wrote this page.
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// Makes room for any page that dynamic topology writes.
+    pub(super) fn make_room(&mut self) {
+        self.points.clear();
+        self.normals.clear();
+        self.points.reserve(2 * PAGE_VERTICES);
+        self.normals.reserve(2 * PAGE_VERTICES);
+        self.tree.reset(PAGE_VERTICES / 2);
+    }
+
+    /// Whether dynamic topology can write any page into this one without asking for more.
+    pub(super) fn has_room(&self) -> bool {
+        self.points.capacity().min(self.normals.capacity()) >= 2 * PAGE_VERTICES
     }
 
     /// Brings the page's tree and bounds up to date after vertices in the blocks `touched` moved.

@@ -29,6 +29,15 @@ impl Stale {
         }
     }
 
+    /// Makes room for so many pages in the clay.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        let (chunks, nodes) = (pages.div_ceil(CHUNK), pages.div_ceil(8));
+        self.chunk_is.reserve(chunks.saturating_sub(self.chunk_is.len()));
+        self.path_is.reserve(nodes.saturating_sub(self.path_is.len()));
+        self.chunks.reserve(chunks.min(4096));
+        self.paths.reserve(nodes.min(4096));
+    }
+
     pub(super) fn grow(&mut self, pages: usize) {
         self.chunk_is.resize(pages.div_ceil(CHUNK), false);
         self.path_is.resize(pages.div_ceil(8), false);
@@ -61,6 +70,10 @@ pub(super) struct SpinePool {
     old_spines: VecDeque<Arc<Vec<Arc<Chunk>>>>,
     old_chunks: VecDeque<Arc<Chunk>>,
     free_chunks: Vec<Arc<Chunk>>,
+    /// Stands where a chunk is about to be put.
+    blank: Arc<Chunk>,
+    /// Chunks that a new spine gets room for.
+    most: usize,
 }
 
 /// Old chunks looked after, at most; a reader that holds more frees them itself.
@@ -83,7 +96,14 @@ impl SpinePool {
             old_spines: VecDeque::with_capacity(SPINES + 1),
             old_chunks: VecDeque::with_capacity(KEPT + 1),
             free_chunks: Vec::with_capacity(KEPT),
+            blank: Arc::default(),
+            most: 0,
         }
+    }
+
+    /// Makes room for so many pages in the clay.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        self.most = pages.div_ceil(CHUNK);
     }
 
     pub(super) fn publish(
@@ -98,7 +118,7 @@ impl SpinePool {
         if let Some(new) = Arc::get_mut(&mut spine) {
             new.clear();
             new.extend_from_slice(&self.shown);
-            new.resize_with(pages.len().div_ceil(CHUNK), Arc::default);
+            new.resize(pages.len().div_ceil(CHUNK), self.blank.clone());
         }
         self.reclaim(2 * stale.chunks.len() + 4);
         for c in stale.chunks.drain(..) {
@@ -132,12 +152,13 @@ impl SpinePool {
                 Some(free) => {
                     // Its chunks live on: the pool holds each old one.
                     free.clear();
+                    free.reserve(self.most);
                     return old;
                 }
                 None => self.old_spines.push_back(old),
             }
         }
-        Arc::new(Vec::with_capacity(self.shown.len()))
+        Arc::new(Vec::with_capacity(self.shown.len().max(self.most)))
     }
 
     fn reclaim(&mut self, count: usize) {

@@ -12,6 +12,7 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::pacer::Pacer;
+use super::page_thread::PageThread;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs::BooleanJobs;
 use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
@@ -87,6 +88,7 @@ impl Live {
         let (commands, inbox) = command_queue(COMMANDS);
         let garbage = GarbageThread::start().map_err(LiveError::Start)?;
         world.set_garbage_sink(garbage.sink());
+        world.set_page_supply(PageThread::start().map_err(LiveError::Start)?.supply());
         let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
         let published = publisher.reader();
         let stop = Arc::new(AtomicBool::new(false));

@@ -209,6 +209,7 @@ pub fn summary(
         tick_ms: figures.tick_ms(),
         tick_cpu_ms: figures.tick_cpu_ms(),
         overruns: figures.overruns,
+        topology_dropped: figures.topology_dropped,
         vertices: world.mesh().vertex_count() as u64,
         triangles: world.mesh().triangle_count() as u64,
         hash: format!("{:016x}", world.hash()),

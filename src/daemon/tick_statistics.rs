@@ -16,6 +16,8 @@ pub struct TickStatistics {
     pub dabs: u64,
     pub vertices_moved: u64,
     pub overruns: u64,
+    /// As [`StepReport::topology_dropped`], summed.
+    pub topology_dropped: u64,
     tick_ns: Histogram<u64>,
     /// Processor time of the tick thread alone.
     tick_cpu_ns: Histogram<u64>,
@@ -51,6 +53,8 @@ pub struct Summary {
     /// All 0 where the system cannot tell.
     pub tick_cpu_ms: Percentiles,
     pub overruns: u64,
+    /// Balls in which dynamic topology was still to be done and was given up.
+    pub topology_dropped: u64,
     pub vertices: u64,
     pub triangles: u64,
     /// Of the world's clay at the end, 16 hexadecimal digits.
@@ -67,6 +71,7 @@ impl Default for TickStatistics {
             dabs: 0,
             vertices_moved: 0,
             overruns: 0,
+            topology_dropped: 0,
             tick_ns: histogram(),
             tick_cpu_ns: histogram(),
         }
@@ -110,6 +115,7 @@ impl TickStatistics {
         self.samples += report.samples;
         self.dabs += report.dabs;
         self.vertices_moved += report.vertices_moved;
+        self.topology_dropped += report.topology_dropped;
         self.tick_ns.saturating_record(took_ns.clamp(1, LONGEST_NS));
         self.tick_cpu_ns.saturating_record(cpu_ns.min(LONGEST_NS));
     }
