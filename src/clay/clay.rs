@@ -330,11 +330,11 @@ impl Clay {
         if self.topology.is_ready() {
             return;
         }
-        self.topology.make_ready();
-        self.pool.be_roomy();
-        self.buffers.rows = self.buffers.rows.max(2 * PAGE_VERTICES);
         // As many pages again as there are.
         let most = 2 * self.pages.len() + 1024;
+        self.topology.make_ready(most);
+        self.pool.be_roomy();
+        self.buffers.rows = self.buffers.rows.max(2 * PAGE_VERTICES);
         self.pages.reserve(most - self.pages.len());
         self.empty.reserve(most);
         self.buffers.reserve(most);

@@ -77,6 +77,9 @@ impl PageTask {
     }
 }
 
+/// Pages that one dab writes, most of the time at most.
+const DAB_PAGES: usize = 96;
+
 /// The memory of dabs, kept from one to the next.
 #[derive(Debug, Default)]
 pub(super) struct DabBuffers {
@@ -125,6 +128,9 @@ impl DabBuffers {
         self.slots.reserve(256);
         self.sides.reserve(256);
         self.spare.reserve(256);
+        while self.spare.len() < DAB_PAGES {
+            self.spare.push(self.fresh());
+        }
     }
 
     pub(super) fn grow(&mut self, pages: usize) {

@@ -76,6 +76,10 @@ pub(super) struct SpinePool {
     most: usize,
 }
 
+fn free_chunk() -> Arc<Chunk> {
+    Arc::new(Chunk { pages: Vec::with_capacity(CHUNK), ..Chunk::default() })
+}
+
 /// Old chunks looked after, at most; a reader that holds more frees them itself.
 const KEPT: usize = 4096;
 /// Old spines looked after, at most.
@@ -104,6 +108,11 @@ impl SpinePool {
     /// Makes room for so many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.most = pages.div_ceil(CHUNK);
+        // What readers hold of a few snapshots in a row.
+        let ready = self.most.min(256);
+        while self.free_chunks.len() < ready {
+            self.free_chunks.push(free_chunk());
+        }
     }
 
     pub(super) fn publish(
@@ -124,9 +133,7 @@ impl SpinePool {
         for c in stale.chunks.drain(..) {
             let c = c as usize;
             stale.chunk_is[c] = false;
-            let mut chunk = self.free_chunks.pop().unwrap_or_else(|| {
-                Arc::new(Chunk { pages: Vec::with_capacity(CHUNK), ..Chunk::default() })
-            });
+            let mut chunk = self.free_chunks.pop().unwrap_or_else(free_chunk);
             if let Some(chunk) = Arc::get_mut(&mut chunk) {
                 chunk.fill(&pages[c * CHUNK..((c + 1) * CHUNK).min(pages.len())]);
             }

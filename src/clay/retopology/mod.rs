@@ -134,8 +134,9 @@ impl TopologyBuffers {
     }
 
     /// Makes room for what a tick's work usually needs: lists would grow one by one, long into a
-    /// stroke.
-    pub(crate) fn make_ready(&mut self) {
+    /// stroke. `pages`: as many as the clay may come to have.
+    pub(crate) fn make_ready(&mut self, pages: usize) {
+        self.visits.reserve(pages);
         self.scans.resize_with(SCANNED, scan::PageScan::new);
         self.pages.reserve(1024);
         self.balls.reserve(2 * scan::BALLS);
@@ -146,10 +147,6 @@ impl TopologyBuffers {
 
     /// Gives each ball a number: the one that it had in the last call, else the next.
     pub(crate) fn number(&mut self, balls: &[Detail], pages: usize) {
-        if self.visits.len() < pages {
-            // Room for more than one, or each new page would ask for memory.
-            self.visits.reserve(2 * pages + 1024 - self.visits.len());
-        }
         self.visits.resize(pages, PageVisit::NEVER);
         let old = self.balls.len();
         for ball in balls {

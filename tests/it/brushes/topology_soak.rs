@@ -1,0 +1,123 @@
+//! Random brushes with dynamic topology, through the world: the surface stays one, undo leads back
+//! to the first bit, and the count of workers changes nothing.
+//!
+//! A hundred thousand dabs where `SCULPTD_LONG` is set, two thousand else.
+
+use sculptd_clay::brush::{BrushKind, BrushSettings, Measure, Method};
+use sculptd_engine::command::Command;
+use sculptd_geometry::{TriMesh, shapes};
+
+use super::super::clay::Dice;
+use super::Studio;
+use super::properties::{any_brush, any_stroke};
+use super::topology::checked;
+
+/// A random brush that changes topology, with edges of a size that keeps the mesh small.
+fn any_cutting_brush(dice: &mut Dice) -> BrushSettings {
+    loop {
+        let mut brush = any_brush(dice);
+        if !brush.kind.cuts() || brush.kind == BrushKind::SnakeHook && dice.next() < 0.5 {
+            continue;
+        }
+        if matches!(brush.path.method, Method::Anchored | Method::DragDot | Method::Curve) {
+            brush.path.method = Method::Space;
+        }
+        brush.saturation = 0.0;
+        brush.mirror.radial = 1;
+        // The form must last for thousands of strokes.
+        brush.strength *= 0.5;
+        brush.topology.by = Measure::Work;
+        brush.topology.edge = 0.015 + 0.03 * dice.next();
+        brush.topology.split = true;
+        brush.topology.collapse = dice.next() < 0.9;
+        return brush.clamped();
+    }
+}
+
+/// What a run leaves behind.
+#[derive(Debug, PartialEq)]
+struct Outcome {
+    hashes: Vec<u64>,
+    dabs: u64,
+    dropped: u64,
+    least: f64,
+}
+
+/// Strokes between two looks at the whole surface.
+const WINDOW: usize = 100;
+
+/// Draws until so many dabs were made. `look`: checks the surface, and takes each window back.
+fn run(start: &TriMesh, euler: i64, dabs: u64, workers: usize, look: bool) -> Outcome {
+    let mut dice = Dice(77);
+    let first = any_cutting_brush(&mut dice);
+    let mut studio = Studio::new(start, first, workers);
+    let mut out = Outcome { hashes: vec![studio.world.hash()], dabs: 0, dropped: 0, least: 180.0 };
+    let mut steps = 0;
+    while out.dabs < dabs {
+        for stroke in 0..WINDOW {
+            studio.tell(Command::Brush(any_cutting_brush(&mut dice)));
+            let before = studio.world.mesh().undo_steps();
+            out.dabs += studio.stroke(&any_stroke(&mut dice));
+            steps += studio.world.mesh().undo_steps() - before;
+            out.dropped += studio.world.report().topology_dropped;
+            if stroke % 4 == 0 {
+                // The hand turns the form under the pen.
+                let camera = *studio.world.camera();
+                let yaw = camera.yaw + 0.9 * dice.next();
+                let pitch = 1.2 * (dice.next() - 0.5);
+                studio.tell(Command::Camera(sculptd_engine::camera::Camera {
+                    yaw,
+                    pitch,
+                    ..camera
+                }));
+            }
+            if out.dabs >= dabs {
+                break;
+            }
+        }
+        let now = studio.world.hash();
+        if look {
+            studio.world.verify_invariants().unwrap_or_else(|e| panic!("{} dabs: {e}", out.dabs));
+            let (found, least) = checked(&studio.world.mesh().to_tri());
+            assert_eq!(found, euler, "{} dabs", out.dabs);
+            out.least = out.least.min(least);
+            let before = out.hashes[out.hashes.len() - 1];
+            (0..steps).for_each(|_| studio.tell(Command::Undo));
+            assert_eq!(studio.world.hash(), before, "taken back after {} dabs", out.dabs);
+            (0..steps).for_each(|_| studio.tell(Command::Redo));
+            assert_eq!(studio.world.hash(), now, "done again after {} dabs", out.dabs);
+            println!(
+                "{} dabs: {} vertices in {} pages, least angle {least:.3} degrees",
+                out.dabs,
+                studio.world.mesh().vertex_count(),
+                studio.world.mesh().page_count()
+            );
+        }
+        steps = 0;
+        out.hashes.push(now);
+    }
+    assert!(out.least > 0.0, "a triangle without area");
+    out
+}
+
+#[test]
+fn random_brushes_with_dynamic_topology_keep_the_surface_whole() {
+    let long = std::env::var_os("SCULPTD_LONG").is_some();
+    let dabs = if long { 50_000 } else { 1_000 };
+    for (start, euler) in
+        [(shapes::icosphere(1.0, 24), 2), (shapes::torus(0.8, 0.3, 64, 32).triangulate().0, 0)]
+    {
+        let one = run(&start, euler, dabs, 1, true);
+        println!("{} dabs, {} balls dropped, least angle {}", one.dabs, one.dropped, one.least);
+        assert_eq!(one.dropped, 0);
+        for workers in [2, 3, 7, 16] {
+            let (start, hashes) = (&start, &one.hashes);
+            // Worker threads are the first caller's: each run has a thread of its own.
+            let other = std::thread::scope(|s| {
+                s.spawn(|| run(start, euler, dabs, workers, false)).join().expect("no panic")
+            });
+            // Taking a window back and doing it again leaves no trace either.
+            assert_eq!(&other.hashes, hashes, "with {workers} workers");
+        }
+    }
+}
