@@ -29,8 +29,8 @@
 //!    proximity change is never lost; motion may be coalesced, and every loss is counted and shown.
 //!    Nothing large is freed on the tick thread, whatever is full: see
 //!    [`sculptd_clay::GarbageSink`].
-//!    Not kept whole yet: a stroke with dynamic topology still allocates in some ticks. Its work is
-//!    bounded by counted operations, and what does not fit is carried over to the next tick.
+//!    Dynamic topology is bounded by counted work, the scan of its pages and their writing included;
+//!    what does not fit is carried over to the next tick. Its pages are made in advance by a thread.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.

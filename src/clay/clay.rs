@@ -325,8 +325,9 @@ impl Clay {
         self.triangles = self.triangles + new.triangles.len() - old.triangles.len();
     }
 
-    /// Makes room for changing topology, once: pages, tables, lists. What it takes is kept.
-    pub(super) fn ready_topology(&mut self) {
+    /// Makes room for changing topology, once: pages, tables, lists. What it takes is kept. The
+    /// first [`Clay::adapt_topology`] does it otherwise.
+    pub fn prepare_topology(&mut self) {
         if self.topology.is_ready() {
             return;
         }
@@ -334,6 +335,8 @@ impl Clay {
         let most = 2 * self.pages.len() + 1024;
         self.topology.make_ready(most);
         self.pool.be_roomy();
+        // A supply that was not asked before begins to make pages.
+        self.pool.restock();
         self.buffers.rows = self.buffers.rows.max(2 * PAGE_VERTICES);
         self.pages.reserve(most - self.pages.len());
         self.empty.reserve(most);

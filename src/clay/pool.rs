@@ -89,7 +89,7 @@ impl Pool {
     }
 
     /// Takes a page and a topology from the supply, if it has one ready.
-    fn restock(&mut self) {
+    pub(super) fn restock(&mut self) {
         let Some(SparePage(mut page)) = self.supply.take() else { return };
         if let Some(page) = Arc::get_mut(&mut page) {
             let topology = std::mem::replace(&mut page.topology, self.blank.clone());

@@ -290,7 +290,44 @@ fn ray_from(mesh: &Clay, towards: Vec3) -> Ray {
     Ray { origin: (lo + hi) * 0.5 + towards * (hi - lo).length(), dir: -towards }
 }
 
-/// The direction of dab `i`: a spiral over the whole ball, neighbours a small step apart.
+/// Where single dabs go.
+#[derive(Debug, Clone, Copy)]
+enum DabPath {
+    /// A spiral over the whole ball, neighbours a small step apart.
+    Spiral,
+    /// To and fro on a great circle, neighbours a fifth of the radius apart: where dabs change
+    /// topology, each must find the clay as finely cut as it does on a mesh of any other size.
+    Arc {
+        /// The brush's radius as an angle of the ball.
+        radius: f32,
+    },
+}
+
+/// Radii from one end of the arc to the other.
+const ARC: f32 = 8.0;
+
+impl DabPath {
+    fn new(args: &BenchArgs, mesh: &Clay, radius: f32) -> DabPath {
+        let (lo, hi) = mesh.bounds();
+        match args.topology {
+            Some(_) => DabPath::Arc { radius: radius / ((hi - lo).max_element() * 0.5) },
+            None => DabPath::Spiral,
+        }
+    }
+
+    /// The direction of dab `i`, seen from the middle.
+    fn direction(self, i: usize) -> Vec3 {
+        match self {
+            DabPath::Spiral => direction(i),
+            DabPath::Arc { radius } => {
+                let at = (i as f32 * 0.2) % (2.0 * ARC);
+                let turn = at.min(2.0 * ARC - at) * radius;
+                Vec3::new(turn.cos(), 0.0, turn.sin())
+            }
+        }
+    }
+}
+
 fn direction(i: usize) -> Vec3 {
     let t = i as f32 * 0.01;
     let height = (t * 0.37).sin() * 0.9;
@@ -326,9 +363,16 @@ struct Dabs {
 const STROKE: usize = 50;
 
 /// A dab of a stroke that goes on by a fifth of the radius.
-fn one_dab<'a>(settings: &'a BrushSettings, hit: &Hit, ray: &Ray, sign: f32, i: usize) -> Dab<'a> {
+fn one_dab<'a>(
+    settings: &'a BrushSettings,
+    path: DabPath,
+    hit: &Hit,
+    ray: &Ray,
+    sign: f32,
+    i: usize,
+) -> Dab<'a> {
     let radius = settings.radius;
-    let way = direction(i + 1) - direction(i);
+    let way = path.direction(i + 1) - path.direction(i);
     let flat = way - hit.normal * way.dot(hit.normal);
     let along = flat.try_normalize().unwrap_or_else(|| hit.normal.any_orthonormal_vector());
     let right = ray.dir.any_orthonormal_vector();
@@ -369,8 +413,9 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
     let mut out = Dabs::default();
     let mut snapshot = None;
     let mut scratch = Scratch::default();
+    let path = DabPath::new(args, mesh, radius);
     for i in 0..args.dabs {
-        let ray = ray_from(mesh, direction(i));
+        let ray = ray_from(mesh, path.direction(i));
         let before = mesh.phases();
         let t0 = now_ns();
         let hit = mesh.pick(ray);
@@ -381,7 +426,7 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
         let mut tool = Tool { mesh, workers, scratch: &mut scratch, report: DabReport::default() };
         // Out and in by turns, so that the form lasts however long the measurement.
         let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
-        settings.kind.apply(&[one_dab(&settings, &hit, &ray, sign, i)], &mut tool);
+        settings.kind.apply(&[one_dab(&settings, path, &hit, &ray, sign, i)], &mut tool);
         let report = tool.report;
         let t2 = now_ns();
         if let Some(edge) = args.topology {

@@ -27,7 +27,7 @@ use crate::replaced::ReplacedClay;
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
-use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
+use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Measure, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, PageSupply, Reach, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_geometry::portable::turn_about;
@@ -216,6 +216,9 @@ impl World {
             Command::Brush(brush) => {
                 self.keep_brush(brush.kind);
                 self.brush = brush.clamped();
+                if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
+                    self.mesh.prepare_topology();
+                }
                 let lays = self.brush.kind.grip() == Grip::Surface
                     && self.brush.path.method == Method::Curve;
                 if !lays {

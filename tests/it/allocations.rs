@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicI64, Ordering::Relaxed};
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush, Measure, SmoothBrush};
-use sculptd_clay::{Clay, Reach, Workers};
+use sculptd_clay::{Clay, Reach, Snapshot, Workers};
 use sculptd_daemon::garbage_thread::GarbageThread;
 use sculptd_daemon::page_thread::PageThread;
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
@@ -125,55 +125,104 @@ fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
     mesh.end_step();
 }
 
-/// A pen that goes round a ball and round again, with triangles made finer and coarser by turns.
+/// A pen on a ball, with dynamic topology and what the daemon gives the tick thread.
+struct TopologyStroke {
+    world: World,
+    brush: BrushSettings,
+    supply: PageThread,
+    tick: u64,
+    shown: Option<Snapshot>,
+}
+
+impl TopologyStroke {
+    fn new(radius: f32) -> TopologyStroke {
+        let clay =
+            Clay::build(&shapes::sphere_of_about(160_000), &Job::default()).expect("builds");
+        let mut brush = BrushSettings { radius, ..sculptd::presets().of(BrushKind::Clay) };
+        brush.topology.by = Measure::Brush;
+        let options = WorldOptions {
+            dab_budget: 400_000,
+            undo_bytes: 1 << 30,
+            hands: HandSettings::default(),
+        };
+        let camera = Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() };
+        let mut world = World::new(clay, camera, brush, Workers::new(2), options);
+        world.warm();
+        world.set_garbage_sink(GarbageThread::start().expect("a thread").sink());
+        let supply = PageThread::start().expect("a thread");
+        world.set_page_supply(supply.supply());
+        TopologyStroke { world, brush, supply, tick: 0, shown: None }
+    }
+
+    fn set_brush(&mut self) {
+        self.tick += 1;
+        self.world.step(self.tick, &[], &[Command::Brush(self.brush)]);
+    }
+
+    /// One tick with the pen at this angle and distance from the middle of the view; the calls.
+    fn draw(&mut self, turn: f32, far: f32) -> u64 {
+        let area_mm = Vec2::new(self.world.camera().aspect, 1.0) * 100.0;
+        let at = Vec2::splat(0.5) + Vec2::new(turn.cos(), turn.sin()) * far;
+        self.tick += 1;
+        let pen = Pen {
+            in_range: true,
+            tip: true,
+            pos_mm: at * area_mm,
+            area_mm,
+            pressure: Some(0.5),
+            ..Pen::default()
+        };
+        let (t_us, body) = (self.tick * 8000, Body::Pen(pen));
+        let sample = Sample { device: DeviceId(1), t_us, device_t_us: None, body };
+        counted(|| {
+            self.world.step(self.tick, &[sample], &[]);
+            self.shown.replace(self.world.snapshot());
+        })
+    }
+}
+
+/// A pen that goes round and round again, with triangles made coarser and finer by turns.
 #[test]
 fn dynamic_topology_in_its_steady_state_neither_allocates_nor_frees() {
-    let clay = Clay::build(&shapes::sphere_of_about(160_000), &Job::default()).expect("builds");
-    let mut brush = BrushSettings { radius: 0.12, ..sculptd::presets().of(BrushKind::Clay) };
-    brush.topology.by = Measure::Brush;
-    let options =
-        WorldOptions { dab_budget: 400_000, undo_bytes: 1 << 30, hands: HandSettings::default() };
-    let camera = Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() };
-    let mut world = World::new(clay, camera, brush, Workers::new(2), options);
-    world.warm();
-    world.set_garbage_sink(GarbageThread::start().expect("a thread").sink());
-    world.set_page_supply(PageThread::start().expect("a thread").supply());
-    let area_mm = Vec2::new(world.camera().aspect, 1.0) * 100.0;
-    let (mut tick, mut shown) = (0, None);
+    let mut stroke = TopologyStroke::new(0.12);
     for round in 0..10 {
-        brush.topology.edge = [0.15, 0.08][round % 2];
-        brush.negative = round % 4 >= 2;
-        tick += 1;
-        world.step(tick, &[], &[Command::Brush(brush)]);
-        // The first rounds touch each page once and fill the pools.
-        let steady = round >= 4;
-        let vertices = world.mesh().vertex_count();
-        CALLS.set(0);
-        for i in 0..240 {
-            let turn = i as f32 / 240.0 * std::f32::consts::TAU;
-            let at = Vec2::splat(0.5) + Vec2::new(turn.cos(), turn.sin()) * 0.12;
-            tick += 1;
-            let pen = Pen {
-                in_range: true,
-                tip: true,
-                pos_mm: at * area_mm,
-                area_mm,
-                pressure: Some(0.5),
-                ..Pen::default()
-            };
-            let t_us = tick * 8000;
-            let body = Body::Pen(pen);
-            let sample = Sample { device: DeviceId(1), t_us, device_t_us: None, body };
-            COUNTED.set(true);
-            world.step(tick, &[sample], &[]);
-            shown.replace(world.snapshot());
-            COUNTED.set(false);
-        }
-        let now = world.mesh().vertex_count();
-        println!("round {round}: {vertices} -> {now} vertices, {} calls", CALLS.get());
+        stroke.brush.topology.edge = [0.15, 0.08][round % 2];
+        stroke.brush.negative = round % 4 >= 2;
+        stroke.set_brush();
+        let vertices = stroke.world.mesh().vertex_count();
+        let calls: u64 =
+            (0..240).map(|i| stroke.draw(i as f32 / 240.0 * std::f32::consts::TAU, 0.12)).sum();
+        let now = stroke.world.mesh().vertex_count();
+        println!("round {round}: {vertices} -> {now} vertices, {calls} calls");
         assert!(vertices.abs_diff(now) > 1000, "nothing changed in round {round}");
-        if steady {
-            assert_eq!(CALLS.get(), 0, "allocations and frees in round {round}");
+        // The first rounds touch each page once and fill the pools.
+        if round >= 2 {
+            assert_eq!(calls, 0, "allocations and frees in round {round}");
         }
     }
+}
+
+/// A spiral over clay that it has not touched before, which is made finer: new pages in every
+/// tick, and more of them than there were.
+#[test]
+fn clay_that_grows_under_a_stroke_takes_its_pages_from_the_supply() {
+    let mut stroke = TopologyStroke::new(0.08);
+    stroke.brush.topology.edge = 0.03;
+    stroke.set_brush();
+    let (before, mut calls) = (stroke.world.mesh().page_count(), 0);
+    for i in 0..300 {
+        // A loaded machine must not make the thread that makes pages late.
+        let begun = std::time::Instant::now();
+        while stroke.supply.ready() < 64 && begun.elapsed().as_secs() < 60 {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        let t = i as f32 / 300.0;
+        let now = stroke.draw(t * 20.0, 0.02 + 0.22 * t);
+        // The first dabs of a stroke open its undo step.
+        calls += if i >= 20 { now } else { 0 };
+    }
+    let grown = stroke.world.mesh().page_count();
+    println!("{before} pages, {grown} at the end, {calls} calls");
+    assert!(grown > before + 50, "{before} pages, then {grown}");
+    assert_eq!(calls, 0, "allocations and frees while the clay grows");
 }

@@ -50,7 +50,7 @@ impl Clay {
         if used >= LAST_NUMBER || !balls.iter().all(Detail::is_sane) {
             return Cuts::default();
         }
-        self.ready_topology();
+        self.prepare_topology();
         let more = balls.len() > BALLS;
         let balls = &balls[..balls.len().min(BALLS)];
         let looked = self.choose(balls);
