@@ -134,6 +134,9 @@ struct BenchAnswer {
     ns_per_affected_vertex: f64,
     dab_us: Spread,
     first_dab_us: f64,
+    /// With `--topology`: of the dabs of the first way along the arc, each of which comes upon clay
+    /// that is not yet as fine or coarse as is wanted.
+    fresh_dab_us: Spread,
     phases_us: Phases,
     topology_a_dab: TopologyChanges,
     vertices_at_end: usize,
@@ -202,6 +205,7 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         ns_per_affected_vertex: dab_us.p50 * 1e3 / affected.max(1) as f64,
         dab_us,
         first_dab_us: dabs.first as f64 / 1e3,
+        fresh_dab_us: spread(dabs.fresh),
         phases_us: Phases {
             pick: phase(|p| p.pick),
             query: phase(|p| p.query),
@@ -254,7 +258,10 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         ] {
             writeln!(out, "  {name:<9}{:8.1} us  p99 {:8.1}", s.p50, s.p99)?;
         }
-        let c = &report.topology_a_dab;
+        let (c, fresh) = (&report.topology_a_dab, &report.fresh_dab_us);
+        if fresh.p50 > 0.0 {
+            writeln!(out, "fresh    {:.0} us, {:.0} at p99, on clay to be cut", fresh.p50, fresh.p99)?;
+        }
         writeln!(
             out,
             "edges    {:.0} split, {:.0} collapsed, {:.0} flipped a dab; {} vertices at the end",
@@ -303,6 +310,8 @@ enum DabPath {
     },
 }
 
+/// Radii from one dab of a stroke to the next.
+const STEP: f32 = 0.2;
 /// Radii from one end of the arc to the other.
 const ARC: f32 = 8.0;
 
@@ -320,7 +329,7 @@ impl DabPath {
         match self {
             DabPath::Spiral => direction(i),
             DabPath::Arc { radius } => {
-                let at = (i as f32 * 0.2) % (2.0 * ARC);
+                let at = (i as f32 * STEP) % (2.0 * ARC);
                 let turn = at.min(2.0 * ARC - at) * radius;
                 Vec3::new(turn.cos(), 0.0, turn.sin())
             }
@@ -351,6 +360,7 @@ fn radius_for(mesh: &Clay, affected: usize) -> f32 {
 
 #[derive(Debug, Default)]
 struct Dabs {
+    fresh: Vec<u64>,
     total: Vec<u64>,
     phases: Vec<PhaseTimes>,
     topology: Vec<u64>,
@@ -458,6 +468,9 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
             out.first = total;
         }
         out.total.push(total);
+        if args.topology.is_some() && (1..(ARC / STEP) as usize).contains(&i) {
+            out.fresh.push(total);
+        }
         out.affected += report.affected;
     }
     mesh.end_step();
