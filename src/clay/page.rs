@@ -15,7 +15,6 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::{BoxTree, LEAF};
-use crate::assembly::PAGE_VERTICES;
 use sculptd_geometry::simd::leaves::Leaves;
 use sculptd_geometry::simd::rings::Hexes;
 
@@ -345,18 +344,19 @@ impl Page {
         self.revision
     }
 
-    /// Makes room for any page that dynamic topology writes.
-    pub(super) fn make_room(&mut self) {
+    /// Makes room for a page of `own` vertices, a halo as large, and eight triangles a leaf for
+    /// four triangles a vertex; what it held is gone.
+    pub(super) fn make_room(&mut self, own: usize) {
         self.points.clear();
         self.normals.clear();
-        self.points.reserve(2 * PAGE_VERTICES);
-        self.normals.reserve(2 * PAGE_VERTICES);
-        self.tree.reset(PAGE_VERTICES / 2);
+        self.points.reserve(2 * own);
+        self.normals.reserve(2 * own);
+        self.tree.reset(own / 2);
     }
 
-    /// Whether dynamic topology can write any page into this one without asking for more.
-    pub(super) fn has_room(&self) -> bool {
-        self.points.capacity().min(self.normals.capacity()) >= 2 * PAGE_VERTICES
+    /// Whether [`Page::make_room`] has nothing to do but to empty the page.
+    pub(super) fn has_room(&self, own: usize) -> bool {
+        self.points.capacity().min(self.normals.capacity()) >= 2 * own
     }
 
     /// Brings the page's tree and bounds up to date after vertices in the blocks `touched` moved.

@@ -25,7 +25,7 @@ impl SparePage {
         let mut topology = PageTopology::default();
         topology.reserve(PAGE_VERTICES);
         let mut page = Page { topology: Arc::new(topology), ..Page::default() };
-        page.make_room();
+        page.make_room(PAGE_VERTICES);
         page.points.resize(2 * PAGE_VERTICES, Vec4::ZERO);
         page.normals.resize(2 * PAGE_VERTICES, Vec4::ZERO);
         SparePage(Arc::new(page))

@@ -73,7 +73,7 @@ impl Pool {
         };
         page.tree.reset(self.leaves);
         if self.roomy {
-            page.make_room();
+            page.make_room(PAGE_VERTICES);
         }
         Arc::new(page)
     }
@@ -119,7 +119,7 @@ impl Pool {
                 topology.reserve(PAGE_VERTICES);
             }
             page.topology = topology;
-            page.make_room();
+            page.make_room(PAGE_VERTICES);
         }
         page
     }
@@ -156,7 +156,7 @@ impl Pool {
                         self.sink.discard(Garbage::Shared(topology));
                     }
                 }
-                let fits = !self.roomy || page.has_room();
+                let fits = !self.roomy || page.has_room(PAGE_VERTICES);
                 if fits && self.free.len() < KEPT {
                     self.free.push(page);
                 } else {

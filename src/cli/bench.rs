@@ -260,7 +260,11 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         }
         let (c, fresh) = (&report.topology_a_dab, &report.fresh_dab_us);
         if fresh.p50 > 0.0 {
-            writeln!(out, "fresh    {:.0} us, {:.0} at p99, on clay to be cut", fresh.p50, fresh.p99)?;
+            writeln!(
+                out,
+                "fresh    {:.0} us, {:.0} at p99, on clay to be cut",
+                fresh.p50, fresh.p99
+            )?;
         }
         writeln!(
             out,

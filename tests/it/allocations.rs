@@ -136,8 +136,7 @@ struct TopologyStroke {
 
 impl TopologyStroke {
     fn new(radius: f32) -> TopologyStroke {
-        let clay =
-            Clay::build(&shapes::sphere_of_about(160_000), &Job::default()).expect("builds");
+        let clay = Clay::build(&shapes::sphere_of_about(160_000), &Job::default()).expect("builds");
         let mut brush = BrushSettings { radius, ..sculptd::presets().of(BrushKind::Clay) };
         brush.topology.by = Measure::Brush;
         let options = WorldOptions {

@@ -112,9 +112,8 @@ impl Clay {
                 looked += 1;
                 let (page, visit) = (&pages[p], &visits[p]);
                 let here = numbers.iter().filter(|b| touches(&b.0, page.lo, page.hi));
-                let (first, last) = here.fold((u32::MAX, 0), |(first, last), b| {
-                    (first.min(b.1), last.max(b.1))
-                });
+                let (first, last) =
+                    here.fold((u32::MAX, 0), |(first, last), b| (first.min(b.1), last.max(b.1)));
                 let known = visit.balls.0 <= first && last <= visit.balls.1;
                 if visit.revision != page.revision || !known {
                     chosen.push((u32::MAX - last, p as u32));

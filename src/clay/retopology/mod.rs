@@ -82,14 +82,14 @@ impl Cuts {
 
 /// Pages that are looked through before what was found in them is changed.
 pub(crate) const SCANNED: usize = 16;
-/// What looking through a page counts, in operations: 8 microseconds where an operation takes a
-/// quarter of one (measured on one core of a server of 2023).
+/// What looking through a page counts, in operations: about 8 microseconds, where an operation
+/// takes a quarter of one.
 pub const PAGE_SCAN: usize = 32;
-/// What writing a page counts, in operations: 50 microseconds.
+/// What writing a page counts, in operations: about 50 microseconds.
 pub const PAGE_WRITE: usize = 200;
 
-/// The least budget with which [`Clay::adapt_topology`](crate::Clay::adapt_topology) surely gets on: a page of triangles that
-/// all are tried in vain, and the writing of what a first change touches.
+/// The least budget of [`Clay::adapt_topology`](crate::Clay::adapt_topology) that surely gets on:
+/// a page of triangles that all are tried in vain, and the writing of what a first change touches.
 pub const LEAST_TOPOLOGY_BUDGET: usize = 4_000;
 
 /// A page that was looked through and left as it was.

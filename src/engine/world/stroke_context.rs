@@ -341,8 +341,8 @@ impl StrokeContext<'_> {
         let done = tool.report;
         self.report.dabs += count as u64;
         self.report.vertices_moved += done.moved as u64;
-        // Where topology changes, each dab is a pass over its pages of its own, whose rings are less
-        // regular: the pages are what it costs.
+        // Where topology changes, each dab is a pass over its pages of its own, and their rings are
+        // less regular: the pages are what it costs.
         let pages = if cuts { PAGE_VISITS * done.pages as u64 } else { 0 };
         self.left = self.left.saturating_sub(done.affected as u64 + 1 + pages);
         self.ask_for_topology(&dabs[..count], hit);
