@@ -29,8 +29,8 @@
 //!    proximity change is never lost; motion may be coalesced, and every loss is counted and shown.
 //!    Nothing large is freed on the tick thread, whatever is full: see
 //!    [`sculptd_clay::GarbageSink`].
-//!    Not kept whole yet: a stroke with dynamic topology still allocates in some ticks. Its work is
-//!    bounded by counted operations, and what does not fit is carried over to the next tick.
+//!    Dynamic topology is bounded by counted work, scanning and writing pages included; what does
+//!    not fit is carried over to the next tick. A thread makes its pages in advance.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.
@@ -75,7 +75,7 @@
 //! ## Threads
 //! The core crates (geometry's Booleans apart) start no thread of their own accord: the daemon asks
 //! for the workers of [`sculptd_clay::Workers`] and passes the sink of
-//! [`sculptd_daemon::garbage_thread`] in.
+//! [`sculptd_daemon::garbage_thread`] and the supply of [`sculptd_daemon::page_thread`] in.
 //!
 //! * main, made by the process: the window's event loop, or waits for a signal. Waits for: the
 //!   window system, with which it may be lost.
@@ -85,6 +85,8 @@
 //!   for: the tick thread.
 //! * `sculptd-drop`, made by `daemon::garbage_thread`: frees what the tick thread no longer needs.
 //!   Waits for: the tick thread.
+//! * `sculptd-pages`, made by `daemon::page_thread`: makes pages for dynamic topology ahead of
+//!   need. Waits for: the tick thread.
 //! * one a tablet, one a serial port, one a tracker, made by `devices::lifeline`, for the adaptors:
 //!   reads, parses, sends samples. Waits for: its device.
 //! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the object in the

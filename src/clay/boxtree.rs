@@ -155,6 +155,13 @@ impl BoxTree {
         self.nodes.resize(total, Planes::EMPTY);
     }
 
+    /// Makes room for so many leaves; the tree stays as it is.
+    pub(super) fn reserve(&mut self, leaves: usize) {
+        // The levels above the lowest are an eighth of it together, and a few.
+        let nodes = leaves.div_ceil(8) * 8 / 7 + LEVELS;
+        self.nodes.reserve(nodes.saturating_sub(self.nodes.len()));
+    }
+
     pub(super) fn copy_from(&mut self, other: &BoxTree) {
         self.leaves = other.leaves;
         self.nodes.clear();

@@ -8,6 +8,7 @@ use super::boxtree::BoxTree;
 use super::dab_buffers::{DabBuffers, PhaseTimes};
 use super::garbage::GarbageSink;
 use super::page::Page;
+use super::page_supply::PageSupply;
 use super::pick;
 use super::pool::Pool;
 use super::publish::{SpinePool, Stale};
@@ -15,7 +16,7 @@ use super::ray::{Hit, Ray};
 use super::reach::Reach;
 use super::snapshot::{Snapshot, Totals, hash, to_tri};
 use super::undo::History;
-use crate::assembly::{BuildError, Built, build};
+use crate::assembly::{BuildError, Built, PAGE_VERTICES, build};
 use crate::multires::Levels;
 use crate::retopology::TopologyBuffers;
 use sculptd_geometry::TriMesh;
@@ -131,6 +132,12 @@ impl Clay {
     pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
         self.history.sink = sink.clone();
         self.pool.sink = sink;
+    }
+
+    /// From now on, pages that changing topology needs come from this supply. A new clay makes them
+    /// in place.
+    pub fn set_page_supply(&mut self, supply: PageSupply) {
+        self.pool.supply = supply;
     }
 
     /// What was odd about the input, in words.
@@ -316,6 +323,28 @@ impl Clay {
         let (new, old) = (&self.pages[index as usize].topology, &old.topology);
         self.vertices = self.vertices + new.own - old.own;
         self.triangles = self.triangles + new.triangles.len() - old.triangles.len();
+    }
+
+    /// Makes room for changing topology, once: pages, tables, lists. What it takes is kept. The
+    /// first [`Clay::adapt_topology`] does it otherwise.
+    pub fn prepare_topology(&mut self) {
+        if self.topology.is_ready() {
+            return;
+        }
+        // As many pages again as there are.
+        let most = 2 * self.pages.len() + 1024;
+        self.topology.make_ready(most);
+        self.pool.be_roomy();
+        // A supply that was not asked before begins to make pages.
+        self.pool.restock();
+        self.buffers.rows = self.buffers.rows.max(2 * PAGE_VERTICES);
+        self.pages.reserve(most - self.pages.len());
+        self.empty.reserve(most);
+        self.buffers.reserve(most);
+        self.history.reserve(most);
+        self.stale.reserve(most);
+        self.top.reserve(most);
+        self.spines.reserve(most);
     }
 
     /// Everything that has an entry a page gets one for each page that was added at the end.

@@ -77,6 +77,9 @@ impl PageTask {
     }
 }
 
+/// Pages that one dab writes, most of the time at most.
+const DAB_PAGES: usize = 96;
+
 /// The memory of dabs, kept from one to the next.
 #[derive(Debug, Default)]
 pub(super) struct DabBuffers {
@@ -112,11 +115,22 @@ impl DabBuffers {
             bvh_ns: 0,
         };
         let side = PageTask {
-            incoming: Vec::with_capacity(16),
+            incoming: Vec::with_capacity(64),
             rows: Vec::with_capacity(self.rows),
             colours: Vec::new(),
         };
         (slot, side)
+    }
+
+    /// Makes room for so many pages in the clay, and for dabs that write many of them.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        self.slot_of.reserve(pages.saturating_sub(self.slot_of.len()));
+        self.slots.reserve(256);
+        self.sides.reserve(256);
+        self.spare.reserve(256);
+        while self.spare.len() < DAB_PAGES {
+            self.spare.push(self.fresh());
+        }
     }
 
     pub(super) fn grow(&mut self, pages: usize) {

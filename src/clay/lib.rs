@@ -9,7 +9,8 @@
 //! * Whoever holds a page may read it for ever: a page is written anew, never changed.
 //! * Same input, same bits, with any number of [`Workers`].
 //! * No clock, no IO, no randomness, no threads but those of [`Workers`]. Memory that is no longer
-//!   needed goes to the owner's [`GarbageSink`].
+//!   needed goes to the owner's [`GarbageSink`], and pages for changing topology come from its
+//!   [`PageSupply`].
 //!
 //! Memory at rest: about 95 bytes a vertex all told, measured by a test against 120.
 //!
@@ -56,6 +57,7 @@ mod masks;
 pub mod multires;
 mod normals;
 pub mod page;
+mod page_supply;
 mod pick;
 mod pool;
 mod publish;
@@ -78,9 +80,10 @@ pub use garbage::{CollectGarbage, Garbage, GarbageSink};
 pub use kernel::{Kernel, PageIn, PageOut};
 pub use multires::{Level, LevelError, Levels};
 pub use page::{Page, Points};
+pub use page_supply::{PageSupply, SparePage, SupplyPages};
 pub use ray::{Hit, Ray};
 pub use reach::Reach;
-pub use retopology::{Cuts, Detail, PAGE_SCAN, PAGE_WRITE};
+pub use retopology::{Cuts, Detail, LEAST_TOPOLOGY_BUDGET, PAGE_SCAN, PAGE_WRITE};
 pub use snapshot::{Ranks, Snapshot};
 pub use stored::{BadPage, ObjectState};
 pub use workers::Workers;

@@ -344,6 +344,21 @@ impl Page {
         self.revision
     }
 
+    /// Makes room for a page of `own` vertices, a halo as large, and eight triangles a leaf for
+    /// four triangles a vertex; what it held is gone.
+    pub(super) fn make_room(&mut self, own: usize) {
+        self.points.clear();
+        self.normals.clear();
+        self.points.reserve(2 * own);
+        self.normals.reserve(2 * own);
+        self.tree.reset(own / 2);
+    }
+
+    /// Whether [`Page::make_room`] has nothing to do but to empty the page.
+    pub(super) fn has_room(&self, own: usize) -> bool {
+        self.points.capacity().min(self.normals.capacity()) >= 2 * own
+    }
+
     /// Brings the page's tree and bounds up to date after vertices in the blocks `touched` moved.
     #[inline(always)]
     pub(super) fn refit(&mut self, touched: u32) {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::garbage::{Garbage, GarbageSink};
 use super::page::{Page, PageTopology};
+use super::page_supply::{PageSupply, SparePage};
 use crate::assembly::PAGE_VERTICES;
 
 /// Pages kept for reuse, at most; 512-vertex pages take about 25 KB each.
@@ -28,8 +29,12 @@ pub(super) struct Pool {
     /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
     leaves: usize,
+    /// Topology is changed: every page has room for any that may come of it.
+    roomy: bool,
     /// Takes what is more than the pool keeps.
     pub(super) sink: GarbageSink,
+    /// Gives pages where the pool has none and topology is changed.
+    pub(super) supply: PageSupply,
 }
 
 impl Pool {
@@ -43,7 +48,9 @@ impl Pool {
             topologies: Vec::with_capacity(KEPT),
             blank: Arc::default(),
             nothing: Arc::new(Page::nothing()),
+            roomy: false,
             sink: GarbageSink::default(),
+            supply: PageSupply::default(),
         };
         for _ in 0..count {
             let mut page = pool.fresh();
@@ -65,16 +72,46 @@ impl Pool {
             ..Page::default()
         };
         page.tree.reset(self.leaves);
+        if self.roomy {
+            page.make_room(PAGE_VERTICES);
+        }
         Arc::new(page)
+    }
+
+    /// From now on every page has room for what changing topology may make of it. Pages that have
+    /// not go to the garbage sink.
+    pub(super) fn be_roomy(&mut self) {
+        if !std::mem::replace(&mut self.roomy, true) {
+            for page in self.free.drain(..) {
+                self.sink.discard(Garbage::Shared(page));
+            }
+        }
+    }
+
+    /// Takes a page and a topology from the supply, if it has one ready.
+    pub(super) fn restock(&mut self) {
+        let Some(SparePage(mut page)) = self.supply.take() else { return };
+        if let Some(page) = Arc::get_mut(&mut page) {
+            let topology = std::mem::replace(&mut page.topology, self.blank.clone());
+            self.topologies.push(topology);
+        }
+        self.free.push(page);
     }
 
     /// A page that nobody else holds; its contents are old.
     pub(super) fn take(&mut self) -> Arc<Page> {
+        if self.roomy && self.free.is_empty() {
+            self.restock();
+        }
         self.free.pop().unwrap_or_else(|| self.fresh())
     }
 
-    /// A page with a topology that nobody else holds either; their contents are old.
+    /// A page with a topology that nobody else holds either; their contents are old. Only after
+    /// [`Pool::be_roomy`].
     pub(super) fn take_whole(&mut self) -> Arc<Page> {
+        if self.topologies.is_empty() {
+            self.restock();
+        }
         let mut page = self.take();
         if let Some(page) = Arc::get_mut(&mut page) {
             let mut topology = self.topologies.pop().unwrap_or_default();
@@ -82,11 +119,7 @@ impl Pool {
                 topology.reserve(PAGE_VERTICES);
             }
             page.topology = topology;
-            page.points.clear();
-            page.normals.clear();
-            page.points.reserve(2 * PAGE_VERTICES);
-            page.normals.reserve(2 * PAGE_VERTICES);
-            page.tree.reset(PAGE_VERTICES / 2);
+            page.make_room(PAGE_VERTICES);
         }
         page
     }
@@ -123,7 +156,8 @@ impl Pool {
                         self.sink.discard(Garbage::Shared(topology));
                     }
                 }
-                if self.free.len() < KEPT {
+                let fits = !self.roomy || page.has_room(PAGE_VERTICES);
+                if fits && self.free.len() < KEPT {
                     self.free.push(page);
                 } else {
                     self.sink.discard(Garbage::Shared(page));

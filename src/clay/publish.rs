@@ -29,6 +29,15 @@ impl Stale {
         }
     }
 
+    /// Makes room for so many pages in the clay.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        let (chunks, nodes) = (pages.div_ceil(CHUNK), pages.div_ceil(8));
+        self.chunk_is.reserve(chunks.saturating_sub(self.chunk_is.len()));
+        self.path_is.reserve(nodes.saturating_sub(self.path_is.len()));
+        self.chunks.reserve(chunks.min(4096));
+        self.paths.reserve(nodes.min(4096));
+    }
+
     pub(super) fn grow(&mut self, pages: usize) {
         self.chunk_is.resize(pages.div_ceil(CHUNK), false);
         self.path_is.resize(pages.div_ceil(8), false);
@@ -61,6 +70,14 @@ pub(super) struct SpinePool {
     old_spines: VecDeque<Arc<Vec<Arc<Chunk>>>>,
     old_chunks: VecDeque<Arc<Chunk>>,
     free_chunks: Vec<Arc<Chunk>>,
+    /// Stands where a chunk is about to be put.
+    blank: Arc<Chunk>,
+    /// Chunks that a new spine gets room for.
+    most: usize,
+}
+
+fn free_chunk() -> Arc<Chunk> {
+    Arc::new(Chunk { pages: Vec::with_capacity(CHUNK), ..Chunk::default() })
 }
 
 /// Old chunks looked after, at most; a reader that holds more frees them itself.
@@ -83,6 +100,18 @@ impl SpinePool {
             old_spines: VecDeque::with_capacity(SPINES + 1),
             old_chunks: VecDeque::with_capacity(KEPT + 1),
             free_chunks: Vec::with_capacity(KEPT),
+            blank: Arc::default(),
+            most: 0,
+        }
+    }
+
+    /// Makes room for so many pages in the clay.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        self.most = pages.div_ceil(CHUNK);
+        // What readers hold of a few snapshots in a row.
+        let ready = self.most.min(256);
+        while self.free_chunks.len() < ready {
+            self.free_chunks.push(free_chunk());
         }
     }
 
@@ -98,15 +127,13 @@ impl SpinePool {
         if let Some(new) = Arc::get_mut(&mut spine) {
             new.clear();
             new.extend_from_slice(&self.shown);
-            new.resize_with(pages.len().div_ceil(CHUNK), Arc::default);
+            new.resize(pages.len().div_ceil(CHUNK), self.blank.clone());
         }
         self.reclaim(2 * stale.chunks.len() + 4);
         for c in stale.chunks.drain(..) {
             let c = c as usize;
             stale.chunk_is[c] = false;
-            let mut chunk = self.free_chunks.pop().unwrap_or_else(|| {
-                Arc::new(Chunk { pages: Vec::with_capacity(CHUNK), ..Chunk::default() })
-            });
+            let mut chunk = self.free_chunks.pop().unwrap_or_else(free_chunk);
             if let Some(chunk) = Arc::get_mut(&mut chunk) {
                 chunk.fill(&pages[c * CHUNK..((c + 1) * CHUNK).min(pages.len())]);
             }
@@ -132,12 +159,13 @@ impl SpinePool {
                 Some(free) => {
                     // Its chunks live on: the pool holds each old one.
                     free.clear();
+                    free.reserve(self.most);
                     return old;
                 }
                 None => self.old_spines.push_back(old),
             }
         }
-        Arc::new(Vec::with_capacity(self.shown.len()))
+        Arc::new(Vec::with_capacity(self.shown.len().max(self.most)))
     }
 
     fn reclaim(&mut self, count: usize) {

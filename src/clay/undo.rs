@@ -45,13 +45,18 @@ impl History {
         }
     }
 
+    /// Makes room for so many pages in the clay.
+    pub(super) fn reserve(&mut self, pages: usize) {
+        self.touched.reserve(pages.saturating_sub(self.touched.len()));
+    }
+
     pub(super) fn grow(&mut self, pages: usize) {
         self.touched.resize(pages, (0, 0));
     }
 
     pub(super) fn begin(&mut self) {
         if self.open.is_none() {
-            self.open = Some(Vec::with_capacity(256));
+            self.open = Some(Vec::with_capacity(1024));
             self.stamp += 1;
         }
     }

@@ -19,7 +19,7 @@ use sculptd_clay::{
 };
 use sculptd_daemon::config::LoopConfig;
 use sculptd_daemon::pacer::Pacer;
-use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics};
+use sculptd_daemon::tick_statistics::{Percentiles, TickStatistics, thread_cpu_ns};
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
@@ -134,10 +134,14 @@ struct BenchAnswer {
     ns_per_affected_vertex: f64,
     dab_us: Spread,
     first_dab_us: f64,
+    /// With `--topology`: of the dabs of the first way along the arc, each of which comes upon clay
+    /// that is not yet as fine or coarse as is wanted.
+    fresh_dab_us: Spread,
     phases_us: Phases,
     topology_a_dab: TopologyChanges,
     vertices_at_end: usize,
     tick_ms: Percentiles,
+    tick_cpu_ms: Percentiles,
     tick_dabs: u64,
     tick_affected: f64,
     ticks: u64,
@@ -201,6 +205,7 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         ns_per_affected_vertex: dab_us.p50 * 1e3 / affected.max(1) as f64,
         dab_us,
         first_dab_us: dabs.first as f64 / 1e3,
+        fresh_dab_us: spread(dabs.fresh),
         phases_us: Phases {
             pick: phase(|p| p.pick),
             query: phase(|p| p.query),
@@ -214,6 +219,7 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         topology_a_dab,
         vertices_at_end: stroke.vertices,
         tick_ms: stroke.figures.tick_ms(),
+        tick_cpu_ms: stroke.figures.tick_cpu_ms(),
         tick_dabs: stroke.figures.dabs,
         tick_affected: stroke.figures.vertices_moved as f64 / stroke.figures.dabs.max(1) as f64,
         ticks: stroke.figures.ticks,
@@ -252,7 +258,14 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         ] {
             writeln!(out, "  {name:<9}{:8.1} us  p99 {:8.1}", s.p50, s.p99)?;
         }
-        let c = &report.topology_a_dab;
+        let (c, fresh) = (&report.topology_a_dab, &report.fresh_dab_us);
+        if fresh.p50 > 0.0 {
+            writeln!(
+                out,
+                "fresh    {:.0} us, {:.0} at p99, on clay to be cut",
+                fresh.p50, fresh.p99
+            )?;
+        }
         writeln!(
             out,
             "edges    {:.0} split, {:.0} collapsed, {:.0} flipped a dab; {} vertices at the end",
@@ -288,7 +301,46 @@ fn ray_from(mesh: &Clay, towards: Vec3) -> Ray {
     Ray { origin: (lo + hi) * 0.5 + towards * (hi - lo).length(), dir: -towards }
 }
 
-/// The direction of dab `i`: a spiral over the whole ball, neighbours a small step apart.
+/// Where single dabs go.
+#[derive(Debug, Clone, Copy)]
+enum DabPath {
+    /// A spiral over the whole ball, neighbours a small step apart.
+    Spiral,
+    /// To and fro on a great circle, neighbours a fifth of the radius apart: where dabs change
+    /// topology, each must find the clay as finely cut as it does on a mesh of any other size.
+    Arc {
+        /// The brush's radius as an angle of the ball.
+        radius: f32,
+    },
+}
+
+/// Radii from one dab of a stroke to the next.
+const STEP: f32 = 0.2;
+/// Radii from one end of the arc to the other.
+const ARC: f32 = 8.0;
+
+impl DabPath {
+    fn new(args: &BenchArgs, mesh: &Clay, radius: f32) -> DabPath {
+        let (lo, hi) = mesh.bounds();
+        match args.topology {
+            Some(_) => DabPath::Arc { radius: radius / ((hi - lo).max_element() * 0.5) },
+            None => DabPath::Spiral,
+        }
+    }
+
+    /// The direction of dab `i`, seen from the middle.
+    fn direction(self, i: usize) -> Vec3 {
+        match self {
+            DabPath::Spiral => direction(i),
+            DabPath::Arc { radius } => {
+                let at = (i as f32 * STEP) % (2.0 * ARC);
+                let turn = at.min(2.0 * ARC - at) * radius;
+                Vec3::new(turn.cos(), 0.0, turn.sin())
+            }
+        }
+    }
+}
+
 fn direction(i: usize) -> Vec3 {
     let t = i as f32 * 0.01;
     let height = (t * 0.37).sin() * 0.9;
@@ -312,6 +364,7 @@ fn radius_for(mesh: &Clay, affected: usize) -> f32 {
 
 #[derive(Debug, Default)]
 struct Dabs {
+    fresh: Vec<u64>,
     total: Vec<u64>,
     phases: Vec<PhaseTimes>,
     topology: Vec<u64>,
@@ -324,9 +377,16 @@ struct Dabs {
 const STROKE: usize = 50;
 
 /// A dab of a stroke that goes on by a fifth of the radius.
-fn one_dab<'a>(settings: &'a BrushSettings, hit: &Hit, ray: &Ray, sign: f32, i: usize) -> Dab<'a> {
+fn one_dab<'a>(
+    settings: &'a BrushSettings,
+    path: DabPath,
+    hit: &Hit,
+    ray: &Ray,
+    sign: f32,
+    i: usize,
+) -> Dab<'a> {
     let radius = settings.radius;
-    let way = direction(i + 1) - direction(i);
+    let way = path.direction(i + 1) - path.direction(i);
     let flat = way - hit.normal * way.dot(hit.normal);
     let along = flat.try_normalize().unwrap_or_else(|| hit.normal.any_orthonormal_vector());
     let right = ray.dir.any_orthonormal_vector();
@@ -367,8 +427,9 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
     let mut out = Dabs::default();
     let mut snapshot = None;
     let mut scratch = Scratch::default();
+    let path = DabPath::new(args, mesh, radius);
     for i in 0..args.dabs {
-        let ray = ray_from(mesh, direction(i));
+        let ray = ray_from(mesh, path.direction(i));
         let before = mesh.phases();
         let t0 = now_ns();
         let hit = mesh.pick(ray);
@@ -379,7 +440,7 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
         let mut tool = Tool { mesh, workers, scratch: &mut scratch, report: DabReport::default() };
         // Out and in by turns, so that the form lasts however long the measurement.
         let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
-        settings.kind.apply(&[one_dab(&settings, &hit, &ray, sign, i)], &mut tool);
+        settings.kind.apply(&[one_dab(&settings, path, &hit, &ray, sign, i)], &mut tool);
         let report = tool.report;
         let t2 = now_ns();
         if let Some(edge) = args.topology {
@@ -411,6 +472,9 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
             out.first = total;
         }
         out.total.push(total);
+        if args.topology.is_some() && (1..(ARC / STEP) as usize).contains(&i) {
+            out.fresh.push(total);
+        }
         out.affected += report.affected;
     }
     mesh.end_step();
@@ -482,11 +546,11 @@ fn stroke(mesh: Clay, args: &BenchArgs, radius: f32, workers: Workers) -> Stroke
         let turn = (tick / half) as usize;
         let change = [Command::Brush(settings(turn / 2, turn % 2 == 1))];
         let commands = if tick % half == 1 { &change[..] } else { &[] };
-        let begun = now_ns();
+        let (begun, begun_cpu) = (now_ns(), thread_cpu_ns());
         let report = *world.step(tick, &[sample], commands);
         shown.replace(world.snapshot());
         let took = now_ns() - begun;
-        figures.tick(&report, took);
+        figures.tick(&report, took, thread_cpu_ns() - begun_cpu);
         pacer.done(clock().now_us());
         figures.overruns = pacer.overruns;
     }

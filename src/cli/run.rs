@@ -390,6 +390,12 @@ pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {
             "tick time       p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms",
             s.tick_ms.p50, s.tick_ms.p99, s.tick_ms.max
         )?;
+        let cpu = &s.tick_cpu_ms;
+        writeln!(
+            out,
+            "of it processor p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms",
+            cpu.p50, cpu.p99, cpu.max
+        )?;
         writeln!(out, "hash            {}", s.hash)?;
         if let Some(path) = &s.export {
             writeln!(out, "mesh            {path}")?;

@@ -24,6 +24,7 @@ pub mod live_run;
 #[cfg(unix)]
 pub mod metrics;
 pub mod pacer;
+pub mod page_thread;
 pub mod published;
 pub mod remesh_job;
 #[cfg(unix)]

@@ -12,6 +12,7 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::pacer::Pacer;
+use super::page_thread::PageThread;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs::BooleanJobs;
 use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
@@ -19,7 +20,7 @@ use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::tablet_actions::TabletActions;
 use crate::tick::{Journal, in_order_of_time, published_figures};
-use crate::tick_statistics::TickStatistics;
+use crate::tick_statistics::{TickStatistics, thread_cpu_ns};
 use sculptd_clay::Grafted;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
@@ -87,6 +88,7 @@ impl Live {
         let (commands, inbox) = command_queue(COMMANDS);
         let garbage = GarbageThread::start().map_err(LiveError::Start)?;
         world.set_garbage_sink(garbage.sink());
+        world.set_page_supply(PageThread::start().map_err(LiveError::Start)?.supply());
         let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
         let published = publisher.reader();
         let stop = Arc::new(AtomicBool::new(false));
@@ -174,7 +176,7 @@ impl Ticking {
             if let Some(actions) = &mut self.actions {
                 actions.take(&mut samples, &self.world, &mut commands);
             }
-            let begun = self.clock.now_ns();
+            let (begun, begun_cpu) = (self.clock.now_ns(), thread_cpu_ns());
             let report = *self.world.step(tick, &samples, &commands);
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, &self.world);
@@ -191,7 +193,7 @@ impl Ticking {
             }
             discard_commands(&mut commands, &garbage);
             let stepped = self.clock.now_ns() - begun;
-            figures.tick(&report, stepped);
+            figures.tick(&report, stepped, thread_cpu_ns() - begun_cpu);
             let mut shown = published_figures(&figures, &self.receiver, stepped);
             shown.garbage_overflows = self.garbage.overflowed();
             if let Some(sample) = samples.last() {

@@ -61,6 +61,8 @@ pub fn page(p: &Published, journal: Option<&super::session::Health>, connections
         "Age of the newest input when it was shown.",
         f.input_to_snapshot_ms / 1e3,
     );
+    let text = "Places where dynamic topology was given up before it was done.";
+    put("topology_dropped_total", "counter", text, f.topology_dropped as f64);
     put("vertices", "gauge", "Vertices of the mesh.", p.mesh.vertex_count() as f64);
     put("triangles", "gauge", "Triangles of the mesh.", p.mesh.triangle_count() as f64);
     put("undo_steps", "gauge", "Steps that can be taken back.", p.undo_steps as f64);

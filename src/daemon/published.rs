@@ -70,6 +70,8 @@ pub struct PublishedFigures {
     pub dabs: u64,
     pub vertices_moved: u64,
     pub overruns: u64,
+    /// Balls in which dynamic topology was still to be done and was given up.
+    pub topology_dropped: u64,
     /// How often the queue of memory to be freed was full, and a second one took it.
     pub garbage_overflows: u64,
     pub tick_ms: Percentiles,

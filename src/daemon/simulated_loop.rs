@@ -13,7 +13,7 @@ use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs;
 use crate::command_queue::QueuedCommand;
 use crate::tick::{Journal, in_order_of_time};
-use crate::tick_statistics::{Losses, Summary, TickStatistics};
+use crate::tick_statistics::{Losses, Summary, TickStatistics, thread_cpu_ns};
 use sculptd_clay::GarbageSink;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
@@ -119,10 +119,10 @@ impl SimulatedLoop<'_> {
                 commands.push(command.clone());
             }
             commands.extend(joined.drain(..).map(|queued| queued.deliver(self.world)));
-            let begun = wall.now_ns();
+            let (begun, begun_cpu) = (wall.now_ns(), thread_cpu_ns());
             let report = *self.world.step(tick, &samples, &commands);
             let took = wall.now_ns() - begun;
-            figures.tick(&report, took);
+            figures.tick(&report, took, thread_cpu_ns() - begun_cpu);
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, self.world);
             }
@@ -207,7 +207,9 @@ pub fn summary(
         vertices_moved: figures.vertices_moved,
         losses: Losses { motion: count.lost_motion, transition: count.lost_transition },
         tick_ms: figures.tick_ms(),
+        tick_cpu_ms: figures.tick_cpu_ms(),
         overruns: figures.overruns,
+        topology_dropped: figures.topology_dropped,
         vertices: world.mesh().vertex_count() as u64,
         triangles: world.mesh().triangle_count() as u64,
         hash: format!("{:016x}", world.hash()),

@@ -40,6 +40,7 @@ pub fn published_figures(
         dabs: figures.dabs,
         vertices_moved: figures.vertices_moved,
         overruns: figures.overruns,
+        topology_dropped: figures.topology_dropped,
         tick_ms: figures.tick_ms(),
         losses: Losses { motion: count.lost_motion, transition: count.lost_transition },
         last_tick_ms: last_tick_ns as f64 / 1e6,

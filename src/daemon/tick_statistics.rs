@@ -16,7 +16,11 @@ pub struct TickStatistics {
     pub dabs: u64,
     pub vertices_moved: u64,
     pub overruns: u64,
+    /// As [`StepReport::topology_dropped`], summed.
+    pub topology_dropped: u64,
     tick_ns: Histogram<u64>,
+    /// Processor time of the tick thread alone.
+    tick_cpu_ns: Histogram<u64>,
 }
 
 /// Milliseconds.
@@ -45,7 +49,12 @@ pub struct Summary {
     pub vertices_moved: u64,
     pub losses: Losses,
     pub tick_ms: Percentiles,
+    /// As `tick_ms`, in processor time of the tick thread: what a busy machine does not lengthen.
+    /// All 0 where the system cannot tell.
+    pub tick_cpu_ms: Percentiles,
     pub overruns: u64,
+    /// Balls in which dynamic topology was still to be done and was given up.
+    pub topology_dropped: u64,
     pub vertices: u64,
     pub triangles: u64,
     /// Of the world's clay at the end, 16 hexadecimal digits.
@@ -56,31 +65,67 @@ pub struct Summary {
 
 impl Default for TickStatistics {
     fn default() -> Self {
-        // Bounds within what the histogram allows; three digits are 0.1 %.
-        let tick_ns = Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| {
-            // Unreachable with these constants; an auto-resizing histogram serves as well.
-            #[allow(clippy::unwrap_used)]
-            Histogram::new(3).unwrap()
-        });
-        TickStatistics { ticks: 0, samples: 0, dabs: 0, vertices_moved: 0, overruns: 0, tick_ns }
+        TickStatistics {
+            ticks: 0,
+            samples: 0,
+            dabs: 0,
+            vertices_moved: 0,
+            overruns: 0,
+            topology_dropped: 0,
+            tick_ns: histogram(),
+            tick_cpu_ns: histogram(),
+        }
+    }
+}
+
+fn histogram() -> Histogram<u64> {
+    // Bounds within what the histogram allows; three digits are 0.1 %.
+    Histogram::new_with_bounds(1, LONGEST_NS, 3).unwrap_or_else(|_| {
+        // Unreachable with these constants; an auto-resizing histogram serves as well.
+        #[allow(clippy::unwrap_used)]
+        Histogram::new(3).unwrap()
+    })
+}
+
+/// Processor time that the calling thread has used, nanoseconds; 0 where the system cannot tell.
+pub fn thread_cpu_ns() -> u64 {
+    #[cfg(any(target_os = "linux", target_os = "macos"))]
+    {
+        use rustix::time::{ClockId, clock_gettime};
+        let now = clock_gettime(ClockId::ThreadCPUTime);
+        now.tv_sec as u64 * 1_000_000_000 + now.tv_nsec as u64
+    }
+    #[cfg(not(any(target_os = "linux", target_os = "macos")))]
+    0
+}
+
+fn percentiles_ms(of: &Histogram<u64>) -> Percentiles {
+    let ms = |ns: u64| ns as f64 / 1e6;
+    Percentiles {
+        p50: ms(of.value_at_quantile(0.5)),
+        p99: ms(of.value_at_quantile(0.99)),
+        max: ms(of.max()),
     }
 }
 
 impl TickStatistics {
-    pub fn tick(&mut self, report: &StepReport, took_ns: u64) {
+    /// `took_ns`: on the wall's clock; `cpu_ns`: of the tick thread's processor time.
+    pub fn tick(&mut self, report: &StepReport, took_ns: u64, cpu_ns: u64) {
         self.ticks += 1;
         self.samples += report.samples;
         self.dabs += report.dabs;
         self.vertices_moved += report.vertices_moved;
+        self.topology_dropped += report.topology_dropped;
         self.tick_ns.saturating_record(took_ns.clamp(1, LONGEST_NS));
+        self.tick_cpu_ns.saturating_record(cpu_ns.min(LONGEST_NS));
     }
 
     pub fn tick_ms(&self) -> Percentiles {
-        let ms = |ns: u64| ns as f64 / 1e6;
-        Percentiles {
-            p50: ms(self.tick_ns.value_at_quantile(0.5)),
-            p99: ms(self.tick_ns.value_at_quantile(0.99)),
-            max: ms(self.tick_ns.max()),
-        }
+        percentiles_ms(&self.tick_ns)
+    }
+
+    /// As [`TickStatistics::tick_ms`], in the tick thread's processor time.
+    pub fn tick_cpu_ms(&self) -> Percentiles {
+        percentiles_ms(&self.tick_cpu_ns)
     }
 }

@@ -4,16 +4,20 @@
 //! Laws kept here:
 //! * The pen comes first: dabs move clay before a tick's topology work begins, and what they cost
 //!   is taken from its budget.
-//! * The work of a tick is bounded by counted operations, so that a replay stops at the same one.
-//!   What does not fit is carried over to the next tick, the newest ball first.
+//! * The work of a tick is bounded by counted work, looking through pages and writing them
+//!   included, so that a replay stops at the same operation. What does not fit is carried over to
+//!   the next tick, the newest ball first.
+//! * What follows a stroke finds its topology done: [`TopologyWork::finish`] does what waits within
+//!   a bound of its own. What is dropped because of a bound is counted.
 //! * The list is empty whenever the world is at rest: it is no part of a saved state.
 
-use sculptd_clay::{Clay, Cuts, Detail, Workers};
+use sculptd_clay::{Clay, Cuts, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
 
-/// Counted operations of a tick: about two milliseconds on one core.
-const TICK_BUDGET: u64 = 1_600;
-/// What is left to topology where the dabs of the tick have used the budget up.
-const LEAST_BUDGET: u64 = 400;
+/// Counted work of a tick: about two milliseconds on one core.
+const TICK_BUDGET: u64 = 8_000;
+/// Counted work at most where a stroke must be finished at once, as before an undo: about twenty
+/// milliseconds on one core.
+const FINISH_BUDGET: usize = 80_000;
 /// Vertices that dabs visit in the time of one operation.
 const VISITS: u64 = 16;
 /// Balls that one pass looks at together: those that a few ticks of a stroke leave, so that pages
@@ -29,12 +33,14 @@ const APART: f32 = 0.25;
 #[derive(Debug, Default)]
 pub(crate) struct TopologyWork {
     balls: Vec<Detail>,
+    /// Balls that were dropped before they were done, since this was last asked for.
+    dropped: u64,
 }
 
 impl TopologyWork {
     /// Nothing waits; there is room for all that may.
     pub(crate) fn new() -> TopologyWork {
-        TopologyWork { balls: Vec::with_capacity(MOST) }
+        TopologyWork { balls: Vec::with_capacity(MOST), dropped: 0 }
     }
 
     /// Whether nothing waits.
@@ -42,9 +48,9 @@ impl TopologyWork {
         self.balls.is_empty()
     }
 
-    /// Forgets what waits.
-    pub(crate) fn clear(&mut self) {
-        self.balls.clear();
+    /// Balls that were dropped before they were done since the last call.
+    pub(crate) fn take_dropped(&mut self) -> u64 {
+        std::mem::take(&mut self.dropped)
     }
 
     /// Adds a ball, unless one that is nearly the same waits already.
@@ -60,25 +66,38 @@ impl TopologyWork {
         }
         if self.balls.len() == MOST {
             self.balls.remove(0);
+            self.dropped += 1;
         }
         self.balls.push(ball);
     }
 
     /// Does what fits in the budget of a tick in which dabs have visited so many vertices.
     pub(crate) fn run(&mut self, clay: &mut Clay, workers: &Workers, visited: u64) -> Cuts {
+        let budget = TICK_BUDGET.saturating_sub(visited / VISITS) as usize;
+        self.work(clay, workers, budget.max(LEAST_TOPOLOGY_BUDGET))
+    }
+
+    /// Does all that waits, as far as the bound lets it; the rest is dropped and counted.
+    pub(crate) fn finish(&mut self, clay: &mut Clay, workers: &Workers) {
+        self.work(clay, workers, FINISH_BUDGET);
+        self.dropped += self.balls.len() as u64;
+        self.balls.clear();
+    }
+
+    fn work(&mut self, clay: &mut Clay, workers: &Workers, budget: usize) -> Cuts {
         let mut sum = Cuts::default();
-        let budget = TICK_BUDGET.saturating_sub(visited / VISITS).max(LEAST_BUDGET) as usize;
-        while !self.balls.is_empty() && sum.work < budget {
+        while !self.balls.is_empty() {
             let first = self.balls.len().saturating_sub(TOGETHER);
             let done = clay.adapt_topology(&self.balls[first..], budget - sum.work, workers);
             sum.splits += done.splits;
             sum.collapses += done.collapses;
             sum.flips += done.flips;
             sum.work += done.work;
-            // Where nothing could be changed, nothing will be.
-            if !done.unfinished || done.changes() == 0 {
+            if !done.unfinished {
                 self.balls.truncate(first);
-            } else {
+            }
+            // With less a pass might get nowhere.
+            if sum.work + LEAST_TOPOLOGY_BUDGET > budget {
                 break;
             }
         }

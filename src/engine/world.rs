@@ -27,8 +27,8 @@ use crate::replaced::ReplacedClay;
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
-use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Method, Scratch};
-use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, Reach, Workers};
+use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Measure, Method, Scratch};
+use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, PageSupply, Reach, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_geometry::portable::turn_about;
 use sculptd_geometry::{PolyMesh, TriMesh, shapes};
@@ -58,6 +58,9 @@ pub struct StepReport {
     /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the
     /// history outside.
     pub missed: Option<HistoryEvent>,
+    /// Balls in which dynamic topology was still to be done and was given up: more waited than the
+    /// list holds, or than could be done before a command that ends strokes.
+    pub topology_dropped: u64,
     /// Jumps within the history that were made.
     pub jumps: u64,
 }
@@ -113,6 +116,8 @@ pub struct World {
     works: ReplacedClay,
     /// Takes what is no longer needed: clay that was replaced, payloads that no command took.
     garbage: GarbageSink,
+    /// Gives pages that dynamic topology needs.
+    pages: PageSupply,
     payloads: PayloadStore,
     /// What came of the cuts of this tick, in the order of their commands.
     cuts: Vec<Option<Grafted>>,
@@ -153,6 +158,7 @@ impl World {
             report: StepReport::default(),
             works: ReplacedClay::default(),
             garbage: GarbageSink::default(),
+            pages: PageSupply::default(),
             payloads: PayloadStore::new(),
             cuts: Vec::with_capacity(PayloadStore::CAPACITY),
             lineages: 0,
@@ -210,6 +216,9 @@ impl World {
             Command::Brush(brush) => {
                 self.keep_brush(brush.kind);
                 self.brush = brush.clamped();
+                if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
+                    self.mesh.prepare_topology();
+                }
                 let lays = self.brush.kind.grip() == Grip::Surface
                     && self.brush.path.method == Method::Curve;
                 if !lays {
@@ -280,6 +289,7 @@ impl World {
                     std::mem::swap(&mut self.payloads, &mut old.payloads);
                     std::mem::swap(&mut self.cuts, &mut old.cuts);
                     self.set_garbage_sink(old.garbage.clone());
+                    self.set_page_supply(old.pages.clone());
                     self.garbage.discard_owned(old);
                     self.note(HistoryEvent::Begin);
                 }
@@ -318,6 +328,7 @@ impl World {
         self.lift_all();
         let Some(mut mesh) = self.built(new, masks) else { return };
         mesh.set_garbage_sink(self.garbage.clone());
+        mesh.set_page_supply(self.pages.clone());
         mesh.set_undo_bytes(self.options.undo_bytes);
         mesh.set_levels(new.levels.clone());
         self.lineages += 1;
@@ -359,15 +370,15 @@ impl World {
     }
 
     /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must
-    /// see the strokes ended. Topology that was carried over is not: it has no bound here, and the
-    /// clay is sound without it.
+    /// see the strokes ended. So is topology that was carried over, as a part of the stroke's undo
+    /// step: a stroke that is taken back and done again is whole.
     fn lift_all(&mut self) {
         for seat in &mut self.pens {
             seat.track.lift();
         }
         self.hands.lift();
         self.advance_strokes(u64::MAX);
-        self.topology.clear();
+        self.topology.finish(&mut self.mesh, &self.workers);
         self.close();
     }
 
@@ -469,6 +480,7 @@ impl World {
             self.topology.run(&mut self.mesh, &self.workers, visited);
             self.report.paused |= !self.topology.is_empty();
         }
+        self.report.topology_dropped += self.topology.take_dropped();
         let active = self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle())
             || self.hands.is_touching()
             || !self.topology.is_empty();

@@ -4,12 +4,21 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::process::Command;
+use std::process;
 use std::sync::atomic::{AtomicI64, Ordering::Relaxed};
+use std::sync::mpsc;
+use std::time::Duration;
 
-use glam::Vec3;
-use sculptd_clay::brush::{GaussianBrush, SmoothBrush};
-use sculptd_clay::{Clay, Reach, Workers};
+use glam::{Vec2, Vec3};
+use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush, Measure, SmoothBrush};
+use sculptd_clay::{Clay, Reach, Snapshot, Workers};
+use sculptd_daemon::garbage_thread::GarbageThread;
+use sculptd_daemon::page_thread::PageThread;
+use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::HandSettings;
+use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
@@ -71,7 +80,7 @@ pub(crate) fn passed_alone(name: &str) -> bool {
         return false;
     }
     let me = std::env::current_exe().expect("this binary");
-    let out = Command::new(me)
+    let out = process::Command::new(me)
         .args(["--exact", name, "--nocapture", "--test-threads=1"])
         .env(ALONE, "1")
         .output()
@@ -116,4 +125,108 @@ fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
         }
     }
     mesh.end_step();
+}
+
+/// A pen on a ball, with dynamic topology and what the daemon gives the tick thread.
+struct TopologyStroke {
+    world: World,
+    brush: BrushSettings,
+    supply: PageThread,
+    tick: u64,
+    shown: Option<Snapshot>,
+}
+
+impl TopologyStroke {
+    fn new(radius: f32) -> TopologyStroke {
+        let clay = Clay::build(&shapes::sphere_of_about(160_000), &Job::default()).expect("builds");
+        let mut brush = BrushSettings { radius, ..sculptd::presets().of(BrushKind::Clay) };
+        brush.topology.by = Measure::Brush;
+        let options = WorldOptions {
+            dab_budget: 400_000,
+            undo_bytes: 1 << 30,
+            hands: HandSettings::default(),
+        };
+        let camera = Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() };
+        let mut world = World::new(clay, camera, brush, Workers::new(2), options);
+        world.warm();
+        world.set_garbage_sink(GarbageThread::start().expect("a thread").sink());
+        let supply = PageThread::start().expect("a thread");
+        world.set_page_supply(supply.supply());
+        TopologyStroke { world, brush, supply, tick: 0, shown: None }
+    }
+
+    fn set_brush(&mut self) {
+        self.tick += 1;
+        self.world.step(self.tick, &[], &[Command::Brush(self.brush)]);
+    }
+
+    /// One tick with the pen at this angle and distance from the middle of the view; the calls.
+    fn draw(&mut self, turn: f32, far: f32) -> u64 {
+        let area_mm = Vec2::new(self.world.camera().aspect, 1.0) * 100.0;
+        let at = Vec2::splat(0.5) + Vec2::new(turn.cos(), turn.sin()) * far;
+        self.tick += 1;
+        let pen = Pen {
+            in_range: true,
+            tip: true,
+            pos_mm: at * area_mm,
+            area_mm,
+            pressure: Some(0.5),
+            ..Pen::default()
+        };
+        let (t_us, body) = (self.tick * 8000, Body::Pen(pen));
+        let sample = Sample { device: DeviceId(1), t_us, device_t_us: None, body };
+        counted(|| {
+            self.world.step(self.tick, &[sample], &[]);
+            self.shown.replace(self.world.snapshot());
+        })
+    }
+}
+
+/// A pen that goes round and round again, with triangles made coarser and finer by turns.
+#[test]
+fn dynamic_topology_in_its_steady_state_neither_allocates_nor_frees() {
+    let mut stroke = TopologyStroke::new(0.12);
+    for round in 0..10 {
+        stroke.brush.topology.edge = [0.15, 0.08][round % 2];
+        stroke.brush.negative = round % 4 >= 2;
+        stroke.set_brush();
+        let vertices = stroke.world.mesh().vertex_count();
+        let calls: u64 =
+            (0..240).map(|i| stroke.draw(i as f32 / 240.0 * std::f32::consts::TAU, 0.12)).sum();
+        let now = stroke.world.mesh().vertex_count();
+        println!("round {round}: {vertices} -> {now} vertices, {calls} calls");
+        assert!(vertices.abs_diff(now) > 1000, "nothing changed in round {round}");
+        // The first rounds touch each page once and fill the pools.
+        if round >= 2 {
+            assert_eq!(calls, 0, "allocations and frees in round {round}");
+        }
+    }
+}
+
+/// A spiral over clay that it has not touched before, which is made finer: new pages in every
+/// tick, and more of them than there were.
+#[test]
+fn clay_that_grows_under_a_stroke_takes_its_pages_from_the_supply() {
+    let mut stroke = TopologyStroke::new(0.08);
+    stroke.brush.topology.edge = 0.03;
+    stroke.set_brush();
+    let (before, mut calls) = (stroke.world.mesh().page_count(), 0);
+    let (_silent, never) = mpsc::channel::<()>();
+    for i in 0..300 {
+        // A loaded machine must not make the thread that makes pages late.
+        for _ in 0..60_000 {
+            if stroke.supply.ready() >= 64 {
+                break;
+            }
+            let _ = never.recv_timeout(Duration::from_millis(1));
+        }
+        let t = i as f32 / 300.0;
+        let now = stroke.draw(t * 20.0, 0.02 + 0.22 * t);
+        // The first dabs of a stroke open its undo step.
+        calls += if i >= 20 { now } else { 0 };
+    }
+    let grown = stroke.world.mesh().page_count();
+    println!("{before} pages, {grown} at the end, {calls} calls");
+    assert!(grown > before + 50, "{before} pages, then {grown}");
+    assert_eq!(calls, 0, "allocations and frees while the clay grows");
 }

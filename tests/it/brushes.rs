@@ -12,6 +12,7 @@ mod slide;
 mod spacing;
 mod texture;
 mod topology;
+mod topology_soak;
 
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::BrushSettings;

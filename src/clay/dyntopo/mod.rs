@@ -2,9 +2,11 @@
 //! counted work.
 //!
 //! 1. *Scan*: the pages that the balls touch are looked through for edges that are too long or too
-//!    short and for badly shaped triangles ([`crate::retopology::scan`]).
-//! 2. *Operations*: splits, collapses and flips on the rings of the vertices concerned, the most
-//!    urgent first, until all are done or the budget of counted operations is used up
+//!    short and for badly shaped triangles ([`crate::retopology::scan`]), a few at a time, those of
+//!    the newest balls first. A page that was looked through and left as it was is passed over
+//!    until somebody writes it or another ball touches it.
+//! 2. *Operations*: splits, collapses and flips on the rings of the vertices concerned, page by
+//!    page, the most urgent first, until all are done or the budget of counted work is used up
 //!    ([`crate::retopology::operations`], where the quality bounds are stated).
 //! 3. *Rebuild*: the pages whose rings or places changed are written, and those whose halo names a
 //!    vertex that has another place; nobody else ([`crate::retopology::rebuild`]).
@@ -28,8 +30,8 @@ use super::workers::Workers;
 use crate::assembly::splice::remake;
 use crate::assembly::{Cut, Grafted};
 use crate::retopology::operations::Pass;
-use crate::retopology::scan::{BALLS, PageScan};
-use crate::retopology::{Cuts, Detail, PAGE_SCAN, PAGE_WRITE, TopologyBuffers};
+use crate::retopology::scan::BALLS;
+use crate::retopology::{Cuts, Detail, PAGE_SCAN, PAGE_WRITE, PageVisit, SCANNED, TopologyBuffers};
 
 /// Numbers are not used beyond this: what is left is for the pages' own arithmetic.
 const LAST_NUMBER: u32 = u32::MAX - (1 << 24);
@@ -38,69 +40,88 @@ const LAST_NUMBER: u32 = u32::MAX - (1 << 24);
 const PARALLEL: usize = 12;
 
 impl Clay {
-    /// Brings the triangles within the balls to the wanted size, in `budget` counted operations
-    /// ([`Cuts::work`]) and a little more: the pages of the balls are looked through whatever it
-    /// is, and a quarter of it is for operations. Sixteen balls at most are looked at in one call.
-    /// Part of the open undo step, if there is one.
+    /// Brings the triangles within the balls to the wanted size, in `budget` of counted work
+    /// ([`Cuts::work`]) and a little more. Sixteen balls at most are looked at in one call. Part of
+    /// the open undo step, if there is one.
+    ///
+    /// A budget of [`LEAST_TOPOLOGY_BUDGET`] or more always gets on with at least one page.
     pub fn adapt_topology(&mut self, balls: &[Detail], budget: usize, workers: &Workers) -> Cuts {
         let used = self.next_vertex.max(self.next_triangle);
         if used >= LAST_NUMBER || !balls.iter().all(Detail::is_sane) {
             return Cuts::default();
         }
-        let mut cuts = Cuts { unfinished: balls.len() > BALLS, ..Cuts::default() };
+        self.prepare_topology();
+        let more = balls.len() > BALLS;
         let balls = &balls[..balls.len().min(BALLS)];
-        self.find(balls, workers, &mut cuts);
+        let looked = self.choose(balls);
         let Clay { topology, pages, .. } = self;
-        let TopologyBuffers { edit, queues, found, .. } = topology;
-        let room = budget.saturating_sub(cuts.work).max(budget / 4);
-        // Numbers for new triangles: four a split, two a flip, nine a collapse.
-        let room = room.min(((LAST_NUMBER - used) / 16) as usize);
-        if found.len() > room {
-            found.select_nth_unstable(room);
-            found.truncate(room);
-            cuts.unfinished = true;
-        }
-        found.sort_unstable();
-        found.dedup();
-        if found.is_empty() {
-            return cuts;
-        }
+        let TopologyBuffers { edit, queues, scans, pages: chosen, .. } = topology;
         edit.clear(pages.len());
-        let budget = cuts.work.saturating_add(room);
+        // Numbers for new triangles: four a split, two a flip, nine a collapse.
+        let budget = budget.min(looked + ((LAST_NUMBER - used) / 16) as usize);
+        let cuts = Cuts { work: looked, ..Cuts::default() };
         let mut pass = Pass { edit, queues, pages, balls, cuts, budget };
-        pass.run(found);
-        cuts = pass.cuts;
-        if cuts.changes() > 0 && !self.rebuild(workers, &mut cuts) {
-            return Cuts { work: cuts.work, ..Cuts::default() };
+        let mut tried = 0;
+        for some in chosen.chunks_mut(SCANNED) {
+            workers.each(some.len() >= PARALLEL, some, scans, |&mut (_, page), scan| {
+                scan.page = page;
+                scan.scan(&pass.pages[page as usize], balls);
+            });
+            pass.cuts.work += PAGE_SCAN * some.len();
+            let done = scans[..some.len()].iter().take_while(|scan| pass.run(&scan.found)).count();
+            tried += done;
+            if done < some.len() || pass.is_spent() {
+                break;
+            }
         }
+        let mut cuts = pass.cuts;
+        let before = self.revision;
+        if cuts.changes() > 0 && !self.rebuild(workers, &mut cuts) {
+            cuts = Cuts { work: cuts.work, ..Cuts::default() };
+        }
+        let Clay { topology, pages, .. } = self;
+        let TopologyBuffers { pages: chosen, visits, balls: numbers, .. } = topology;
+        let first = numbers.iter().map(|b| b.1).min().unwrap_or(0);
+        let last = numbers.iter().map(|b| b.1).max().unwrap_or(0);
+        let mut clean = 0;
+        for &(_, page) in &chosen[..tried] {
+            let revision = pages[page as usize].revision;
+            if revision <= before {
+                visits[page as usize] = PageVisit { revision, balls: (first, last) };
+                clean += 1;
+            }
+        }
+        cuts.unfinished = (more || clean < chosen.len()) && (clean > 0 || cuts.changes() > 0);
         cuts
     }
 
-    /// Looks through the pages that the balls touch.
-    fn find(&mut self, balls: &[Detail], workers: &Workers, cuts: &mut Cuts) {
+    /// Chooses the pages to be looked through, those of the newest balls first; what choosing
+    /// counts.
+    fn choose(&mut self, balls: &[Detail]) -> usize {
         let Clay { topology, pages, top, .. } = self;
-        let TopologyBuffers { scans, pages: touched, found, .. } = topology;
-        touched.clear();
+        topology.number(balls, pages.len());
+        let TopologyBuffers { pages: chosen, visits, balls: numbers, .. } = topology;
+        chosen.clear();
         let touches = |b: &Detail, lo, hi| {
             (b.centre - b.centre.clamp(lo, hi)).length_squared() <= b.radius * b.radius
         };
+        let mut looked = 0;
         top.walk_boxes(
             |lo, hi| balls.iter().any(|b| touches(b, lo, hi)),
-            |p| touched.push(p as u32),
+            |p| {
+                looked += 1;
+                let (page, visit) = (&pages[p], &visits[p]);
+                let here = numbers.iter().filter(|b| touches(&b.0, page.lo, page.hi));
+                let (first, last) =
+                    here.fold((u32::MAX, 0), |(first, last), b| (first.min(b.1), last.max(b.1)));
+                let known = visit.balls.0 <= first && last <= visit.balls.1;
+                if visit.revision != page.revision || !known {
+                    chosen.push((u32::MAX - last, p as u32));
+                }
+            },
         );
-        while scans.len() < touched.len() {
-            scans.push(PageScan::new());
-        }
-        let parallel = touched.len() >= PARALLEL;
-        workers.each(parallel, touched, scans, |page, scan| {
-            scan.page = *page;
-            scan.scan(&pages[*page as usize], balls);
-        });
-        cuts.work += PAGE_SCAN * touched.len();
-        found.clear();
-        for scan in &scans[..touched.len()] {
-            found.extend_from_slice(&scan.found);
-        }
+        chosen.sort_unstable();
+        looked
     }
 
     /// Writes the pages that changed. False, and the clay is as it was, where one would be too

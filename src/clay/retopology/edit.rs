@@ -99,6 +99,18 @@ impl Edit {
         self.count = 0;
     }
 
+    /// Makes room for what a tick's work usually needs.
+    pub(crate) fn reserve_lists(&mut self) {
+        self.slots.reserve(512);
+        self.dirty.reserve(512);
+        self.halo.reserve(1 << 15);
+        self.made.reserve(1 << 13);
+        self.created.reserve(1 << 15);
+        self.slot_of.reserve(1 << 12);
+        self.reserve(1 << 15);
+        self.count = 0;
+    }
+
     fn reserve(&mut self, more: usize) -> u32 {
         let base = self.count;
         self.count += more;

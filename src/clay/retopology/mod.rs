@@ -68,7 +68,8 @@ pub struct Cuts {
     /// Counted work: an operation that was looked at counts one, a page that was looked through
     /// [`PAGE_SCAN`], a page that was written [`PAGE_WRITE`].
     pub work: usize,
-    /// The budget ended the work before all edges were looked at.
+    /// Asking again may find more: the budget ended the work before all pages were looked through,
+    /// or pages were changed, which are looked through again. Never where nothing was achieved.
     pub unfinished: bool,
 }
 
@@ -79,10 +80,32 @@ impl Cuts {
     }
 }
 
-/// What looking through a page counts, in operations.
-pub const PAGE_SCAN: usize = 4;
-/// What writing a page counts, in operations.
-pub const PAGE_WRITE: usize = 24;
+/// Pages that are looked through before what was found in them is changed.
+pub(crate) const SCANNED: usize = 16;
+/// What looking through a page counts, in operations: about 8 microseconds, where an operation
+/// takes a quarter of one.
+pub const PAGE_SCAN: usize = 32;
+/// What writing a page counts, in operations: about 50 microseconds.
+pub const PAGE_WRITE: usize = 200;
+
+/// The least budget of [`Clay::adapt_topology`](crate::Clay::adapt_topology) that surely gets on:
+/// a page of triangles that all are tried in vain, and the writing of what a first change touches.
+pub const LEAST_TOPOLOGY_BUDGET: usize = 4_000;
+
+/// A page that was looked through and left as it was.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PageVisit {
+    /// The page's revision then.
+    pub(crate) revision: u64,
+    /// The numbers of the balls that were asked for then: all that are still asked for and have a
+    /// number from the first to the second.
+    pub(crate) balls: (u32, u32),
+}
+
+impl PageVisit {
+    /// No page has this revision.
+    pub(crate) const NEVER: PageVisit = PageVisit { revision: u64::MAX, balls: (1, 0) };
+}
 
 /// The memory of dynamic topology, kept from call to call.
 #[derive(Debug, Default)]
@@ -90,8 +113,54 @@ pub(crate) struct TopologyBuffers {
     pub(crate) edit: edit::Edit,
     pub(crate) queues: operations::Queues,
     pub(crate) rebuild: rebuild::PageRebuild,
-    /// One for each page that is looked through.
+    /// One for each page that is looked through at the same time.
     pub(crate) scans: Vec<scan::PageScan>,
-    pub(crate) pages: Vec<u32>,
-    pub(crate) found: Vec<scan::Candidate>,
+    /// Pages to be looked through, in order: those of the newest balls first.
+    pub(crate) pages: Vec<(u32, u32)>,
+    /// For each page what was found when it was looked through last.
+    pub(crate) visits: Vec<PageVisit>,
+    /// The balls of the last call and their numbers. A ball keeps its number from call to call.
+    pub(crate) balls: Vec<(Detail, u32)>,
+    next_ball: u32,
+}
+
+/// Pages that one call writes, at most, without asking for memory.
+const WRITTEN: usize = 64;
+
+impl TopologyBuffers {
+    /// Whether [`TopologyBuffers::make_ready`] was called.
+    pub(crate) fn is_ready(&self) -> bool {
+        !self.scans.is_empty()
+    }
+
+    /// Makes room for what a tick's work usually needs: lists would grow one by one, long into a
+    /// stroke. `pages`: as many as the clay may come to have.
+    pub(crate) fn make_ready(&mut self, pages: usize) {
+        self.visits.reserve(pages);
+        self.scans.resize_with(SCANNED, scan::PageScan::new);
+        self.pages.reserve(1024);
+        self.balls.reserve(2 * scan::BALLS);
+        self.edit.reserve_lists();
+        self.queues.reserve();
+        self.rebuild.reserve(WRITTEN);
+    }
+
+    /// Gives each ball a number: the one that it had in the last call, else the next.
+    pub(crate) fn number(&mut self, balls: &[Detail], pages: usize) {
+        self.visits.resize(pages, PageVisit::NEVER);
+        let old = self.balls.len();
+        for ball in balls {
+            let known = self.balls[..old].iter().find(|b| b.0 == *ball).map(|b| b.1);
+            let number = known.unwrap_or_else(|| {
+                self.next_ball = self.next_ball.wrapping_add(1);
+                if self.next_ball == 0 {
+                    // Numbers begin anew: what was noted with old ones must not be taken for them.
+                    self.visits.fill(PageVisit::NEVER);
+                }
+                self.next_ball
+            });
+            self.balls.push((*ball, number));
+        }
+        self.balls.drain(..old);
+    }
 }

@@ -35,7 +35,16 @@ pub(crate) struct Queues {
     flips: VecDeque<(u32, u32, u8)>,
 }
 
-/// One pass over the edges that were found.
+impl Queues {
+    /// Makes room for what a tick's work usually needs.
+    pub(crate) fn reserve(&mut self) {
+        self.long.reserve(1 << 13);
+        self.short.reserve(1 << 12);
+        self.flips.reserve(1 << 14);
+    }
+}
+
+/// One pass over the edges that were found, page by page.
 pub(crate) struct Pass<'a> {
     pub(crate) edit: &'a mut Edit,
     pub(crate) queues: &'a mut Queues,
@@ -58,8 +67,9 @@ fn sorted(a: u32, b: u32) -> (u32, u32) {
 }
 
 impl Pass<'_> {
-    /// Changes what was found: the longest edges first, then the shortest, then flips.
-    pub(crate) fn run(&mut self, found: &[Candidate]) {
+    /// Changes what was found in a page: the longest edges first, then the shortest, then flips.
+    /// False where the budget was used up before all were tried.
+    pub(crate) fn run(&mut self, found: &[Candidate]) -> bool {
         self.queues.long.clear();
         self.queues.short.clear();
         self.queues.flips.clear();
@@ -73,7 +83,7 @@ impl Pass<'_> {
         }
         while !self.queues.long.is_empty() {
             if self.is_spent() {
-                return;
+                return false;
             }
             if let Some((length, Reverse((a, b)), ball)) = self.queues.long.pop() {
                 self.split(a, b, f32::from_bits(length), ball);
@@ -87,24 +97,29 @@ impl Pass<'_> {
             self.collapse(a, b, ball);
         }
         self.queues.short = short;
+        if self.is_spent() {
+            return false;
+        }
         // Each flip betters the smallest angle about its edge, so they come to an end; the bound
         // is for numbers that round.
         let mut left = 8 * self.queues.flips.len() + 64;
         while let Some((a, b, ball)) = self.queues.flips.pop_front() {
-            if self.is_spent() || left == 0 {
-                return;
+            if self.is_spent() {
+                return false;
+            }
+            if left == 0 {
+                break;
             }
             left -= 1;
             self.flip(a, b, ball);
         }
+        true
     }
 
-    /// Whether the budget is used up, with what writing the changed pages and about as many beside
+    /// Whether the budget is used up, with what writing the changed pages and half as many beside
     /// them will count.
-    fn is_spent(&mut self) -> bool {
-        let spent = self.cuts.work + self.edit.dirty.len() * PAGE_WRITE >= self.budget;
-        self.cuts.unfinished |= spent;
-        spent
+    pub(crate) fn is_spent(&self) -> bool {
+        self.cuts.work + self.edit.dirty.len() * (PAGE_WRITE + PAGE_WRITE / 2) >= self.budget
     }
 
     fn load(&mut self, h: u32) {

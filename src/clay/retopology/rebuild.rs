@@ -40,15 +40,22 @@ pub(crate) struct PageRebuild {
 }
 
 impl PageRebuild {
+    /// Makes room for so many pages, and for what writing them usually needs.
+    pub(crate) fn reserve(&mut self, pages: usize) {
+        let blank = Arc::default();
+        self.spare.resize_with(pages, || PageWrite::new(&blank));
+        self.tasks.resize_with(pages, WriteTask::new);
+        self.writes.reserve(pages);
+        self.write_of.reserve(1024);
+        self.indices.reserve(pages);
+        self.patches.reserve(4 * pages);
+        self.fresh.reserve(1 << 13);
+        self.items.reserve(8 * PAGE_VERTICES);
+        self.beside.reserve(8 * PAGE_VERTICES);
+    }
+
     fn write(&mut self, slot: u32, pool: &mut Pool, blank: &Arc<Page>) -> usize {
-        let mut write = self.spare.pop().unwrap_or_else(|| PageWrite {
-            slot: 0,
-            own: Vec::with_capacity(4 * PAGE_VERTICES),
-            given: Vec::with_capacity(4 * PAGE_VERTICES),
-            reorder: false,
-            page: blank.clone(),
-            failed: false,
-        });
+        let mut write = self.spare.pop().unwrap_or_else(|| PageWrite::new(blank));
         write.slot = slot;
         write.own.clear();
         write.given.clear();

@@ -47,10 +47,15 @@ impl PageScan {
     }
 
     /// Finds each triangle's longest edge where it is too long, its shortest where it is too
-    /// short, and its longest where the triangle is badly shaped. An edge of two such triangles
-    /// is found twice.
+    /// short, and its longest where the triangle is badly shaped; each once, the most urgent first.
     pub(crate) fn scan(&mut self, page: &Page, balls: &[Detail]) {
         self.found.clear();
+        self.find(page, balls);
+        self.found.sort_unstable();
+        self.found.dedup();
+    }
+
+    fn find(&mut self, page: &Page, balls: &[Detail]) {
         let t = &page.topology;
         self.inside.clear();
         let mut any = 0;

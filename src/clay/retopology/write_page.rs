@@ -26,6 +26,19 @@ pub(crate) struct PageWrite {
     pub(super) failed: bool,
 }
 
+impl PageWrite {
+    pub(super) fn new(blank: &Arc<Page>) -> PageWrite {
+        PageWrite {
+            slot: 0,
+            own: Vec::with_capacity(4 * PAGE_VERTICES),
+            given: Vec::with_capacity(4 * PAGE_VERTICES),
+            reorder: false,
+            page: blank.clone(),
+            failed: false,
+        }
+    }
+}
+
 /// The memory of one task.
 #[derive(Debug, Default)]
 pub(crate) struct WriteTask {

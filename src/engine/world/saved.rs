@@ -172,6 +172,7 @@ impl World {
             (Payload::Clay(mut mesh), Some(other)) => {
                 self.forget_steps();
                 mesh.set_garbage_sink(self.garbage.clone());
+                mesh.set_page_supply(self.pages.clone());
                 mesh.set_undo_bytes(self.options.undo_bytes);
                 self.garbage.discard_owned(std::mem::replace(&mut self.mesh, *mesh));
                 (self.middle, self.extent) = (other.middle, other.extent);

@@ -11,7 +11,7 @@ use crate::hand::{HandTools, HeldObject, Pose, Volume};
 use crate::payload::{Payload, PayloadId};
 use crate::stroke::{CurveStroke, PenPoint};
 use sculptd_clay::brush::{BrushKind, BrushSettings, Picture};
-use sculptd_clay::{Clay, GarbageSink, Grafted};
+use sculptd_clay::{Clay, GarbageSink, Grafted, PageSupply};
 use sculptd_devices::{DeviceId, Hands};
 
 impl World {
@@ -144,6 +144,13 @@ impl World {
     pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
         self.mesh.set_garbage_sink(sink.clone());
         self.garbage = sink;
+    }
+
+    /// Pages that dynamic topology needs come from this supply from now on, whatever clay is in
+    /// place. A new world makes them in place.
+    pub fn set_page_supply(&mut self, supply: PageSupply) {
+        self.mesh.set_page_supply(supply.clone());
+        self.pages = supply;
     }
 
     /// Keeps the payload that goes with a command of the next step, and writes its name into the

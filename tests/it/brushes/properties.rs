@@ -16,7 +16,7 @@ use super::super::clay::Dice;
 use super::{Studio, form};
 
 /// A brush with everything set at random.
-fn any_brush(dice: &mut Dice) -> BrushSettings {
+pub(super) fn any_brush(dice: &mut Dice) -> BrushSettings {
     let mut pick = |n: usize| ((dice.next() * n as f32) as usize).min(n - 1);
     let kind = BrushKind::ALL[pick(BrushKind::ALL.len())];
     let mut b = sculptd::presets().of(kind);
@@ -56,7 +56,7 @@ fn any_brush(dice: &mut Dice) -> BrushSettings {
     b.clamped()
 }
 
-fn any_stroke(dice: &mut Dice) -> Vec<(Vec2, f32)> {
+pub(super) fn any_stroke(dice: &mut Dice) -> Vec<(Vec2, f32)> {
     let mut at = Vec2::new(0.35 + 0.3 * dice.next(), 0.3 + 0.4 * dice.next());
     (0..6)
         .map(|_| {

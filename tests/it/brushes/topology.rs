@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use sculptd_clay::brush::{BrushKind, BrushSettings, GaussianBrush, Measure, SmoothBrush};
 use sculptd_clay::{Clay, Detail, Ray, Reach, Workers};
 use sculptd_engine::command::Command;
@@ -22,7 +22,7 @@ fn least_angle([a, b, c]: [Vec3; 3]) -> f64 {
 }
 
 /// Closed, oriented, each vertex amid one fan; its Euler characteristic and its smallest angle.
-fn checked(mesh: &TriMesh) -> (i64, f64) {
+pub(super) fn checked(mesh: &TriMesh) -> (i64, f64) {
     let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
     let mut about = vec![0u32; mesh.positions.len()];
     for t in &mesh.triangles {
@@ -216,4 +216,50 @@ fn what_is_carried_over_is_done_within_half_a_second() {
         studio.tell(Command::Undo);
         assert_eq!(studio.world.mesh().to_tri(), start);
     }
+}
+
+#[test]
+fn a_stroke_that_is_taken_back_at_once_is_whole_when_it_is_done_again() {
+    let mut brush = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Clay) };
+    brush.topology.by = Measure::Brush;
+    brush.topology.edge = 0.06;
+    let start = shapes::sphere_of_about(40_000);
+    let draw = |studio: &mut Studio| {
+        for (view, pressure) in s_curve() {
+            studio.sample(view, pressure, true);
+        }
+        let (last, _) = s_curve()[s_curve().len() - 1];
+        studio.sample(last, 0.0, false);
+    };
+    // Taken back while work waits, and done again.
+    let mut hasty = Studio::new(&start, brush, 2);
+    draw(&mut hasty);
+    assert!(hasty.paused, "nothing was carried over");
+    hasty.tell(Command::Undo);
+    assert!(!hasty.paused);
+    assert_eq!(hasty.world.mesh().to_tri(), start);
+    hasty.tell(Command::Redo);
+    assert_eq!(hasty.world.report().topology_dropped, 0);
+    hasty.world.verify_invariants().expect("in order");
+    // Nothing is left to be done where the stroke went: asking again changes next to nothing.
+    let clay = hasty.world.mesh();
+    let edges = |m: &TriMesh| {
+        let mut lengths: Vec<f32> = Vec::new();
+        for t in &m.triangles {
+            let p = t.map(|v| m.positions[v as usize]);
+            let near = |v: Vec3| (hasty.view(v) - Vec2::new(0.5, 0.5)).length() < 0.03 && v.z > 0.0;
+            if p.iter().all(|v| near(*v)) {
+                lengths.extend((0..3).map(|k| (p[k] - p[(k + 1) % 3]).length()));
+            }
+        }
+        lengths.sort_by(f32::total_cmp);
+        lengths
+    };
+    let lengths = edges(&clay.to_tri());
+    let mut calm = Studio::new(&start, brush, 2);
+    calm.stroke(&s_curve());
+    let wanted = edges(&calm.world.mesh().to_tri());
+    let median = |of: &[f32]| of[of.len() / 2];
+    println!("median edge {} after undo and redo, {} else", median(&lengths), median(&wanted));
+    assert!((median(&lengths) / median(&wanted) - 1.0).abs() < 0.1);
 }

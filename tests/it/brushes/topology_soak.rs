@@ -1,0 +1,134 @@
+//! Random brushes with dynamic topology, through the world: the surface stays one, undo leads back
+//! to the first bit, and the count of workers changes nothing.
+//!
+//! A hundred thousand dabs where `SCULPTD_LONG` is set, about two thousand else.
+
+use sculptd_clay::brush::{BrushKind, BrushSettings, Measure, Method};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_geometry::{TriMesh, shapes};
+
+use super::super::clay::Dice;
+use super::Studio;
+use super::properties::{any_brush, any_stroke};
+use super::topology::checked;
+
+/// A random brush that changes topology, with edges of a size that keeps the mesh small.
+fn any_cutting_brush(dice: &mut Dice) -> BrushSettings {
+    loop {
+        let mut brush = any_brush(dice);
+        if !brush.kind.cuts() || brush.kind == BrushKind::SnakeHook && dice.next() < 0.5 {
+            continue;
+        }
+        if matches!(brush.path.method, Method::Anchored | Method::DragDot | Method::Curve) {
+            brush.path.method = Method::Space;
+        }
+        brush.saturation = 0.0;
+        brush.mirror.radial = 1;
+        // The form must last for thousands of strokes.
+        brush.strength *= 0.5;
+        brush.topology.by = Measure::Work;
+        brush.topology.edge = 0.015 + 0.03 * dice.next();
+        brush.topology.split = true;
+        brush.topology.collapse = dice.next() < 0.9;
+        return brush.clamped();
+    }
+}
+
+/// What a run leaves behind.
+#[derive(Debug)]
+struct Outcome {
+    /// Of the world at the start and at the end of each window.
+    hashes: Vec<u64>,
+    dabs: u64,
+    dropped: u64,
+    /// The least angle that was seen, degrees.
+    least: f64,
+}
+
+/// Strokes between two looks at the whole surface.
+const WINDOW: usize = 25;
+/// A window ends with fewer strokes where its undo steps weigh this much: all must be kept.
+const WINDOW_BYTES: usize = 700 << 20;
+/// Random strokes let the form swell: with more vertices a run begins anew, or it would slow down.
+const MOST_VERTICES: usize = 25_000;
+
+/// Draws until so many dabs were made. `look`: checks the surface, and takes each window back.
+fn run(start: &TriMesh, euler: i64, dabs: u64, workers: usize, look: bool) -> Outcome {
+    let mut dice = Dice(77);
+    let first = any_cutting_brush(&mut dice);
+    let mut studio = Studio::new(start, first, workers);
+    let mut out = Outcome { hashes: vec![], dabs: 0, dropped: 0, least: 180.0 };
+    while out.dabs < dabs {
+        if studio.world.mesh().vertex_count() > MOST_VERTICES {
+            studio = Studio::new(start, first, workers);
+        }
+        // What was done before can no longer be taken back.
+        studio.tell(Command::Reopened);
+        let before = studio.world.hash();
+        for stroke in 0..WINDOW {
+            studio.tell(Command::Brush(any_cutting_brush(&mut dice)));
+            out.dabs += studio.stroke(&any_stroke(&mut dice));
+            out.dropped += studio.world.report().topology_dropped;
+            if stroke % 4 == 0 {
+                // The hand turns the form under the pen.
+                let camera = *studio.world.camera();
+                let yaw = camera.yaw + 0.9 * dice.next();
+                let pitch = 1.2 * (dice.next() - 0.5);
+                studio.tell(Command::Camera(Camera { yaw, pitch, ..camera }));
+            }
+            if studio.world.mesh().memory().undo > WINDOW_BYTES {
+                break;
+            }
+        }
+        let now = studio.world.hash();
+        out.hashes.extend([before, now]);
+        if look {
+            studio.world.verify_invariants().unwrap_or_else(|e| panic!("{} dabs: {e}", out.dabs));
+            let (found, least) = checked(&studio.world.mesh().to_tri());
+            assert_eq!(found, euler, "{} dabs", out.dabs);
+            out.least = out.least.min(least);
+            let steps = studio.world.mesh().undo_steps();
+            (0..steps).for_each(|_| studio.tell(Command::Undo));
+            assert_eq!(studio.world.hash(), before, "taken back after {} dabs", out.dabs);
+            (0..steps).for_each(|_| studio.tell(Command::Redo));
+            assert_eq!(studio.world.hash(), now, "done again after {} dabs", out.dabs);
+            println!(
+                "{} dabs: {} vertices in {} pages, {steps} steps, least angle {least:.4} degrees",
+                out.dabs,
+                studio.world.mesh().vertex_count(),
+                studio.world.mesh().page_count()
+            );
+        }
+    }
+    out
+}
+
+#[test]
+fn random_brushes_with_dynamic_topology_keep_the_surface_whole() {
+    let long = std::env::var_os("SCULPTD_LONG").is_some();
+    let dabs = if long { 50_000 } else { 1_000 };
+    for (start, euler) in
+        [(shapes::icosphere(1.0, 24), 2), (shapes::torus(0.8, 0.3, 64, 32).triangulate().0, 0)]
+    {
+        let one = run(&start, euler, dabs, 1, true);
+        println!("{} dabs, {} balls dropped, least angle {}", one.dabs, one.dropped, one.least);
+        assert_eq!(one.dropped, 0);
+        // Brushes that pinch draw triangles thinner than any that topology makes.
+        assert!(one.least > 0.0, "a triangle without area");
+        for workers in [2, 3, 7, 16] {
+            let start = &start;
+            // The workers' pool belongs to the thread that uses it first: each run has its own.
+            // More workers than cores are slow, and a fifth of the dabs tells as much.
+            let other = std::thread::scope(|s| {
+                s.spawn(|| run(start, euler, (dabs / 5).max(1_000), workers, false))
+                    .join()
+                    .expect("no panic")
+            });
+            // Taking a window back and doing it again leaves no trace either.
+            let same = other.hashes == one.hashes[..other.hashes.len()];
+            assert!(same, "with {workers} workers");
+            println!("{} dabs: the same bits with {workers} workers", other.dabs);
+        }
+    }
+}
