@@ -74,6 +74,8 @@ impl WindowState {
                 map.pointer(now, at);
             }
         }
+        let (corner, size) = self.view_rect();
+        wiring.link.set_view_on_desktop(self.on_screen(corner), size.as_dvec2());
         let desktop = self.desktop(wiring);
         if differs(&desktop, &self.tablets.sent) {
             self.tablets.sent = desktop;
