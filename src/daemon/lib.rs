@@ -24,6 +24,8 @@ pub mod live_run;
 #[cfg(unix)]
 pub mod metrics;
 pub mod pacer;
+pub mod pen_trail;
+pub mod present_latency;
 pub mod published;
 pub mod remesh_job;
 #[cfg(unix)]

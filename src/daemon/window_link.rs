@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::present_latency::{PresentLatency, PresentedFrame};
 use glam::DVec2;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
@@ -73,6 +74,7 @@ struct LinkState {
     standing: WindowStanding,
     claims: WindowClaims,
     view: Option<[DVec2; 2]>,
+    presented: PresentLatency,
     session: Option<PathBuf>,
     wanted: Option<DisplayVariables>,
 }
@@ -125,6 +127,16 @@ impl WindowLink {
     /// The window has moved, or its panels leave another part of it free.
     pub fn set_view_on_desktop(&self, corner: DVec2, size: DVec2) {
         self.state().view = Some([corner, size]);
+    }
+
+    /// A frame has shown a sample that none before it has.
+    pub fn record_presented(&self, frame: &PresentedFrame) {
+        self.state().presented.record(frame);
+    }
+
+    /// How long samples took to the screen.
+    pub fn present_latency(&self) -> PresentLatency {
+        self.state().presented.clone()
     }
 
     /// The window has lent another brush, or given it back.

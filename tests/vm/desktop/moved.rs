@@ -46,8 +46,7 @@ pub fn beside(
             let at = camera.project(p)?;
             let pixel = view.corner + view.size * at.as_dvec2();
             let depth = (camera.eye() - p).dot(camera.backward());
-            let reach =
-                f64::from(radius / camera.world_per_view(depth.max(1e-3))) * view.size.y;
+            let reach = f64::from(radius / camera.world_per_view(depth.max(1e-3))) * view.size.y;
             let near = paths.iter().map(|(a, b)| to_segment(pixel, *a, *b));
             Some((near.fold(f64::INFINITY, f64::min) - 3.0) / reach)
         };

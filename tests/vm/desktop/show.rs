@@ -58,7 +58,8 @@ struct Show {
 
 /// Strokes over the clay: its middle is the view's.
 fn over_clay(middle: DVec2, count: u64) -> Vec<(DVec2, DVec2)> {
-    let at = |i: u64| middle + DVec2::new((i % 7) as f64 * 16.0 - 60.0, (i % 5) as f64 * 18.0 - 50.0);
+    let at =
+        |i: u64| middle + DVec2::new((i % 7) as f64 * 16.0 - 60.0, (i % 5) as f64 * 18.0 - 50.0);
     (0..count).map(|i| (at(i), at(i) + DVec2::new(34.0, 10.0))).collect()
 }
 
@@ -169,8 +170,16 @@ fn start() -> io::Result<(Ended, Ended)> {
     std::fs::write("/tmp/xorg.conf", XORG)?;
     std::fs::write("/tmp/settings.toml", SETTINGS)?;
     let args = [
-        DISPLAY, "-config", "/tmp/xorg.conf", "-logfile", "/tmp/xorg.log", "-novtswitch",
-        "-sharevts", "-noreset", "-nolisten", "tcp",
+        DISPLAY,
+        "-config",
+        "/tmp/xorg.conf",
+        "-logfile",
+        "/tmp/xorg.log",
+        "-novtswitch",
+        "-sharevts",
+        "-noreset",
+        "-nolisten",
+        "tcp",
     ];
     let server = spawn("/usr/lib/xorg/Xorg", &args, "/tmp/xorg.out")?;
     if !until(60, || !tool("xinput", &["list"]).is_empty()) {
@@ -179,7 +188,8 @@ fn start() -> io::Result<(Ended, Ended)> {
     println!("   the X server is there");
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions("/tmp/run", std::fs::Permissions::from_mode(0o700))?;
-    let daemon = spawn("sculptd", &["run", "--config", "/tmp/settings.toml"], "/tmp/sculptd.log")?;
+    let args = ["run", "--config", "/tmp/settings.toml", "--stats", "/tmp/stats.json"];
+    let daemon = spawn("sculptd", &args, "/tmp/sculptd.log")?;
     if !until(120, || status()["window"] == "open") {
         return Err(io::Error::other("no window"));
     }
@@ -191,7 +201,7 @@ fn start() -> io::Result<(Ended, Ended)> {
 }
 
 fn run() -> io::Result<bool> {
-    let _desktop = start()?;
+    let (_server, mut daemon) = start()?;
     let mut tablet = Tablet::new()?;
     let there = tablet.plug()?;
     let mut show = Show {
@@ -243,6 +253,11 @@ fn run() -> io::Result<bool> {
     let lines = over_clay(show.middle(), 6);
     let came = show.draw(&lines)?;
     show.tell(there && came == 6, &format!("after a replug 6 strokes drawn, {came} sculpted"));
+    ask("shutdown", &Value::Null);
+    until(20, || daemon.0.try_wait().is_ok_and(|end| end.is_some()));
+    let stats = std::fs::read_to_string("/tmp/stats.json").unwrap_or_default();
+    let stats: Value = serde_json::from_str(&stats).unwrap_or_default();
+    println!("   from sample to screen, microseconds: {}", stats["sample_to_present"]);
     Ok(show.good)
 }
 
@@ -281,14 +296,14 @@ fn areas(show: &mut Show) -> io::Result<()> {
     tool("xdotool", &["windowmove", &id, "-60", "35"]);
     pause(1500);
     show.view.corner += DVec2::new(-60.0, 35.0);
-    let places = |show: &Show| {
-        over_clay(show.middle(), 5).iter().map(|l| l.1).collect::<Vec<DVec2>>()
-    };
+    let places =
+        |show: &Show| over_clay(show.middle(), 5).iter().map(|l| l.1).collect::<Vec<DVec2>>();
     let at = places(show);
     show.ring("the window moved", &at)?;
     let turned = DMat3::from_cols_array(&[-1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 1.0, 1.0]);
     let cropped = DMat3::from_cols_array(&[0.6, 0.0, 0.0, 0.0, 0.7, 0.0, 0.2, 0.15, 1.0]);
-    for (name, area) in [("turned by half a turn", turned), ("over a part of the screen", cropped)] {
+    for (name, area) in [("turned by half a turn", turned), ("over a part of the screen", cropped)]
+    {
         show.tablet.set_area(area);
         pause(500);
         // The old map is contradicted: it goes, and another is learned.
