@@ -46,6 +46,7 @@ pub fn spawn(name: &str, args: &[&str], log: &str) -> io::Result<Ended> {
         .env("XDG_RUNTIME_DIR", "/tmp/run")
         .env("XDG_CONFIG_HOME", "/tmp/config")
         .env("XDG_DATA_HOME", "/tmp/data")
+        .env("WGPU_BACKEND", "gl")
         .env("SCULPTD_LOG", "info")
         .stdout(Stdio::from(file.try_clone()?))
         .stderr(Stdio::from(file))

@@ -13,32 +13,14 @@ use super::drive::{
 };
 use super::moved::{ViewRect, beside, vertices};
 
-/// The screen without a card; the tablet comes and goes by itself.
+/// The emulated card, drawn by the machine outside; the tablet comes and goes by itself.
 const XORG: &str = r#"Section "Device"
 Identifier "card"
-Driver "dummy"
-VideoRam 64000
-EndSection
-Section "Monitor"
-Identifier "monitor"
-HorizSync 5-1000
-VertRefresh 5-200
-Modeline "1280x720" 74.5 1280 1344 1472 1664 720 723 728 748
-EndSection
-Section "Screen"
-Identifier "screen"
-Device "card"
-Monitor "monitor"
-DefaultDepth 24
-SubSection "Display"
-Depth 24
-Modes "1280x720"
-EndSubSection
-EndSection
-Section "Module"
-Disable "glx"
+Driver "modesetting"
 EndSection
 "#;
+/// A processor that is emulated draws what costs least.
+const LOOK: &str = "[look]\nshade = 0.0\ncavity = 0.0\n";
 const SETTINGS: &str = "[loop]\nrate_hz = 60\n";
 /// Pixels: the cursor and the ring may be so far apart.
 const WITHIN: f64 = 2.0;
@@ -165,10 +147,40 @@ fn radius() -> f64 {
     status()["brush"]["radius"].as_f64().unwrap_or(0.0)
 }
 
+/// A ball of few triangles, as Wavefront OBJ.
+fn ball() -> String {
+    let (rings, around) = (48, 96);
+    let mut out = String::new();
+    for i in 1..rings {
+        let (height, radius) = {
+            let a = std::f64::consts::PI * f64::from(i) / f64::from(rings);
+            (a.cos(), a.sin())
+        };
+        for k in 0..around {
+            let a = std::f64::consts::TAU * f64::from(k) / f64::from(around);
+            out += &format!("v {:.6} {height:.6} {:.6}\n", radius * a.cos(), -radius * a.sin());
+        }
+    }
+    out += "v 0 1 0\nv 0 -1 0\n";
+    let at = |i: i32, k: i32| i * around + k % around + 1;
+    let (top, bottom) = ((rings - 1) * around + 1, (rings - 1) * around + 2);
+    for k in 0..around {
+        out += &format!("f {top} {} {}\n", at(0, k), at(0, k + 1));
+        out += &format!("f {bottom} {} {}\n", at(rings - 2, k + 1), at(rings - 2, k));
+        for i in 0..rings - 2 {
+            let [a, b, c, d] = [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)];
+            out += &format!("f {a} {b} {c} {d}\n");
+        }
+    }
+    out
+}
+
 fn start() -> io::Result<(Ended, Ended)> {
     std::fs::create_dir_all("/tmp/run")?;
     std::fs::write("/tmp/xorg.conf", XORG)?;
     std::fs::write("/tmp/settings.toml", SETTINGS)?;
+    std::fs::create_dir_all("/tmp/config/sculptd")?;
+    std::fs::write("/tmp/config/sculptd/viewer.toml", LOOK)?;
     let args = [
         DISPLAY,
         "-config",
@@ -188,7 +200,8 @@ fn start() -> io::Result<(Ended, Ended)> {
     println!("   the X server is there");
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions("/tmp/run", std::fs::Permissions::from_mode(0o700))?;
-    let args = ["run", "--config", "/tmp/settings.toml", "--stats", "/tmp/stats.json"];
+    std::fs::write("/tmp/ball.obj", ball())?;
+    let args = ["run", "--mesh", "/tmp/ball.obj", "--config", "/tmp/settings.toml", "--stats", "/tmp/stats.json"];
     let daemon = spawn("sculptd", &args, "/tmp/sculptd.log")?;
     if !until(120, || status()["window"] == "open") {
         return Err(io::Error::other("no window"));
@@ -204,6 +217,18 @@ fn run() -> io::Result<bool> {
     let (_server, mut daemon) = start()?;
     let mut tablet = Tablet::new()?;
     let there = tablet.plug()?;
+    if std::env::args().any(|a| a == "probe") {
+        let m = SCREEN * 0.5;
+        let begun = std::time::Instant::now();
+        while begun.elapsed().as_secs() < 40 {
+            tablet.hover(&[m - 60.0, m + DVec2::new(90.0, -60.0), m + 80.0])?;
+        }
+        println!("{:?} {:?}", cursor(), ring_pixel());
+        ask("shutdown", &Value::Null);
+        until(100, || daemon.0.try_wait().is_ok_and(|end| end.is_some()));
+        println!("{}", std::fs::read_to_string("/tmp/stats.json").unwrap_or_default());
+        return Ok(false);
+    }
     let mut show = Show {
         tablet,
         view: ViewRect { corner: DVec2::ZERO, size: SCREEN },
