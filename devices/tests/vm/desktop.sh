@@ -85,7 +85,7 @@ done </modules/list
 /usr/lib/systemd/systemd-udevd --daemon
 udevadm trigger
 udevadm settle
-vm_desktop $(busybox cat /proc/cmdline)
+vm_desktop
 busybox poweroff -f
 INIT
 chmod +x "$system/init"
@@ -106,5 +106,5 @@ echo "booting $version"
 timeout "${SCULPTD_VM_SECONDS:-900}" qemu-system-x86_64 -accel tcg,thread=multi -cpu max -m 3072 -smp 2 -no-reboot \
     -nodefaults -vga none -device virtio-gpu-gl-pci,xres=1280,yres=720 -display sdl,gl=on -serial stdio \
     -kernel "$work/kernel/boot/vmlinuz-$version" -initrd "$work/desktop.cpio" \
-    -append "console=ttyS0 quiet panic=-1 $*" | tee "$work/desktop.log"
+    -append "console=ttyS0 quiet panic=-1" | tee "$work/desktop.log"
 grep -q '^VM PASSED' "$work/desktop.log"

@@ -128,7 +128,7 @@ impl Tablet {
         self.uhid = Some(uhid);
         // The desktop makes a pointer of the pen when it first sees it.
         self.hover(&[SCREEN * 0.5, SCREEN * 0.45])?;
-        let there = until(20, || pen_ids().len() > 1);
+        let there = until(20, || !pen_ids().is_empty());
         self.serve(500)?;
         Ok(there)
     }

@@ -54,6 +54,17 @@ impl Show {
         self.view.corner + self.view.size * 0.5
     }
 
+    /// Hovers about a place until the map can be known. A window learns from one place of the
+    /// pointer a frame, and a frame takes a quarter of a second here: a second of hovering on a
+    /// real desktop is ten here.
+    fn approach(&mut self, m: DVec2) -> io::Result<()> {
+        for _ in 0..10 {
+            self.tablet.hover(&[m - 100.0, m + DVec2::new(90.0, -60.0), m + 80.0])?;
+        }
+        pause(1000);
+        Ok(())
+    }
+
     /// Draws; how many strokes came of it, once nothing more comes.
     fn draw(&mut self, lines: &[(DVec2, DVec2)]) -> io::Result<u64> {
         let before = steps();
@@ -68,19 +79,14 @@ impl Show {
 
     /// Hovers over places and compares the desktop's cursor with the ring at each.
     fn ring(&mut self, what: &str, places: &[DVec2]) -> io::Result<()> {
-        // At most a second of hovering before the first place, as a person comes to the clay.
         let middle = self.middle();
-        self.tablet.hover(&[
-            middle + DVec2::new(-130.0, -80.0),
-            middle + DVec2::new(110.0, -60.0),
-            middle + DVec2::new(60.0, 90.0),
-        ])?;
+        self.approach(middle)?;
         let (mut worst, mut seen) = (0.0f64, 0);
-        let mut from = middle + DVec2::new(60.0, 90.0);
+        let mut from = middle + 80.0;
         for place in places {
             self.tablet.hover(&[from, *place, *place + 0.5])?;
             from = *place;
-            pause(400);
+            pause(1500);
             let ring = ring_pixel();
             let (Some(cursor), Some(ring)) = (cursor(), ring) else { continue };
             seen += 1;
@@ -99,7 +105,7 @@ impl Show {
         let mut seen = Vec::new();
         for place in [SCREEN * 0.45, SCREEN * 0.55] {
             self.tablet.hover(&[SCREEN * 0.5, place, place + 0.5])?;
-            pause(600);
+            pause(1500);
             let all = status()["pens"].clone();
             let Some(pen) = all.as_array().and_then(|p| p.iter().find(|p| is_tablet(p))).cloned()
             else {
@@ -201,7 +207,15 @@ fn start() -> io::Result<(Ended, Ended)> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions("/tmp/run", std::fs::Permissions::from_mode(0o700))?;
     std::fs::write("/tmp/ball.obj", ball())?;
-    let args = ["run", "--mesh", "/tmp/ball.obj", "--config", "/tmp/settings.toml", "--stats", "/tmp/stats.json"];
+    let args = [
+        "run",
+        "--mesh",
+        "/tmp/ball.obj",
+        "--config",
+        "/tmp/settings.toml",
+        "--stats",
+        "/tmp/stats.json",
+    ];
     let daemon = spawn("sculptd", &args, "/tmp/sculptd.log")?;
     if !until(120, || status()["window"] == "open") {
         return Err(io::Error::other("no window"));
@@ -217,18 +231,6 @@ fn run() -> io::Result<bool> {
     let (_server, mut daemon) = start()?;
     let mut tablet = Tablet::new()?;
     let there = tablet.plug()?;
-    if std::env::args().any(|a| a == "probe") {
-        let m = SCREEN * 0.5;
-        let begun = std::time::Instant::now();
-        while begun.elapsed().as_secs() < 40 {
-            tablet.hover(&[m - 60.0, m + DVec2::new(90.0, -60.0), m + 80.0])?;
-        }
-        println!("{:?} {:?}", cursor(), ring_pixel());
-        ask("shutdown", &Value::Null);
-        until(100, || daemon.0.try_wait().is_ok_and(|end| end.is_some()));
-        println!("{}", std::fs::read_to_string("/tmp/stats.json").unwrap_or_default());
-        return Ok(false);
-    }
     let mut show = Show {
         tablet,
         view: ViewRect { corner: DVec2::ZERO, size: SCREEN },
@@ -238,11 +240,7 @@ fn run() -> io::Result<bool> {
     };
     println!("{}", tool("xinput", &["list"]).trim());
     show.tell(there, "the X server's libinput has made a pointer of the pen");
-    // A second of hovering, by which the map is learned.
-    let m = SCREEN * 0.5;
-    let around = [m - 100.0, m + DVec2::new(90.0, -60.0), m + 80.0];
-    show.tablet.hover(&around)?;
-    pause(1000);
+    show.approach(SCREEN * 0.5)?;
     let known = show.find_view()?;
     let what = format!("the view on the desktop is {:?}", show.view);
     show.tell(known, &what);
@@ -274,7 +272,8 @@ fn run() -> io::Result<bool> {
     controls(&mut show)?;
 
     let there = show.tablet.plug()?;
-    show.tablet.hover(&around)?;
+    let m = show.middle();
+    show.approach(m)?;
     let lines = over_clay(show.middle(), 6);
     let came = show.draw(&lines)?;
     show.tell(there && came == 6, &format!("after a replug 6 strokes drawn, {came} sculpted"));
@@ -302,6 +301,9 @@ fn beyond(show: &mut Show) -> io::Result<()> {
     let cover = spawn("xev", &["-geometry", &place], "/tmp/xev.log")?;
     pause(2500);
     let lines = over_clay(show.middle(), 6);
+    // The window hears that the pointer has left it with its next frame.
+    let m = show.middle();
+    show.tablet.hover(&[m, m + 10.0, m, m + 10.0])?;
     let came = show.draw(&lines)?;
     show.tell(came == 0, &format!("6 strokes on another window before the clay, {came} sculpted"));
     drop(cover);
@@ -309,6 +311,7 @@ fn beyond(show: &mut Show) -> io::Result<()> {
     let id = tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"]);
     let id = id.lines().next().unwrap_or_default().to_owned();
     tool("xdotool", &["windowfocus", &id]);
+    show.tablet.hover(&[m, m + 10.0, m, m + 10.0])?;
     let came = show.draw(&lines)?;
     show.tell(came == 6, &format!("that window gone, 6 strokes drawn, {came} sculpted"));
     Ok(())
@@ -333,9 +336,7 @@ fn areas(show: &mut Show) -> io::Result<()> {
         pause(500);
         // The old map is contradicted: it goes, and another is learned.
         let m = show.middle();
-        for _ in 0..3 {
-            show.tablet.hover(&[m - 100.0, m + DVec2::new(90.0, -60.0), m + 80.0])?;
-        }
+        show.approach(m)?;
         let at = places(show);
         show.ring(&format!("the area {name}"), &at)?;
         let lines = over_clay(show.middle(), 5);
@@ -349,9 +350,7 @@ fn areas(show: &mut Show) -> io::Result<()> {
 /// Keys, ring and barrel button.
 fn controls(show: &mut Show) -> io::Result<()> {
     let m = show.middle();
-    for _ in 0..3 {
-        show.tablet.hover(&[m - 100.0, m + DVec2::new(90.0, -60.0), m + 80.0])?;
-    }
+    show.approach(m)?;
     let pad = |ring: u8, key: u8| [0x0c, ring, key, 0, 0, 0, 0, 0, 0, 0];
     let before = steps();
     show.tablet.report(&pad(0, 1))?;
