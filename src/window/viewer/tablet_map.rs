@@ -255,7 +255,7 @@ impl TabletMap {
     }
 
     fn median(&self, map: &ScreenMap, delay_us: u64) -> Option<f64> {
-        median(self.samples(delay_us).iter().map(|s| map.at(s.0).distance(s.1)).collect())
+        median(distances(map, &self.samples(delay_us)))
     }
 
     /// The map with this delay, and the median and the mean distance of the pairs from it. The mean
@@ -263,20 +263,36 @@ impl TabletMap {
     fn try_delay(&self, delay_us: u64) -> Option<(u64, ScreenMap, f64, f64)> {
         let all = self.samples(delay_us);
         let first = least_squares(&all)?;
-        let middle = median(all.iter().map(|s| first.at(s.0).distance(s.1)).collect())?;
+        let middle = median(distances(&first, &all))?;
         let limit = (middle * OUTLIER).max(1.0);
         let kept: Vec<_> =
             all.into_iter().filter(|s| first.at(s.0).distance(s.1) <= limit).collect();
         let map = least_squares(&kept)?;
-        let errors: Vec<f64> = kept.iter().map(|s| map.at(s.0).distance(s.1)).collect();
-        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        let errors = distances(&map, &kept);
+        let mean = errors.iter().map(|e| e.0).sum::<f64>() / errors.len() as f64;
         Some((delay_us, map, median(errors)?, mean))
     }
 }
 
-fn median(mut all: Vec<f64>) -> Option<f64> {
-    let middle = all.len() / 2;
-    (!all.is_empty()).then(|| *all.select_nth_unstable_by(middle, f64::total_cmp).1)
+/// How far each pair lies from the map, pixels, and what the pair is worth.
+fn distances(map: &ScreenMap, pairs: &[(DVec2, DVec2, f64)]) -> Vec<(f64, f64)> {
+    pairs
+        .iter()
+        .map(|(share, pointer, weight)| (map.at(*share).distance(*pointer), *weight))
+        .collect()
+}
+
+/// The weighted median: pairs of a quick pen say little of a map where the pointer's delay varies,
+/// and a few of a pen that rests say much.
+fn median(mut all: Vec<(f64, f64)>) -> Option<f64> {
+    all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let half = all.iter().map(|p| p.1).sum::<f64>() / 2.0;
+    let mut seen = 0.0;
+    let reached = |p: &&(f64, f64)| {
+        seen += p.1;
+        seen >= half
+    };
+    all.iter().find(reached).map(|p| p.0)
 }
 
 /// The affine map with the least sum of weighted squares; `None` where the places span too little.
@@ -431,6 +447,32 @@ mod tests {
         }
         let off = differs(map.map().expect("a map"), &truth);
         assert!(off < 3.0, "{off} pixels at the corners");
+    }
+
+    #[test]
+    fn a_pen_that_rests_now_and_then_teaches_the_map_though_the_delay_varies() {
+        let truth = ScreenMap {
+            origin: DVec2::new(-40.0, 12.0),
+            across: DVec2::new(1300.0, 0.0),
+            down: DVec2::new(0.0, 740.0),
+        };
+        let stops = [[0.3, 0.4], [0.6, 0.45], [0.5, 0.65]].map(|p| DVec2::new(p[0], p[1]));
+        let place = |t_us: u64| {
+            let (i, part) = ((t_us / 500_000) as usize, (t_us % 500_000) as f64 / 500_000.0);
+            stops[i % 3].lerp(stops[(i + 1) % 3], (part / 0.5).min(1.0))
+        };
+        let mut map = TabletMap::default();
+        for i in 0..1000u64 {
+            let t_us = 1_000_000 + i * 8_000;
+            map.pen(t_us, Some(place(t_us)), false);
+            if i % 23 == 22 {
+                // From nothing to 120 ms, without any order.
+                let late_us = i * 7919 % 120 * 1000;
+                map.pointer(t_us, truth.at(place(t_us - late_us)).round());
+            }
+        }
+        let off = differs(map.map().expect("a map"), &truth);
+        assert!(off < 4.0, "{off} pixels at the corners");
     }
 
     #[test]

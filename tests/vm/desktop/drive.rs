@@ -47,6 +47,7 @@ pub fn spawn(name: &str, args: &[&str], log: &str) -> io::Result<Ended> {
         .env("XDG_CONFIG_HOME", "/tmp/config")
         .env("XDG_DATA_HOME", "/tmp/data")
         .env("WGPU_BACKEND", "gl")
+        .env("WINIT_X11_SCALE_FACTOR", "1")
         .env("SCULPTD_LOG", "info")
         .stdout(Stdio::from(file.try_clone()?))
         .stderr(Stdio::from(file))
@@ -210,16 +211,18 @@ impl Tablet {
         }
     }
 
-    /// Hovers from one pixel to the next, half a second each, and stays in range over the last.
+    /// Hovers from one pixel to the next, a quarter of a second each way, and rests at each for as
+    /// long; stays in range over the last.
     pub fn hover(&mut self, pixels: &[DVec2]) -> io::Result<()> {
-        // The travel of the pen from the end of one stroke to the begin of the next, left before
-        // the latter begins.
+        // Strokes that are left out: the pen travels from the end of one to the begin of the next.
         let mut strokes = Vec::new();
         for (i, pixel) in pixels.iter().enumerate() {
-            let at = 10_000 + i as u64 * 500_000;
-            strokes.push(Stroke { to_us: at + 1, ..self.touch(at, *pixel, *pixel, 0) });
+            for at in [10_000, 260_000] {
+                let at = at + i as u64 * 500_000;
+                strokes.push(Stroke { to_us: at + 1, ..self.touch(at, *pixel, *pixel, 0) });
+            }
         }
-        let (first, last) = (10_002, 10_000 + (pixels.len() as u64 - 1) * 500_000 - 1);
+        let (first, last) = (10_002, 260_000 + (pixels.len() as u64 - 1) * 500_000 - 1);
         self.perform(PenScript::new(strokes), last, first)
     }
 }
