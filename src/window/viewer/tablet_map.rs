@@ -42,6 +42,10 @@ const NEAR: f64 = 32.0;
 /// So long may the pointer's events lie behind the pen, microseconds, in a window that takes its
 /// events at once.
 const LATE_US: u64 = 250_000;
+/// A pen that has not moved for so long is where its pointer is, whatever the delay, microseconds.
+const HALTED_US: u64 = 120_000;
+/// What a pair of another pen is worth beside one of a pen that has halted.
+const MOVING: f64 = 0.1;
 /// Pairs that are looked at for whether the desktop has another map than before.
 const NEWEST: usize = 2 * LEAST;
 
@@ -240,16 +244,22 @@ impl TabletMap {
     }
 
     fn samples(&self, delay_us: u64) -> Vec<(DVec2, DVec2, f64)> {
-        let step = 8_000;
         self.pairs
             .iter()
             .filter_map(|p| {
                 let t = p.t_us.checked_sub(delay_us)?;
                 let share = self.share_at(t)?;
-                let speed = share.distance(self.share_at(t.saturating_sub(step)).unwrap_or(share));
+                let moved = |before_us: u64| {
+                    let before = self.share_at(t.checked_sub(before_us)?)?;
+                    Some(share.distance(before) * 1000.0)
+                };
                 // A pixel is a thousandth of a tablet, more or less: a pen that moves by that in
-                // a tick counts half.
-                Some((share, p.pointer, 1.0 / (1.0 + (speed * 1000.0).powi(2))))
+                // a tick counts half. Of one that has just halted the pointer may not have heard
+                // yet; but one that never halts teaches the map, too.
+                let halted = moved(HALTED_US).is_some_and(|by| by < 1.0);
+                let worth = if halted { 1.0 } else { MOVING };
+                let slow = 1.0 + moved(8_000).unwrap_or(0.0).powi(2);
+                Some((share, p.pointer, worth / slow))
             })
             .collect()
     }

@@ -92,6 +92,9 @@ impl WindowState {
         wiring.link.set_view_on_desktop(self.on_screen(corner), size.as_dvec2());
         let desktop = self.desktop(wiring);
         if differs(&desktop, &self.tablets.sent) {
+            if desktop.tablets != self.tablets.sent.tablets {
+                tracing::debug!("the tablets on the desktop: {:?}", self.tablet_lines());
+            }
             self.tablets.sent = desktop;
             wiring.link.claim_desktop(desktop);
             let _ = wiring.commands.try_send(Command::DesktopLayout(desktop));

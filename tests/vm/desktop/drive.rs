@@ -48,7 +48,7 @@ pub fn spawn(name: &str, args: &[&str], log: &str) -> io::Result<Ended> {
         .env("XDG_DATA_HOME", "/tmp/data")
         .env("WGPU_BACKEND", "gl")
         .env("WINIT_X11_SCALE_FACTOR", "1")
-        .env("SCULPTD_LOG", "info")
+        .env("SCULPTD_LOG", "info,sculptd_window=debug")
         .stdout(Stdio::from(file.try_clone()?))
         .stderr(Stdio::from(file))
         .spawn()?;

@@ -155,7 +155,7 @@ fn radius() -> f64 {
 
 /// A ball of few triangles, as Wavefront OBJ.
 fn ball() -> String {
-    let (rings, around) = (48, 96);
+    let (rings, around) = (80, 160);
     let mut out = String::new();
     for i in 1..rings {
         let (height, radius) = {
@@ -386,11 +386,11 @@ fn controls(show: &mut Show) -> io::Result<()> {
 pub fn main() -> ExitCode {
     let shown = run();
     if !matches!(shown, Ok(true)) {
-        for log in ["/tmp/sculptd.log", "/tmp/xorg.out", "/tmp/xorg.log"] {
+        for log in ["/tmp/xorg.out", "/tmp/sculptd.log"] {
             if exists(log) {
                 let text = std::fs::read_to_string(log).unwrap_or_default();
                 let lines: Vec<&str> = text.lines().collect();
-                println!("--- {log}\n{}", lines[lines.len().saturating_sub(25)..].join("\n"));
+                println!("--- {log}\n{}", lines[lines.len().saturating_sub(60)..].join("\n"));
             }
         }
     }
