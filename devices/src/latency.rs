@@ -9,6 +9,7 @@ const STEPS: usize = 256;
 #[derive(Debug, Clone)]
 pub struct Latency {
     counts: [u64; STEPS],
+    sum_us: u64,
 }
 
 /// A reading of [`Latency`], in microseconds.
@@ -24,7 +25,7 @@ pub struct Quantiles {
 
 impl Default for Latency {
     fn default() -> Self {
-        Latency { counts: [0; STEPS] }
+        Latency { counts: [0; STEPS], sum_us: 0 }
     }
 }
 
@@ -32,6 +33,19 @@ impl Latency {
     /// Adds one duration, in microseconds.
     pub fn record(&mut self, us: u64) {
         self.counts[step(us)] += 1;
+        self.sum_us = self.sum_us.saturating_add(us);
+    }
+
+    /// All durations together, microseconds.
+    pub fn sum_us(&self) -> u64 {
+        self.sum_us
+    }
+
+    /// How many took at most so long: exact for one less than a power of two, else a step's worth
+    /// too few.
+    pub fn at_most(&self, us: u64) -> u64 {
+        let whole = (0..STEPS).take_while(|s| upper(*s) <= us);
+        whole.map(|s| self.counts[s]).sum()
     }
 
     /// The median, the 99th percentile and the maximum; 0 if nothing was recorded.
@@ -81,6 +95,7 @@ mod tests {
         let mut l = Latency::default();
         assert_eq!(l.quantiles(), Quantiles::default());
         (1..=1000).for_each(|us| l.record(us));
+        assert_eq!((l.at_most(511), l.at_most(1023), l.sum_us()), (511, 1000, 500_500));
         let q = l.quantiles();
         assert!((500..=640).contains(&q.p50) && (990..=1240).contains(&q.p99), "{q:?}");
     }

@@ -76,6 +76,7 @@ pub mod leap;
 pub mod long_array;
 pub mod pad_actions;
 pub mod pen_state;
+pub mod pressure_use;
 pub mod queue;
 pub mod recording;
 pub mod report;

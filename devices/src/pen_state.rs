@@ -11,6 +11,7 @@
 
 use glam::Vec2;
 
+use crate::pressure_use::PressureUse;
 use crate::report::PenReport;
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 
@@ -76,6 +77,7 @@ pub struct PenState {
     proved_pressure: u32,
     /// Positions outside the area or pressures above the stated maximum, and all positions.
     outside: (u64, u64),
+    pressure_use: PressureUse,
 }
 
 impl PenState {
@@ -94,6 +96,7 @@ impl PenState {
             over: (0, 0),
             proved_pressure: 0,
             outside: (0, 0),
+            pressure_use: PressureUse::default(),
         }
     }
 
@@ -105,6 +108,11 @@ impl PenState {
     /// Positions outside the area or pressures above the stated maximum, and all positions.
     pub fn outside(&self) -> (u64, u64) {
         self.outside
+    }
+
+    /// How the pen's pressure was used so far.
+    pub fn pressure_use(&self) -> PressureUse {
+        self.pressure_use
     }
 
     /// Only a firmware's reports show whether it says when the pen leaves.
@@ -187,6 +195,8 @@ impl PenState {
             self.switch = r.tip;
         }
         self.press(r, entering);
+        let maximum = self.cfg.scale.max_pressure.max(self.proved_pressure);
+        self.pressure_use.take(r.pressure, self.pen.tip, maximum);
         self.fresh = false;
         self.emit(t_us, emit);
     }

@@ -62,6 +62,7 @@ pub fn window(
     let wiring = sculptd_window::viewer::Wiring {
         commands: run.live.commands.clone(),
         published: run.live.published.clone(),
+        pen_trail: run.live.pen_trail.clone(),
         pointer: run.factory.sender(),
         pointer_id: sculptd_daemon::adaptors::POINTER_ID,
         presets: crate::presets().clone(),

@@ -396,6 +396,15 @@ pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {
             "of it processor p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms",
             cpu.p50, cpu.p99, cpu.max
         )?;
+        if let Some(shown) = &s.sample_to_present {
+            writeln!(out, "sample to screen {:>11} frames, ms p50, p99, max:", shown.frames)?;
+            for stage in &shown.stages {
+                let [p50, p99, max] =
+                    [stage.quantiles.p50, stage.quantiles.p99, stage.quantiles.max]
+                        .map(|us| us as f64 / 1e3);
+                writeln!(out, "  {:<13} {p50:>12.1} {p99:>9.1} {max:>9.1}", stage.name)?;
+            }
+        }
         writeln!(out, "hash            {}", s.hash)?;
         if let Some(path) = &s.export {
             writeln!(out, "mesh            {path}")?;

@@ -123,12 +123,29 @@ pub struct StatusReply {
     pub curve_points: u64,
     /// The session file; `null` where nothing is recorded.
     pub journal: Option<JournalStatus>,
+    /// Pens that are in range where a stroke may begin: those whose ring is shown.
+    #[serde(default)]
+    pub pens: Vec<PenStatus>,
     /// How the window stands.
     #[serde(default)]
     pub window: WindowStatus,
     /// The path of the session file, where the daemon may open a window for it.
     #[serde(default)]
     pub session: Option<String>,
+}
+
+/// Where a pen is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PenStatus {
+    /// The number of its device.
+    pub device: u16,
+    /// Its place in the view: from the top left, in widths and heights of the view.
+    pub view: [f32; 2],
+    /// Where its ring is drawn, in pixels of the desktop (of the window under Wayland); absent
+    /// without a window.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixel: Option<[f64; 2]>,
 }
 
 /// How the window of the daemon stands.

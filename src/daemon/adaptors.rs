@@ -13,6 +13,8 @@ use sculptd_devices::{Clock, DeviceId, leap, serial};
 /// the control socket's strokes 401.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
+/// Ids of tablets and serial pens, which a desktop may move its pointer by.
+pub const TABLET_IDS: std::ops::Range<u16> = 0..TRACKER_ID.0;
 pub const RECORDING_IDS: u16 = 300;
 pub const POINTER_ID: DeviceId = DeviceId(400);
 pub const CONTROL_PEN_ID: DeviceId = DeviceId(401);

@@ -25,6 +25,8 @@ pub mod live_run;
 pub mod metrics;
 pub mod pacer;
 pub mod page_thread;
+pub mod pen_trail;
+pub mod present_latency;
 pub mod published;
 pub mod remesh_job;
 #[cfg(unix)]

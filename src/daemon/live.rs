@@ -18,6 +18,7 @@ use crate::boolean_jobs::BooleanJobs;
 use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
+use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
 use crate::tablet_actions::TabletActions;
 use crate::tick::{Journal, in_order_of_time, published_figures};
 use crate::tick_statistics::{TickStatistics, thread_cpu_ns};
@@ -40,6 +41,8 @@ const LAST_TICKS: u32 = 8;
 pub struct Live {
     pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
+    /// Where the pens of tablets were, for the window.
+    pub pen_trail: PenTrail,
     stop: Arc<AtomicBool>,
     thread: JoinHandle<Ended>,
 }
@@ -92,6 +95,7 @@ impl Live {
         let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
         let published = publisher.reader();
         let stop = Arc::new(AtomicBool::new(false));
+        let (trail, pen_trail) = pen_trail();
         let ticking = Ticking {
             world,
             receiver,
@@ -104,6 +108,7 @@ impl Live {
             actions,
             journal,
             garbage,
+            trail,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
             joiner: BooleanJobs::start(published.clone(), commands.clone()).ok(),
         };
@@ -111,7 +116,7 @@ impl Live {
             .name("sculptd-tick".into())
             .spawn(move || ticking.run())
             .map_err(LiveError::Start)?;
-        Ok(Live { commands, published, stop, thread })
+        Ok(Live { commands, published, pen_trail, stop, thread })
     }
 
     pub fn is_running(&self) -> bool {
@@ -138,6 +143,7 @@ struct Ticking {
     journal: Option<Box<dyn Journal>>,
     joiner: Option<BooleanJobs>,
     garbage: GarbageThread,
+    trail: PenTrailSender,
 }
 
 impl Ticking {
@@ -165,6 +171,7 @@ impl Ticking {
             samples.clear();
             self.receiver.drain(self.drain_per_tick, &mut samples);
             in_order_of_time(&mut samples);
+            self.trail.send(&samples);
             for mut queued in self.inbox.try_iter().take(COMMANDS_PER_TICK) {
                 let result = queued.result.take();
                 let command = queued.deliver(&mut self.world);

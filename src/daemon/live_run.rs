@@ -264,7 +264,8 @@ impl LiveRun {
     pub fn finish(self) -> Result<FinishedRun, LiveError> {
         drop((self.demo, self.adaptors));
         let ended = self.live.stop()?;
-        let summary = summary(&ended.figures, &ended.world, &ended.receiver, None);
+        let mut summary = summary(&ended.figures, &ended.world, &ended.receiver, None);
+        summary.sample_to_present = self.window.present_latency().summary();
         Ok(FinishedRun {
             world: ended.world,
             summary,
@@ -296,7 +297,8 @@ impl Served {
         use crate::control::server::ServeError;
         use crate::metrics::Metrics;
         use crate::service::{Reload, Service};
-        let watched = crate::systemd::Watched { published: host.published.clone(), journal };
+        let (published, window) = (host.published.clone(), options.window.clone());
+        let watched = crate::systemd::Watched { published, journal, window };
         let commands = host.commands.clone();
         let control = match crate::control::Server::start(&crate::control::default_path(), host) {
             Ok(server) => Some(server),

@@ -11,15 +11,16 @@ use std::sync::atomic::Ordering;
 
 use hyper::{Request, StatusCode};
 
-use super::Published;
 use crate::http::answer::permitted;
 use crate::http::bounds::ConnectionTable;
 use crate::http::{Answer, HttpServer};
+use crate::present_latency::{CLASSES_US, PresentLatency, STAGES};
 use crate::systemd::Watched;
 
-/// The page, from what the loop published, how the journal stands, and how many connections ask
-/// for it.
-pub fn page(p: &Published, journal: Option<&super::session::Health>, connections: usize) -> String {
+/// The page, from what is watched, and how many connections ask for it.
+pub fn page(watched: &Watched, connections: usize) -> String {
+    let p = watched.published.load();
+    let journal = watched.journal.as_ref();
     let f = &p.figures;
     let mut out = String::with_capacity(2048);
     let mut put = |name: &str, kind: &str, help: &str, value: f64| {
@@ -88,7 +89,30 @@ pub fn page(p: &Published, journal: Option<&super::session::Health>, connections
             f64::from(u8::from(h.trouble().is_some())),
         );
     }
+    presented(&watched.window.present_latency(), &mut out);
     out
+}
+
+/// The histogram of each stage between a sample and the screen.
+fn presented(latency: &PresentLatency, out: &mut String) {
+    const NAME: &str = "sculptd_sample_to_present_seconds";
+    let _ = write!(
+        out,
+        "# HELP {NAME} From a sample to the frame that shows it, by stage.\n\
+         # TYPE {NAME} histogram\n"
+    );
+    for (stage, counts) in STAGES.iter().zip(latency.stages()) {
+        for us in CLASSES_US {
+            let (le, count) = (us as f64 / 1e6, counts.at_most(us));
+            let _ = writeln!(out, "{NAME}_bucket{{stage=\"{stage}\",le=\"{le}\"}} {count}");
+        }
+        let (sum, all) = (counts.sum_us() as f64 / 1e6, latency.frames());
+        let _ = write!(
+            out,
+            "{NAME}_bucket{{stage=\"{stage}\",le=\"+Inf\"}} {all}\n\
+             {NAME}_sum{{stage=\"{stage}\"}} {sum}\n{NAME}_count{{stage=\"{stage}\"}} {all}\n"
+        );
+    }
 }
 
 /// Where to listen: `PORT` or `ADDRESS:PORT`; a port alone is on the loopback.
@@ -124,10 +148,9 @@ impl Metrics {
 
 fn answer(request: &Request<()>, at: SocketAddr, watched: &Watched, connections: usize) -> Answer {
     match permitted(request, at, "") {
-        Ok("/metrics") => Answer::text(
-            "text/plain; version=0.0.4; charset=utf-8",
-            page(&watched.published.load(), watched.journal.as_ref(), connections),
-        ),
+        Ok("/metrics") => {
+            Answer::text("text/plain; version=0.0.4; charset=utf-8", page(watched, connections))
+        }
         Ok(_) => Answer::from((StatusCode::NOT_FOUND, "the figures are at /metrics")),
         Err(refusal) => refusal.into(),
     }
@@ -136,6 +159,28 @@ fn answer(request: &Request<()>, at: SocketAddr, watched: &Watched, connections:
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_stage_is_a_histogram_that_grows_to_its_count() {
+        let mut latency = PresentLatency::default();
+        for us in [100, 5_000, 900_000] {
+            latency.record(&crate::present_latency::PresentedFrame {
+                presented_us: us,
+                ..Default::default()
+            });
+        }
+        let mut page = String::new();
+        presented(&latency, &mut page);
+        let of = |text: &str| {
+            let line = page.lines().find_map(|l| l.strip_prefix(text)).expect(text);
+            line.trim().parse::<f64>().expect("a number")
+        };
+        let total = "sculptd_sample_to_present_seconds_";
+        let bucket = |le: &str| of(&format!("{total}bucket{{stage=\"total\",le=\"{le}\"}}"));
+        assert_eq!([bucket("0.000255"), bucket("0.008191"), bucket("+Inf")], [1.0, 2.0, 3.0]);
+        assert_eq!(of(&format!("{total}count{{stage=\"total\"}}")), 3.0);
+        assert!((of(&format!("{total}sum{{stage=\"total\"}}")) - 0.9051).abs() < 1e-9);
+    }
 
     #[test]
     fn a_port_alone_is_on_the_loopback() {

@@ -214,6 +214,7 @@ pub fn summary(
         triangles: world.mesh().triangle_count() as u64,
         hash: format!("{:016x}", world.hash()),
         export,
+        sample_to_present: None,
     }
 }
 

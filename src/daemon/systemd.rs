@@ -11,6 +11,7 @@ use arc_swap::ArcSwap;
 
 use super::Published;
 use super::session::Health;
+use crate::window_link::WindowLink;
 
 /// The way to the service manager; to nobody where there is none.
 #[derive(Debug, Default)]
@@ -99,6 +100,7 @@ impl Watchdog {
 pub struct Watched {
     pub published: Arc<ArcSwap<Published>>,
     pub journal: Option<Health>,
+    pub window: WindowLink,
 }
 
 impl Watched {

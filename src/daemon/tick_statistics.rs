@@ -3,6 +3,7 @@
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
+use crate::present_latency::PresentSummary;
 use sculptd_engine::world::StepReport;
 
 /// Longest tick that the histogram tells apart: 10 s, in nanoseconds.
@@ -61,6 +62,9 @@ pub struct Summary {
     pub hash: String,
     /// Where the mesh was written, if it was.
     pub export: Option<String>,
+    /// How long samples took to the screen, where there was a window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_to_present: Option<PresentSummary>,
 }
 
 impl Default for TickStatistics {

@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::present_latency::{PresentLatency, PresentedFrame};
+use glam::DVec2;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
 use sculptd_engine::desktop_layout::{DesktopLayout, PenPlace};
@@ -71,6 +73,8 @@ pub struct WindowLink(Arc<Mutex<LinkState>>);
 struct LinkState {
     standing: WindowStanding,
     claims: WindowClaims,
+    view: Option<[DVec2; 2]>,
+    presented: PresentLatency,
     session: Option<PathBuf>,
     wanted: Option<DisplayVariables>,
 }
@@ -111,6 +115,28 @@ impl WindowLink {
     /// The window has told the daemon of another desktop.
     pub fn claim_desktop(&self, desktop: DesktopLayout) {
         self.state().claims.desktop = desktop;
+    }
+
+    /// The view's top left corner and its size, in pixels of the desktop; `None` before the window
+    /// has drawn, and without one.
+    pub fn view_on_desktop(&self) -> Option<[DVec2; 2]> {
+        let state = self.state();
+        state.view.filter(|_| state.standing == WindowStanding::Open)
+    }
+
+    /// The window has moved, or its panels leave another part of it free.
+    pub fn set_view_on_desktop(&self, corner: DVec2, size: DVec2) {
+        self.state().view = Some([corner, size]);
+    }
+
+    /// A frame has shown a sample that none before it has.
+    pub fn record_presented(&self, frame: &PresentedFrame) {
+        self.state().presented.record(frame);
+    }
+
+    /// How long samples took to the screen.
+    pub fn present_latency(&self) -> PresentLatency {
+        self.state().presented.clone()
     }
 
     /// The window has lent another brush, or given it back.

@@ -1,17 +1,20 @@
 //! Runs inside the virtual machine of `tests/vm/run.sh`: a uhid tablet is plugged in, the daemon's
 //! own binary records it from /dev/hidraw*, the kernel's wacom driver decodes it, and both are
 //! compared with what was sent and with our decoder. Then the plug is pulled in mid-stroke and put
-//! back. Serial pens follow, see [`serial`]. Prints one `VM ok` or `VM FAIL` line for each thing
-//! shown.
+//! back. A Huion under `hid_uclogic` follows, see [`uclogic`], then serial pens, see [`serial`].
+//! Prints one `VM ok` or `VM FAIL` line for each thing shown.
 #![cfg(target_os = "linux")]
 // A test program: it prints its findings and waits for a kernel.
 #![allow(clippy::print_stdout, clippy::disallowed_methods)]
 
 mod serial;
+mod uclogic;
+mod uhid;
+mod usb_over_ip;
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -22,78 +25,12 @@ use sculptd_devices::hid::decoder::Decoder;
 use sculptd_devices::hid::transport::Transport;
 use sculptd_devices::recording::raw;
 use sculptd_devices::serial::Protocol;
-use sculptd_devices::sim::{SimTablet, TabletConfig, journal};
+use sculptd_devices::sim::{PenScript, SimTablet, TabletConfig, journal};
 use sculptd_devices::{Body, DeviceId, Pen, Tool};
+use uhid::{DESCRIPTOR, NONBLOCK, Uhid};
 
 const MODEL: &str = "Wacom PTK-440";
-/// What such a tablet says of itself, as far as the drivers need it: report 2 in nine opaque bytes,
-/// feature 2 in one.
-const DESCRIPTOR: &[u8] = &[
-    0x05, 0x0d, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x09, 0x00, 0x75, 0x08, 0x95, 0x09, 0x15, 0x00,
-    0x26, 0xff, 0x00, 0x81, 0x02, 0x09, 0x00, 0x95, 0x01, 0xb1, 0x02, 0xc0,
-];
-/// `O_NONBLOCK` on Linux.
-const NONBLOCK: i32 = 0o4000;
 const REPORTS: usize = 1200;
-
-/// A virtual HID device, `Documentation/hid/uhid.rst`.
-struct Uhid(File);
-
-impl Uhid {
-    fn plug() -> io::Result<Uhid> {
-        let file =
-            OpenOptions::new().read(true).write(true).custom_flags(NONBLOCK).open("/dev/uhid")?;
-        let mut event = vec![0u8; 4 + 128 + 64 + 64];
-        event[..4].copy_from_slice(&11u32.to_le_bytes());
-        event[4..4 + 7].copy_from_slice(b"PTK-440");
-        event[132..132 + 5].copy_from_slice(b"vm/in");
-        event[196..196 + 6].copy_from_slice(b"SERIAL");
-        event.extend((DESCRIPTOR.len() as u16).to_le_bytes());
-        event.extend(3u16.to_le_bytes());
-        for n in [0x056au32, 0x00b8, 0x0100, 0] {
-            event.extend(n.to_le_bytes());
-        }
-        event.extend(DESCRIPTOR);
-        event.resize(4376, 0);
-        (&file).write_all(&event)?;
-        Ok(Uhid(file))
-    }
-
-    /// Answers what the drivers ask; every wait goes through here.
-    fn serve(&mut self, time: Duration) -> io::Result<()> {
-        let mut left = time.as_millis();
-        loop {
-            let mut event = [0u8; 4380];
-            while let Ok(n) = self.0.read(&mut event) {
-                if n < 12 {
-                    break;
-                }
-                let reply = match u32::from_le_bytes([event[0], event[1], event[2], event[3]]) {
-                    // Get report: the mode is 2, anything else is refused.
-                    9 if event[8] == 2 => {
-                        [&10u32.to_le_bytes()[..], &event[4..8], &[0, 0, 2, 0, 2, 2]].concat()
-                    }
-                    9 => [&10u32.to_le_bytes()[..], &event[4..8], &[5, 0, 0, 0]].concat(),
-                    13 => [&14u32.to_le_bytes()[..], &event[4..8], &[0, 0]].concat(),
-                    _ => continue,
-                };
-                self.0.write_all(&reply)?;
-            }
-            if left == 0 {
-                return Ok(());
-            }
-            std::thread::sleep(Duration::from_millis(1));
-            left -= 1;
-        }
-    }
-
-    fn report(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let mut event = 12u32.to_le_bytes().to_vec();
-        event.extend((bytes.len() as u16).to_le_bytes());
-        event.extend(bytes);
-        self.0.write_all(&event)
-    }
-}
 
 /// The kernel's own reading, from evdev: `struct input_event` of 64-bit Linux.
 #[derive(Default, Clone, Copy, PartialEq, Debug)]
@@ -158,12 +95,17 @@ fn found() -> (Found, Identity) {
 
 /// Reports of the journal's strokes, as the tablet would send them.
 fn reports(found: &Found) -> Vec<Vec<u8>> {
+    reports_of(found, &journal().pen)
+}
+
+/// The same of another script, drawn on the journal's area.
+fn reports_of(found: &Found, script: &PenScript) -> Vec<Vec<u8>> {
     let (journal, a) = (journal(), found.tablet.area);
-    let script =
-        journal.pen.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
+    let end_us = script.end_us();
+    let script = script.fitted(journal.area_mm, glam::vec2(a.width_mm as f32, a.height_mm as f32));
     let (mut tablet, mut end) =
         SimTablet::new(found, script, TabletConfig { keeps: 100_000, ..TabletConfig::default() });
-    tablet.advance(journal.pen.end_us());
+    tablet.advance(end_us);
     let mut buf = [0; 64];
     let mut all = Vec::new();
     while let Ok(n @ 1..) = end.read(&mut buf, 0) {
@@ -300,12 +242,13 @@ fn run() -> io::Result<bool> {
 }
 
 fn main() -> ExitCode {
-    let both = run().and_then(|tablet| {
+    let all = run().and_then(|tablet| {
+        let rewritten = uclogic::run()?;
         let isdv4 = serial::compare(Protocol::Isdv4, "--w8001", 255.0)?;
         let wacom_iv = serial::compare(Protocol::WacomIv, "--wacom_iv", 255.0)?;
-        Ok(tablet && isdv4 && wacom_iv)
+        Ok(tablet && rewritten && isdv4 && wacom_iv)
     });
-    match both {
+    match all {
         Ok(true) => {
             println!("VM PASSED");
             ExitCode::SUCCESS

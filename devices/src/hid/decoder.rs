@@ -9,6 +9,7 @@ use super::pad_state::PadState;
 use crate::catalogue::{Found, Scale, by_descriptor};
 use crate::descriptor::{Descriptor, PadFields, PenLayout};
 use crate::pen_state::{PenConfig, PenScale, PenState};
+use crate::pressure_use::PressureUse;
 use crate::report::{Batch, Parsed};
 use crate::sample::{DeviceId, Sample};
 
@@ -116,6 +117,12 @@ impl Decoder {
             counts.ignored += other.ignored;
         }
         counts
+    }
+
+    /// How the pen's pressure was used so far.
+    pub fn pressure_use(&self) -> PressureUse {
+        let other = self.plain.as_ref().map(|p| p.pressure_use()).unwrap_or_default();
+        self.pen.pressure_use().and(other)
     }
 
     /// Reads one report, its id first where it has one. `t_us` is when it was read; the frames of a

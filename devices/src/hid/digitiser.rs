@@ -9,6 +9,9 @@ const TIP: u32 = 0x000d_0042;
 const BARREL: u32 = 0x000d_0044;
 const SECOND_BARREL: [u32; 2] = [0x000d_005a, 0x000d_0046];
 
+/// Report of Huion's protocol, version 2, as `hid-uclogic` hands it out.
+const HUION_V2: u8 = 0x08;
+
 /// A ring or strip with fewer places than this has no place 0.
 const FEW_PLACES: i32 = 16;
 
@@ -36,7 +39,24 @@ fn degrees(bits: &Option<Bits>, b: &[u8], full: f64) -> Option<f32> {
     bits.as_ref().and_then(|f| f.read(b).map(|v| f.degrees(v, full) as f32))
 }
 
+/// Whether this is the last report of a pen that leaves a Huion under `hid-uclogic`. The tablet
+/// sends flags of 0 then, and bit 7 in all others; the driver inverts bit 6 and calls it "in range"
+/// (Linux `hid-uclogic-params.c`, `UCLOGIC_PARAMS_PEN_INRANGE_INVERTED`), so that the pen stays in
+/// range for everybody who reads that bit alone. Its coordinates of 24 bits tell the driver's
+/// reports from others with this id.
+fn leaves_huion(b: &[u8], layout: &PenLayout) -> bool {
+    let wide = layout.x.as_ref().is_some_and(|x| x.len == 24);
+    let inverted = layout.in_range.as_ref().is_some_and(|i| i.start == 14);
+    layout.report_id == Some(HUION_V2)
+        && wide
+        && inverted
+        && b.get(1).is_some_and(|f| f & 0x80 == 0)
+}
+
 fn pen(b: &[u8], layout: &PenLayout) -> Parsed {
+    if leaves_huion(b, layout) {
+        return Parsed::Away;
+    }
     if set(&layout.in_range, b) == Some(false) {
         // A pen that is sensed stays near, as it does in the kernel's generic Wacom driver.
         return if set(&layout.sense, b) == Some(true) { Parsed::Nothing } else { Parsed::Away };
@@ -202,6 +222,29 @@ mod tests {
                 && (y.span_mm().unwrap() - 152.4).abs() < 0.1
         );
         assert_eq!(d.pens[0].pressure.as_ref().map(|p| p.max), Some(2047));
+    }
+
+    #[test]
+    fn a_huion_under_the_kernels_driver_leaves() {
+        let bits = |start, len| {
+            Some(Bits { start, len, min: 0, max: 50_000, physical: None, unit: 0, exponent: 0 })
+        };
+        let layout = PenLayout {
+            report_id: Some(8),
+            x: bits(16, 24),
+            y: bits(40, 24),
+            tip: bits(8, 1),
+            in_range: bits(14, 1),
+            pressure: bits(64, 16),
+            ..PenLayout::default()
+        };
+        let near = [8, 0xc1, 1, 0, 0, 2, 0, 0, 9, 0, 0, 0];
+        assert!(matches!(pen(&near, &layout), Parsed::Pen(p) if p.tip == Some(true)));
+        let away = [8, 0x40, 1, 0, 0, 2, 0, 0, 0, 0, 0, 0];
+        assert_eq!(pen(&away, &layout), Parsed::Away);
+        // The same flags of another device's report.
+        let narrow = PenLayout { x: bits(16, 16), ..layout };
+        assert!(matches!(pen(&away, &narrow), Parsed::Pen(_)));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::device_info::{DeviceInfo, DeviceKind};
 use super::{HidRecording, RecordingError};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
 use crate::hid::decoder::Decoder;
+use crate::pressure_use::PressureUse;
 use crate::sample::{Body, DeviceId, Sample};
 
 /// One in so many positions may be outside a model's ranges: noise at the edge.
@@ -96,6 +97,11 @@ impl PenPlayer {
             others.filter_map(|(_, d)| d.as_mut()).for_each(|d| d.leave(t_us, emit));
         }
         said.into_iter().for_each(&mut *emit);
+    }
+
+    pub(super) fn pressure_use(&self) -> PressureUse {
+        let all = self.decoders.iter().flatten().map(Decoder::pressure_use);
+        all.fold(PressureUse::default(), PressureUse::and)
     }
 
     pub(super) fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {

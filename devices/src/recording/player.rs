@@ -7,6 +7,7 @@ use super::hands::HandRecording;
 use super::pens::PenPlayer;
 use super::{HidRecording, RecordingError, hands, hid_recorder, raw};
 use crate::catalogue::Catalogue;
+use crate::pressure_use::PressureUse;
 use crate::sample::{DeviceId, Sample};
 
 #[derive(Debug)]
@@ -76,6 +77,14 @@ impl Player {
     /// What the recording is of.
     pub fn device(&self) -> &DeviceInfo {
         &self.info
+    }
+
+    /// How the pressure of its pen was used in what was played so far; of hands, nothing.
+    pub fn pressure_use(&self) -> PressureUse {
+        match &self.source {
+            Source::Pen(p) => p.pressure_use(),
+            Source::Hands(_) => PressureUse::default(),
+        }
     }
 
     /// Adds `us` to every time from here on, so that the first report falls at `us`.

@@ -1,19 +1,14 @@
 //! Every real recording with pressure: nothing is saturated but what the person pressed, and no
 //! size contradicts the descriptor or the catalogue.
 //!
-//! **How a hard press is told from a wrong maximum.** A pen that is pressed as hard as it can be
-//! sends its own highest count, again and again: the highest count of the recording is the maximum
-//! that the decoder uses, and no count lies above it. A wrong maximum lies below counts that the
-//! pen sends: [`Counts::outside`] counts those, and a full pressure at several different counts
-//! shows it, too.
-//!
-//! [`Counts::outside`]: sculptd_devices::hid::decoder::Counts::outside
+//! How a hard press is told from a wrong maximum: [`sculptd_devices::pressure_use`].
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use sculptd_devices::catalogue::{Catalogue, Identification};
 use sculptd_devices::descriptor::Descriptor;
-use sculptd_devices::hid::decoder::Decoder;
+use sculptd_devices::pressure_use::{PressureUse, Saturation};
 use sculptd_devices::recording::{Player, hid_recorder};
 use sculptd_devices::tablet::Tablet;
 use sculptd_devices::{Body, DeviceId};
@@ -22,51 +17,49 @@ use sculptd_devices::{Body, DeviceId};
 fn nothing_is_saturated_but_what_the_person_pressed() {
     let Some(corpus) = super::devices() else { return };
     let catalogue = Catalogue::builtin().unwrap();
-    let mut compared = 0;
+    let mut wrong = Vec::new();
+    let (mut compared, mut hard, mut contradicted) = (0, 0, 0);
     for path in super::files(&corpus.join("hid"), ".hid") {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let Ok(mut player) = Player::open(&path, DeviceId(0), &catalogue) else { continue };
-        let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
-        let recording = hid_recorder::parse(&text).unwrap();
-        let (mut contacts, mut full) = (0u32, 0u32);
-        player.advance(u64::MAX / 2, &mut |s| {
-            if let Body::Pen(p) = s.body
-                && p.tip
-                && p.pressure.is_some()
-            {
-                contacts += 1;
-                full += u32::from(p.pressure == Some(1.0));
-            }
-        });
-        if contacts == 0 {
-            continue;
-        }
+        player.advance(u64::MAX / 2, &mut |_| {});
+        let used = player.pressure_use();
+        let Some(words) = used.in_words() else { continue };
         compared += 1;
-        // What the decoders met outside their ranges, by interface.
-        let (mut outside, mut placed) = (0, 0);
-        for (i, who) in recording.interfaces.iter().enumerate() {
-            let found = match catalogue.identify(who) {
-                Identification::Identified(found) => found,
-                Identification::Ambiguous(many) => {
-                    let by_name = many.iter().find(|f| f.tablet.name == player.device().name);
-                    by_name.unwrap_or(&many[0]).clone()
-                }
-                Identification::Declined(_) => continue,
-            };
-            let mut decoder = Decoder::new(&found, &who.descriptor, DeviceId(0));
-            for report in recording.reports.iter().filter(|r| r.interface == i) {
-                decoder.feed(&report.bytes, report.t_us, &mut |_| {});
-            }
-            outside += decoder.counts().outside;
-            placed += decoder.counts().placed;
+        hard += u32::from(used.saturation() == Saturation::Pressed);
+        println!("{name:45} {words}");
+        if !matches!(used.saturation(), Saturation::Usual | Saturation::Pressed) {
+            wrong.push(format!("{name}: {words}"));
         }
-        println!(
-            "{name:45} {contacts:5} contacts {full:5} at the pen's own maximum {outside:4} outside"
-        );
-        assert!(outside * 100 <= placed, "{name}: {outside} of {placed} outside its ranges");
+        // Read with half of the maximum, the same counts contradict it.
+        if used.highest > used.maximum / 2 + used.maximum / 4 {
+            let halved = halved(&path, &catalogue, used.maximum / 2);
+            assert_eq!(halved.saturation(), Saturation::MaximumTooLow, "{name}: {halved:?}");
+            contradicted += 1;
+        }
     }
-    println!("{compared} recordings with contacts and pressure");
-    assert!(compared >= 25);
+    println!("{compared} recordings with contacts and pressure, {hard} pressed as hard as can be");
+    println!("{contradicted} of them contradict half of their maximum");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(compared >= 25 && contradicted >= 15);
+}
+
+/// The same reports against another maximum.
+fn halved(path: &Path, catalogue: &Catalogue, maximum: u32) -> PressureUse {
+    let mut player = Player::open(path, DeviceId(0), catalogue).unwrap();
+    let full = {
+        player.advance(u64::MAX / 2, &mut |_| {});
+        player.pressure_use().maximum
+    };
+    let mut again = Player::open(path, DeviceId(0), catalogue).unwrap();
+    let mut used = PressureUse::default();
+    again.advance(u64::MAX / 2, &mut |s| {
+        if let Body::Pen(p) = s.body {
+            let counts = p.pressure.map(|p| (f64::from(p) * f64::from(full)).round() as u32);
+            used.take(counts, p.tip, maximum);
+        }
+    });
+    used
 }
 
 /// A tablet that is read by its descriptor may have the name of a model without being it.

@@ -9,32 +9,9 @@ root=$(cd "$here/../../.." && pwd)
 work=${SCULPTD_VM:-$root/target/vm}
 mkdir -p "$work"
 
-skip() {
-    echo "skipped: $1"
-    exit 0
-}
-
-[ "$(uname -m)" = x86_64 ] || skip "written for x86_64, this is $(uname -m)"
-command -v apt-get >/dev/null || skip "no apt-get: the kernel is Debian's"
-missing=
-for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio depmod:kmod inputattach:inputattach; do
-    command -v "${tool%%:*}" >/dev/null || missing="$missing ${tool##*:}"
-done
-if [ -n "$missing" ]; then
-    [ "$(id -u)" = 0 ] || skip "not installed, and not root:$missing"
-    { apt-get update -qq && apt-get install -y -qq --no-install-recommends seabios $missing; } >"$work/apt.log" 2>&1 ||
-        skip "packages cannot be had:$missing (see $work/apt.log)"
-fi
-
-# The kernel's package is unpacked, never installed.
-if [ -z "$(ls "$work"/kernel/boot/vmlinuz-* 2>/dev/null)" ]; then
-    package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends: linux-image-/ { print $2; exit }')
-    [ -n "$package" ] || skip "apt knows no linux-image-amd64"
-    (cd "$work" && rm -f linux-image-*.deb && apt-get download -qq "$package") >>"$work/apt.log" 2>&1 ||
-        skip "$package cannot be downloaded (see $work/apt.log)"
-    dpkg-deb -x "$work"/linux-image-*.deb "$work/kernel"
-fi
-version=$(ls "$work/kernel/lib/modules")
+. "$here/kernel.sh"
+need_tools qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio depmod:kmod inputattach:inputattach
+fetch_kernel
 
 # SCULPTD_VM_BINARY: a daemon that was built already.
 daemon=${SCULPTD_VM_BINARY:-$root/target/release/sculptd}
@@ -52,11 +29,8 @@ for binary in "$daemon" "$root/target/release/examples/vm_guest" "$(command -v i
         cp -L "$library" "$initrd$library"
     done
 done
-# In the order in which they need each other.
-for module in hid hid-generic uhid evdev usb-common usbcore usbhid wacom serio serport wacom_w8001 wacom_serial4; do
-    file=$(find "$work/kernel/lib/modules/$version" -name "$module.ko*" | head -1)
-    [ -z "$file" ] || cp "$file" "$initrd/modules/"
-done
+copy_modules "$initrd" hid hid-generic uhid evdev usb-common usbcore usbhid wacom hid-uclogic usbip-core vhci-hcd \
+    serio serport wacom_w8001 wacom_serial4
 cat >"$initrd/init" <<'INIT'
 #!/bin/busybox sh
 /bin/busybox mount -t proc proc /proc
@@ -65,9 +39,9 @@ cat >"$initrd/init" <<'INIT'
 /bin/busybox mount -t tmpfs tmp /tmp
 /bin/busybox mkdir -p /dev/pts
 /bin/busybox mount -t devpts devpts /dev/pts
-for m in hid hid-generic uhid evdev usb-common usbcore usbhid wacom serio serport wacom_w8001 wacom_serial4; do
-    [ -e "/modules/$m.ko" ] && /bin/busybox insmod "/modules/$m.ko"
-done
+while read -r m; do
+    /bin/busybox insmod "/modules/$m"
+done </modules/list
 RUST_LOG=warn /bin/vm_guest
 /bin/busybox poweroff -f
 INIT

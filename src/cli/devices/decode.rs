@@ -54,8 +54,10 @@ pub(super) fn decode(
     let mut player = Player::open(path, DeviceId(0), catalogue).map_err(recording_fail)?;
     let mut rows = Vec::new();
     player.advance(u64::MAX / 4, &mut |sample| rows.extend(row(&sample)));
+    let used = player.pressure_use().in_words();
     let info = player.device();
-    for note in &info.notes {
+    let notes: Vec<String> = info.notes.iter().cloned().chain(used).collect();
+    for note in &notes {
         eprintln!("{note}");
     }
     if let Some(out) = csv {
@@ -69,12 +71,7 @@ pub(super) fn decode(
         write_text(out, &text)?;
     }
     let area = info.area_mm;
-    let decoded = Decoded {
-        device: info.name.clone(),
-        area_mm: [area.x, area.y],
-        notes: info.notes.clone(),
-        rows,
-    };
+    let decoded = Decoded { device: info.name.clone(), area_mm: [area.x, area.y], notes, rows };
     if csv.is_some() && !json {
         return Ok(());
     }

@@ -97,6 +97,17 @@ fn merged_brush(
     Ok((brush.clamped(), None))
 }
 
+/// The pens whose rings are shown, and where: `view` is the view's corner and size on the desktop.
+fn pens(shown: &Published, view: Option<[glam::DVec2; 2]>) -> Vec<status::PenStatus> {
+    let all = shown.pens.iter().flatten();
+    all.map(|(id, pen)| status::PenStatus {
+        device: id.0,
+        view: pen.view.to_array(),
+        pixel: view.map(|[corner, size]| (corner + size * pen.view.as_dvec2()).to_array()),
+    })
+    .collect()
+}
+
 /// A path from outside: absolute, and no link at its end.
 fn safe(path: &Path) -> Result<(), RpcError> {
     if !path.is_absolute() || path.components().any(|c| c == std::path::Component::ParentDir) {
@@ -188,6 +199,7 @@ impl Handler for Host {
                 lost: h.lost.load(Relaxed),
                 fault: h.trouble(),
             }),
+            pens: pens(&shown, self.window.view_on_desktop()),
             window: match self.window.standing() {
                 WindowStanding::Headless => status::WindowStatus::Headless,
                 WindowStanding::Opening => status::WindowStatus::Opening,

@@ -2,6 +2,7 @@
 
 use super::state::View;
 use super::theme;
+use sculptd_daemon::present_latency::{ABOUT, CLASSES_US, PresentLatency};
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     let s = view.state;
@@ -37,8 +38,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
         row(ui, "in view", format!("{} of {}", w.drawn.0, w.drawn.1));
         row(ui, "uploaded", format!("{:.1} kB", view.uploaded as f64 / 1024.0));
     });
-    ui.colored_label(quiet, "to clay, to screen: from the pointer's last sample");
+    ui.colored_label(quiet, "to clay, to screen: from the newest sample");
     ui.add_space(8.0);
+    from_sample_to_screen(ui, &view.latency);
     ui.strong("Object");
     grid("object").show(ui, |ui| {
         row(ui, "vertices", format!("{}", s.mesh.vertex_count()));
@@ -49,4 +51,48 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     }
     ui.add_space(8.0);
     ui.colored_label(quiet, view.adapter);
+}
+
+/// The stages between a sample and the screen, and how many frames took how long in all.
+fn from_sample_to_screen(ui: &mut egui::Ui, latency: &PresentLatency) {
+    let quiet = theme::quiet(ui);
+    let Some(summary) = latency.summary() else { return };
+    ui.strong("Sample to screen");
+    egui::Grid::new("sample to screen").num_columns(4).spacing([10.0, 3.0]).show(ui, |ui| {
+        for head in ["ms", "p50", "p99", "max"] {
+            ui.colored_label(quiet, head);
+        }
+        ui.end_row();
+        for (stage, about) in summary.stages.iter().zip(ABOUT) {
+            ui.colored_label(quiet, stage.name).on_hover_text(about);
+            for us in [stage.quantiles.p50, stage.quantiles.p99, stage.quantiles.max] {
+                ui.monospace(format!("{:.1}", us as f64 / 1e3));
+            }
+            ui.end_row();
+        }
+    });
+    let most = summary.histogram.iter().max().copied().unwrap_or(0).max(1);
+    let size = egui::vec2(ui.available_width().min(190.0), 34.0);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let width = rect.width() / summary.histogram.len() as f32;
+    for (i, count) in summary.histogram.iter().enumerate() {
+        let x = rect.left() + i as f32 * width;
+        let top = rect.bottom() - rect.height() * (*count as f32 / most as f32);
+        let bar = egui::Rect::from_min_max(
+            egui::pos2(x + 1.0, top.min(rect.bottom() - 1.0)),
+            egui::pos2(x + width - 1.0, rect.bottom()),
+        );
+        ui.painter().rect_filled(bar, 0.0, quiet);
+    }
+    let class = |i: usize| match CLASSES_US.get(i) {
+        Some(us) => format!("up to {:.1} ms", *us as f64 / 1e3),
+        None => "longer".to_owned(),
+    };
+    let counted = summary.histogram.iter().enumerate().filter(|(_, n)| **n > 0);
+    let lines: Vec<String> = counted.map(|(i, n)| format!("{}: {n}", class(i))).collect();
+    response.on_hover_text(lines.join("\n"));
+    let first = CLASSES_US[0] as f64 / 1e3;
+    let text = format!("{} frames; {first:.1} ms, and twice as long with each bar", summary.frames);
+    ui.colored_label(quiet, text);
+    ui.add_space(8.0);
 }

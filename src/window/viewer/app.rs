@@ -85,6 +85,7 @@ impl ApplicationHandler<AccessibilityEvent> for App {
             let state = self.wiring.published.load_full();
             open.follow_tablets(&state, &self.wiring);
         }
+        open.events_taken(&self.wiring);
         if open.pacing.frame_is_due(now) {
             open.window.request_redraw();
         }

@@ -13,6 +13,7 @@ use crate::look::Map;
 use crate::panels;
 use crate::panels::state::{UiRequest, UiState, View};
 use sculptd_daemon::Published;
+use sculptd_daemon::present_latency::PresentedFrame;
 use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
 
@@ -123,9 +124,10 @@ impl WindowState {
         let requests = self.panels(&state, wiring, &mut encoder, &view);
         let own_ms = (wiring.clock.now_ns() - begun_ns) as f64 / 1e6;
         self.gpu.queue.submit([encoder.finish()]);
+        let submitted_us = wiring.clock.now_us();
         self.window.pre_present_notify();
         self.gpu.queue.present(texture);
-        self.measure(&state, own_ms, wiring);
+        self.measure(&state, own_ms, (begun_ns / 1000, submitted_us), wiring);
         if self.drawn.replace(state.clone()).is_none() {
             wiring.link.set_standing(WindowStanding::Open);
         }
@@ -217,7 +219,13 @@ impl WindowState {
         texture
     }
 
-    fn measure(&mut self, state: &Published, own_ms: f64, wiring: &Wiring) {
+    fn measure(
+        &mut self,
+        state: &Published,
+        own_ms: f64,
+        (begun_us, submitted_us): (u64, u64),
+        wiring: &Wiring,
+    ) {
         let f = &mut self.figures;
         f.cpu_ms += (own_ms - f.cpu_ms) * 0.1;
         f.worst_cpu_ms = f.worst_cpu_ms.max(own_ms);
@@ -228,7 +236,15 @@ impl WindowState {
         let newest_us = state.figures.newest_us;
         if newest_us != 0 && newest_us != f.newest_us {
             f.newest_us = newest_us;
-            f.input_to_submit_ms = wiring.clock.now_us().saturating_sub(newest_us) as f64 / 1e3;
+            let presented_us = wiring.clock.now_us();
+            f.input_to_submit_ms = presented_us.saturating_sub(newest_us) as f64 / 1e3;
+            wiring.link.record_presented(&PresentedFrame {
+                sampled_us: newest_us,
+                ticked_us: newest_us + (f.input_to_snapshot_ms * 1e3) as u64,
+                begun_us,
+                submitted_us,
+                presented_us,
+            });
         }
     }
 
@@ -256,6 +272,7 @@ impl WindowState {
             uploaded: self.uploaded,
             adapter: &self.adapter,
             frame: self.figures,
+            latency: wiring.link.present_latency(),
             demo_runs: wiring.clock.now_us() < wiring.demo_until_us,
         };
         let ui_state = &mut self.ui_state;

@@ -23,6 +23,15 @@ pub struct Gpu {
     pub software: bool,
 }
 
+/// Of a window on this display. OpenGL needs to know the display before it is begun: without one it
+/// draws into memory only, and no window takes its pictures.
+pub fn instance_on(display: winit::event_loop::OwnedDisplayHandle) -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(
+        display,
+    )))
+}
+
+/// Without a window.
 pub fn instance() -> wgpu::Instance {
     wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
 }

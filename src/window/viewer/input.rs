@@ -9,8 +9,8 @@ use winit::event::{MouseButton, Touch, TouchPhase};
 use super::fingers::{Contact, FingerAction, TouchStep};
 use super::pointer::{Drag, PLAIN, give_back, lent};
 use super::state::WindowState;
-use super::tablets::TABLETS;
 use super::wiring::Wiring;
+use sculptd_daemon::adaptors::TABLET_IDS;
 use sculptd_devices::{Body, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
 use sculptd_engine::stroke::CurveAction;
@@ -50,6 +50,7 @@ impl WindowState {
         let by = (to - self.pointer.at) / self.view_rect().1;
         self.pointer.at = to;
         self.pointer.inside = true;
+        self.take_trail(wiring);
         match self.pointer.drag {
             Drag::Sculpt => self.sample(true, wiring),
             Drag::Orbit => {
@@ -132,6 +133,7 @@ impl WindowState {
         }
         self.camera_animation = None;
         self.pointer.inside = true;
+        self.take_trail(wiring);
         let state = wiring.published.load();
         let view = self.view_point(self.pointer.at);
         let ray = self.camera.ray(view);
@@ -145,7 +147,7 @@ impl WindowState {
         }
         self.pointer.drag = match button {
             // The pen's own samples sculpt, and its buttons have actions of their own.
-            MouseButton::Left if on_clay() && self.pointer_is_a_pen(wiring) => Drag::None,
+            MouseButton::Left if on_clay() && self.press_is_a_pens(wiring) => Drag::None,
             MouseButton::Right | MouseButton::Middle if self.pointer_is_a_pen(wiring) => Drag::None,
             MouseButton::Left if on_clay() => Drag::Sculpt,
             MouseButton::Left => Drag::Orbit,
@@ -197,7 +199,7 @@ impl WindowState {
 
     fn set_up_fingers(&mut self, wiring: &Wiring) {
         let state = wiring.published.load();
-        let pen_is_near = state.tablets.iter().flatten().any(|t| TABLETS.contains(&t.0.0));
+        let pen_is_near = state.tablets.iter().flatten().any(|t| TABLET_IDS.contains(&t.0.0));
         let scale = self.window.scale_factor() as f32;
         self.fingers.set_up(scale, self.ui_state.prefs.two_fingers);
         self.fingers.pen(wiring.clock.now_us(), pen_is_near);

@@ -10,7 +10,7 @@ use winit::window::Window;
 use super::camera_animation::CameraAnimation;
 use super::clay_picture::ClayPictureKey;
 use super::fingers::Fingers;
-use super::gpu::{Gpu, NoViewer, instance};
+use super::gpu::{Gpu, NoViewer, instance_on};
 use super::overlay;
 use super::overlay_mesh::Triangles;
 use super::pacing::{FrameSum, Pacing};
@@ -144,7 +144,7 @@ impl WindowState {
             _ => wanted.with_inner_size(winit::dpi::LogicalSize::new(1280.0, 720.0)),
         };
         let window = Arc::new(events.create_window(wanted).map_err(|e| no_window(e.to_string()))?);
-        let instance = instance();
+        let instance = instance_on(events.owned_display_handle());
         let surface =
             instance.create_surface(window.clone()).map_err(|e| no_window(e.to_string()))?;
         let gpu = Gpu::new(instance, Some(&surface))?;

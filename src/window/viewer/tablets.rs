@@ -15,12 +15,11 @@ use super::state::WindowState;
 use super::tablet_map::{TabletMap, Tablets};
 use super::wiring::Wiring;
 use sculptd_daemon::Published;
+use sculptd_daemon::adaptors::TABLET_IDS;
 use sculptd_devices::DeviceId;
 use sculptd_engine::command::Command;
 use sculptd_engine::desktop_layout::{DesktopLayout, MAX_COVERS, MAX_TABLETS, PenPlace};
 
-/// Ids of tablets and serial pens; the others are no devices of a desktop.
-pub(super) const TABLETS: std::ops::Range<u16> = 0..200;
 /// A map is sent again when it has moved by this share of the view: a third of a pixel.
 const MOVED: f32 = 2e-4;
 
@@ -32,11 +31,41 @@ impl WindowState {
         at.as_dvec2() + DVec2::new(f64::from(corner.x), f64::from(corner.y))
     }
 
-    /// Whether the pointer, where it is now, follows the pen of a tablet in range.
+    /// Whether the pointer, where it is now, follows the pen of a tablet.
     pub(super) fn pointer_is_a_pen(&self, wiring: &Wiring) -> bool {
         let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
-        let in_range = |id: &DeviceId| self.tablets.in_range.contains(id);
-        self.tablets.known.iter().any(|(id, map)| in_range(id) && map.owns(now, at))
+        let since = self.tablets.taken_us;
+        self.tablets.known.iter().any(|(_, map)| map.owns(now, since, at))
+    }
+
+    /// The same of a press: whether the pen's own samples sculpt what this press would.
+    pub(super) fn press_is_a_pens(&self, wiring: &Wiring) -> bool {
+        let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
+        let since = self.tablets.taken_us;
+        let mut all = self.tablets.known.iter().map(|t| &t.1);
+        all.any(|map| map.owns(now, since, at) && !map.touched_unknown())
+    }
+
+    /// Takes where the pens were since the last call.
+    pub(super) fn take_trail(&mut self, wiring: &Wiring) {
+        let tablets = &mut self.tablets;
+        for place in wiring.pen_trail.take() {
+            let at = tablets.known.iter().position(|t| t.0 == place.device);
+            if at.is_none() && (place.share.is_none() || tablets.known.len() >= MAX_TABLETS) {
+                continue;
+            }
+            let at = at.unwrap_or_else(|| {
+                tablets.known.push((place.device, TabletMap::default()));
+                tablets.known.len() - 1
+            });
+            let share = place.share.map(|s| s.as_dvec2());
+            tablets.known[at].1.pen(place.t_us, share, place.tip);
+        }
+    }
+
+    /// Every event that waited was taken.
+    pub(super) fn events_taken(&mut self, wiring: &Wiring) {
+        self.tablets.taken_us = wiring.clock.now_us();
     }
 
     /// Whether the pointer has moved since it was last paired with the pens of tablets.
@@ -47,25 +76,10 @@ impl WindowState {
     /// Looks at where pens and pointer are, learns, and tells the daemon what has changed.
     pub(super) fn follow_tablets(&mut self, state: &Arc<Published>, wiring: &Wiring) {
         let now = wiring.clock.now_us();
-        let tablets = &mut self.tablets;
-        let before = std::mem::take(&mut tablets.in_range);
-        for (id, share) in state.tablets.iter().flatten().filter(|t| TABLETS.contains(&t.0.0)) {
-            tablets.in_range.push(*id);
-            let at = tablets.known.iter().position(|t| t.0 == *id);
-            if at.is_none() && tablets.known.len() >= MAX_TABLETS {
-                continue;
-            }
-            let at = at.unwrap_or_else(|| {
-                tablets.known.push((*id, TabletMap::default()));
-                tablets.known.len() - 1
-            });
-            tablets.known[at].1.pen(state.figures.newest_us.min(now), share.as_dvec2());
-        }
-        for (id, map) in &mut tablets.known {
-            if before.contains(id) && !tablets.in_range.contains(id) {
-                map.left();
-            }
-        }
+        self.tablets.in_range.clear();
+        let shown = state.tablets.iter().flatten().map(|t| t.0);
+        self.tablets.in_range.extend(shown.filter(|id| TABLET_IDS.contains(&id.0)));
+        self.take_trail(wiring);
         if self.pointer_is_unpaired() {
             let moved = self.tablets.paired.replace(self.pointer.at).is_some();
             let at = self.on_screen(self.pointer.at);
@@ -74,8 +88,13 @@ impl WindowState {
                 map.pointer(now, at);
             }
         }
+        let (corner, size) = self.view_rect();
+        wiring.link.set_view_on_desktop(self.on_screen(corner), size.as_dvec2());
         let desktop = self.desktop(wiring);
         if differs(&desktop, &self.tablets.sent) {
+            if desktop.tablets != self.tablets.sent.tablets {
+                tracing::debug!("the tablets on the desktop: {:?}", self.tablet_lines());
+            }
             self.tablets.sent = desktop;
             wiring.link.claim_desktop(desktop);
             let _ = wiring.commands.try_send(Command::DesktopLayout(desktop));

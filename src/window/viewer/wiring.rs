@@ -8,6 +8,7 @@ use arc_swap::ArcSwap;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::CommandSender;
+use sculptd_daemon::pen_trail::PenTrail;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
@@ -17,6 +18,8 @@ use sculptd_geometry::thickness::preset::Preset;
 pub struct Wiring {
     pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
+    /// Where the pens of tablets were, each place once.
+    pub pen_trail: PenTrail,
     /// The pointer's own way into the channel.
     pub pointer: Sender,
     pub pointer_id: DeviceId,

@@ -49,6 +49,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         uploaded: 0,
         adapter: "an adapter",
         frame: FrameFigures::default(),
+        latency: Default::default(),
         demo_runs: s.demo_runs,
     };
     all(ui, &view, &mut s.ui_state, &mut s.asked);

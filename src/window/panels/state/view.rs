@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use sculptd_daemon::Published;
+use sculptd_daemon::present_latency::PresentLatency;
 use sculptd_engine::camera::Camera;
 
 /// What panels see.
@@ -24,6 +25,8 @@ pub struct View<'a> {
     pub adapter: &'a str,
     /// What the window measured of itself.
     pub frame: FrameFigures,
+    /// How long samples took to the screen.
+    pub latency: PresentLatency,
     /// The demo performs.
     pub demo_runs: bool,
 }

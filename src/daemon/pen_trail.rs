@@ -1,0 +1,102 @@
+//! Every place of every tablet's pen, from the tick thread to the window.
+//!
+//! A window learns from it where the desktop puts a pen. The published state alone does not do: a
+//! window looks at it once a frame, and a pen that is drawn by a processor in a slow frame has been
+//! in many places since.
+//!
+//! Law kept here: the tick thread never waits. Where nobody takes the places, the newest are
+//! dropped.
+
+use crossbeam_channel as cc;
+use glam::Vec2;
+
+use sculptd_devices::{Body, DeviceId, Sample};
+
+use crate::adaptors::TABLET_IDS;
+
+/// Places that wait for the window: some ten seconds of two pens at 200 Hz.
+const CAPACITY: usize = 4096;
+
+/// Where a pen was at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrailPoint {
+    /// The tablet.
+    pub device: DeviceId,
+    /// When, on the daemon's clock, microseconds.
+    pub t_us: u64,
+    /// Shares of the tablet's area; `None`: the pen has left the tablet's range.
+    pub share: Option<Vec2>,
+    /// The tip touches.
+    pub tip: bool,
+}
+
+/// The tick thread's end.
+#[derive(Debug)]
+pub struct PenTrailSender(cc::Sender<TrailPoint>);
+
+/// The window's end. Each place comes out of one of the clones.
+#[derive(Debug, Clone)]
+pub struct PenTrail(cc::Receiver<TrailPoint>);
+
+/// Both ends.
+pub fn pen_trail() -> (PenTrailSender, PenTrail) {
+    let (to, from) = cc::bounded(CAPACITY);
+    (PenTrailSender(to), PenTrail(from))
+}
+
+impl PenTrailSender {
+    /// Tells of the samples of a tick.
+    pub fn send(&self, samples: &[Sample]) {
+        for sample in samples.iter().filter(|s| TABLET_IDS.contains(&s.device.0)) {
+            if let Body::Pen(pen) = &sample.body {
+                let share = pen.pos_mm / pen.area_mm.max(Vec2::splat(1e-3));
+                let _ = self.0.try_send(TrailPoint {
+                    device: sample.device,
+                    t_us: sample.t_us,
+                    share: pen.in_range.then_some(share),
+                    tip: pen.tip && pen.in_range,
+                });
+            }
+        }
+    }
+}
+
+impl PenTrail {
+    /// What has come since the last call, the oldest first.
+    pub fn take(&self) -> impl Iterator<Item = TrailPoint> + '_ {
+        self.0.try_iter().take(CAPACITY)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_devices::Pen;
+
+    #[test]
+    fn a_tablets_places_come_in_order_and_nobody_waits() {
+        let (to, from) = pen_trail();
+        let sample = |device, i: u64, in_range| Sample {
+            device: DeviceId(device),
+            t_us: i,
+            device_t_us: None,
+            body: Body::Pen(Pen {
+                in_range,
+                pos_mm: Vec2::new(i as f32, 50.0),
+                area_mm: Vec2::splat(100.0),
+                ..Pen::default()
+            }),
+        };
+        // A pointer's own samples are none of a tablet's.
+        to.send(&[sample(0, 1, true), sample(crate::adaptors::POINTER_ID.0, 2, true)]);
+        to.send(&[sample(0, 3, false)]);
+        let all: Vec<TrailPoint> = from.take().collect();
+        assert_eq!(all.iter().map(|p| p.t_us).collect::<Vec<_>>(), [1, 3]);
+        assert_eq!(all[0].share, Some(Vec2::new(0.01, 0.5)));
+        assert_eq!(all[1].share, None);
+        for i in 0..10_000 {
+            to.send(&[sample(0, i, true)]);
+        }
+        assert_eq!(from.take().count(), CAPACITY);
+    }
+}
