@@ -128,6 +128,10 @@ impl Studio {
             self.tick(&[pen(tick, at + Vec2::new(0.004 * k as f32, 0.0), k < 5)], &[]);
         }
         self.tick(&[], &[]);
+        // What dynamic topology carried over belongs to the stroke.
+        while self.world.report().paused {
+            self.tick(&[], &[]);
+        }
         self.world.hash()
     }
 
