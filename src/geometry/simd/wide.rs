@@ -199,8 +199,8 @@ pub trait Wide: Copy {
     /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it
     /// enters each.
     fn boxes(self, ray: &Prepared, node: &WideNode, t_max: f32, near: &mut [f32; 8]) -> u32;
-    /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included, and
-    /// which are left to [`Prepared::settle_all`].
+    /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included,
+    /// and which are left to [`Prepared::settle_all`].
     fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
     /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which
     /// is finite: an unused box is infinitely far.

@@ -39,6 +39,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             uploaded: 0,
             adapter: "an adapter",
             frame: FrameFigures::default(),
+            latency: Default::default(),
             demo_runs: false,
         };
         kiosk::ui(ui, &view, &screen, &mut s.ui_state, &mut s.asked);

@@ -271,6 +271,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
                 uploaded: 0,
                 adapter: "an adapter",
                 frame: FrameFigures::default(),
+                latency: Default::default(),
                 demo_runs: false,
             };
             *free = all(ui, &view, &mut s.ui_state, &mut s.asked);
