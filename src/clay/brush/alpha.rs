@@ -274,7 +274,9 @@ mod tests {
         let pixels: Vec<u16> = (0..16u16).map(|i| i * 4369 / 16 + 30_000).collect();
         let picture = image::ImageBuffer::<image::Luma<u16>, _>::from_raw(4, 4, pixels.clone())
             .expect("fits");
-        for format in [image::ImageFormat::Png, image::ImageFormat::Tiff] {
+        let formats = [image::ImageFormat::Png, image::ImageFormat::Tiff];
+        let known = if cfg!(feature = "pictures") { 2 } else { 1 };
+        for format in formats.into_iter().take(known) {
             png.clear();
             picture.write_to(&mut std::io::Cursor::new(&mut png), format).expect("written");
             let read = Picture::decode(&png).expect("read");
