@@ -241,7 +241,14 @@ fn run() -> io::Result<bool> {
     println!("{}", tool("xinput", &["list"]).trim());
     show.tell(there, "the X server's libinput has made a pointer of the pen");
     show.approach(SCREEN * 0.5)?;
-    let known = show.find_view()?;
+    let mut known = show.find_view()?;
+    for _ in 0..4 {
+        if known {
+            break;
+        }
+        show.approach(SCREEN * 0.5)?;
+        known = show.find_view()?;
+    }
     let what = format!("the view on the desktop is {:?}", show.view);
     show.tell(known, &what);
     if !known {
