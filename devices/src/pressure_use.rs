@@ -126,8 +126,8 @@ impl PressureUse {
         let why = match self.saturation() {
             Saturation::Usual => "as usual".to_owned(),
             Saturation::Pressed => format!(
-                "the person pressed that hard: reached {} times, {} of them from nearby, over {} of \
-                 {CLASSES} classes of counts, and never exceeded",
+                "the person pressed that hard: reached {} times, {} of them from nearby, over {} \
+                 of {CLASSES} classes of counts, and never exceeded",
                 self.rises + self.begun,
                 self.near,
                 self.classes.count_ones()

@@ -1,7 +1,7 @@
 #!/bin/sh
 # A whole desktop, without hardware: Debian's kernel in software emulation, udev, an X server whose libinput driver reads a
 # uhid tablet, and the daemon's own window on a software adapter, reading the same tablet through hidraw. Draws strokes with
-# the pen and counts what came of them; see tests/vm/desktop.rs. Needs a Debian with root. About six minutes on two cores.
+# the pen and counts what came of them; see tests/vm/desktop.rs. Needs a Debian with root. About seven minutes on two cores.
 # Prints "skipped: ..." and exits 0 where it cannot run.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

@@ -3,7 +3,7 @@
 use std::io;
 use std::process::ExitCode;
 
-use glam::{DMat3, DVec2};
+use glam::{DMat3, DVec2, Vec3};
 use sculptd_engine::camera::Camera;
 use serde_json::{Value, json};
 
@@ -241,7 +241,14 @@ fn run() -> io::Result<bool> {
     println!("{}", tool("xinput", &["list"]).trim());
     show.tell(there, "the X server's libinput has made a pointer of the pen");
     show.approach(SCREEN * 0.5)?;
-    let known = show.find_view()?;
+    let mut known = show.find_view()?;
+    for _ in 0..4 {
+        if known {
+            break;
+        }
+        show.approach(SCREEN * 0.5)?;
+        known = show.find_view()?;
+    }
     let what = format!("the view on the desktop is {:?}", show.view);
     show.tell(known, &what);
     if !known {
@@ -252,7 +259,10 @@ fn run() -> io::Result<bool> {
     show.radius = shown["brush"]["radius"].as_f64().unwrap_or(0.0) as f32;
 
     let before = vertices("before");
-    let extent = before.iter().fold(0.0f32, |m, v| m.max(v.length()));
+    // The measure of brushes is half of the bounding box's diagonal.
+    let lo = before.iter().fold(Vec3::INFINITY, |m, v| m.min(*v));
+    let hi = before.iter().fold(Vec3::NEG_INFINITY, |m, v| m.max(*v));
+    let extent = lo.distance(hi) * 0.5;
     let lines = over_clay(show.middle(), 20);
     let came = show.draw(&lines)?;
     show.tell(came == 20, &format!("20 strokes drawn over the clay, {came} sculpted"));
@@ -273,6 +283,7 @@ fn run() -> io::Result<bool> {
 
     let there = show.tablet.plug()?;
     let m = show.middle();
+    show.approach(m)?;
     show.approach(m)?;
     let lines = over_clay(show.middle(), 6);
     let came = show.draw(&lines)?;
@@ -337,6 +348,7 @@ fn areas(show: &mut Show) -> io::Result<()> {
         // The old map is contradicted: it goes, and another is learned.
         let m = show.middle();
         show.approach(m)?;
+        show.approach(m)?;
         let at = places(show);
         show.ring(&format!("the area {name}"), &at)?;
         let lines = over_clay(show.middle(), 5);
@@ -350,6 +362,7 @@ fn areas(show: &mut Show) -> io::Result<()> {
 /// Keys, ring and barrel button.
 fn controls(show: &mut Show) -> io::Result<()> {
     let m = show.middle();
+    show.approach(m)?;
     show.approach(m)?;
     let pad = |ring: u8, key: u8| [0x0c, ring, key, 0, 0, 0, 0, 0, 0, 0];
     let before = steps();
