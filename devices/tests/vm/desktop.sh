@@ -3,6 +3,10 @@
 # uhid tablet, and the daemon's own window on a software adapter, reading the same tablet through hidraw. Draws strokes with
 # the pen and counts what came of them; see tests/vm/desktop.rs. Needs a Debian with root. About seven minutes on two cores.
 # Prints "skipped: ..." and exits 0 where it cannot run.
+#
+# It has not passed as a whole yet, so the gate does not call it. At three frames a second the map of a cropped area is learned
+# too late after that of a turned one (59 pixels where 2 are allowed), and what follows, keys and a replug, was right only in
+# some runs. Strokes, the ring in the whole, the moved and the turned case, panels and other windows were right.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../.." && pwd)
