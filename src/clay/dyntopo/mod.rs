@@ -44,7 +44,7 @@ impl Clay {
     /// ([`Cuts::work`]) and a little more. Sixteen balls at most are looked at in one call. Part of
     /// the open undo step, if there is one.
     ///
-    /// A budget of [`LEAST_TOPOLOGY_BUDGET`] or more always gets on with at least one page.
+    /// A budget of [`crate::LEAST_TOPOLOGY_BUDGET`] or more always gets on with at least one page.
     pub fn adapt_topology(&mut self, balls: &[Detail], budget: usize, workers: &Workers) -> Cuts {
         let used = self.next_vertex.max(self.next_triangle);
         if used >= LAST_NUMBER || !balls.iter().all(Detail::is_sane) {
