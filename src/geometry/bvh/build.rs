@@ -5,7 +5,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
-use obvhs::splits::split_aabbs_preset;
+use obvhs::splits::split_aabbs_precise;
 use obvhs::triangle::Triangle;
 
 use super::collapse::CollapsePlan;
@@ -22,6 +22,11 @@ pub(super) const PAD: f32 = 1e-6;
 /// The boxes' area over the triangles' area from which on long slanted triangles are put into
 /// several boxes. Triangles of good shape have about 1.5, whichever way they lie.
 const SLANTED: f32 = 6.0;
+/// How often the box of such a triangle is halved, at most.
+const HALVINGS: usize = 12;
+/// Boxes a triangle, over the whole mesh, from which on no more are made; the last halving may
+/// double them.
+const MOST_BOXES: usize = 3;
 
 /// `several`: whether a triangle may be in several leaves.
 pub(super) fn build(mesh: &TriMesh, several: bool, job: &Job) -> Result<Bvh8, Cancelled> {
@@ -107,7 +112,16 @@ fn split(
     }
     let mean = (all / boxes.len() as f64) as f32;
     let mut of: Vec<u32> = (0..used.len() as u32).collect();
-    split_aabbs_preset(boxes, &mut of, &triangles, mean, most);
+    // The preset of `obvhs`, one halving at a time: a giant among a million small triangles would
+    // be cut into thousands.
+    let (low, high) = (mean * 3.0, (mean * 4.0).max(mean * 0.9 + most * 0.1));
+    for _ in 0..HALVINGS {
+        let before = boxes.len();
+        split_aabbs_precise(boxes, &mut of, &triangles, low, high, 1.8, 1.6, 1, 12);
+        if boxes.len() == before || boxes.len() >= MOST_BOXES * triangles.len() {
+            break;
+        }
+    }
     of.into_iter().map(|i| used[i as usize]).collect()
 }
 
