@@ -160,6 +160,17 @@ impl TopologyStroke {
         self.world.step(self.tick, &[], &[Command::Brush(self.brush)]);
     }
 
+    /// A loaded machine must not make the thread that makes pages late.
+    fn wait_for_pages(&self) {
+        let (_silent, never) = mpsc::channel::<()>();
+        for _ in 0..60_000 {
+            if self.supply.ready() >= 64 {
+                break;
+            }
+            let _ = never.recv_timeout(Duration::from_millis(1));
+        }
+    }
+
     /// One tick with the pen at this angle and distance from the middle of the view; the calls.
     fn draw(&mut self, turn: f32, far: f32) -> u64 {
         let area_mm = Vec2::new(self.world.camera().aspect, 1.0) * 100.0;
@@ -191,8 +202,11 @@ fn dynamic_topology_in_its_steady_state_neither_allocates_nor_frees() {
         stroke.brush.negative = round % 4 >= 2;
         stroke.set_brush();
         let vertices = stroke.world.mesh().vertex_count();
-        let calls: u64 =
-            (0..240).map(|i| stroke.draw(i as f32 / 240.0 * std::f32::consts::TAU, 0.12)).sum();
+        let mut calls = 0;
+        for i in 0..240 {
+            stroke.wait_for_pages();
+            calls += stroke.draw(i as f32 / 240.0 * std::f32::consts::TAU, 0.12);
+        }
         let now = stroke.world.mesh().vertex_count();
         println!("round {round}: {vertices} -> {now} vertices, {calls} calls");
         assert!(vertices.abs_diff(now) > 1000, "nothing changed in round {round}");
@@ -211,15 +225,8 @@ fn clay_that_grows_under_a_stroke_takes_its_pages_from_the_supply() {
     stroke.brush.topology.edge = 0.03;
     stroke.set_brush();
     let (before, mut calls) = (stroke.world.mesh().page_count(), 0);
-    let (_silent, never) = mpsc::channel::<()>();
     for i in 0..300 {
-        // A loaded machine must not make the thread that makes pages late.
-        for _ in 0..60_000 {
-            if stroke.supply.ready() >= 64 {
-                break;
-            }
-            let _ = never.recv_timeout(Duration::from_millis(1));
-        }
+        stroke.wait_for_pages();
         let t = i as f32 / 300.0;
         let now = stroke.draw(t * 20.0, 0.02 + 0.22 * t);
         // The first dabs of a stroke open its undo step.
