@@ -30,7 +30,10 @@
 //!    Nothing large is freed on the tick thread, whatever is full: see
 //!    [`sculptd_clay::GarbageSink`].
 //!    Dynamic topology is bounded by counted work, scanning and writing pages included; what does
-//!    not fit is carried over to the next tick. A thread makes its pages in advance.
+//!    not fit is carried over to the next tick. A thread makes its pages in advance. Two ticks may
+//!    be late for it: the one that first takes up a brush that changes topology, which makes room
+//!    by the number of pages, and one with an undo, which finishes what was carried over, some
+//!    twenty milliseconds at most.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.

@@ -8,12 +8,7 @@
 # too late after that of a turned one (59 pixels where 2 are allowed), and what follows, keys and a replug, was right only in
 # some runs. Strokes, the ring in the whole, the moved and the turned case, panels and other windows were right.
 set -eu
-here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../../.." && pwd)
-work=${SCULPTD_VM:-$root/target/vm}
-mkdir -p "$work"
-
-. "$here/kernel.sh"
+. "$(dirname "$0")/kernel.sh"
 need_tools qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio depmod:kmod Xvfb:xvfb
 fetch_kernel
 

@@ -1,4 +1,10 @@
-# Sourced by run.sh and desktop.sh, with $work set to a folder: what both need of the machine that they run on.
+# Sourced by run.sh and desktop.sh: what both need of the machine that they run on. Sets $here to the folder of these scripts,
+# $root to the repository's and $work to the folder that they work in (SCULPTD_VM, else target/vm).
+
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../../.." && pwd)
+work=${SCULPTD_VM:-$root/target/vm}
+mkdir -p "$work"
 
 skip() {
     echo "skipped: $1"

@@ -4,12 +4,7 @@
 # with root or with the packages named below already installed. About two minutes on two cores.
 # Prints "skipped: ..." and exits 0 where it cannot run.
 set -eu
-here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../../.." && pwd)
-work=${SCULPTD_VM:-$root/target/vm}
-mkdir -p "$work"
-
-. "$here/kernel.sh"
+. "$(dirname "$0")/kernel.sh"
 need_tools qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio depmod:kmod inputattach:inputattach
 fetch_kernel
 

@@ -183,8 +183,8 @@ const WIDE: f32 = 0.1;
 pub struct PackHits {
     /// Bit `i` is set where the ray meets triangle `i`.
     pub mask: u32,
-    /// Bit `i` is set where it meets the triangle's line of sight and single precision cannot say
-    /// where: to be decided by [`Prepared::settle_all`].
+    /// Bit `i` is set where it meets triangle `i` and single precision cannot say at which `t`:
+    /// [`Prepared::settle_all`] decides.
     pub unsure: u32,
     /// In lengths of the ray's direction, for the lanes in `mask`.
     pub t: [f32; 4],

@@ -367,6 +367,15 @@ mod tests {
         map
     }
 
+    /// The tablet's area covers a desktop of 1280 by 720 pixels.
+    fn whole() -> ScreenMap {
+        ScreenMap {
+            origin: DVec2::ZERO,
+            across: DVec2::new(1280.0, 0.0),
+            down: DVec2::new(0.0, 720.0),
+        }
+    }
+
     #[test]
     fn the_map_is_right_to_two_pixels_after_a_second() {
         let plain = ScreenMap {
@@ -487,11 +496,7 @@ mod tests {
 
     #[test]
     fn another_map_of_the_desktop_is_learned_within_a_second_of_hovering() {
-        let before = ScreenMap {
-            origin: DVec2::ZERO,
-            across: DVec2::new(1280.0, 0.0),
-            down: DVec2::new(0.0, 720.0),
-        };
+        let before = whole();
         let after = ScreenMap {
             origin: DVec2::new(1280.0, 720.0),
             across: DVec2::new(-1280.0, 0.0),
@@ -514,11 +519,7 @@ mod tests {
 
     #[test]
     fn a_touch_before_the_map_was_known_is_the_pointers() {
-        let truth = ScreenMap {
-            origin: DVec2::ZERO,
-            across: DVec2::new(1280.0, 0.0),
-            down: DVec2::new(0.0, 720.0),
-        };
+        let truth = whole();
         let mut map = hover(&truth, 8_000, false);
         let now = map.trail.back().expect("a place").t_us;
         assert!(!map.touched_unknown(), "it has not touched");
