@@ -3,10 +3,12 @@
 use super::chooser::FileChooser;
 use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
+use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
 use super::pens::PenTrace;
+use super::preferences::Hint;
 use super::preferences::Preferences;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
@@ -15,7 +17,9 @@ use crate::look::Look;
 use sculptd_daemon::remesh_job::Wanted;
 
 /// Which page of the right panel is open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
+)]
 pub enum Tab {
     #[default]
     Look,
@@ -28,6 +32,20 @@ pub enum Tab {
     More,
 }
 
+impl Tab {
+    /// Every page with its name and what it is about.
+    pub const ALL: [(Tab, &str, &str); 8] = [
+        (Tab::Look, "Look", "How the clay is shown"),
+        (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
+        (Tab::Walls, "Walls", "Wall thickness and thin spots"),
+        (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
+        (Tab::Files, "Files", "Open, export, pictures"),
+        (Tab::Devices, "Pens", "Devices and their live values"),
+        (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
+        (Tab::More, "More", "Preferences and messages"),
+    ];
+}
+
 /// What the person has set on the window: nothing of the world.
 #[derive(Debug, Default)]
 pub struct UiState {
@@ -38,6 +56,10 @@ pub struct UiState {
     pub search: Option<SearchBox>,
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
+    pub keys: KeysPage,
+    pub lesson: GhostHand,
+    /// The page that lists all is open.
+    pub help: bool,
     pub files: FilesPage,
     /// The file that is being loaded, and how much of it is done, 0 to 1.
     pub loading: Option<(String, f32)>,
@@ -65,6 +87,13 @@ pub struct UiState {
     pub pad: KioskPad,
     /// A theme and scale that are in force, so that they are set once.
     pub applied: Option<(bool, u32)>,
+}
+
+/// The hand that shows a hint over the clay.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct GhostHand {
+    /// What it shows, and since when, seconds of the context's time.
+    pub shows: Option<(Hint, f64)>,
 }
 
 /// Kept at most.
