@@ -22,16 +22,20 @@ const SECTIONS: [(&str, &[(&str, &str)]); 4] = [
         &[
             ("One finger on the clay", "Sculpt"),
             ("Two fingers", "Turn the view; pinched they zoom"),
-            ("Three fingers", "Slide the view"),
+            ("Three fingers", "Slide the view (page More exchanges the two)"),
             ("Tap with three, with four", "Undo, redo"),
         ],
     ),
     (
         "Bare hands over a tracker",
         &[
-            ("Pinch and move", "Sculpt with the fingertip"),
-            ("Close the hand on the object", "Take it up, turn it, put it down"),
-            ("Hold the palm up", "The menu of the hand"),
+            ("Index finger stretched", "The fingertip pushes the clay"),
+            ("Thumb and index finger closed", "Hold clay, carry it, let it go"),
+            ("Fingers stretched and together", "The palm presses and smooths"),
+            ("Fingers stretched and apart", "Turn the view; with two hands zoom"),
+            ("Fist", "Slide the view"),
+            ("Pinch with both hands", "Hold the sculpture: turn, move, scale it"),
+            ("A fingertip rests in a ball at the left", "Choose from the menu of the hands"),
         ],
     ),
     (

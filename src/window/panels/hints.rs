@@ -45,7 +45,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: Re
         });
     }
     if let Some((hint, ..)) = next.filter(|_| !demo) {
-        ghost(ctx, view, ui_state, hint, free);
+        show(ctx, view, ui_state, hint, free);
     }
 }
 
@@ -76,7 +76,7 @@ fn told(hint: Hint, view: &View<'_>) -> String {
 }
 
 /// The hand over the clay, in time.
-fn ghost(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, hint: Hint, free: Rect) {
+fn show(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, hint: Hint, free: Rect) {
     let now = ctx.input(|i| i.time);
     let shows = &mut ui_state.lesson.shows;
     if shows.is_none_or(|s| s.0 != hint) {

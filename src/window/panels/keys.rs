@@ -107,7 +107,7 @@ fn row(ui: &mut egui::Ui, keys: &KeyMap, action: Action, ui_state: &mut UiState)
                 (false, Some(keys)) => keys.to_string(),
                 (false, None) => "none".to_owned(),
             };
-            let button = egui::Button::selectable(listens, text).min_size([96.0, 20.0].into());
+            let button = egui::Button::new(text).selected(listens).min_size([96.0, 20.0].into());
             let button = ui.add(button).on_hover_text(
                 "Click, then press the new keys. Escape leaves them, Delete takes them away",
             );

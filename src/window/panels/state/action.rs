@@ -1,5 +1,5 @@
-//! Everything that can be asked for by name: one table serves the keys, the search, the radial menu,
-//! the help and the tooltips.
+//! Everything that can be asked for by name: one table serves the keys, the search, the radial
+//! menu, the help and the tooltips.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use egui::Key;
 
 use super::key::KeyCombination;
-use super::ui::Tab;
+use super::tab::Tab;
 use sculptd_clay::brush::{BrushKind, BrushSettings};
 use sculptd_engine::command::Command;
 

@@ -12,39 +12,10 @@ use super::preferences::Hint;
 use super::preferences::Preferences;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
+use super::tab::Tab;
 use super::thickness::WallsPage;
 use crate::look::Look;
 use sculptd_daemon::remesh_job::Wanted;
-
-/// Which page of the right panel is open.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
-)]
-pub enum Tab {
-    #[default]
-    Look,
-    Scene,
-    Walls,
-    Measure,
-    Files,
-    Devices,
-    Loop,
-    More,
-}
-
-impl Tab {
-    /// Every page with its name and what it is about.
-    pub const ALL: [(Tab, &str, &str); 8] = [
-        (Tab::Look, "Look", "How the clay is shown"),
-        (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
-        (Tab::Walls, "Walls", "Wall thickness and thin spots"),
-        (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
-        (Tab::Files, "Files", "Open, export, pictures"),
-        (Tab::Devices, "Pens", "Devices and their live values"),
-        (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
-        (Tab::More, "More", "Preferences and messages"),
-    ];
-}
 
 /// What the person has set on the window: nothing of the world.
 #[derive(Debug, Default)]
@@ -57,7 +28,7 @@ pub struct UiState {
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
     pub keys: KeysPage,
-    pub lesson: GhostHand,
+    pub lesson: LessonHand,
     /// The page that lists all is open.
     pub help: bool,
     pub files: FilesPage,
@@ -91,7 +62,7 @@ pub struct UiState {
 
 /// The hand that shows a hint over the clay.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct GhostHand {
+pub struct LessonHand {
     /// What it shows, and since when, seconds of the context's time.
     pub shows: Option<(Hint, f64)>,
 }
