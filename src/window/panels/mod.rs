@@ -34,6 +34,7 @@ pub mod search;
 pub mod start;
 pub mod state;
 pub mod symmetry;
+pub mod tablet_keys;
 pub mod theme;
 pub mod timing;
 pub mod trim;
