@@ -6,6 +6,7 @@ use super::history::{HistoryVersions, StepPicture};
 use super::kiosk::KioskPad;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
+use super::outliner::Outliner;
 use super::pens::PenTrace;
 use super::preferences::Preferences;
 use super::search::SearchBox;
@@ -51,6 +52,8 @@ pub struct UiState {
     /// A Boolean is under way.
     pub joining: bool,
     pub trial: BooleanTrial,
+    /// What was begun in the outliner.
+    pub outliner: Outliner,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     pub trim: Option<Trim>,
