@@ -1,6 +1,9 @@
 //! Allocations and frees of one thread, counted.
 //!
 //! The law: in the steady state of a stroke the tick thread neither allocates nor frees.
+//!
+//! Each test runs in a process of its own: rayon's queues reclaim memory for the whole process, so
+//! that a thread which takes work from another one's queue may free what other tests retired.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -97,6 +100,9 @@ static COUNTING: Counting = Counting;
 
 #[test]
 fn a_stroke_in_its_steady_state_neither_allocates_nor_frees() {
+    if passed_alone("allocations::a_stroke_in_its_steady_state_neither_allocates_nor_frees") {
+        return;
+    }
     let mut mesh = Clay::build(&shapes::sphere_of_about(200_000), &Job::default()).expect("builds");
     let workers = Workers::new(2);
     workers.warm();
@@ -196,6 +202,10 @@ impl TopologyStroke {
 /// A pen that goes round and round again, with triangles made coarser and finer by turns.
 #[test]
 fn dynamic_topology_in_its_steady_state_neither_allocates_nor_frees() {
+    if passed_alone("allocations::dynamic_topology_in_its_steady_state_neither_allocates_nor_frees")
+    {
+        return;
+    }
     let mut stroke = TopologyStroke::new(0.12);
     for round in 0..10 {
         stroke.brush.topology.edge = [0.15, 0.08][round % 2];
@@ -221,6 +231,9 @@ fn dynamic_topology_in_its_steady_state_neither_allocates_nor_frees() {
 /// tick, and more of them than there were.
 #[test]
 fn clay_that_grows_under_a_stroke_takes_its_pages_from_the_supply() {
+    if passed_alone("allocations::clay_that_grows_under_a_stroke_takes_its_pages_from_the_supply") {
+        return;
+    }
     let mut stroke = TopologyStroke::new(0.08);
     stroke.brush.topology.edge = 0.03;
     stroke.set_brush();

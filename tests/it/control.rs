@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use crate::waiting::{PATIENCE, until};
 use arc_swap::ArcSwap;
 use sculptd_clay::Clay;
 use sculptd_control::METHODS;
@@ -60,7 +61,7 @@ struct Client {
 impl Client {
     fn new(path: &Path) -> Self {
         let out = UnixStream::connect(path).expect("connects");
-        out.set_read_timeout(Some(Duration::from_secs(10))).expect("set");
+        out.set_read_timeout(Some(PATIENCE)).expect("set");
         let lines = BufReader::new(out.try_clone().expect("cloned"));
         Client { out, lines }
     }
@@ -306,15 +307,12 @@ fn half_open_clients_do_not_lock_the_owner_out() {
     // The silent ones are let go in time, and their places are free.
     assert_eq!(silent[0].read_reply(), None, "half a line");
     assert_eq!(silent[2].read_reply(), None, "nothing");
-    let served = (0..100).any(|_| ask("status")["result"].is_object());
-    assert!(served);
+    until("there is room again", || ask("status")["result"].is_object());
     assert!(silent[1].status(&json!({}))["result"].is_object(), "the subscriber is served");
     let _full: Vec<Client> = (0..2 * MAX_CLIENTS).map(|_| Client::new(&path)).collect();
-    let stopped = (0..100).any(|_| {
-        let _ = crossbeam_channel::never::<()>().recv_timeout(Duration::from_millis(100));
-        ask("shutdown")["result"] == json!({ "stopping": true })
-    });
-    assert!(stopped && rig.host.stop.load(std::sync::atomic::Ordering::Relaxed));
+    let stops = json!({ "stopping": true });
+    until("a request to stop is heard", || ask("shutdown")["result"] == stops);
+    assert!(rig.host.stop.load(std::sync::atomic::Ordering::Relaxed));
     drop(server);
 }
 

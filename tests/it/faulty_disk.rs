@@ -275,7 +275,7 @@ fn a_gallery_on_a_disk_that_fails_at_any_call_keeps_what_it_said_it_kept() {
             // The disk is well again, and the program starts anew.
             let spool = Spool::start(&here, &there.display().to_string());
             let spool = spool.unwrap_or_else(|e| panic!("{case}: {e}"));
-            crate::hostile::until("all is sent", || spool::waiting(&here).is_empty());
+            crate::waiting::until("all is sent", || spool::waiting(&here).is_empty());
             drop(spool);
             for line in said.lines().filter(|l| l.contains("refused ")) {
                 refused += 1;

@@ -7,22 +7,12 @@ use std::path::Path;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, SystemTime};
 
+use crate::waiting::until;
 use sculptd_daemon::kiosk::share::{Code, Share};
 use sculptd_daemon::kiosk::spool::Spool;
 use sculptd_daemon::kiosk::{gallery, spool};
 use sculptd_devices::Clock;
 use sculptd_geometry::shapes;
-
-fn until(what: &str, mut so: impl FnMut() -> bool) {
-    let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
-    for _ in 0..2000 {
-        if so() {
-            return;
-        }
-        let _ = quiet.recv_timeout(Duration::from_millis(5));
-    }
-    panic!("never: {what}");
-}
 
 #[test]
 fn a_dead_network_loses_nothing_and_the_order_is_kept() {

@@ -7,8 +7,8 @@ mod scene;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
+use crate::waiting::{comes, pause};
 use crossbeam_channel as cc;
 use glam::Vec2;
 use sculptd_clay::brush::Measure;
@@ -29,11 +29,6 @@ use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
-
-#[allow(clippy::disallowed_methods)] // A test waits for another thread.
-fn pause(ms: u64) {
-    std::thread::sleep(Duration::from_millis(ms));
-}
 
 fn pen(tick: u64, at: Vec2, tip: bool) -> Sample {
     let area_mm = Vec2::new(160.0, 100.0);
@@ -138,27 +133,21 @@ impl Studio {
 
     /// Ticks until the work is as it was then.
     fn becomes(&mut self, hash: u64) {
-        for _ in 0..400 {
-            if self.world.hash() == hash {
-                // The history has seen it too.
-                self.settle();
-                return;
+        let became = comes(|| {
+            if self.world.hash() != hash {
+                self.tick(&[], &[]);
             }
-            self.tick(&[], &[]);
-            pause(5);
-        }
-        panic!("never became {hash:016x}; history: {:?}", self.history.trouble());
+            self.world.hash() == hash
+        });
+        assert!(became, "never became {hash:016x}; history: {:?}", self.history.trouble());
+        // The history has seen it too.
+        self.settle();
     }
 
     /// Until the history has written all that was done.
     fn settle(&mut self) {
-        for _ in 0..1000 {
-            if self.history.is_idle() {
-                return;
-            }
-            pause(2);
-        }
-        panic!("the history is behind: {:?}", self.history.trouble());
+        let idle = comes(|| self.history.is_idle());
+        assert!(idle, "the history is behind: {:?}", self.history.trouble());
     }
 
     fn end(mut self) -> PathBuf {

@@ -4,19 +4,9 @@ use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
 
+use crate::waiting::{PATIENCE, until};
 use sculptd_devices::Clock;
-
-/// Waits for a condition, with one generous bound.
-pub fn until(what: &str, mut so: impl FnMut() -> bool) {
-    let clock = Clock::monotonic();
-    let quiet = crossbeam_channel::never::<()>();
-    while !so() {
-        assert!(clock.now_us() < 30_000_000, "never: {what}");
-        let _ = quiet.recv_timeout(Duration::from_millis(5));
-    }
-}
 
 /// As many descriptors as the system gives to this process.
 pub fn more_descriptors() {
@@ -100,7 +90,7 @@ impl Daemon {
         });
         let mut daemon = Daemon { child, folder, figures: None };
         if arguments.contains(&"--metrics") {
-            let line = std::iter::from_fn(|| said.recv_timeout(Duration::from_secs(30)).ok())
+            let line = std::iter::from_fn(|| said.recv_timeout(PATIENCE).ok())
                 .find(|l| l.contains("figures at"))
                 .expect("it says where its figures are");
             let at = line.split("http://").nth(1).and_then(|a| a.split('/').next());

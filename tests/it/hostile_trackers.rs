@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use sculptd_devices::Clock;
 
-use crate::hostile::{Daemon, most_memory_kib, thread_seconds, until};
+use crate::hostile::{Daemon, most_memory_kib, thread_seconds};
+use crate::waiting::until;
 
 /// Longest time from SIGTERM to the end.
 const END_S: f64 = 2.0;

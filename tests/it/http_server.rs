@@ -8,7 +8,8 @@ use sculptd_daemon::http::bounds::{CONNECTIONS, HEAD_BYTES, HEAD_TIME};
 use sculptd_daemon::kiosk::share::Share;
 use sculptd_devices::Clock;
 
-use crate::hostile::{Daemon, descriptors, memory_kib, more_descriptors, until};
+use crate::hostile::{Daemon, descriptors, memory_kib, more_descriptors};
+use crate::waiting::{PATIENCE, until};
 
 /// A share of one file of this many bytes: its address, the file's path on it, the file.
 fn share_of(bytes: usize) -> (tempfile::TempDir, Share, String, Vec<u8>) {
@@ -27,7 +28,7 @@ fn share_of(bytes: usize) -> (tempfile::TempDir, Share, String, Vec<u8>) {
 
 fn send(at: SocketAddr, request: &[u8]) -> TcpStream {
     let mut stream = TcpStream::connect(at).expect("listens");
-    stream.set_read_timeout(Some(Duration::from_secs(20))).expect("set");
+    stream.set_read_timeout(Some(PATIENCE)).expect("set");
     // A server that has seen enough may close before all was sent.
     let _ = stream.write_all(request);
     stream

@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use crate::allocations::{live_bytes, passed_alone};
+use crate::waiting::until;
 
 /// One visit of strokes, brushes, views, undo and a thing in the hands, different for each visitor.
 fn visit(world: &mut sculptd_engine::world::World, visitor: u64, tick: &mut u64) {
@@ -97,18 +98,6 @@ fn after_thirty_visitors_nothing_of_them_is_left() {
         let off = (bytes - first).abs() / first;
         assert!(off <= 0.02, "{bytes} bytes after visitor {visitor}, {first} after the first");
     }
-}
-
-/// Looks until it is so, ten seconds at most.
-fn until(what: &str, mut so: impl FnMut() -> bool) {
-    let (_keep, quiet) = crossbeam_channel::bounded::<()>(1);
-    for _ in 0..1000 {
-        if so() {
-            return;
-        }
-        let _ = quiet.recv_timeout(Duration::from_millis(10));
-    }
-    panic!("never: {what}");
 }
 
 #[test]

@@ -50,6 +50,7 @@ mod time;
 mod tree;
 #[cfg(feature = "viewer")]
 mod viewer;
+mod waiting;
 
 /// The folder of real recordings and meshes, where the environment names one.
 pub fn corpus() -> Option<PathBuf> {

@@ -3,13 +3,11 @@
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
 
+use crate::waiting::{PATIENCE, pause};
 use sculptd_daemon::control::client::call;
 use sculptd_devices::{Clock, serial, sim};
 use serde_json::Value;
-
-const PATIENCE: Duration = Duration::from_secs(10);
 
 struct Daemon {
     child: Child,
@@ -24,11 +22,6 @@ impl Drop for Daemon {
 
 fn sculptd() -> Command {
     Command::new(env!("CARGO_BIN_EXE_sculptd"))
-}
-
-#[allow(clippy::disallowed_methods)] // A test waits for another process.
-fn pause(ms: u64) {
-    std::thread::sleep(Duration::from_millis(ms));
 }
 
 fn replay(session: &Path, until: Option<u64>) -> Value {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
+use crate::waiting::{PATIENCE, until as wait_until};
 use serde_json::Value;
 
 fn sculptd() -> Command {
@@ -134,11 +135,6 @@ impl Drop for Daemon {
     }
 }
 
-#[allow(clippy::disallowed_methods)] // A test waits for another process.
-fn pause(ms: u64) {
-    std::thread::sleep(std::time::Duration::from_millis(ms));
-}
-
 /// As the manager sees it: ready once, alive while it works, its figures for us alone, new settings
 /// without a restart, and a word when it stops.
 #[cfg(unix)]
@@ -147,7 +143,7 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
     use std::io::{BufRead, BufReader, Read, Write};
     let dir = tempfile::tempdir().expect("a folder");
     let manager = std::os::unix::net::UnixDatagram::bind(dir.path().join("notify")).expect("bound");
-    manager.set_read_timeout(Some(std::time::Duration::from_secs(20))).expect("set");
+    manager.set_read_timeout(Some(PATIENCE)).expect("set");
     let hear = |wanted: &str| {
         let mut buffer = [0; 512];
         for _ in 0..50 {
@@ -201,12 +197,7 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
     // New settings: a bad file changes nothing, a good one changes the brush.
     let socket = dir.path().join("sculptd.sock");
     let strength = || {
-        let v = sculptd_daemon::control::client::call(
-            &socket,
-            "status",
-            &Value::Null,
-            std::time::Duration::from_secs(10),
-        );
+        let v = sculptd_daemon::control::client::call(&socket, "status", &Value::Null, PATIENCE);
         v.expect("answers")["brush"]["strength"].as_f64().expect("a number")
     };
     let before = strength();
@@ -228,13 +219,7 @@ fn the_service_manager_hears_and_the_figures_are_ours_alone() {
     hangup();
     let line = until("next start");
     assert!(line.contains("[loop]"), "{line}");
-    for _ in 0..100 {
-        if strength() == 0.5 {
-            break;
-        }
-        pause(20);
-    }
-    assert_eq!(strength(), 0.5);
+    wait_until("the new settings are in force", || strength() == 0.5);
     let pid = daemon.0.id().to_string();
     assert!(Command::new("kill").args(["-TERM", &pid]).status().is_ok_and(|s| s.success()));
     hear("STOPPING=1");

@@ -7,8 +7,8 @@ mod power_cuts;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::Ordering::Relaxed;
-use std::time::Duration;
 
+use crate::waiting::comes;
 use glam::Vec2;
 use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::Config;
@@ -25,11 +25,6 @@ use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 use serde_json::Value;
-
-#[allow(clippy::disallowed_methods)] // A test waits for another thread.
-fn pause(ms: u64) {
-    std::thread::sleep(Duration::from_millis(ms));
-}
 
 #[allow(clippy::disallowed_methods)] // A test's damaged file is meant to be what it is.
 fn put(path: &Path, bytes: &[u8]) {
@@ -117,13 +112,8 @@ impl Script {
     /// Ticks of one group, and waits until it is synced.
     fn group(&mut self, ticks: u64) {
         let last = (0..ticks).map(|_| self.tick()).last().unwrap_or(0);
-        for _ in 0..2000 {
-            if self.written() >= last {
-                return;
-            }
-            pause(2);
-        }
-        panic!("tick {last} was never written: {:?}", self.trouble());
+        let written = comes(|| self.written() >= last);
+        assert!(written, "tick {last} was never written: {:?}", self.trouble());
     }
 
     fn end(&mut self) {
@@ -402,13 +392,10 @@ fn a_disk_that_keeps_everybody_waiting_costs_a_kill_nothing() {
     }
     let last = script.hashes.len() as u64 - 1;
     // The thread that only copies is there at once.
-    for _ in 0..500 {
+    comes(|| {
         let found = session::open(&script.path).expect("opens").input.last().map_or(0, |t| t.tick);
-        if found == last {
-            break;
-        }
-        pause(2);
-    }
+        found == last
+    });
     let opened = session::open(&script.path).expect("opens");
     assert_eq!((opened.input.last().map(|t| t.tick), script.written()), (Some(last), before));
     assert_eq!(hash_of(&opened), script.hashes[last as usize]);
@@ -484,16 +471,13 @@ fn a_full_disk_is_shown_and_journalling_resumes_by_itself() {
     }
     let before = script.written();
     let mut shown = None;
-    for _ in 0..300 {
+    comes(|| {
         for _ in 0..10 {
             script.tick();
         }
-        pause(10);
         shown = script.trouble();
-        if shown.is_some() {
-            break;
-        }
-    }
+        shown.is_some()
+    });
     let shown = shown.expect("the fault is shown");
     assert!(shown.contains("kept in memory") && shown.contains("full"), "{shown}");
     let stuck = script.written();
@@ -503,12 +487,7 @@ fn a_full_disk_is_shown_and_journalling_resumes_by_itself() {
     std::fs::remove_file(&filler).expect("room again");
     // By itself: no further tick is needed.
     let last = script.hashes.len() as u64 - 1;
-    for _ in 0..300 {
-        if script.written() == last {
-            break;
-        }
-        pause(20);
-    }
+    comes(|| script.written() == last);
     assert_eq!((script.written(), script.trouble()), (last, None));
     println!("full from tick {stuck} (synced {before}), resumed, {last} ticks on the disk");
     script.end();

@@ -14,8 +14,9 @@ use sculptd_devices::leap::ClockMap;
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};
 use serde_json::Value;
 
-use crate::hostile::{Daemon, until};
+use crate::hostile::Daemon;
 use crate::hostile_trackers::{rest, shake_hands, text};
+use crate::waiting::until;
 
 /// One frame of a closed hand that moves: nothing in it is a transition but the first.
 fn frame(id: u64) -> Vec<u8> {

@@ -4,6 +4,7 @@
 mod beside;
 mod kiosk;
 mod layout;
+mod learning;
 mod panels;
 mod pictures;
 mod preferences;

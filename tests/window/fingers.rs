@@ -34,7 +34,7 @@ fn go(touch: &mut Driven, ways: &[[(f64, f64); 2]]) {
 /// Makes a gesture until it is seen. A machine that stands still between two fingers brings the
 /// second one after the time in which a gesture begins: the first one has then sculpted, rightly,
 /// which is taken back, and the gesture is made again. One that does neither is lost, and fails.
-fn make(s: &mut Stage, touch: &mut Driven, what: &str, gesture: Gesture) {
+fn make(s: &mut Stage, touch: &mut Driven, what: &str, gesture: &Gesture<'_>) {
     let before = steps(s);
     for _ in 0..5 {
         go(touch, gesture.ways);
@@ -80,15 +80,15 @@ fn one_finger_sculpts_two_turn_the_view_and_three_take_back() {
     // Apart, on the clay: nearer, and nothing is sculpted.
     let ways = &[[(600.0, 360.0), (520.0, 360.0)], [(680.0, 360.0), (760.0, 360.0)]];
     let done = &|s: &Stage| number(&camera(s), "distance") < 0.8 * number(&before, "distance");
-    make(&mut s, &mut touch, "the view has come nearer", Gesture { ways, done });
+    make(&mut s, &mut touch, "the view has come nearer", &Gesture { ways, done });
     let near = camera(&s);
     let ways = &[[(600.0, 330.0), (700.0, 330.0)], [(600.0, 400.0), (700.0, 400.0)]];
     let done = &|s: &Stage| number(&camera(s), "yaw") != number(&near, "yaw");
-    make(&mut s, &mut touch, "the view has turned", Gesture { ways, done });
+    make(&mut s, &mut touch, "the view has turned", &Gesture { ways, done });
     assert_eq!(steps(&s), 3, "two fingers sculpt nothing");
     // A tap of three fingers takes the last stroke back.
     let ways = &[(560.0, 300.0), (640.0, 280.0), (720.0, 300.0)].map(|p| [p, p]);
     let done = &|s: &Stage| steps(s) == 2;
-    make(&mut s, &mut touch, "the last stroke is taken back", Gesture { ways, done });
+    make(&mut s, &mut touch, "the last stroke is taken back", &Gesture { ways, done });
     s.look("fingers-end");
 }

@@ -2,12 +2,11 @@
 
 use std::io;
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
+use super::until;
 use crate::catalogue::Identification;
 use crate::catalogue::{Catalogue, Identity};
 use crate::clock::Clock;
-use crate::device_thread;
 use crate::hid::bus::{Bus, Node};
 use crate::hid::transport::Transport;
 use crate::hid::watch::{HidConfig, HidHandle, choose, start_on};
@@ -53,17 +52,6 @@ impl Sim {
     fn pull(&self, path: &str) {
         self.0.lock().unwrap().retain(|s| s.0.path != path);
     }
-}
-
-fn until(what: &str, mut happened: impl FnMut() -> bool) {
-    for _ in 0..500 {
-        if happened() {
-            return;
-        }
-        let (_hold, stop) = device_thread::pair();
-        stop.wait(Duration::from_millis(10));
-    }
-    panic!("never: {what}");
 }
 
 fn watching(bus: &Sim, config: HidConfig) -> (HidHandle, crate::queue::Receiver) {

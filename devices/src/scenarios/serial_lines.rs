@@ -1,9 +1,10 @@
 use std::time::Duration;
 
+use super::until;
 use crate::clock::Clock;
 use crate::queue::{Receiver, channel};
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
-use crate::serial::{Protocol, SerialConfig, SerialHandle, start};
+use crate::serial::{Protocol, SerialConfig, SerialHandle, SerialStatus, start};
 use crate::sim::{Faults, Journal, SerialPen, SerialPenConfig, journal};
 
 const SOON: Duration = Duration::from_secs(60);
@@ -46,6 +47,12 @@ impl SerialSetup {
             self.got.push(self.rx.next_within(SOON).expect("the promised sample"));
         }
     }
+
+    /// The status once it counts every sample that came: the adaptor counts after it has sent.
+    fn status(&self) -> SerialStatus {
+        until("every sample is counted", || self.handle.status().samples >= self.got.len() as u64);
+        self.handle.status()
+    }
 }
 
 fn pen(s: &Sample) -> Pen {
@@ -75,7 +82,7 @@ fn the_journal_comes_out_of_every_protocol_as_it_went_in() {
                 .map(|k| script.at(s.t_us.saturating_sub(1000 * k)).pos_mm.distance(p.pos_mm));
             worst = worst.max(near.fold(f32::INFINITY, f32::min));
         }
-        let status = setup.handle.status();
+        let status = setup.status();
         println!(
             "{protocol:?}: {} samples, {contacts} in contact, off by {worst:.3} mm at most",
             setup.got.len()
@@ -132,7 +139,7 @@ fn no_bogus_point_from_a_noisy_line() {
             at += 2_500;
             setup.step(at);
         }
-        let status = setup.handle.status();
+        let status = setup.status();
         let c = status.counts;
         let (mut bogus, mut last) = (0, 0);
         for s in setup.got.iter().filter(|s| pen(s).in_range) {
@@ -157,7 +164,7 @@ fn a_port_that_may_be_asked_is_asked_until_something_answers() {
     for protocol in [Protocol::WacomIv, Protocol::Isdv4] {
         let mut setup = setup(protocol, Faults::default(), 133.0, false);
         setup.step(1_000_000);
-        assert_eq!(setup.handle.status().protocol, Some(protocol));
+        assert_eq!(setup.status().protocol, Some(protocol));
     }
     // With nothing named and nothing allowed no port is touched.
     let (factory, _rx) = channel(4);
@@ -174,10 +181,7 @@ fn an_unplug_ends_the_visit() {
     assert_eq!(setup.pen.unplug(), 1);
     let gone = pen(&setup.rx.next_within(SOON).unwrap());
     assert!(!gone.tip && !gone.in_range && gone.buttons == 0);
-    let (_hold, stop) = crate::device_thread::pair();
-    assert!(
-        (0..100).any(|_| !setup.handle.status().connected || stop.wait(Duration::from_millis(20)))
-    );
+    until("the visit is over", || !setup.handle.status().connected);
 }
 
 /// Every byte of a packet cut, lost and doubled in turn: what comes out is only what was sent, and

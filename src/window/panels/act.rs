@@ -80,7 +80,14 @@ pub fn act(
         Action::LightOrDark => ui_state.prefs.light = !ui_state.prefs.light,
         Action::LargerText => ui_state.prefs.scale = (ui_state.prefs.scale + 0.1).min(SCALE.1),
         Action::SmallerText => ui_state.prefs.scale = (ui_state.prefs.scale - 0.1).max(SCALE.0),
-        Action::Hints => ui_state.prefs.hints = HintsFollowed::default(),
+        Action::Help => ui_state.help = !ui_state.help,
+        Action::Keys => ui_state.keys.open = !ui_state.keys.open,
+        Action::Page(tab) => (ui_state.tab, ui_state.hidden) = (tab, false),
+        Action::Brush(kind) if kind != brush.kind => {
+            let taken = view.presets.recalled(&brush, &view.state.kept_brushes, kind);
+            out.push(UiRequest::World(Command::Brush(taken.clamped())));
+        }
+        Action::Lesson => ui_state.prefs.hints = HintsFollowed::default(),
         Action::OpenMesh | Action::Export | Action::Screenshot | Action::Turntable => {
             out.push(UiRequest::Do(action))
         }

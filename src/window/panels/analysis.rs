@@ -8,7 +8,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let quiet = theme::quiet(ui);
     ui.strong("Wall thickness");
     let mut on = ui_state.look.map == Map::Thickness;
-    if ui.checkbox(&mut on, "Live map").on_hover_text(Action::Thickness.tip()).changed() {
+    if ui.checkbox(&mut on, "Live map").on_hover_text(view.tip(Action::Thickness)).changed() {
         super::act::act(Action::Thickness, &ui.ctx().clone(), view, ui_state, out);
     }
     let walls = &mut ui_state.walls;

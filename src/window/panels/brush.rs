@@ -2,6 +2,7 @@
 
 use egui::{Pos2, Sense, Stroke, vec2};
 
+use super::state::action::brush_title;
 use super::state::{Action, UiRequest, View};
 use super::theme;
 use sculptd_clay::brush::{
@@ -82,13 +83,6 @@ fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, al
     });
 }
 
-/// What a button says: `clay-strips` becomes `Clay strips`.
-fn title(kind: BrushKind) -> String {
-    let name = kind.name().replace('-', " ");
-    let mut letters = name.chars();
-    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
-}
-
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let mut brush: BrushSettings = view.state.brush;
     ui.strong("Brush");
@@ -112,24 +106,23 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     more.show(ui, |ui| palette(ui, &mut BrushKind::ALL.iter().filter(|k| !first(k)).copied()));
     own_brushes(ui, view, &mut brush, out);
     if chosen_below {
-        ui.label(format!("Brush: {}", title(view.state.brush.kind)));
+        ui.label(format!("Brush: {}", brush_title(view.state.brush.kind)));
     }
-    let keys = |a: Action, b: Action| {
-        let of = |a: Action| a.entry().keys.map_or(String::new(), |k| k.to_string());
-        format!("{} and {}", of(a), of(b))
-    };
+    let keys = |a: Action, b: Action| format!("{} and {}", view.keys.text(a), view.keys.text(b));
     let radius = egui::Slider::new(&mut brush.radius, 0.005..=1.0).logarithmic(true).text("Radius");
     ui.add(radius).on_hover_text(format!(
-        "Share of the object's size ({}, or F and drag)",
-        keys(Action::Smaller, Action::Larger)
+        "Share of the object's size ({}, or {} and drag)",
+        keys(Action::Smaller, Action::Larger),
+        view.keys.text(Action::DragRadius)
     ));
     let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0).text("Strength");
     ui.add(strength).on_hover_text(format!(
-        "How much one dab does ({}, or Shift+F and drag)",
-        keys(Action::Weaker, Action::Stronger)
+        "How much one dab does ({}, or {} and drag)",
+        keys(Action::Weaker, Action::Stronger),
+        view.keys.text(Action::DragStrength)
     ));
     ui.checkbox(&mut brush.negative, "Carve")
-        .on_hover_text(format!("{}; hold Ctrl for one stroke", Action::Carve.tip()));
+        .on_hover_text(format!("{}; hold Ctrl for one stroke", view.tip(Action::Carve)));
     egui::CollapsingHeader::new("Stroke").default_open(false).show(ui, |ui| path(ui, &mut brush));
     egui::CollapsingHeader::new("More settings").default_open(false).show(ui, |ui| {
         egui::CollapsingHeader::new("Shape of a dab").show(ui, |ui| dab(ui, &mut brush));
@@ -170,7 +163,7 @@ fn own_brushes(
 }
 
 fn own_hint(own: &OwnBrush) -> String {
-    let kind = title(own.settings.kind);
+    let kind = brush_title(own.settings.kind);
     if own.about.is_empty() { kind } else { format!("{kind}: {}", own.about) }
 }
 
@@ -369,7 +362,7 @@ fn profile(kind: BrushKind, d: f32) -> f32 {
 
 /// A button with the profile that the brush leaves.
 fn picture(ui: &mut egui::Ui, kind: BrushKind, chosen: bool) -> egui::Response {
-    let name = title(kind);
+    let name = brush_title(kind);
     let (rect, response) = ui.allocate_exact_size(vec2(66.0, 40.0), Sense::click());
     response.widget_info(|| {
         egui::WidgetInfo::selected(egui::Role::RadioButton, ui.is_enabled(), chosen, name.clone())

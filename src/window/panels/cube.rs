@@ -58,9 +58,9 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<UiRequ
         for ((_, letter, action, colour), depth, at) in sides {
             let ball = Rect::from_center_size(at, vec2(BALL, BALL) * 2.0);
             let response =
-                ui.interact(ball, ui.scope_id().with(action.entry().name), Sense::click());
+                ui.interact(ball, ui.scope_id().with(&action.entry().name), Sense::click());
             response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name)
+                egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name.as_ref())
             });
             let fade = 0.55 + 0.45 * (depth * 0.5 + 0.5);
             // Letters keep their ground; the far balls fade.
@@ -82,7 +82,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<UiRequ
                     Stroke::new(1.5, ui.visuals().text_color()),
                 );
             }
-            if response.on_hover_text(action.tip()).clicked() {
+            if response.on_hover_text(view.tip(*action)).clicked() {
                 (camera.yaw, camera.pitch) =
                     side(*action, &camera).unwrap_or((camera.yaw, camera.pitch));
                 turned = true;

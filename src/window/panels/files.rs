@@ -20,7 +20,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         if ui.add_enabled(named, egui::Button::new("Open")).clicked() || (enter && named) {
             out.push(UiRequest::OpenMesh(PathBuf::from(ui_state.files.open.trim())));
         }
-        if ui.button("Browse...").on_hover_text(Action::OpenMesh.tip()).clicked() {
+        if ui.button("Browse...").on_hover_text(view.tip(Action::OpenMesh)).clicked() {
             out.push(UiRequest::Do(Action::OpenMesh));
         }
     });
@@ -78,18 +78,18 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
                 out.push(UiRequest::Export(path));
             }
         }
-        if ui.button("Save as...").on_hover_text(Action::Export.tip()).clicked() {
+        if ui.button("Save as...").on_hover_text(view.tip(Action::Export)).clicked() {
             out.push(UiRequest::Do(Action::Export));
         }
     });
     ui.colored_label(quiet, "stl, obj, ply, off, glb, 3mf");
     ui.add_space(8.0);
     ui.strong("Pictures");
-    if ui.button("Screenshot").on_hover_text(Action::Screenshot.tip()).clicked() {
+    if ui.button("Screenshot").on_hover_text(view.tip(Action::Screenshot)).clicked() {
         out.push(UiRequest::Do(Action::Screenshot));
     }
     ui.horizontal(|ui| {
-        if ui.button("Turntable").on_hover_text(Action::Turntable.tip()).clicked() {
+        if ui.button("Turntable").on_hover_text(view.tip(Action::Turntable)).clicked() {
             out.push(UiRequest::Do(Action::Turntable));
         }
         let label = ui.label("frames");

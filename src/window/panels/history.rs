@@ -20,10 +20,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     ui.horizontal(|ui| {
         let undo = ui
             .add_enabled(back > 0 || first, egui::Button::new("Undo"))
-            .on_hover_text(Action::Undo.tip());
+            .on_hover_text(view.tip(Action::Undo));
         let redo = ui
             .add_enabled(ahead > 0 || last, egui::Button::new("Redo"))
-            .on_hover_text(Action::Redo.tip());
+            .on_hover_text(view.tip(Action::Redo));
         if undo.clicked() {
             out.push(UiRequest::World(Command::Undo));
         }

@@ -1,24 +1,12 @@
 //! Where the panels lie: tools at the left, pages at the right, the rest over the clay.
 
 use super::act::act;
-use super::state::action;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, hints, history,
-    legend, look, masks, measure, messages, modal, outliner, preferences, pressure_curve, radial,
-    remesh, scene, search, start, symmetry, theme, timing, trim,
+    analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, help, hints, history,
+    keys, legend, look, masks, measure, messages, modal, outliner, preferences, pressure_curve,
+    radial, remesh, scene, search, start, symmetry, theme, timing, trim,
 };
-
-const TABS: [(Tab, &str, &str); 8] = [
-    (Tab::Look, "Look", "How the clay is shown"),
-    (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
-    (Tab::Walls, "Walls", "Wall thickness and thin spots"),
-    (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
-    (Tab::Files, "Files", "Open, export, pictures"),
-    (Tab::Devices, "Pens", "Devices and their live values"),
-    (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
-    (Tab::More, "More", "Preferences and messages"),
-];
 
 /// Width of either panel, points.
 pub const PANEL: f32 = 236.0;
@@ -43,7 +31,7 @@ pub fn all(
         ui_state.applied = Some(wanted);
     }
     ui_state.devices.feel(view);
-    for action in action::pressed(&ctx) {
+    for action in keys::pressed(&ctx, view, ui_state) {
         act(action, &ctx, view, ui_state, out);
     }
     modal::ui(&ctx, view, ui_state, out);
@@ -70,13 +58,19 @@ pub fn all(
     hand_menu::ui(&ctx, view, free);
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, ui_state, free);
-    hints::ui(&ctx, &ui_state.prefs.hints, view.demo_runs, free);
+    hints::ui(&ctx, view, ui_state, free);
     start::ui(&ctx, view, ui_state, free, out);
     chooser::ui(&ctx, ui_state, free, out);
     files::replace(&ctx, ui_state, free, out);
     messages::loading(&ctx, ui_state, free);
     messages::toast(&ctx, ui_state, free);
-    for action in radial::ui(&ctx, ui_state).into_iter().chain(search::ui(&ctx, ui_state)) {
+    keys::ui(&ctx, view, ui_state, free);
+    let chosen = [
+        radial::ui(&ctx, ui_state),
+        search::ui(&ctx, view, ui_state),
+        help::ui(&ctx, view, ui_state, free),
+    ];
+    for action in chosen.into_iter().flatten() {
         act(action, &ctx, view, ui_state, out);
     }
     free
@@ -100,14 +94,14 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     ui.add_space(8.0);
     pressure_curve::ui(ui, view, &ui_state.devices, out);
     ui.add_space(8.0);
-    masks::ui(ui, out);
+    masks::ui(ui, view, out);
     ui.add_space(8.0);
     history::ui(ui, view, ui_state, out);
 }
 
 fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     egui::Grid::new("tabs").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
-        for (i, (tab, name, tip)) in TABS.into_iter().enumerate() {
+        for (i, (tab, name, tip)) in Tab::ALL.into_iter().enumerate() {
             let button =
                 egui::Button::selectable(ui_state.tab == tab, name).min_size([47.0, 22.0].into());
             if ui.add(button).on_hover_text(tip).clicked() {

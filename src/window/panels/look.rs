@@ -36,13 +36,13 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
         }
     });
     ui.add_space(4.0);
-    ui.checkbox(&mut look.flat, "Facets").on_hover_text(Action::Facets.tip());
+    ui.checkbox(&mut look.flat, "Facets").on_hover_text(view.tip(Action::Facets));
     ui.add(egui::Slider::new(&mut look.cavity, 0.0..=2.0).text("Cavity"))
         .on_hover_text("Hollows darker, ridges lighter");
     ui.add(egui::Slider::new(&mut look.shade, 0.0..=2.0).text("Occlusion"))
-        .on_hover_text(Action::Ssao.tip() + ": ambient occlusion in screen space");
-    ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(Action::Wireframe.tip());
-    ui.checkbox(&mut look.grid, "Grid").on_hover_text(Action::Grid.tip());
+        .on_hover_text(view.tip(Action::Ssao) + ": ambient occlusion in screen space");
+    ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(view.tip(Action::Wireframe));
+    ui.checkbox(&mut look.grid, "Grid").on_hover_text(view.tip(Action::Grid));
     ui.checkbox(&mut ui_state.prefs.smooth_edges, "Smooth edges")
         .on_hover_text("Four samples a pixel; costs time where no graphics card draws");
     ui.add_space(8.0);
@@ -50,9 +50,9 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
     ui.horizontal_wrapped(|ui| {
         for (map, name, tip) in [
             (Map::None, "None", "The clay itself".to_owned()),
-            (Map::Mask, "Mask", Action::Mask.tip()),
-            (Map::Thickness, "Thickness", Action::Thickness.tip()),
-            (Map::Distance, "Distance", Action::Distance.tip()),
+            (Map::Mask, "Mask", view.tip(Action::Mask)),
+            (Map::Thickness, "Thickness", view.tip(Action::Thickness)),
+            (Map::Distance, "Distance", view.tip(Action::Distance)),
         ] {
             ui.selectable_value(&mut ui_state.look.map, map, name).on_hover_text(tip);
         }
@@ -60,7 +60,8 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
     ui.add_space(8.0);
     ui.strong("Camera");
     let mut camera = view.camera;
-    ui.checkbox(&mut camera.orthographic, "Orthographic").on_hover_text(Action::Perspective.tip());
+    ui.checkbox(&mut camera.orthographic, "Orthographic")
+        .on_hover_text(view.tip(Action::Perspective));
     let mut degrees = camera.fov_y.to_degrees();
     ui.add_enabled(
         !camera.orthographic,
@@ -70,7 +71,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
     if (degrees - camera.fov_y.to_degrees()).abs() > 0.01 {
         camera.fov_y = degrees.to_radians();
     }
-    if ui.button("Frame the sculpture").on_hover_text(Action::Frame.tip()).clicked() {
+    if ui.button("Frame the sculpture").on_hover_text(view.tip(Action::Frame)).clicked() {
         super::act::act(Action::Frame, &ui.ctx().clone(), view, ui_state, out);
     }
     if camera != view.camera {

@@ -1,6 +1,6 @@
 //! The mask of the whole object.
 
-use super::state::{Action, UiRequest};
+use super::state::{Action, UiRequest, View};
 use super::theme;
 use sculptd_clay::brush::MaskAction;
 use sculptd_engine::command::Command;
@@ -16,7 +16,7 @@ const ACTIONS: [(MaskAction, &str, &str); 8] = [
     (MaskAction::Cavity(0.05), "Hollows", "Hollows are held fast"),
 ];
 
-pub fn ui(ui: &mut egui::Ui, out: &mut Vec<UiRequest>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     egui::CollapsingHeader::new("Mask").default_open(false).show(ui, |ui| {
         egui::Grid::new("masks").num_columns(3).spacing([4.0, 4.0]).show(ui, |ui| {
             for (i, (action, name, tip)) in ACTIONS.into_iter().enumerate() {
@@ -29,7 +29,7 @@ pub fn ui(ui: &mut egui::Ui, out: &mut Vec<UiRequest>) {
                 }
             }
         });
-        let keys = Action::Mask.entry().keys.map_or(String::new(), |k| k.to_string());
+        let keys = view.keys.text(Action::Mask);
         ui.colored_label(theme::quiet(ui), format!("{keys} shows it; the brush mask paints it"));
     });
 }

@@ -131,7 +131,8 @@ fn distance(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mu
     let quiet = theme::quiet(ui);
     ui.strong("Distance");
     let mut on = ui_state.look.map == Map::Distance;
-    if ui.checkbox(&mut on, "Live distance map").on_hover_text(Action::Distance.tip()).changed() {
+    if ui.checkbox(&mut on, "Live distance map").on_hover_text(view.tip(Action::Distance)).changed()
+    {
         super::act::act(Action::Distance, &ui.ctx().clone(), view, ui_state, out);
     }
     let sizes = &mut ui_state.sizes;

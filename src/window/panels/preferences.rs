@@ -8,9 +8,9 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     let p = &mut ui_state.prefs;
     ui.horizontal(|ui| {
         ui.label("Text size");
-        let less = ui.button("-").on_hover_text(Action::SmallerText.tip()).clicked();
+        let less = ui.button("-").on_hover_text(view.tip(Action::SmallerText)).clicked();
         ui.label(format!("{:.0} %", p.scale * 100.0));
-        let more = ui.button("+").on_hover_text(Action::LargerText.tip()).clicked();
+        let more = ui.button("+").on_hover_text(view.tip(Action::LargerText)).clicked();
         p.scale = (p.scale + 0.1 * (f32::from(more) - f32::from(less))).clamp(SCALE.0, SCALE.1);
     });
     ui.checkbox(&mut p.light, "Light panels");
@@ -24,10 +24,23 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
             ui.selectable_value(&mut p.two_fingers, two, name).on_hover_text(three);
         }
     });
-    if ui.button("Show the hints again").clicked() {
-        p.hints = HintsFollowed::default();
+    let teaches = p.hints.hint().is_some();
+    let (name, hints) = match teaches {
+        true => ("Skip the lesson", HintsFollowed::ALL),
+        false => ("First lesson again", HintsFollowed::default()),
+    };
+    if ui.button(name).clicked() {
+        p.hints = hints;
     }
-    if ui.button("Search actions").on_hover_text(Action::Search.tip()).clicked() {
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Keys...").on_hover_text(view.tip(Action::Keys)).clicked() {
+            ui_state.keys.open = true;
+        }
+        if ui.button("Help").on_hover_text(view.tip(Action::Help)).clicked() {
+            ui_state.help = true;
+        }
+    });
+    if ui.button("Search actions").on_hover_text(view.tip(Action::Search)).clicked() {
         ui_state.search = Some(Default::default());
     }
     if view.session.is_none() {

@@ -3,13 +3,13 @@
 use egui::Key;
 
 use super::state::action;
-use super::state::{Action, UiState};
+use super::state::{Action, UiState, View};
 use super::theme;
 
 /// Shown at a time.
 const MOST: usize = 9;
 
-pub fn ui(ctx: &egui::Context, ui_state: &mut UiState) -> Option<Action> {
+pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> Option<Action> {
     let search = ui_state.search.as_mut()?;
     let (up, down, enter, escape) = ctx.input(|i| {
         let p = |k| i.key_pressed(k);
@@ -42,9 +42,9 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState) -> Option<Action> {
                 chosen = found.get(search.at).map(|e| e.action);
             }
             for (i, entry) in found.iter().take(MOST).enumerate() {
-                let keys = entry.keys.map_or(String::new(), |k| k.to_string());
+                let keys = view.keys.text(entry.action);
                 ui.horizontal(|ui| {
-                    if ui.selectable_label(i == search.at, entry.name).clicked() {
+                    if ui.selectable_label(i == search.at, entry.name.as_ref()).clicked() {
                         chosen = Some(entry.action);
                     }
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

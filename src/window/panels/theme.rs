@@ -62,9 +62,10 @@ pub fn alarm(ui: &egui::Ui) -> Color32 {
 
 /// The accent of curves and live values.
 pub fn accent(ui: &egui::Ui) -> Color32 {
-    if ui.visuals().dark_mode {
-        Color32::from_rgb(224, 140, 96)
-    } else {
-        Color32::from_rgb(170, 84, 44)
-    }
+    accent_of(ui.visuals().dark_mode)
+}
+
+/// The same on dark or on light panels.
+pub fn accent_of(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(224, 140, 96) } else { Color32::from_rgb(170, 84, 44) }
 }

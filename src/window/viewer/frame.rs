@@ -12,7 +12,7 @@ use super::state::WindowState;
 use super::wiring::Wiring;
 use crate::look::Map;
 use crate::panels;
-use crate::panels::state::{UiRequest, UiState, View};
+use crate::panels::state::{KeyMap, UiRequest, UiState, View};
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentedFrame;
 use sculptd_daemon::window_link::WindowStanding;
@@ -275,8 +275,12 @@ impl WindowState {
         if !input.events.iter().all(moved) {
             self.pacing.want();
         }
+        if !self.key_map.is_of(&self.ui_state.prefs.keys) {
+            self.key_map = KeyMap::new(&self.ui_state.prefs.keys);
+        }
         let view = View {
             state,
+            keys: &self.key_map,
             presets: &wiring.presets,
             camera: self.camera,
             devices: &self.devices,

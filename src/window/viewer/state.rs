@@ -27,7 +27,7 @@ use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;
 use super::wiring::Wiring;
 use crate::panels::hand_menu::MenuBall;
-use crate::panels::state::{FrameFigures, UiState};
+use crate::panels::state::{FrameFigures, KeyMap, UiState};
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::View as KioskView;
@@ -77,6 +77,8 @@ pub(super) struct WindowState {
     pub(super) listed_us: u64,
     pub(super) uploaded: u64,
     pub(super) figures: FrameFigures,
+    /// The keys, as the preferences have them.
+    pub(super) key_map: KeyMap,
     /// The frames since the last line of the log.
     pub(super) since_listed: FrameSum,
     pub(super) workers: SnapshotWorkers,
@@ -230,6 +232,7 @@ impl WindowState {
             listed_us: 0,
             uploaded: 0,
             figures: FrameFigures::default(),
+            key_map: KeyMap::default(),
             since_listed: FrameSum::default(),
             workers: Default::default(),
             first_picture: None,

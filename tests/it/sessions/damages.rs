@@ -25,12 +25,7 @@ fn session_with_history(dir: &Path) -> Script {
     script.hashes = vec![script.world.hash()];
     for n in 0..TICKS / 60 {
         script.group(60);
-        for _ in 0..2000 {
-            if history.is_idle() {
-                break;
-            }
-            pause(1);
-        }
+        crate::waiting::until("the history is written", || history.is_idle());
         if n == TICKS / 120 {
             let db = rusqlite::Connection::open(&script.path).expect("opens");
             db.query_row("PRAGMA wal_checkpoint(PASSIVE)", [], |_| Ok(())).expect("taken over");

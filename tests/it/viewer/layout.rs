@@ -263,6 +263,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
         |ui: &mut egui::Ui, (s, free): &mut (State, Rect)| {
             let view = View {
                 state: &s.published,
+                keys: &Default::default(),
                 presets: sculptd::presets(),
                 camera: s.published.camera,
                 devices: &[],

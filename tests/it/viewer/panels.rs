@@ -14,8 +14,8 @@ use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::look::Map;
 use sculptd_window::panels::state::{
-    Action, DistanceSummary, FrameFigures, Measured, StepPicture, ThicknessSummary, ThinSpot,
-    TrialStatus, Trim, TrimShape,
+    Action, DistanceSummary, FrameFigures, KeyMap, Measured, StepPicture, ThicknessSummary,
+    ThinSpot, TrialStatus, Trim, TrimShape,
 };
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
@@ -39,8 +39,10 @@ pub(super) fn state(tab: Tab) -> State {
 }
 
 pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
+    let keys = KeyMap::new(&s.ui_state.prefs.keys);
     let view = View {
         state: &s.published,
+        keys: &keys,
         presets: sculptd::presets(),
         camera: s.published.camera,
         devices: &s.devices,
@@ -55,7 +57,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
     all(ui, &view, &mut s.ui_state, &mut s.asked);
 }
 
-fn harness(tab: Tab) -> Harness<'static, State> {
+pub(super) fn harness(tab: Tab) -> Harness<'static, State> {
     let mut h = Harness::builder()
         .with_size([1280.0, 720.0])
         .with_max_steps(64)
@@ -64,7 +66,7 @@ fn harness(tab: Tab) -> Harness<'static, State> {
     h
 }
 
-fn brushes(h: &Harness<'_, State>) -> Vec<sculptd_clay::brush::BrushSettings> {
+pub(super) fn brushes(h: &Harness<'_, State>) -> Vec<sculptd_clay::brush::BrushSettings> {
     let of = |a: &UiRequest| match a {
         UiRequest::World(Command::Brush(b)) => Some(*b),
         _ => None,
@@ -257,27 +259,6 @@ fn holding_space_opens_the_ring_and_letting_go_chooses() {
 }
 
 #[test]
-fn hints_are_gone_for_good_once_followed() {
-    let mut h = harness(Tab::Look);
-    assert!(h.query_by_label_contains("press and drag on the clay").is_some());
-    h.state_mut().ui_state.prefs.hints.touched = true;
-    h.run_steps(2);
-    assert!(h.query_by_label_contains("press and drag on the clay").is_none());
-    assert!(h.query_by_label_contains("Drag beside the clay").is_some());
-    h.state_mut().ui_state.prefs.hints.turned = true;
-    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    h.run_steps(3);
-    assert_eq!(h.state().ui_state.prefs.hints.hint(), None);
-    assert!(h.query_by_label_contains("Shift smooths, Ctrl carves").is_none());
-    // Kept from day to day.
-    let kept = toml::to_string(&h.state().ui_state.prefs).expect("plain data");
-    assert_eq!(
-        sculptd_window::panels::state::Preferences::read(&kept).expect("read").hints.hint(),
-        None
-    );
-}
-
-#[test]
 fn the_device_page_says_what_is_there() {
     let mut h = harness(Tab::Devices);
     assert!(
@@ -353,7 +334,7 @@ fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
 #[test]
 fn the_cube_looks_along_an_axis() {
     let mut h = harness(Tab::Look);
-    h.get_by_label(Action::Front.entry().name).click();
+    h.get_by_label(Action::Front.entry().name.as_ref()).click();
     h.run_steps(2);
     let Some(UiRequest::Camera(c)) = h.state().asked.last() else {
         panic!("{:?}", h.state().asked)

@@ -1,14 +1,23 @@
-//! Everything that can be asked for by name: one table serves the keys, the search, the radial menu
-//! and the tooltips.
+//! Everything that can be asked for by name: one table serves the keys, the search, the radial
+//! menu, the help and the tooltips.
+
+use std::borrow::Cow;
+use std::sync::LazyLock;
 
 use egui::Key;
 
-use sculptd_clay::brush::BrushSettings;
+use super::key::KeyCombination;
+use super::tab::Tab;
+use sculptd_clay::brush::{BrushKind, BrushSettings};
 use sculptd_engine::command::Command;
 
 /// Something to do, without parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
+    /// Takes a brush, as it was last used.
+    Brush(BrushKind),
+    /// Opens a page of the right panel.
+    Page(Tab),
     Undo,
     Redo,
     Carve,
@@ -54,45 +63,19 @@ pub enum Action {
     LightOrDark,
     LargerText,
     SmallerText,
-    Hints,
-}
-
-/// A key with its modifiers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct KeyCombination {
-    pub key: Key,
-    pub ctrl: bool,
-    pub shift: bool,
-}
-
-const fn key(key: Key) -> Option<KeyCombination> {
-    Some(KeyCombination { key, ctrl: false, shift: false })
-}
-const fn shift(key: Key) -> Option<KeyCombination> {
-    Some(KeyCombination { key, ctrl: false, shift: true })
-}
-const fn ctrl(key: Key) -> Option<KeyCombination> {
-    Some(KeyCombination { key, ctrl: true, shift: false })
-}
-const fn ctrl_shift(key: Key) -> Option<KeyCombination> {
-    Some(KeyCombination { key, ctrl: true, shift: true })
-}
-
-impl std::fmt::Display for KeyCombination {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let ctrl = if self.ctrl { "Ctrl+" } else { "" };
-        let shift = if self.shift { "Shift+" } else { "" };
-        write!(f, "{ctrl}{shift}{}", self.key.symbol_or_name())
-    }
+    Help,
+    Keys,
+    Lesson,
 }
 
 /// What an action is called, its keys, and words that find it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ActionEntry {
     pub action: Action,
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
+    /// Of the program's own set ([`super::key_map::KeyMap`] knows those that are in force).
     pub keys: Option<KeyCombination>,
-    pub also: &'static str,
+    also: Cow<'static, str>,
 }
 
 const fn entry(
@@ -101,10 +84,76 @@ const fn entry(
     keys: Option<KeyCombination>,
     also: &'static str,
 ) -> ActionEntry {
-    ActionEntry { action, name, keys, also }
+    ActionEntry { action, name: Cow::Borrowed(name), keys, also: Cow::Borrowed(also) }
 }
 
-pub const ALL: &[ActionEntry] = &[
+const fn key(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination::of(key))
+}
+const fn shift(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination::of(key).shift())
+}
+const fn ctrl(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination::of(key).ctrl())
+}
+const fn ctrl_shift(key: Key) -> Option<KeyCombination> {
+    Some(KeyCombination::of(key).ctrl().shift())
+}
+
+/// Words that find a brush and are not in its name.
+fn also_of(kind: BrushKind) -> &'static str {
+    match kind {
+        BrushKind::Draw => "standard raise sculpt",
+        BrushKind::Smooth | BrushKind::Relax | BrushKind::SlideRelax => "even soften",
+        BrushKind::SurfaceSmooth => "even soften volume",
+        BrushKind::Grab => "move drag",
+        BrushKind::SnakeHook => "pull tentacle horn",
+        BrushKind::Crease => "groove line cut",
+        BrushKind::Flatten | BrushKind::Plane | BrushKind::Scrape => "level planar",
+        BrushKind::Paint => "colour color",
+        BrushKind::Mask => "protect freeze",
+        BrushKind::Texture => "alpha picture stamp",
+        BrushKind::Density | BrushKind::Simplify => "topology triangles detail",
+        _ => "",
+    }
+}
+
+/// What a button says: `clay-strips` becomes `Clay strips`.
+pub fn brush_title(kind: BrushKind) -> String {
+    let name = kind.name().replace('-', " ");
+    let mut letters = name.chars();
+    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
+}
+
+fn brush(kind: BrushKind) -> ActionEntry {
+    let name = format!("{} brush", brush_title(kind));
+    ActionEntry {
+        action: Action::Brush(kind),
+        name: name.into(),
+        keys: None,
+        also: also_of(kind).into(),
+    }
+}
+
+/// Every action: those of the table, the brushes, the pages.
+pub fn all() -> &'static [ActionEntry] {
+    static ALL: LazyLock<Vec<ActionEntry>> = LazyLock::new(|| {
+        let brushes = BrushKind::ALL.iter().map(|k| brush(*k));
+        let pages = Tab::ALL.into_iter().map(|(tab, name, about)| {
+            let name = format!("Page: {name}");
+            ActionEntry {
+                action: Action::Page(tab),
+                name: name.into(),
+                keys: None,
+                also: about.to_lowercase().into(),
+            }
+        });
+        FIXED.iter().cloned().chain(brushes).chain(pages).collect()
+    });
+    &ALL
+}
+
+const FIXED: &[ActionEntry] = &[
     entry(Action::Undo, "Undo", ctrl(Key::Z), "back"),
     entry(Action::Redo, "Redo", ctrl_shift(Key::Z), "again"),
     entry(Action::Carve, "Carve or raise", key(Key::X), "invert negative dig subtract"),
@@ -155,48 +204,37 @@ pub const ALL: &[ActionEntry] = &[
     entry(Action::LightOrDark, "Light or dark", None, "theme preferences"),
     entry(Action::LargerText, "Larger text", ctrl(Key::Plus), "scale zoom"),
     entry(Action::SmallerText, "Smaller text", ctrl(Key::Minus), "scale zoom"),
-    entry(Action::Hints, "Show the hints again", None, "help first"),
+    entry(Action::Lesson, "First lesson", None, "tutorial learn help begin hints"),
+    entry(Action::Help, "Help", key(Key::F1), "manual what how"),
+    entry(Action::Keys, "Change the keys", None, "shortcuts hotkeys keyboard blender zbrush"),
 ];
 
 impl Action {
     pub fn entry(self) -> &'static ActionEntry {
-        ALL.iter().find(|e| e.action == self).unwrap_or(&ALL[0])
+        let all = all();
+        all.iter().find(|e| e.action == self).unwrap_or(&all[0])
     }
 
-    /// The name, and the keys in brackets: for a tooltip.
-    pub fn tip(self) -> String {
-        let e = self.entry();
-        e.keys.map_or(e.name.to_owned(), |k| format!("{} ({k})", e.name))
+    /// The name in the file of preferences: `mirror-x`, `brush-clay-strips`, `page-look`.
+    pub fn id(self) -> String {
+        match self {
+            Action::Brush(kind) => format!("brush-{}", kind.name()),
+            Action::Page(tab) => format!("page-{}", kebab(&format!("{tab:?}"))),
+            _ => kebab(&format!("{self:?}")),
+        }
     }
 }
 
-/// Actions whose keys went down this frame, while nobody types.
-pub fn pressed(ctx: &egui::Context) -> Vec<Action> {
-    let typing = ctx.text_edit_focused();
-    ctx.input(|i| {
-        let mut out = Vec::new();
-        for event in &i.events {
-            let egui::Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else {
-                continue;
-            };
-            let (ctrl, shift) = (modifiers.command || modifiers.ctrl, modifiers.shift);
-            let is = |k: Key| *key == k || *physical_key == Some(k);
-            // Some keyboards say "=" where "+" is meant.
-            let plus = ctrl && *key == Key::Equals;
-            out.extend(ALL.iter().filter_map(|e| {
-                let k = e.keys?;
-                let found = (is(k.key) || (plus && k.key == Key::Plus))
-                    && k.ctrl == ctrl
-                    && (k.shift == shift || k.key == Key::Plus)
-                    && !modifiers.alt;
-                (found && (!typing || k.ctrl)).then_some(e.action)
-            }));
-            if is(Key::Y) && ctrl && !typing {
-                out.push(Action::Redo);
-            }
+/// `MirrorX` becomes `mirror-x`.
+fn kebab(name: &str) -> String {
+    let mut out = String::new();
+    for (i, c) in name.char_indices() {
+        if i > 0 && c.is_uppercase() {
+            out.push('-');
         }
-        out
-    })
+        out.extend(c.to_lowercase());
+    }
+    out
 }
 
 /// The brush after an action, where the action is one of the brush.
@@ -220,7 +258,7 @@ pub fn on_brush(action: Action, mut brush: BrushSettings) -> Option<Command> {
 pub fn search(text: &str) -> Vec<&'static ActionEntry> {
     let text = text.to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
-    let mut found: Vec<(u8, &ActionEntry)> = ALL
+    let mut found: Vec<(u8, &ActionEntry)> = all()
         .iter()
         .filter_map(|e| {
             let name = e.name.to_lowercase();
@@ -244,20 +282,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_action_stands_once_and_no_two_share_keys() {
-        for (i, a) in ALL.iter().enumerate() {
-            for b in &ALL[i + 1..] {
+    fn every_action_stands_once_and_has_a_name_of_its_own_in_files() {
+        for (i, a) in all().iter().enumerate() {
+            for b in &all()[i + 1..] {
                 assert_ne!(a.action, b.action);
-                assert!(a.keys.is_none() || a.keys != b.keys, "{} and {}", a.name, b.name);
+                assert_ne!(a.action.id(), b.action.id());
+                assert_ne!(a.name, b.name);
             }
         }
+        assert_eq!(Action::MirrorX.id(), "mirror-x");
+        assert_eq!(Action::Brush(BrushKind::ClayStrips).id(), "brush-clay-strips");
+        assert_eq!(Action::Page(Tab::Look).id(), "page-look");
     }
 
     #[test]
     fn a_search_finds_by_name_and_by_other_words() {
         assert_eq!(search("thick")[0].action, Action::Thickness);
         assert_eq!(search("stl")[0].action, Action::Export);
-        assert_eq!(search("").len(), ALL.len());
+        assert_eq!(search("clay")[0].action, Action::Brush(BrushKind::Clay));
+        assert_eq!(search("paint")[0].action, Action::Brush(BrushKind::Paint));
+        assert_eq!(search("shortcuts")[0].action, Action::Keys);
+        assert!(search("timing").iter().any(|e| e.action == Action::Page(Tab::Loop)));
+        assert_eq!(search("").len(), all().len());
         assert!(search("quux").is_empty());
     }
 }

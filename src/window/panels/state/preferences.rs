@@ -2,26 +2,59 @@
 
 use std::path::PathBuf;
 
+use super::key_map::KeySettings;
 use crate::look::Look;
 
-/// Which hints were followed so far.
+/// The first lesson, a hint at a time. Each was followed, in any order.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct HintsFollowed {
     pub touched: bool,
     pub turned: bool,
+    pub smoothed: bool,
+    pub carved: bool,
     pub undone: bool,
+    pub mirrored: bool,
+}
+
+/// One hint of the first lesson.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hint {
+    Sculpt,
+    Turn,
+    Smooth,
+    Carve,
+    Undo,
+    Mirror,
 }
 
 impl HintsFollowed {
-    /// The hint for now, if one is left.
-    pub fn hint(&self) -> Option<&'static str> {
-        match (self.touched, self.turned, self.undone) {
-            (false, ..) => Some("Sculpt: press and drag on the clay"),
-            (_, false, _) => Some("Drag beside the clay to turn it, scroll to zoom"),
-            (_, _, false) => Some("Ctrl+Z undoes a stroke, Shift smooths, Ctrl carves"),
-            _ => None,
-        }
+    /// Nothing is left to show.
+    pub const ALL: HintsFollowed = HintsFollowed {
+        touched: true,
+        turned: true,
+        smoothed: true,
+        carved: true,
+        undone: true,
+        mirrored: true,
+    };
+
+    fn hints(&self) -> [(bool, Hint); 6] {
+        [
+            (self.touched, Hint::Sculpt),
+            (self.turned, Hint::Turn),
+            (self.smoothed, Hint::Smooth),
+            (self.carved, Hint::Carve),
+            (self.undone, Hint::Undo),
+            (self.mirrored, Hint::Mirror),
+        ]
+    }
+
+    /// The hint for now, if one is left, with its number and how many there are.
+    pub fn hint(&self) -> Option<(Hint, usize, usize)> {
+        let hints = self.hints();
+        let at = hints.iter().position(|h| !h.0)?;
+        Some((hints[at].1, at + 1, hints.len()))
     }
 }
 
@@ -57,6 +90,7 @@ pub struct Preferences {
     #[serde(alias = "done")]
     pub hints: HintsFollowed,
     pub look: Look,
+    pub keys: KeySettings,
     pub recent: Vec<PathBuf>,
 }
 
@@ -70,6 +104,7 @@ impl Default for Preferences {
             two_fingers: TwoFingers::default(),
             hints: HintsFollowed::default(),
             look: Look::default(),
+            keys: KeySettings::default(),
             recent: Vec::new(),
         }
     }

@@ -3,31 +3,20 @@
 use super::chooser::FileChooser;
 use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
+use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
 use super::outliner::Outliner;
 use super::pens::PenTrace;
+use super::preferences::Hint;
 use super::preferences::Preferences;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
+use super::tab::Tab;
 use super::thickness::WallsPage;
 use crate::look::Look;
 use sculptd_daemon::remesh_job::Wanted;
-
-/// Which page of the right panel is open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub enum Tab {
-    #[default]
-    Look,
-    Scene,
-    Walls,
-    Measure,
-    Files,
-    Devices,
-    Loop,
-    More,
-}
 
 /// What the person has set on the window: nothing of the world.
 #[derive(Debug, Default)]
@@ -39,6 +28,10 @@ pub struct UiState {
     pub search: Option<SearchBox>,
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
+    pub keys: KeysPage,
+    pub lesson: LessonHand,
+    /// The page that lists all is open.
+    pub help: bool,
     pub files: FilesPage,
     /// The file that is being loaded, and how much of it is done, 0 to 1.
     pub loading: Option<(String, f32)>,
@@ -68,6 +61,13 @@ pub struct UiState {
     pub pad: KioskPad,
     /// A theme and scale that are in force, so that they are set once.
     pub applied: Option<(bool, u32)>,
+}
+
+/// The hand that shows a hint over the clay.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LessonHand {
+    /// What it shows, and since when, seconds of the context's time.
+    pub shows: Option<(Hint, f64)>,
 }
 
 /// Kept at most.

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::action::Action;
+use super::key_map::KeyMap;
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentLatency;
 use sculptd_engine::camera::Camera;
@@ -10,6 +12,8 @@ use sculptd_engine::camera::Camera;
 #[derive(Debug)]
 pub struct View<'a> {
     pub state: &'a Published,
+    /// The keys that are in force.
+    pub keys: &'a KeyMap,
     /// What each brush begins with.
     pub presets: &'a sculptd_clay::brush::Presets,
     /// The camera as the window has it: the world's own follows a tick later.
@@ -29,6 +33,14 @@ pub struct View<'a> {
     pub latency: PresentLatency,
     /// The demo performs.
     pub demo_runs: bool,
+}
+
+impl View<'_> {
+    /// The name of an action, and its keys in brackets: for a tooltip.
+    pub fn tip(&self, action: Action) -> String {
+        let name = &action.entry().name;
+        self.keys.of(action).map_or(name.to_string(), |k| format!("{name} ({k})"))
+    }
 }
 
 /// What the window measured of itself.

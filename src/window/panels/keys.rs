@@ -1,0 +1,133 @@
+//! The keys: which action a press is, and the window in which a person changes them.
+
+use super::state::action;
+use super::state::key_map::{KeyMap, KeySet, Press};
+use super::state::{Action, KeyCombination, UiState, View};
+use super::theme;
+
+/// Actions whose keys went down this frame, while nobody types. While the window of the keys
+/// listens, a press is the answer to it and no action.
+pub fn pressed(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> Vec<Action> {
+    let presses = Press::all(ctx);
+    if let Some(action) = ui_state.keys.listening {
+        if let Some(press) = presses.first() {
+            ui_state.keys.listening = None;
+            listen(action, press, ui_state);
+        }
+        return Vec::new();
+    }
+    let typing = ctx.text_edit_focused();
+    let heard = presses.iter().filter(|p| !typing || p.modifiers.command || p.modifiers.ctrl);
+    heard.filter_map(|p| view.keys.pressed(p)).filter(|a| !typing || *a != Action::Redo).collect()
+}
+
+/// The answer to "press a key": Escape leaves them, Delete and Backspace take them away.
+fn listen(action: Action, press: &Press, ui_state: &mut UiState) {
+    let m = press.modifiers;
+    let plain = m.is_none();
+    let keys = match press.key {
+        egui::Key::Escape if plain => return,
+        egui::Key::Delete | egui::Key::Backspace if plain => None,
+        key => Some(KeyCombination { key, ctrl: m.command || m.ctrl, shift: m.shift, alt: m.alt }),
+    };
+    ui_state.prefs.keys.bind(action, keys);
+}
+
+/// The window with every action and its keys.
+pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: egui::Rect) {
+    if !ui_state.keys.open {
+        return;
+    }
+    let mut open = true;
+    let size = (free.size() - egui::vec2(40.0, 80.0)).max(egui::vec2(180.0, 160.0));
+    egui::Window::new("Keys")
+        .open(&mut open)
+        .collapsible(false)
+        .constrain_to(free)
+        .default_pos(free.min + egui::vec2(16.0, 16.0))
+        .default_size(size.min(egui::vec2(400.0, 460.0)))
+        .max_size(size)
+        .show(ctx, |ui| content(ui, view, ui_state));
+    ui_state.keys.open = open;
+    if !open {
+        ui_state.keys.listening = None;
+    }
+}
+
+fn content(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState) {
+    let now = &mut ui_state.prefs.keys;
+    ui.horizontal_wrapped(|ui| {
+        let name = KeySet::ALL.iter().find(|s| s.0 == now.set).map_or("", |s| s.1);
+        egui::ComboBox::from_label("Set").selected_text(name).show_ui(ui, |ui| {
+            for (set, name) in KeySet::ALL {
+                ui.selectable_value(&mut now.set, set, name);
+            }
+        });
+        let changed = !now.own.is_empty();
+        let all = ui.add_enabled(changed, egui::Button::new("As in the set"));
+        if all.on_hover_text("Forgets every key that you have changed").clicked() {
+            now.own.clear();
+        }
+    });
+    ui.horizontal(|ui| {
+        let label = ui.label("Find");
+        ui.text_edit_singleline(&mut ui_state.keys.filter).labelled_by(label.id);
+    });
+    let clashes = view.keys.bindings().iter().filter(|b| view.keys.conflicts(b).next().is_some());
+    match clashes.count() {
+        0 => ui.colored_label(theme::quiet(ui), "Click on the keys of an action to change them."),
+        n => ui.colored_label(theme::alarm(ui), format!("{n} actions share keys with another one")),
+    };
+    for wrong in &view.keys.wrong {
+        ui.colored_label(theme::alarm(ui), wrong);
+    }
+    ui.separator();
+    let found = action::search(&ui_state.keys.filter);
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        let all = view.keys.bindings();
+        for binding in all.iter().filter(|b| found.iter().any(|f| f.action == b.action)) {
+            row(ui, view.keys, binding.action, ui_state);
+        }
+    });
+}
+
+/// One action: its name, its keys, and who else has them.
+fn row(ui: &mut egui::Ui, keys: &KeyMap, action: Action, ui_state: &mut UiState) {
+    let Some(binding) = keys.bindings().iter().find(|b| b.action == action) else { return };
+    let others: Vec<&str> = keys.conflicts(binding).map(|a| a.entry().name.as_ref()).collect();
+    let name = action.entry().name.as_ref();
+    ui.horizontal(|ui| {
+        let wrong = theme::alarm(ui);
+        let text = egui::RichText::new(name);
+        ui.add(egui::Label::new(if others.is_empty() { text } else { text.color(wrong) }));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let listens = ui_state.keys.listening == Some(action);
+            let text = match (listens, binding.keys) {
+                (true, _) => "Press keys...".to_owned(),
+                (false, Some(keys)) => keys.to_string(),
+                (false, None) => "none".to_owned(),
+            };
+            let button = egui::Button::new(text).selected(listens).min_size([96.0, 20.0].into());
+            let button = ui.add(button).on_hover_text(
+                "Click, then press the new keys. Escape leaves them, Delete takes them away",
+            );
+            let label = format!("Keys of {name}");
+            button.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, label.as_str())
+            });
+            if button.clicked() {
+                ui_state.keys.listening = (!listens).then_some(action);
+                // The press that answers is no text.
+                ui.memory_mut(|m| m.stop_text_input());
+            }
+            if binding.own && ui.small_button("Reset").clicked() {
+                ui_state.prefs.keys.own.remove(&action.id());
+            }
+        });
+    });
+    if !others.is_empty() {
+        let done = if binding.own { "this one is done" } else { "a chosen one goes before" };
+        let text = format!("also: {} ({done})", others.join(", "));
+        ui.colored_label(theme::alarm(ui), text);
+    }
+}

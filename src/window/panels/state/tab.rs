@@ -1,0 +1,31 @@
+//! The pages of the right panel.
+
+/// Which page of the right panel is open.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
+)]
+pub enum Tab {
+    #[default]
+    Look,
+    Scene,
+    Walls,
+    Measure,
+    Files,
+    Devices,
+    Loop,
+    More,
+}
+
+impl Tab {
+    /// Every page with its name and what it is about.
+    pub const ALL: [(Tab, &str, &str); 8] = [
+        (Tab::Look, "Look", "How the clay is shown"),
+        (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
+        (Tab::Walls, "Walls", "Wall thickness and thin spots"),
+        (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
+        (Tab::Files, "Files", "Open, export, pictures"),
+        (Tab::Devices, "Pens", "Devices and their live values"),
+        (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
+        (Tab::More, "More", "Preferences and messages"),
+    ];
+}
