@@ -312,7 +312,8 @@ impl HistoryWriter {
         }
         let changes = self.differences(work);
         let scene = self.scene_of(&moment.scene)?;
-        let same = same_scene(self.scene.as_ref(), scene.as_ref());
+        // Not what was seen last: after an error that may not have been written.
+        let same = same_scene(self.tree.scene_at(self.tree.cursor), scene.as_ref());
         (self.view, self.scene) = (moment.scene.clone(), scene.clone());
         let leads_here = |tree: &Tree, id: u64| same_scene(tree.scene_at(id), scene.as_ref());
         let known = match moment.deed {
@@ -498,7 +499,7 @@ impl HistoryWriter {
             s.objects.into_iter().map(|o| (o.id, o.settings)).collect()
         });
         let plain = StoredScene::plain();
-        let stored = self.scene.as_deref().unwrap_or(&plain);
+        let stored = self.tree.scene_at(self.tree.cursor).map_or(&plain, |s| s);
         let stored = stored.objects.iter().map(|o| (o.id, o.settings.clone()));
         if !stored.eq(listed) {
             return Ok(());
