@@ -3,6 +3,8 @@
 //!
 //! Numbers are sent when a person lets go of them, so that a drag is one step of undo.
 
+use std::cell::Cell;
+
 use glam::{DQuat, DVec3, EulerRot};
 
 use super::state::{Outliner, Pairing, UiRequest, UiState, View};
@@ -138,10 +140,10 @@ fn place(
     let now = object.settings.transform;
     let mut shown = outliner.place.filter(|p| p.0 == object.id).map_or(now, |p| p.1);
     let before = shown;
-    let mut done = false;
-    let mut drag = |ui: &mut egui::Ui, value: &mut f64, speed: f64, name: &str| {
+    let done = Cell::new(false);
+    let drag = |ui: &mut egui::Ui, value: &mut f64, speed: f64, name: &str| {
         let response = ui.add(egui::DragValue::new(value).speed(speed).prefix(format!("{name} ")));
-        done |= response.drag_stopped() || response.lost_focus();
+        done.set(done.get() || response.drag_stopped() || response.lost_focus());
     };
     let step = f64::from(extent) * 0.01;
     ui.horizontal(|ui| {
@@ -165,14 +167,14 @@ fn place(
         drag(ui, &mut shown.scale, 0.01, "scale");
         if ui.button("Reset").on_hover_text("Back to where it was made").clicked() {
             shown = ObjectTransform { shift: DVec3::ZERO, ..ObjectTransform::NONE };
-            done = true;
+            done.set(true);
         }
     });
     shown.scale = shown.scale.clamp(1e-6, 1e6);
     if shown != before {
         outliner.place = Some((object.id, shown));
     }
-    if done {
+    if done.get() {
         outliner.place = None;
         if shown != now && shown.is_sane() {
             ask(out, SceneCommand::Transform(object.id, shown));

@@ -165,7 +165,7 @@ impl ObjectBuffers {
 
     /// Sends what is not on the card yet: the frame of the active object and of each other one, and
     /// the pages of those that came or changed. `frame`: that of the world.
-    pub fn send(
+    pub(super) fn send(
         &mut self,
         gpu: &Gpu,
         frame: &Frame,
