@@ -39,7 +39,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let scene = &view.state.scene;
     ui.horizontal(|ui| {
         ui.strong("Objects");
-        ui.menu_button("Add", |ui| {
+        ui.menu_button("Add object", |ui| {
             for (name, shape) in PRIMITIVES {
                 if ui.button(name).clicked() {
                     let shape = shape(f64::from(view.state.extent.max(1e-6)));
@@ -165,7 +165,7 @@ fn place(
     }
     ui.horizontal(|ui| {
         drag(ui, &mut shown.scale, 0.01, "scale");
-        if ui.button("Reset").on_hover_text("Back to where it was made").clicked() {
+        if ui.button("Reset place").on_hover_text("Back to where it was made").clicked() {
             shown = ObjectTransform { shift: DVec3::ZERO, ..ObjectTransform::NONE };
             done.set(true);
         }
