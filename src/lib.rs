@@ -59,8 +59,8 @@
 //!   as data.
 //! * `sculptd-clay` (`src/clay`) knows geometry: pages, dabs, brushes, dynamic topology,
 //!   multiresolution, undo, snapshots, local Booleans.
-//! * `sculptd-engine` (`src/engine`) knows devices, geometry, clay: commands, payloads, the world,
-//!   camera, strokes, hands.
+//! * `sculptd-engine` (`src/engine`) knows devices, geometry, clay: commands, payloads, the scene
+//!   and its undo, the world, camera, strokes, hands.
 //! * `sculptd-control` (`src/control`) knows nobody: the requests, replies and events of the
 //!   control socket as types, their JSON schema, a client.
 //! * `sculptd-daemon` (`src/daemon`) knows all of the above: the tick loop, simulated time,

@@ -318,6 +318,21 @@ impl Clay {
         self.history.forget_redo();
     }
 
+    /// Lets the oldest step go: for a scene, whose undo has one bound over several objects.
+    pub fn forget_oldest_step(&mut self) {
+        self.history.forget_oldest();
+    }
+
+    /// Nothing can be taken back or done again, and no step is open.
+    pub fn forget_steps(&mut self) {
+        self.history.forget();
+    }
+
+    /// Bytes that the steps hold.
+    pub fn undo_bytes(&self) -> u64 {
+        self.history.bytes()
+    }
+
     /// Keeps the totals after a page took the place of `old`.
     pub(super) fn recount(&mut self, index: u32, old: &Page) {
         let (new, old) = (&self.pages[index as usize].topology, &old.topology);

@@ -169,6 +169,23 @@ impl Clay {
         Ok(mesh)
     }
 
+    /// Clay of its own with the same pages, which both share until one of them changes. It has no
+    /// steps to take back. Costs as much as there are pages, not vertices.
+    pub fn duplicate(&self, object_id: u32) -> Clay {
+        let built = Built {
+            pages: self.pages.clone(),
+            vertices: self.vertices,
+            triangles: self.triangles,
+            warnings: Vec::new(),
+            next: [self.next_vertex, self.next_triangle],
+        };
+        let mut twin = Clay::of(built, self.revision);
+        twin.object_id = object_id;
+        twin.empty.clone_from(&self.empty);
+        twin.set_levels(self.levels().cloned());
+        twin
+    }
+
     /// Which empty pages are used first, as [`Clay::rest`] told it.
     pub fn set_empty(&mut self, empty: Vec<u32>) {
         let count = self.pages.len() as u32;

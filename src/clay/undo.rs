@@ -131,6 +131,14 @@ impl History {
         }
     }
 
+    /// Lets the oldest step go, which can then no longer be taken back.
+    pub(super) fn forget_oldest(&mut self) {
+        if let Some(gone) = self.undo.pop_front() {
+            self.bytes -= cost(&gone);
+            self.sink.discard(Garbage::Pages(gone));
+        }
+    }
+
     /// Swaps the newest step's pages with the clay's through `swap`; false when there is none.
     pub(super) fn undo(&mut self, swap: impl FnMut(u32, Arc<Page>) -> Arc<Page>) -> bool {
         let Some(step) = self.undo.pop_back() else { return false };

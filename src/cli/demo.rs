@@ -50,7 +50,7 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
         return Err(Fail::Usage(text));
     }
     let config = Config::default();
-    let begun = run::begin(args.mesh.as_deref(), args.session.as_deref(), &config)?;
+    let begun = run::begin(args.mesh.as_slice(), args.session.as_deref(), &config)?;
     if !display::wanted(args.headless) {
         return headless(args, &config, begun, json);
     }
@@ -104,7 +104,7 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     progress.bar.finish_and_clear();
     drop((adaptors, writer));
     close_journal(thread);
-    let export = export(Some(&args.export), &world)?;
+    let export = export(Some(&args.export), &mut world)?;
     run::report(&summary(&figures, &world, &receiver, export), None, json)
 }
 

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::Fail;
+use sculptd_daemon::scene_jobs::{Selection, selected};
 use sculptd_daemon::session::writer::WriterThread;
 use sculptd_engine::world::World;
-use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::io::write_scene;
 
 /// Set once by SIGINT or SIGTERM.
 pub fn stop_signal() -> Arc<AtomicBool> {
@@ -20,9 +21,13 @@ pub fn stop_signal() -> Arc<AtomicBool> {
     stop
 }
 
-pub fn export(path: Option<&Path>, world: &World) -> Result<Option<String>, Fail> {
+/// Writes the visible objects.
+pub fn export(path: Option<&Path>, world: &mut World) -> Result<Option<String>, Fail> {
     let Some(path) = path else { return Ok(None) };
-    write_mesh(path, &world.mesh().to_tri().to_poly()).map_err(Fail::from)?;
+    let (scene, active) = (world.scene_view(), world.snapshot());
+    let meshes = selected(&scene, &active, Selection::Visible);
+    let meshes = meshes.map_err(|e| Fail::Input(format!("{}: {e}", path.display())))?;
+    write_scene(path, &meshes).map_err(Fail::from)?;
     Ok(Some(path.display().to_string()))
 }
 

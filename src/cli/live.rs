@@ -45,7 +45,7 @@ impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
         let mut ended = self.run.finish().map_err(|e| Fail::Check(e.to_string()))?;
         let mut summary = std::mem::take(&mut ended.summary);
         let path = self.export.as_deref().filter(|_| !handed_on);
-        summary.export = export(path, &ended.world)?;
+        summary.export = export(path, &mut ended.world)?;
         warn_of_fault(ended.close_session());
         (self.then)(summary)
     }

@@ -138,7 +138,7 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         let count = workers.count();
         reopen(&args.session, &opened, args.until, count, &Job::default())
     });
-    let (replayed, frames, checkpoint) = match near.flatten() {
+    let (mut replayed, frames, checkpoint) = match near.flatten() {
         Some(r) => (r.replayed, 0, Some(r.checkpoint)),
         None if opened.replay_from.is_some() => {
             let why = opened.replay_from.map(|r| r.why).unwrap_or_default();
@@ -163,7 +163,7 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         ticks: replayed.ticks,
         hash: format!("{:016x}", replayed.world.hash()),
         vertices: replayed.world.mesh().vertex_count() as u64,
-        export: export(args.export.as_deref(), &replayed.world)?,
+        export: export(args.export.as_deref(), &mut replayed.world)?,
         checkpoint,
         jumps_missed: replayed.jumps_missed,
         frames,

@@ -31,9 +31,10 @@ use sculptd_geometry::job::Job;
 
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunArgs {
-    /// The mesh to sculpt (OBJ, STL, PLY, OFF, glTF, 3MF). Without it, a ball.
+    /// The mesh to sculpt (OBJ, STL, PLY, OFF, glTF, 3MF). Without it, a ball. May be repeated:
+    /// each file is an object in its true size and place, and the first is active.
     #[arg(long, value_name = "FILE")]
-    pub mesh: Option<PathBuf>,
+    pub mesh: Vec<PathBuf>,
     /// Record everything into this session file, or go on with it if it exists.
     #[arg(long, value_name = "FILE")]
     pub session: Option<PathBuf>,
@@ -109,7 +110,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(path) = &args.export {
         sculptd_geometry::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }
-    if args.mesh.is_some() && args.session.as_ref().is_some_and(|s| s.exists()) {
+    if !args.mesh.is_empty() && args.session.as_ref().is_some_and(|s| s.exists()) {
         let text =
             "a session that exists brings its own mesh: leave out --mesh, or name another session";
         return Err(Fail::Usage(text.into()));
@@ -140,16 +141,18 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     }
     // In a window a session is always on.
     let own = (window && args.session.is_none() && kiosk.is_none() && players.is_empty())
-        .then(|| library::begin(args.mesh.as_deref()))
+        .then(|| library::begin(args.mesh.first().map(PathBuf::as_path)))
         .flatten();
     let session = args.session.as_ref().or(own.as_ref());
     let fresh = !session.is_some_and(|s| s.exists());
     // A large mesh is loaded in sight, with its progress, once the window is there.
-    let (mesh, later) = match args.mesh.clone() {
-        Some(m) if window && fresh && kiosk.is_none() && is_large(&m) => (None, Some(m)),
-        mesh => (mesh, None),
+    let (meshes, later) = match args.mesh.clone() {
+        m if m.len() == 1 && window && fresh && kiosk.is_none() && is_large(&m[0]) => {
+            (Vec::new(), m.into_iter().next())
+        }
+        meshes => (meshes, None),
     };
-    let begun = begin(mesh.as_deref(), session.map(PathBuf::as_path), &config)?;
+    let begun = begin(&meshes, session.map(PathBuf::as_path), &config)?;
     if let Some(kiosk) =
         kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
     {
@@ -242,7 +245,7 @@ fn is_large(mesh: &Path) -> bool {
 /// Whether a daemon that has lost its window already shows what is asked for.
 #[cfg(unix)]
 fn follows_lost_window(args: &RunArgs) -> bool {
-    let plain = args.mesh.is_none() && args.play_device.is_empty() && !args.kiosk;
+    let plain = args.mesh.is_empty() && args.play_device.is_empty() && !args.kiosk;
     let whole = |p: &Path| p.canonicalize().ok();
     let same =
         |session: PathBuf| args.session.as_deref().is_none_or(|s| whole(s) == whole(&session));
@@ -302,8 +305,8 @@ pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {
     }
 }
 
-pub fn begin(mesh: Option<&Path>, session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
-    let begun = startup::begin(mesh, session, config, &Job::default());
+pub fn begin(meshes: &[PathBuf], session: Option<&Path>, config: &Config) -> Result<Begun, Fail> {
+    let begun = startup::begin_with(meshes, session, config, &Job::default());
     let begun = begun.map_err(|e| match e {
         BeginError::Rig(e) => super::not_begun(e),
         e => Fail::Input(e.to_string()),
@@ -371,7 +374,7 @@ fn run_stepped(
     let figures = stepped.run(&options).map_err(|e| Fail::Check(e.to_string()))?;
     drop(writer);
     close_journal(thread);
-    let export = export(args.export.as_deref(), &world)?;
+    let export = export(args.export.as_deref(), &mut world)?;
     Ok(summary(&figures, &world, &receiver, export))
 }
 
@@ -433,7 +436,7 @@ mod tests {
     #[test]
     fn what_was_asked_for_stays_but_for_what_the_session_holds() {
         let args = RunArgs {
-            mesh: Some("pig.stl".into()),
+            mesh: vec!["pig.stl".into()],
             session: Some("old.sculpt".into()),
             stats: Some("s.json".into()),
             headless: true,

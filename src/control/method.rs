@@ -20,6 +20,10 @@ use crate::edit::{
     TakeUpReply, ThicknessParams, ThicknessReply, TrimParams,
 };
 use crate::event::SubscribeReply;
+use crate::scene::{
+    AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,
+    RenameParams, ReshapeParams, SceneBooleanParams, SceneReply, ShowParams, TransformParams,
+};
 use crate::status::{
     HelloParams, HelloReply, MethodsReply, NoParams, SentReply, ShutdownReply, StatusParams,
     StatusReply, WindowParams, WindowReply,
@@ -191,9 +195,10 @@ methods! {
     "jump" Jump jump(JumpParams) -> SentReply;
     /// Replaces the object by a mesh from a file of at most 1 GiB.
     "load" Load load(PathParams) -> LoadReply;
-    /// Writes the object to a file; the name's ending says the format.
-    "export" Export export(PathParams) -> ExportReply;
-    /// One number over the whole mesh.
+    /// Writes the visible objects, or those that are named, to a file; the name's ending says the
+    /// format.
+    "export" Export export(ExportParams) -> ExportReply;
+    /// One number over all objects.
     "hash" Hash hash(NoParams) -> HashReply;
     /// Wall thickness of the object, measured again only where it may have changed.
     "thickness" Thickness thickness(ThicknessParams) -> ThicknessReply;
@@ -212,6 +217,32 @@ methods! {
     "remesh" Remesh remesh(RemeshParams) -> RemeshReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;
+    /// Every object of the scene, and which is active.
+    "scene.list" SceneList scene_list(NoParams) -> SceneReply;
+    /// Adds a primitive or a mesh from a file, and makes it active.
+    "scene.add" SceneAdd scene_add(AddParams) -> ObjectReply;
+    /// Removes an object, unless it is the last one or locked.
+    "scene.remove" SceneRemove scene_remove(ObjectParams) -> ObjectReply;
+    /// Adds a twin of an object, and makes it active.
+    "scene.duplicate" SceneDuplicate scene_duplicate(ObjectParams) -> ObjectReply;
+    /// Gives an object another name.
+    "scene.rename" SceneRename scene_rename(RenameParams) -> ObjectReply;
+    /// Moves, turns and scales an object. Its mesh stays as it is, to the bit.
+    "scene.transform" SceneTransform scene_transform(TransformParams) -> ObjectReply;
+    /// Makes an object the one that strokes and Booleans act on.
+    "scene.activate" SceneActivate scene_activate(ObjectParams) -> ObjectReply;
+    /// Shows or hides an object.
+    "scene.show" SceneShow scene_show(ShowParams) -> ObjectReply;
+    /// Protects an object from strokes, transforms and removal, or no longer.
+    "scene.lock" SceneLock scene_lock(LockParams) -> ObjectReply;
+    /// Gives a primitive other numbers, until its first stroke.
+    "scene.reshape" SceneReshape scene_reshape(ReshapeParams) -> ObjectReply;
+    /// A Boolean of two objects, where they stand. The result is a new object.
+    "scene.boolean" SceneBoolean scene_boolean(SceneBooleanParams) -> CombineReply;
+    /// Makes several objects one, whose parts may overlap.
+    "scene.merge" SceneMerge scene_merge(MergeParams) -> CombineReply;
+    /// Makes each connected part of an object an object of its own.
+    "scene.split" SceneSplit scene_split(ObjectParams) -> CombineReply;
     /// How far the Boolean is that is under way.
     "progress" Progress progress(NoParams) -> ProgressReply;
     /// Ends the Boolean that is under way; nothing is changed.

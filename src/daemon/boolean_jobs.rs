@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::command_queue::{CommandSender, QueuedCommand};
 use super::published::Published;
 use sculptd_clay::{Clay, Grafted, Level, LevelError, Levels, PAGE_VERTICES, Snapshot};
-use sculptd_engine::command::{Carving, Command, NewClay};
+use sculptd_engine::command::{Carving, Command, NewClay, OfClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::boolean;
@@ -133,7 +133,8 @@ pub fn level(
             Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
             None => Command::Replace(clay),
         };
-        Ok((QueuedCommand::with_payload(command, Payload::Clay(Box::new(built))), at))
+        let queued = QueuedCommand::with_payload(command, Payload::Clay(Box::new(built)));
+        Ok((of_clay(now, queued), at))
     })
 }
 
@@ -203,6 +204,33 @@ pub fn join_held(
     carry_out(shown, held, true, operation, job, commands)
 }
 
+/// A tool of the world in the frame of the active object.
+pub fn in_own_frame(shown: &Published, mut tool: PolyMesh) -> PolyMesh {
+    let own = shown.transform().inverse();
+    if !own.is_none() {
+        tool.positions.iter_mut().for_each(|p| *p = own.apply(*p));
+    }
+    tool
+}
+
+/// A command that was computed for the active clay, to be carried out only while that is active. In
+/// a scene of one object nothing else can be.
+pub fn of_clay(shown: &Published, queued: QueuedCommand) -> QueuedCommand {
+    if shown.scene.objects.len() == 1 {
+        return queued;
+    }
+    let (clay, revision) = shown.clay_revision();
+    let wrap = |command: Command| match command {
+        // A cut says itself whether it still fits.
+        Command::Cut(_) => Command::OfClay(Box::new(OfClay { clay, revision: None, command })),
+        Command::Replace(_) | Command::ReplaceMasked(..) => {
+            Command::OfClay(Box::new(OfClay { clay, revision: Some(revision), command }))
+        }
+        other => other,
+    };
+    QueuedCommand { command: wrap(queued.command), ..queued }
+}
+
 /// What `of` makes of the work; made again when the work was changed meanwhile.
 pub fn settled<T>(
     shown: &ArcSwap<Published>,
@@ -211,7 +239,7 @@ pub fn settled<T>(
     for _ in 0..TRIES {
         let before = shown.load_full();
         let done = of(&before)?;
-        if shown.load().mesh.revision() == before.mesh.revision() {
+        if shown.load().clay_revision() == before.clay_revision() {
             return Ok(done);
         }
     }
@@ -230,11 +258,15 @@ pub fn carry_out(
     let send = |c: QueuedCommand| commands.send(c).map_err(|_| JoinError::Ended);
     for tries in 1..=TRIES {
         let before = shown.load_full();
-        let mut done = join(&before.mesh, &tool(&before)?, held, operation, job)?;
+        let tool = in_own_frame(&before, tool(&before)?);
+        let done = join(&before.mesh, &tool, held, operation, job)?;
+        let mut done: Vec<_> = done.into_iter().map(|c| of_clay(&before, c)).collect();
         job.check().map_err(boolean::BooleanError::from)?;
-        if let [QueuedCommand { command: Command::Cut(_), result, .. }] = &mut done[..] {
+        if let [one] = &mut done[..]
+            && one.command.is_cut()
+        {
             let (answer, made) = cc::bounded(1);
-            *result = Some(answer);
+            one.result = Some(answer);
             done.into_iter().try_for_each(send)?;
             match made.recv_timeout(PATIENCE) {
                 Ok(Some(Grafted { written, shared })) => {
@@ -249,12 +281,10 @@ pub fn carry_out(
                 Err(_) => return Err(JoinError::Ended),
             }
         }
-        if shown.load().mesh.revision() == before.mesh.revision() {
-            let pages = done.iter().find_map(|queued| match &queued.command {
-                Command::Replace(new) | Command::ReplaceMasked(new, _) => {
-                    Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
-                }
-                _ => None,
+        if shown.load().clay_revision() == before.clay_revision() {
+            let pages = done.iter_mut().find_map(|queued| {
+                let new = queued.command.new_clay_mut()?;
+                Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
             });
             done.into_iter().try_for_each(send)?;
             return Ok(Joined {

@@ -8,7 +8,7 @@ use crossbeam_channel as cc;
 use sculptd_clay::Grafted;
 use sculptd_engine::command::Command;
 use sculptd_engine::payload::Payload;
-use sculptd_engine::world::World;
+use sculptd_engine::world::{SceneResult, World};
 
 /// A command on its way to the loop.
 #[derive(Debug)]
@@ -20,18 +20,20 @@ pub struct QueuedCommand {
     /// Told what came of a [`Command::Cut`]; `None`: the clay had changed there. The loop never
     /// waits for whoever listens.
     pub result: Option<cc::Sender<Option<Grafted>>>,
+    /// Told what came of a [`Command::Scene`].
+    pub scene_result: Option<cc::Sender<SceneResult>>,
 }
 
 impl From<Command> for QueuedCommand {
     fn from(command: Command) -> Self {
-        QueuedCommand { command, payload: None, result: None }
+        QueuedCommand { command, payload: None, result: None, scene_result: None }
     }
 }
 
 impl QueuedCommand {
     /// A command and the payload that it needs.
     pub fn with_payload(command: Command, payload: Payload) -> Self {
-        QueuedCommand { command, payload: Some(payload), result: None }
+        QueuedCommand { payload: Some(payload), ..QueuedCommand::from(command) }
     }
 
     /// Puts the payload beside the world; gives the command for the next step.

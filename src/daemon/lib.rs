@@ -29,6 +29,7 @@ pub mod pen_trail;
 pub mod present_latency;
 pub mod published;
 pub mod remesh_job;
+pub mod scene_jobs;
 #[cfg(unix)]
 pub mod service;
 pub mod session;

@@ -27,7 +27,7 @@ use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
 use sculptd_engine::payload::PayloadStore;
-use sculptd_engine::world::World;
+use sculptd_engine::world::{SceneResult, World};
 
 /// Commands waiting for the loop; a sender beyond it is told so and tries again.
 pub const COMMANDS: usize = 1024;
@@ -159,6 +159,8 @@ impl Ticking {
         // Where the result of each cut of this tick goes, in the order of the commands.
         let mut results: Vec<Option<cc::Sender<Option<Grafted>>>> =
             Vec::with_capacity(COMMANDS_PER_TICK);
+        let mut scene_results: Vec<Option<cc::Sender<SceneResult>>> =
+            Vec::with_capacity(COMMANDS_PER_TICK);
         let mut tick = self.world.tick();
         let mut newest = (0, 0, 0.0);
         let mut last = LAST_TICKS;
@@ -173,10 +175,13 @@ impl Ticking {
             in_order_of_time(&mut samples);
             self.trail.send(&samples);
             for mut queued in self.inbox.try_iter().take(COMMANDS_PER_TICK) {
-                let result = queued.result.take();
+                let (result, scene_result) = (queued.result.take(), queued.scene_result.take());
                 let command = queued.deliver(&mut self.world);
-                if matches!(command, Command::Cut(_)) {
+                if command.is_cut() {
                     results.push(result);
+                }
+                if matches!(command, Command::Scene(_)) {
+                    scene_results.push(scene_result);
                 }
                 commands.push(command);
             }
@@ -196,6 +201,11 @@ impl Ticking {
             for (result, made) in results.drain(..).zip(self.world.cut_results()) {
                 if let Some(result) = result {
                     let _ = result.try_send(*made);
+                }
+            }
+            for (result, done) in scene_results.drain(..).zip(self.world.scene_results()) {
+                if let Some(result) = result {
+                    let _ = result.try_send(*done);
                 }
             }
             discard_commands(&mut commands, &garbage);

@@ -10,11 +10,12 @@ use glam::Vec3;
 
 use crate::tick_statistics::{Losses, Percentiles};
 use sculptd_clay::brush::{BrushSettings, Picture};
-use sculptd_clay::{GarbageSink, Snapshot};
+use sculptd_clay::{GarbageSink, Hit, Ray, Snapshot};
 use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::{HeldObject, Pose, Volume};
+use sculptd_engine::scene::{ObjectTransform, SceneView};
 use sculptd_engine::stroke::{CurveStroke, PenPoint};
 use sculptd_engine::world::World;
 
@@ -25,18 +26,21 @@ pub const SHOWN_PENS: usize = 4;
 #[derive(Debug, Clone)]
 pub struct Published {
     pub tick: u64,
+    /// The active object's clay, in its own frame.
     pub mesh: Snapshot,
+    /// All objects; the same list as before, where none was added, removed, set or made active.
+    pub scene: Arc<SceneView>,
     pub camera: Camera,
     pub brush: BrushSettings,
     /// What each brush was set to when it was last exchanged for another.
     pub kept_brushes: Arc<Vec<BrushSettings>>,
     /// The picture of heights of the alpha `picture`, where one was loaded.
     pub picture: Option<Arc<Picture>>,
-    /// Brush radius in mesh units at full pressure.
+    /// Brush radius at full pressure, world units.
     pub brush_radius: f32,
-    /// Bounding radius of the work when it was put in place.
+    /// Bounding radius of the active object when it was put in place, world units.
     pub extent: f32,
-    /// Middle of the work when it was put in place: where the mirrors stand.
+    /// Middle of the active object when it was put in place, in the world: where the mirrors stand.
     pub middle: Vec3,
     /// The tracked volume over the work.
     pub volume: Volume,
@@ -104,10 +108,12 @@ impl Published {
             (*pose, *by) = (Some(now), Some(device));
         }
         let mesh = world.snapshot();
+        let scene = world.scene_view();
         let tools = world.hand_tools();
         Published {
             tick: world.tick(),
             mesh,
+            scene,
             camera: *world.camera(),
             brush: *world.brush(),
             kept_brushes: world.kept_brushes().clone(),
@@ -132,10 +138,51 @@ impl Published {
         }
     }
 
+    /// Where the active object stands.
+    pub fn transform(&self) -> ObjectTransform {
+        self.scene.active().map_or(ObjectTransform::NONE, |o| o.settings.transform)
+    }
+
+    /// Names the active clay and its state.
+    pub fn clay_revision(&self) -> (u32, u64) {
+        (self.mesh.object_id(), self.mesh.revision())
+    }
+
+    /// The nearest place of the active object on a ray of the world, in the world.
+    pub fn pick(&self, ray: Ray) -> Option<Hit> {
+        let transform = self.transform();
+        if transform.is_none() {
+            return self.mesh.pick(ray);
+        }
+        let own = transform.inverse().ray(ray);
+        let hit = self.mesh.pick(own)?;
+        let t = (f64::from(hit.t) * transform.scale) as f32;
+        let (position, normal) = (transform.point(hit.position), transform.direction(hit.normal));
+        Some(Hit { position, normal, t, ..hit })
+    }
+
+    /// The box in the world around all visible objects; around the active one where none is.
+    pub fn world_bounds(&self) -> (Vec3, Vec3) {
+        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let seen = self.scene.each(&self.mesh).filter(|(o, _)| o.settings.visible);
+        let all = seen.fold(none, |(lo, hi), (o, clay)| {
+            let (a, b) = o.settings.transform.bounds(clay.bounds());
+            (lo.min(a), hi.max(b))
+        });
+        if all.0.cmple(all.1).all() { all } else { self.transform().bounds(self.mesh.bounds()) }
+    }
+
+    /// One number over all objects; costs as much as they are large.
+    pub fn hash(&self) -> u64 {
+        self.scene.hash(&self.mesh)
+    }
+
     /// Whether this state holds memory that `newer` does not share.
     fn holds_other(&self, newer: &Published) -> bool {
         let held = |state: &Published| state.thing.as_ref().map(|held| Arc::as_ptr(&held.plain));
-        self.mesh.object_id() != newer.mesh.object_id() || held(self) != held(newer)
+        self.mesh.object_id() != newer.mesh.object_id()
+            || !Arc::ptr_eq(&self.scene, &newer.scene)
+            || held(self) != held(newer)
     }
 }
 

@@ -7,7 +7,7 @@ use arc_swap::ArcSwap;
 use glam::{DVec3, Vec3};
 
 use crate::Published;
-use crate::boolean_jobs::{JoinError, settled};
+use crate::boolean_jobs::{JoinError, of_clay, settled};
 use crate::command_queue::QueuedCommand;
 use sculptd_clay::Clay;
 use sculptd_engine::command::{Command, NewClay};
@@ -90,7 +90,8 @@ pub fn remeshed(
             Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
             None => Command::Replace(clay),
         };
-        Ok((QueuedCommand::with_payload(command, Payload::Clay(Box::new(built))), found))
+        let queued = QueuedCommand::with_payload(command, Payload::Clay(Box::new(built)));
+        Ok((of_clay(now, queued), found))
     })
 }
 

@@ -1,6 +1,6 @@
 //! Putting a world together: the work, the settings, the workers.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 
@@ -10,6 +10,10 @@ use sculptd_devices::Body;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::recording::Player;
 use sculptd_engine::command::Command;
+use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::{
+    MAX_NAME, NewObject, ObjectSource, ObjectTransform, SceneCommand, clean_name,
+};
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::io::{MAX_FILE, ReadError, read_mesh_within};
 use sculptd_geometry::job::Job;
@@ -107,11 +111,35 @@ pub enum BeginError {
     Create(#[from] CreateError),
 }
 
-/// Begins with a mesh and, where `session` names a file, records into it. A session that exists is
-/// replayed to its end and goes on from there; it brings its own start, so `mesh` must not be given
-/// beside it.
+/// What an object that is read from a file is called: the file's name without its ending.
+pub fn object_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|s| s.to_string_lossy());
+    stem.and_then(|s| clean_name(&s.chars().take(MAX_NAME).collect::<String>()))
+        .unwrap_or_else(|| "object".into())
+}
+
+/// As [`begin_with`], with one mesh or none.
+///
+/// # Errors
+/// [`BeginError`]
 pub fn begin(
     mesh: Option<&Path>,
+    session: Option<&Path>,
+    config: &Config,
+    job: &Job,
+) -> Result<Begun, BeginError> {
+    let meshes: Vec<PathBuf> = mesh.map(Path::to_path_buf).into_iter().collect();
+    begin_with(&meshes, session, config, job)
+}
+
+/// Begins with meshes, each an object in its true size and place, and, where `session` names a
+/// file, records into it. A session that exists is replayed to its end and goes on from there; it
+/// brings its own start, so no mesh must be given beside it.
+///
+/// # Errors
+/// [`BeginError`]
+pub fn begin_with(
+    meshes: &[PathBuf],
     session: Option<&Path>,
     config: &Config,
     job: &Job,
@@ -176,7 +204,7 @@ pub fn begin(
         writer.tick(tick, &[], &reopened, world);
         return Ok(Begun { world: replayed.world, journal: Some((writer, thread)), warnings });
     }
-    let loaded = load(mesh, job)?;
+    let loaded = load(meshes.first().map(PathBuf::as_path), job)?;
     let mut warnings = loaded.warnings;
     if half_made && let Some(path) = session {
         warnings.push(format!(
@@ -185,7 +213,13 @@ pub fn begin(
         ));
     }
     let mut world = world(loaded.mesh, config);
-    let journal = match session {
+    let mut others = Vec::new();
+    for path in meshes.get(1..).unwrap_or_default() {
+        let other = load(Some(path), job)?;
+        warnings.extend(other.warnings.iter().cloned());
+        others.push((object_name(path), other));
+    }
+    let mut journal = match session {
         None => None,
         Some(path) => {
             let settings = Settings {
@@ -202,7 +236,42 @@ pub fn begin(
             Some((writer, thread))
         }
     };
+    if !others.is_empty() {
+        let name = meshes.first().map(|p| object_name(p)).unwrap_or_default();
+        add_others(&mut world, name, others, journal.as_mut().map(|j| &mut j.0));
+    }
     Ok(Begun { world, journal, warnings })
+}
+
+/// Adds the objects after the first, by commands in the first tick, so that a replay does the same;
+/// the camera frames all of them.
+fn add_others(
+    world: &mut World,
+    name: String,
+    others: Vec<(String, Loaded)>,
+    journal: Option<&mut SessionWriter>,
+) {
+    let first = world.scene().active().id;
+    let (mut lo, mut hi) = world.mesh().bounds();
+    let mut commands = vec![Command::Scene(SceneCommand::Rename(first, name))];
+    for (name, loaded) in others {
+        let (a, b) = loaded.mesh.bounds();
+        (lo, hi) = (lo.min(a), hi.max(b));
+        let source = ObjectSource::Mesh(loaded.plain.into());
+        let new = NewObject::new(&name, source, ObjectTransform::NONE);
+        let mut command = Command::Scene(SceneCommand::Add(new));
+        world.deliver(&mut command, Payload::Clay(Box::new(loaded.mesh)));
+        commands.push(command);
+    }
+    commands.push(Command::Scene(SceneCommand::Activate(first)));
+    let mut camera = *world.camera();
+    camera.frame(lo, hi);
+    commands.push(Command::Camera(camera));
+    let tick = world.tick() + 1;
+    world.step(tick, &[], &commands);
+    if let Some(journal) = journal {
+        journal.tick(tick, &[], &commands, world);
+    }
 }
 
 /// The session goes on without its history where that cannot be written; that is said.

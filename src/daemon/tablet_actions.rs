@@ -196,7 +196,8 @@ impl TabletActions {
             Meaning::Undo => asked.out.push(Command::Undo),
             Meaning::Redo => asked.out.push(Command::Redo),
             Meaning::Fit => {
-                let (lo, hi) = asked.world.mesh().bounds();
+                let active = asked.world.scene().active();
+                let (lo, hi) = active.settings.transform.bounds(active.clay.bounds());
                 if lo.cmple(hi).all() {
                     asked.camera.frame(lo, hi);
                     asked.out.push(Command::Camera(asked.camera));

@@ -91,13 +91,10 @@ pub fn trim_solid(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Op
 pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<QueuedCommand>, JoinError> {
     boolean_jobs::settled(shown, |now| {
         // What the hands hold stays in them.
-        boolean_jobs::join(
-            &now.mesh,
-            &tool(now, part)?,
-            false,
-            Operation::Difference,
-            &Job::default(),
-        )
+        let tool = boolean_jobs::in_own_frame(now, tool(now, part)?);
+        let done =
+            boolean_jobs::join(&now.mesh, &tool, false, Operation::Difference, &Job::default())?;
+        Ok(done.into_iter().map(|c| boolean_jobs::of_clay(now, c)).collect())
     })
 }
 
@@ -121,7 +118,7 @@ pub fn carry_out(
 
 /// What is cut off, as a solid around all of the work that is seen there.
 fn tool(now: &Published, part: &Part) -> Result<PolyMesh, JoinError> {
-    let (lo, hi) = now.mesh.bounds();
+    let (lo, hi) = now.transform().bounds(now.mesh.bounds());
     let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
     let plain = trim_solid(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
     Ok(plain.to_poly())

@@ -15,6 +15,7 @@ use crate::camera::Camera;
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{ReachBox, Similarity};
 use crate::payload::PayloadId;
+use crate::scene::{ObjectId, ObjectSettings, SceneCommand};
 use crate::stroke::CurveAction;
 use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
 use sculptd_clay::{Cut, Levels, ObjectState};
@@ -65,6 +66,59 @@ pub enum Command {
     /// Where the tablets' pens are in the view, as a window has learned it, and what lies over the
     /// view. A desktop with values that are not finite is ignored.
     DesktopLayout(DesktopLayout),
+    /// Objects are added, removed, moved, made active. What came of each is told by
+    /// [`crate::world::World::scene_results`].
+    Scene(SceneCommand),
+    /// Another command, carried out only where the clay that it was computed for is the active one.
+    OfClay(Box<OfClay>),
+    /// The whole scene becomes what it was at another node of its history.
+    JumpScene(Box<SceneJump>),
+}
+
+/// A command that was computed for a clay, and that clay.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct OfClay {
+    /// The number of the clay, [`sculptd_clay::Clay::object_id`].
+    pub clay: u32,
+    /// The revision that it must still have; `None`: whatever it has.
+    pub revision: Option<u64>,
+    /// What is asked; no [`Command::OfClay`] itself.
+    pub command: Command,
+}
+
+/// To another node of the history, where the scene was another. As [`Jump`], whoever sends or
+/// replays it fetches the clays, as the payload [`SceneJump::payload_id`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct SceneJump {
+    /// The node's number.
+    pub node: u64,
+    /// The active clay and the revision that it was made for: the world ignores it when the clay
+    /// has changed since.
+    pub from: (u32, u64),
+    /// All objects, in order.
+    pub objects: Vec<JumpObject>,
+    /// The place of the active one.
+    pub active: u32,
+}
+
+/// An object as a [`SceneJump`] puts it in place.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct JumpObject {
+    /// Its id.
+    pub id: ObjectId,
+    /// Everything but its clay.
+    pub settings: ObjectSettings,
+    /// Every page of its clay, and its revision.
+    pub pages: Vec<(u32, u64)>,
+    /// What else its clay is.
+    pub clay: OtherWork,
+}
+
+impl SceneJump {
+    /// The name of the clays that this jump puts in place.
+    pub fn payload_id(&self) -> PayloadId {
+        PayloadId::Jump { node: self.node, from: self.from }
+    }
 }
 
 impl Command {
@@ -78,7 +132,10 @@ impl Command {
             | Command::Begin(_)
             | Command::Cut(_)
             | Command::Jump(_)
-            | Command::ReplaceMasked(..) => true,
+            | Command::ReplaceMasked(..)
+            | Command::OfClay(_)
+            | Command::JumpScene(_) => true,
+            Command::Scene(scene) => scene.owns_memory(),
             Command::Brush(_)
             | Command::Camera(_)
             | Command::Undo
@@ -100,7 +157,20 @@ impl Command {
         match self {
             Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
             Command::Begin(beginning) => Some(&mut beginning.clay),
+            Command::OfClay(of) => match &mut of.command {
+                Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
+                _ => None,
+            },
             _ => None,
+        }
+    }
+
+    /// Whether its result stands among [`crate::world::World::cut_results`].
+    pub fn is_cut(&self) -> bool {
+        match self {
+            Command::Cut(_) => true,
+            Command::OfClay(of) => matches!(of.command, Command::Cut(_)),
+            _ => false,
         }
     }
 }

@@ -5,7 +5,8 @@
 //! clock, no IO, no threads of its own making, and never fails. So live running, replay, recovery,
 //! golden tests, fuzzing and bug reports are one mechanism.
 //!
-//! Read first: [`command`] and [`payload`], then [`world`], then [`stroke`] and [`hand`].
+//! Read first: [`command`] and [`payload`], then [`world`] and [`scene`], then [`stroke`] and
+//! [`hand`].
 #![deny(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 // Tests compare with the functions that the bans of clippy.toml keep out of the clay.
@@ -17,7 +18,7 @@ pub mod desktop_layout;
 pub mod hand;
 pub mod old_layout;
 pub mod payload;
-mod replaced;
+pub mod scene;
 pub mod stroke;
 mod topology_work;
 pub mod world;

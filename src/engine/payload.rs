@@ -20,6 +20,8 @@ pub enum Payload {
     Clay(Box<Clay>),
     /// The pages that a jump puts in place, each with its number.
     Pages(Vec<(u32, Arc<Page>)>),
+    /// The clays of new objects, or of all objects that a jump leads to, in their order.
+    Clays(Vec<Clay>),
 }
 
 /// Names a payload in the store of one world.

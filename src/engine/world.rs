@@ -7,31 +7,33 @@
 //! * One step is bounded: dabs stop at the budget and go on in the next step, and so does dynamic
 //!   topology, whose budget is what dabs leave.
 
+mod hands;
+mod local_camera;
 mod saved;
+mod scene_steps;
 mod state;
 mod stroke_context;
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SideData};
+use self::local_camera::LocalCamera;
+pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SavedScene, SideData};
+pub use self::scene_steps::SceneResult;
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
-use crate::hand::{Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity};
+use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::payload::{Payload, PayloadStore};
-use crate::replaced::ReplacedClay;
+use crate::scene::{Scene, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Measure, Method, Scratch};
-use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, PageSupply, Reach, Workers};
+use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
-use sculptd_geometry::portable::turn_about;
-use sculptd_geometry::{PolyMesh, TriMesh, shapes};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
 /// `StepReport::ignored` counts it.
@@ -88,17 +90,14 @@ struct PenSlot {
 #[derive(Debug)]
 pub struct World {
     tick: u64,
-    mesh: Clay,
+    /// The objects; strokes and Booleans act on the active one.
+    scene: Scene,
     workers: Workers,
     options: WorldOptions,
     brush: BrushSettings,
     /// What each brush was set to when it was last exchanged for another.
     kept_brushes: Arc<Vec<BrushSettings>>,
     camera: Camera,
-    /// Centre and bounding radius of the object when it was put in place: the measure of brushes,
-    /// mirrors and hands.
-    middle: Vec3,
-    extent: f32,
     pens: Vec<PenSlot>,
     /// Where the pens are in the view, and where they may begin.
     desktop: DesktopLayout,
@@ -112,8 +111,8 @@ pub struct World {
     /// What the hands hold.
     thing: Option<HeldObject>,
     report: StepReport,
-    /// Clay before and after this one, for undo.
-    works: ReplacedClay,
+    /// Steps that can be taken back, over all objects.
+    timeline: Timeline,
     /// Takes what is no longer needed: clay that was replaced, payloads that no command took.
     garbage: GarbageSink,
     /// Gives pages that dynamic topology needs.
@@ -121,7 +120,9 @@ pub struct World {
     payloads: PayloadStore,
     /// What came of the cuts of this tick, in the order of their commands.
     cuts: Vec<Option<Grafted>>,
-    /// Objects put in place so far.
+    /// What came of the commands to the scene of this tick, in their order.
+    scene_results: Vec<SceneResult>,
+    /// Clays put in place so far: each has a number of its own.
     lineages: u32,
     /// What was done in this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
@@ -130,23 +131,35 @@ pub struct World {
 impl World {
     /// A world at tick 0 around this clay; the camera frames it.
     pub fn new(
-        mut mesh: Clay,
+        clay: Clay,
         camera: Camera,
         brush: BrushSettings,
         workers: Workers,
         options: WorldOptions,
     ) -> Self {
-        mesh.set_undo_bytes(options.undo_bytes);
+        World::around(Scene::new(clay), camera, brush, workers, options)
+    }
+
+    /// A world at tick 0 around these objects; the camera frames the active one.
+    fn around(
+        mut scene: Scene,
+        camera: Camera,
+        brush: BrushSettings,
+        workers: Workers,
+        options: WorldOptions,
+    ) -> Self {
+        for object in scene.objects_mut() {
+            // The timeline bounds the steps of all objects together.
+            object.clay.set_undo_bytes(u64::MAX);
+        }
         let mut world = World {
             tick: 0,
-            mesh,
+            scene,
             workers,
             options,
             brush: brush.clamped(),
             kept_brushes: Arc::default(),
             camera,
-            middle: Vec3::ZERO,
-            extent: 1.0,
             pens: Vec::with_capacity(MAX_PENS),
             desktop: DesktopLayout::default(),
             scratch: Scratch::default(),
@@ -156,32 +169,18 @@ impl World {
             last_hands: None,
             thing: None,
             report: StepReport::default(),
-            works: ReplacedClay::default(),
+            timeline: Timeline::new(),
             garbage: GarbageSink::default(),
             pages: PageSupply::default(),
             payloads: PayloadStore::new(),
             cuts: Vec::with_capacity(PayloadStore::CAPACITY),
+            scene_results: Vec::with_capacity(PayloadStore::CAPACITY),
             lineages: 0,
             moments: None,
         };
-        world.measure();
+        world.lay_hands();
         world.frame();
         world
-    }
-
-    fn measure(&mut self) {
-        let (lo, hi) = self.mesh.bounds();
-        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::splat(-1.0), Vec3::ONE) };
-        self.middle = (lo + hi) * 0.5;
-        self.extent = ((hi - lo).length() * 0.5).max(1e-12);
-        self.hands.lay(self.middle, self.extent, self.camera.yaw);
-    }
-
-    fn frame(&mut self) {
-        let (lo, hi) = self.mesh.bounds();
-        if lo.cmple(hi).all() {
-            self.camera.frame(lo, hi);
-        }
     }
 
     /// One tick: commands first, in order, then samples in order of time (ties by device), then
@@ -190,13 +189,8 @@ impl World {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
         self.cuts.clear();
-        let (object_id, garbage) = (self.mesh.object_id(), &self.garbage);
-        for entry in self.moments.iter_mut().flat_map(|m| m.drain(..)) {
-            // It may be the last that holds the pages of an object that was replaced.
-            if entry.work.object_id() != object_id {
-                garbage.discard_owned(entry);
-            }
-        }
+        self.scene_results.clear();
+        self.let_entries_go();
         for command in commands {
             self.apply_command(command);
         }
@@ -204,9 +198,6 @@ impl World {
             self.apply_sample(sample);
         }
         self.sculpt();
-        if self.report.vertices_moved > 0 {
-            self.works.forget_future(&self.garbage);
-        }
         self.payloads.clear(&self.garbage);
         &self.report
     }
@@ -217,7 +208,7 @@ impl World {
                 self.keep_brush(brush.kind);
                 self.brush = brush.clamped();
                 if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
-                    self.mesh.prepare_topology();
+                    self.scene.active_mut().clay.prepare_topology();
                 }
                 let lays = self.brush.kind.grip() == Grip::Surface
                     && self.brush.path.method == Method::Curve;
@@ -248,14 +239,14 @@ impl World {
             }
             Command::Undo => {
                 self.lift_all();
-                match self.mesh.undo() || self.works.back(&mut self.mesh) {
+                match self.undo_step() {
                     true => self.note(HistoryEvent::Undo),
                     false => self.report.missed = Some(HistoryEvent::Undo),
                 }
             }
             Command::Redo => {
                 self.lift_all();
-                match self.mesh.redo() || self.works.forth(&mut self.mesh) {
+                match self.redo_step() {
                     true => self.note(HistoryEvent::Redo),
                     false => self.report.missed = Some(HistoryEvent::Redo),
                 }
@@ -281,13 +272,14 @@ impl World {
                     let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
                     let mut old = std::mem::replace(self, fresh);
                     self.lineages = old.lineages + 1;
-                    self.mesh.set_object_id(self.lineages);
+                    self.scene.active_mut().clay.set_object_id(self.lineages);
                     self.moments = old.moments.take();
                     self.desktop = old.desktop;
                     self.tick = old.tick;
                     self.report = old.report;
                     std::mem::swap(&mut self.payloads, &mut old.payloads);
                     std::mem::swap(&mut self.cuts, &mut old.cuts);
+                    std::mem::swap(&mut self.scene_results, &mut old.scene_results);
                     self.set_garbage_sink(old.garbage.clone());
                     self.set_page_supply(old.pages.clone());
                     self.garbage.discard_owned(old);
@@ -296,10 +288,13 @@ impl World {
             }
             Command::Mask(action) => {
                 self.lift_all();
-                self.mesh.begin_step();
-                let kernel = MaskAll { action: *action, extent: self.extent };
-                self.mesh.dab(&MaskAction::reach(), &kernel, &self.workers);
-                self.close();
+                let object = self.scene.active_mut();
+                if object.is_editable() {
+                    object.clay.begin_step();
+                    let kernel = MaskAll { action: *action, extent: object.extent };
+                    object.clay.dab(&MaskAction::reach(), &kernel, &self.workers);
+                    self.close();
+                }
             }
             Command::Place(place) => {
                 if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {
@@ -310,6 +305,9 @@ impl World {
             Command::Replace(new) => self.replace(new, &[]),
             Command::ReplaceMasked(new, masks) => self.replace(new, masks),
             Command::Jump(jump) => self.jump(jump),
+            Command::Scene(scene) => self.apply_scene(scene),
+            Command::OfClay(of) => self.apply_of_clay(of),
+            Command::JumpScene(jump) => self.jump_scene(jump),
             Command::Reopened => {
                 self.lift_all();
                 // It was of a window that is gone: who opens the session says its own.
@@ -324,27 +322,6 @@ impl World {
         self.pens.iter_mut().fold(false, |any, s| s.track.cancel() | any)
     }
 
-    fn replace(&mut self, new: &NewClay, masks: &[f32]) {
-        self.lift_all();
-        let Some(mut mesh) = self.built(new, masks) else { return };
-        mesh.set_garbage_sink(self.garbage.clone());
-        mesh.set_page_supply(self.pages.clone());
-        mesh.set_undo_bytes(self.options.undo_bytes);
-        mesh.set_levels(new.levels.clone());
-        self.lineages += 1;
-        mesh.set_object_id(self.lineages);
-        let World { works, garbage, mesh: now, options, .. } = self;
-        if new.keep_camera {
-            works.replace(now, mesh, options.undo_bytes, garbage);
-        } else {
-            works.forget(garbage);
-            garbage.discard_owned(std::mem::replace(now, mesh));
-            self.measure();
-            self.frame();
-        }
-        self.note(HistoryEvent::Replace);
-    }
-
     /// The clay of a new object: the payload where there is one, else built here.
     fn built(&mut self, new: &NewClay, masks: &[f32]) -> Option<Clay> {
         match new.built.and_then(|id| self.payloads.take(id)) {
@@ -357,14 +334,16 @@ impl World {
 
     fn cut(&mut self, carving: &Carving) {
         self.lift_all();
-        self.mesh.begin_step();
-        let made = self.mesh.graft(&carving.cut);
+        if self.scene.active().settings.locked {
+            self.cuts.push(None);
+            return;
+        }
+        let clay = &mut self.scene.active_mut().clay;
+        clay.begin_step();
+        let made = clay.graft(&carving.cut);
         self.close();
-        if made.is_some() {
-            self.works.forget_future(&self.garbage);
-            if carving.put_down {
-                self.put_down();
-            }
+        if made.is_some() && carving.put_down {
+            self.put_down();
         }
         self.cuts.push(made);
     }
@@ -378,59 +357,15 @@ impl World {
         }
         self.hands.lift();
         self.advance_strokes(u64::MAX);
-        self.topology.finish(&mut self.mesh, &self.workers);
+        self.topology.finish(&mut self.scene.active_mut().clay, &self.workers);
         self.close();
     }
 
     /// Closes the open step.
     fn close(&mut self) {
-        if self.mesh.end_step() {
+        let World { timeline, scene, garbage, options, .. } = self;
+        if timeline.end_step(scene, options.undo_bytes, garbage) {
             self.note(HistoryEvent::Step);
-        }
-    }
-
-    /// An object appears beside the clay, a third as large as it, for the hands to carry.
-    fn take_up(&mut self, plain: Arc<TriMesh>) {
-        let (lo, hi) = plain.bounds();
-        let size = (hi - lo).length() * 0.5;
-        if !(size.is_finite() && size > 0.0) {
-            return;
-        }
-        let scale = self.extent / 3.0 / size;
-        let turn = turn_about(Vec3::Y, self.camera.yaw);
-        let at = self.middle + turn * Vec3::new(self.extent * 1.2, self.extent * 0.4, 0.0);
-        let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
-        if place.is_sane() {
-            self.put_down();
-            self.thing = Some(HeldObject { plain, place });
-            self.hands.carrying = true;
-        }
-    }
-
-    fn put_down(&mut self) {
-        if let Some(held) = self.thing.take() {
-            self.garbage.discard(Garbage::Shared(held.plain));
-        }
-        self.hands.carrying = false;
-    }
-
-    fn set_reach(&mut self, reach: ReachBox) {
-        if reach.is_sane() {
-            self.hands.settings.reach = reach;
-            self.hands.lay(self.middle, self.extent, self.camera.yaw);
-        }
-    }
-
-    fn choose(&mut self, choice: MenuItem) {
-        let primitive = |solid: PolyMesh| Arc::new(solid.triangulate().0);
-        match choice {
-            MenuItem::Undo => self.apply_command(&Command::Undo),
-            MenuItem::Redo => self.apply_command(&Command::Redo),
-            MenuItem::PutAway => self.put_down(),
-            MenuItem::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
-            MenuItem::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
-            MenuItem::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
-            MenuItem::Add | MenuItem::Carve | MenuItem::Keep => self.report.join = Some(choice),
         }
     }
 
@@ -477,7 +412,7 @@ impl World {
         let left = self.advance_strokes(self.options.dab_budget);
         if !self.topology.is_empty() {
             let visited = self.options.dab_budget - left;
-            self.topology.run(&mut self.mesh, &self.workers, visited);
+            self.topology.run(&mut self.scene.active_mut().clay, &self.workers, visited);
             self.report.paused |= !self.topology.is_empty();
         }
         self.report.topology_dropped += self.topology.take_dropped();
@@ -494,15 +429,17 @@ impl World {
     fn advance_strokes(&mut self, budget: u64) -> u64 {
         let goes_on = self.goes_on_by_time();
         let every = self.brush.path.every_ticks as u32;
+        let object = self.scene.active_mut();
         let mut clay = StrokeContext {
-            mesh: &mut self.mesh,
+            editable: object.is_editable(),
+            camera: LocalCamera::new(&self.camera, &object.settings.transform),
+            middle: object.middle,
+            extent: object.extent,
+            mesh: &mut object.clay,
             workers: &self.workers,
             scratch: &mut self.scratch,
             stroke: Stroke::default(),
-            camera: &self.camera,
             brush: &self.brush,
-            middle: self.middle,
-            extent: self.extent,
             report: &mut self.report,
             left: budget,
             topology: &mut self.topology,
@@ -514,7 +451,7 @@ impl World {
             }
             clay.stroke = seat.stroke;
             clay.stroke.rested += 1;
-            while let Some(walked) = seat.track.walk_one(clay.camera.aspect, &mut clay) {
+            while let Some(walked) = seat.track.walk_one(clay.camera.aspect(), &mut clay) {
                 if walked.paused {
                     clay.report.paused = true;
                     break;
@@ -549,44 +486,10 @@ impl World {
             && spaced
             && (path.continuous || path.method == Method::Airbrush)
     }
-
-    /// One act of a hand; returns what is left of the budget.
-    fn by_hand(&mut self, act: &Act, left: u64) -> u64 {
-        let camera = &mut self.camera;
-        match act {
-            Act::Orbit(by) => camera.orbit(*by),
-            Act::Zoom(factor) => camera.zoom(*factor),
-            Act::Move(by) => camera.target -= *by,
-            Act::Hold { before, after } => {
-                // The camera keeps its place among the hands.
-                let mm = before.turn.inverse() * (camera.target - before.origin) / before.scale;
-                camera.target = after.to_world(mm);
-                camera.distance = (camera.distance * after.scale / before.scale).clamp(1e-6, 1e9);
-            }
-            Act::Carry(by) => {
-                if let Some(thing) = &mut self.thing {
-                    thing.carry(by);
-                }
-            }
-            Act::Push(a) => return self.touch(&a.reach(), &a.kernel(), left),
-            Act::Drag(a) => return self.touch(&a.reach(), &a.kernel(), left),
-            Act::Palm(a) => return self.touch(&a.reach(), &a.kernel(), left),
-        }
-        left
-    }
-
-    fn touch<K: Kernel>(&mut self, reach: &Reach, kernel: &K, left: u64) -> u64 {
-        self.mesh.begin_step();
-        let report = self.mesh.dab(reach, kernel, &self.workers);
-        if report.moved > 0 {
-            self.report.dabs += 1;
-            self.hands.sculpted();
-        }
-        self.report.vertices_moved += report.moved as u64;
-        left.saturating_sub(report.affected as u64 + 1)
-    }
 }
 
+#[cfg(test)]
+mod scene_tests;
 #[cfg(test)]
 mod tap_tests;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! a replay from the start gives.
 
 mod bound;
+mod scene;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -33,6 +33,8 @@ mod mutations;
 mod own_brushes;
 mod recovery;
 mod remesh_live;
+#[cfg(unix)]
+mod scene;
 mod service;
 mod sessions;
 mod soak;

@@ -8,6 +8,7 @@ mod learning;
 mod panels;
 mod pictures;
 mod preferences;
+mod scene;
 mod stall;
 mod versions;
 

@@ -8,20 +8,23 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::host::{Host, locked};
+pub use super::host::MAX_MESH_FILE;
+use super::host::{Host, failed, locked};
+use super::scene;
 use super::stroke::LentBrush;
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
 use crate::window_link::{DisplayVariables, WindowStanding};
-use crate::{Published, boolean_jobs, remesh_job, startup, trim};
+use crate::{Published, boolean_jobs, remesh_job, scene_jobs, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
 use sculptd_control::event;
 use sculptd_control::method::{self, METHODS};
+use sculptd_control::scene::{self as asked_scene, ObjectParams};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::wire::Code;
@@ -30,15 +33,13 @@ use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::ReachBox;
 use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::{ObjectId, SceneCommand};
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::boolean::Operation;
-use sculptd_geometry::io::{read_mesh_within, read_regular, write_mesh};
+use sculptd_geometry::io::{read_mesh_within, read_regular};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::repair;
 
-/// Longest mesh file that a request may load, bytes: its mesh must fit into memory beside the one
-/// in place.
-pub const MAX_MESH_FILE: u64 = 1 << 30;
 /// Longest picture file, bytes.
 pub const MAX_PICTURE_FILE: u64 = 256 << 20;
 
@@ -50,10 +51,6 @@ const SENT: SentReply = SentReply { sent: true };
 /// As [`Request::read`], and what the method refuses.
 pub fn call(host: &Host, name: &str, params: Value) -> Result<Value, RpcError> {
     method::answer(host, Request::read(name, params)?)
-}
-
-fn failed(e: impl std::fmt::Display) -> RpcError {
-    RpcError::failed(e.to_string())
 }
 
 /// The same data in another type of the same JSON form.
@@ -338,18 +335,86 @@ impl Handler for Host {
         Ok(edit::LoadReply { vertices, warnings: loaded.warnings })
     }
 
-    fn export(&self, params: asked::PathParams) -> Result<edit::ExportReply, RpcError> {
+    fn export(&self, params: asked_scene::ExportParams) -> Result<edit::ExportReply, RpcError> {
         safe(&params.path)?;
-        let shown = self.published.load_full();
-        let mesh = shown.mesh.to_tri().to_poly();
-        write_mesh(&params.path, &mesh).map_err(failed)?;
-        let vertices = mesh.positions.len() as u64;
-        Ok(edit::ExportReply { path: params.path, tick: shown.tick, vertices })
+        scene::export(self, params)
+    }
+
+    fn scene_list(&self, _: NoParams) -> Result<asked_scene::SceneReply, RpcError> {
+        Ok(scene::list(&self.published.load()))
+    }
+
+    fn scene_add(&self, p: asked_scene::AddParams) -> Result<asked_scene::ObjectReply, RpcError> {
+        p.path.as_deref().map_or(Ok(()), safe)?;
+        scene::add(self, p)
+    }
+
+    fn scene_remove(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::ask(self, SceneCommand::Remove(ObjectId(p.id)))
+    }
+
+    fn scene_duplicate(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::ask(self, SceneCommand::Duplicate(ObjectId(p.id)))
+    }
+
+    fn scene_rename(
+        &self,
+        p: asked_scene::RenameParams,
+    ) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::ask(self, SceneCommand::Rename(ObjectId(p.id), p.name))
+    }
+
+    fn scene_transform(
+        &self,
+        p: asked_scene::TransformParams,
+    ) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::transform(self, &p)
+    }
+
+    fn scene_activate(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::ask(self, SceneCommand::Activate(ObjectId(p.id)))
+    }
+
+    fn scene_show(&self, p: asked_scene::ShowParams) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::ask(self, SceneCommand::Show(ObjectId(p.id), p.visible))
+    }
+
+    fn scene_lock(&self, p: asked_scene::LockParams) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::ask(self, SceneCommand::Lock(ObjectId(p.id), p.locked))
+    }
+
+    fn scene_reshape(
+        &self,
+        p: asked_scene::ReshapeParams,
+    ) -> Result<asked_scene::ObjectReply, RpcError> {
+        scene::reshape(self, &p)
+    }
+
+    fn scene_boolean(
+        &self,
+        p: asked_scene::SceneBooleanParams,
+    ) -> Result<asked_scene::CombineReply, RpcError> {
+        let ids = [ObjectId(p.a), ObjectId(p.b)];
+        scene::combine(self, |shown, job| {
+            scene_jobs::boolean(shown, ids, operation(p.operation), p.keep, job)
+        })
+    }
+
+    fn scene_merge(
+        &self,
+        p: asked_scene::MergeParams,
+    ) -> Result<asked_scene::CombineReply, RpcError> {
+        let ids: Vec<ObjectId> = p.ids.iter().map(|id| ObjectId(*id)).collect();
+        scene::combine(self, |shown, job| scene_jobs::merge(shown, &ids, job))
+    }
+
+    fn scene_split(&self, p: ObjectParams) -> Result<asked_scene::CombineReply, RpcError> {
+        scene::combine(self, |shown, job| scene_jobs::split(shown, ObjectId(p.id), job))
     }
 
     fn hash(&self, _: NoParams) -> Result<edit::HashReply, RpcError> {
         let shown = self.published.load_full();
-        Ok(edit::HashReply { tick: shown.tick, hash: format!("{:016x}", shown.mesh.hash()) })
+        Ok(edit::HashReply { tick: shown.tick, hash: format!("{:016x}", shown.hash()) })
     }
 
     /// Brings the map that the host keeps up to the state of the mesh. The first call measures all.

@@ -132,3 +132,12 @@ mod tests {
         assert!(host.thickness.is_poisoned() && locked(&host.thickness).is_none());
     }
 }
+
+/// Longest mesh file that a request may load, bytes: its mesh must fit into memory beside the one
+/// in place.
+pub const MAX_MESH_FILE: u64 = 1 << 30;
+
+/// The refusal of a request that could not be carried out.
+pub(super) fn failed(e: impl std::fmt::Display) -> RpcError {
+    RpcError::failed(e.to_string())
+}

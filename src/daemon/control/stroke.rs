@@ -202,6 +202,6 @@ fn seen(shown: &Published, at: Vec3) -> Option<Vec2> {
     if !(view.cmpge(Vec2::ZERO).all() && view.cmple(Vec2::ONE).all()) {
         return None;
     }
-    let hit = shown.mesh.pick(shown.camera.ray(view))?;
+    let hit = shown.pick(shown.camera.ray(view))?;
     (hit.position.distance(at) <= shown.brush_radius * SEEN_WITHIN).then_some(view)
 }

@@ -12,7 +12,7 @@ use super::history::keeper::assemble;
 use super::history::{Store, StoreError, Tree};
 use super::reader::Opened;
 use super::replay::{Replayed, Run};
-use sculptd_clay::{Clay, Snapshot, Workers};
+use sculptd_clay::{Clay, ObjectState, Snapshot, Workers};
 use sculptd_engine::world::{HistoryEvent, World, WorldOptions};
 use sculptd_geometry::job::Job;
 
@@ -74,15 +74,39 @@ pub(super) fn from_checkpoint(
     let names = tree.names(node, c.rest.pages, base.page_count());
     let (checkpoint, at) = (c.tick, c.node);
     let empty = c.rest.empty.clone();
-    let mut mesh = assemble(store, base, &c.rest, &names, None)?;
-    mesh.set_empty(empty);
+    let active = c.rest.clone();
     let saved = store.saved(c)?;
+    let damaged = |what: &str| StoreError::Damaged(what.into());
+    let list = saved.scene().map_err(|_| damaged("a checkpoint's state"))?;
+    let mut clays = Vec::new();
+    let whole = |rest: &ObjectState, names: &[(u32, u64)], levels, empty| {
+        let mut clay = assemble(store, base, rest, names, levels)?;
+        clay.set_empty(empty);
+        Ok::<_, StoreError>(clay)
+    };
+    match &list {
+        None => clays.push(whole(&active, &names, None, empty)?),
+        Some(list) => {
+            let stored = tree.scene_at(at).ok_or_else(|| damaged("a list of objects"))?;
+            for (i, object) in list.objects.iter().enumerate() {
+                let rest = &object.rest;
+                if i == list.active as usize {
+                    clays.push(whole(&active, &names, None, empty.clone())?);
+                    continue;
+                }
+                let clay = stored.object(object.id).and_then(|o| o.clay.as_ref());
+                let clay = clay.filter(|c| c.number == rest.object_id);
+                let clay = clay.ok_or_else(|| damaged("an object of a list"))?;
+                clays.push(whole(rest, &clay.pages, clay.levels, rest.empty.clone())?);
+            }
+        }
+    }
     let steps = saved.steps;
     let s = &opened.settings;
     let options =
         WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
     let damaged = |_| StoreError::Damaged("a checkpoint's state".into());
-    let world = World::restore(mesh, saved, Workers::new(workers), options).map_err(damaged)?;
+    let world = World::restore(clays, saved, Workers::new(workers), options).map_err(damaged)?;
     let mut odd = false;
     let mut see = |_: u64, world: &mut World| {
         odd |= match world.report().missed {

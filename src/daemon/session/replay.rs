@@ -4,7 +4,7 @@ use super::history::Store;
 use super::history::keeper::assemble;
 use super::reader::Opened;
 use sculptd_clay::{BuildError, Clay, Snapshot, Workers};
-use sculptd_engine::command::{Command, Jump};
+use sculptd_engine::command::{Command, Jump, SceneJump};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
@@ -95,9 +95,16 @@ impl Run<'_> {
             tick = input.tick;
             let mut wanted = 0;
             for command in &input.commands {
-                if let Command::Jump(jump) = command {
-                    wanted += 1;
-                    self.fetch(jump, &mut world);
+                match command {
+                    Command::Jump(jump) => {
+                        wanted += 1;
+                        self.fetch(jump, &mut world);
+                    }
+                    Command::JumpScene(jump) => {
+                        wanted += 1;
+                        self.fetch_scene(jump, &mut world);
+                    }
+                    _ => {}
                 }
             }
             let report = *world.step(tick, &input.samples, &input.commands);
@@ -117,6 +124,19 @@ impl Run<'_> {
             (waits, busy) = (report.paused, report.paused || report.resting);
         }
         Replayed { world, ticks: tick, jumps_missed }
+    }
+
+    /// The same for a jump to another scene.
+    fn fetch_scene(&self, jump: &SceneJump, world: &mut World) {
+        let Some(store) = self.store else { return };
+        let each = jump
+            .objects
+            .iter()
+            .map(|o| assemble(store, self.base, &o.clay.rest, &o.pages, o.clay.levels));
+        match each.collect::<Result<Vec<_>, _>>() {
+            Ok(clays) => world.deliver_for_scene_jump(jump, Payload::Clays(clays)),
+            Err(e) => tracing::warn!("a jump to {} cannot be replayed: {e}", jump.node),
+        }
     }
 
     /// Puts what a jump names beside the world; where that is not in the file, the world ignores

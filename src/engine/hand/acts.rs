@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::{Similarity, Volume};
+use crate::scene::ObjectTransform;
 use sculptd_clay::Reach;
 use sculptd_clay::brush;
 
@@ -65,6 +66,19 @@ pub struct Push {
 }
 
 impl Push {
+    /// The same in the frame of an object; `own`: from the world to the object.
+    pub fn seen_from(&self, own: &ObjectTransform) -> Self {
+        if own.is_none() {
+            return *self;
+        }
+        Push {
+            from: own.point(self.from),
+            to: own.point(self.to),
+            radius: self.radius * own.scale as f32,
+            ..*self
+        }
+    }
+
     /// The part of space that the sweep touches.
     pub fn reach(&self) -> Reach {
         Reach::Capsule { from: self.from, to: self.to, radius: self.radius }
@@ -90,6 +104,19 @@ pub struct Drag {
 }
 
 impl Drag {
+    /// The same in the frame of an object; `own`: from the world to the object.
+    pub fn seen_from(&self, own: &ObjectTransform) -> Self {
+        if own.is_none() {
+            return *self;
+        }
+        Drag {
+            from: own.point(self.from),
+            to: own.point(self.to),
+            radius: self.radius * own.scale as f32,
+            ..*self
+        }
+    }
+
     /// The part of space that goes along.
     pub fn reach(&self) -> Reach {
         Reach::Sphere { centre: self.from, radius: self.radius }
@@ -117,6 +144,20 @@ pub struct PalmPress {
 }
 
 impl PalmPress {
+    /// The same in the frame of an object; `own`: from the world to the object.
+    pub fn seen_from(&self, own: &ObjectTransform) -> Self {
+        if own.is_none() {
+            return *self;
+        }
+        PalmPress {
+            from: own.point(self.from),
+            to: own.point(self.to),
+            normal: own.direction(self.normal),
+            radius: self.radius * own.scale as f32,
+            ..*self
+        }
+    }
+
     /// The part of space that the disc touches.
     pub fn reach(&self) -> Reach {
         Reach::Capsule { from: self.from, to: self.to, radius: self.radius }

@@ -15,8 +15,9 @@ use crate::camera::Camera;
 use crate::command::Jump;
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandTools, HeldObject, Similarity};
-use crate::old_layout::{FieldCounts, from_bytes};
+use crate::old_layout::{FieldCounts, take_from_bytes};
 use crate::payload::Payload;
+use crate::scene::{Object, ObjectId, ObjectSettings, Scene, SceneEvent, SceneView};
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
 use sculptd_devices::Hands;
@@ -38,19 +39,23 @@ pub enum HistoryEvent {
     Begin,
     /// To this node of the history.
     Jump(u64),
+    /// An object was added, removed, moved, made active.
+    Scene(SceneEvent),
 }
 
-/// What was done, and the clay right after it.
+/// What was done, and the scene right after it.
 #[derive(Debug, Clone)]
 pub struct HistoryEntry {
     /// What was done.
     pub deed: HistoryEvent,
-    /// The clay right after it.
+    /// The active object's clay right after it.
     pub work: Snapshot,
-    /// The centre of the object's bounding box when it was put in place.
+    /// The centre of the active object's bounding box when it was put in place, own frame.
     pub middle: glam::Vec3,
-    /// The bounding radius of the object then.
+    /// The bounding radius of the active object then, own frame.
     pub extent: f32,
+    /// All objects; the same list as of the entry before, where none was changed as a whole.
+    pub scene: Arc<SceneView>,
 }
 
 /// Large things that seldom change, kept beside the state and named by it.
@@ -71,7 +76,8 @@ pub struct Saved {
     pub tick: u64,
     /// What the clay is besides its pages.
     pub rest: ObjectState,
-    /// Everything small, as bytes.
+    /// Everything small, as bytes; in a scene of several objects the list of them behind it, see
+    /// [`Saved::scene`].
     pub core: Vec<u8>,
     /// What the hands hold; its place is in `core`.
     pub thing: Option<Arc<TriMesh>>,
@@ -90,6 +96,80 @@ pub struct Saved {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the bytes are not those of a world's state")]
 pub struct BadState;
+
+/// The list of objects of a world at rest. Stands behind the rest of the state, in a scene that is
+/// more than one object as a session begins with it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SavedScene {
+    /// In their order.
+    pub objects: Vec<SavedObject>,
+    /// The place of the active one.
+    pub active: u32,
+    /// The next object's id.
+    pub next_id: u32,
+}
+
+/// An object of a world at rest, without its pages.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SavedObject {
+    /// Its id.
+    pub id: ObjectId,
+    /// Everything but its clay.
+    pub settings: ObjectSettings,
+    /// As [`Object::middle`].
+    pub middle: glam::Vec3,
+    /// As [`Object::extent`].
+    pub extent: f32,
+    /// What its clay is besides its pages.
+    pub rest: ObjectState,
+}
+
+impl SavedScene {
+    fn of(scene: &Scene) -> SavedScene {
+        let of = |o: &Object| SavedObject {
+            id: o.id,
+            settings: o.settings.clone(),
+            middle: o.middle,
+            extent: o.extent,
+            rest: o.clay.rest(),
+        };
+        SavedScene {
+            objects: scene.objects().iter().map(of).collect(),
+            active: scene.active_index() as u32,
+            next_id: scene.next_id(),
+        }
+    }
+
+    /// What stands behind the rest of a state; `None` where nothing does.
+    fn read(bytes: &[u8]) -> Result<Option<SavedScene>, BadState> {
+        if bytes.is_empty() {
+            return Ok(None);
+        }
+        postcard::from_bytes(bytes).map(Some).map_err(|_| BadState)
+    }
+
+    fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
+        let mut objects = Vec::with_capacity(self.objects.len());
+        for o in self.objects {
+            let clay = clays.next().filter(|c| c.rest() == o.rest).ok_or(BadState)?;
+            let SavedObject { id, settings, middle, extent, .. } = o;
+            objects.push(Object { id, settings, clay, middle, extent });
+        }
+        Scene::restored(objects, self.active as usize, self.next_id).ok_or(BadState)
+    }
+}
+
+impl Saved {
+    /// The list of objects; `None`: there is one, as a session begins with it.
+    ///
+    /// # Errors
+    /// [`BadState`] where the bytes are not those of a state.
+    pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
+        let (_, rest): (Core, _) =
+            take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
+        SavedScene::read(rest)
+    }
+}
 
 #[derive(Serialize)]
 struct CoreRef<'a> {
@@ -138,7 +218,22 @@ impl World {
 
     /// The clay as it is, as a history entry: what a history begins with.
     pub fn moment(&mut self, deed: HistoryEvent) -> HistoryEntry {
-        HistoryEntry { deed, work: self.mesh.snapshot(), middle: self.middle, extent: self.extent }
+        let scene = self.scene_view();
+        let active = self.scene.active_mut();
+        let (middle, extent) = (active.middle, active.extent);
+        HistoryEntry { deed, work: active.clay.snapshot(), middle, extent, scene }
+    }
+
+    /// Lets the entries of the last tick go.
+    pub(super) fn let_entries_go(&mut self) {
+        let Some(entries) = self.moments.as_mut().filter(|m| !m.is_empty()) else { return };
+        let (active, garbage) = (self.scene.active().clay.object_id(), &self.garbage);
+        for entry in entries.drain(..) {
+            // It may be the last that holds the pages of an object that was replaced or removed.
+            if entry.work.object_id() != active || Arc::strong_count(&entry.scene) == 1 {
+                garbage.discard_owned(entry);
+            }
+        }
     }
 
     pub(super) fn note(&mut self, deed: HistoryEvent) {
@@ -150,33 +245,41 @@ impl World {
 
     /// Nothing can be taken back or done again.
     pub(super) fn forget_steps(&mut self) {
-        self.works.forget(&self.garbage);
-        self.mesh.jump(&[]);
+        let World { timeline, scene, garbage, .. } = self;
+        timeline.forget(scene, garbage);
+        // The revision goes on, as by a jump.
+        scene.active_mut().clay.jump(&[]);
     }
 
     pub(super) fn jump(&mut self, jump: &Jump) {
-        if jump.from != (self.mesh.object_id(), self.mesh.revision()) {
+        let from = |world: &World| {
+            let clay = &world.scene.active().clay;
+            (clay.object_id(), clay.revision())
+        };
+        if jump.from != from(self) {
             return;
         }
         let Some(payload) = self.payloads.take(jump.payload_id()) else { return };
         self.lift_all();
         // A stroke that ended here has changed the work after all.
-        if jump.from != (self.mesh.object_id(), self.mesh.revision()) {
+        if jump.from != from(self) {
             self.garbage.discard_owned(payload);
             return;
         }
         match (payload, &jump.other) {
-            (Payload::Pages(pages), None) if self.mesh.jump(&pages) => {
-                self.works.forget(&self.garbage);
+            (Payload::Pages(pages), None) if self.scene.active_mut().clay.jump(&pages) => {
+                let World { timeline, scene, garbage, .. } = self;
+                timeline.forget(scene, garbage);
             }
-            (Payload::Clay(mut mesh), Some(other)) => {
+            (Payload::Clay(clay), Some(other)) => {
                 self.forget_steps();
-                mesh.set_garbage_sink(self.garbage.clone());
-                mesh.set_page_supply(self.pages.clone());
-                mesh.set_undo_bytes(self.options.undo_bytes);
-                self.garbage.discard_owned(std::mem::replace(&mut self.mesh, *mesh));
-                (self.middle, self.extent) = (other.middle, other.extent);
-                self.hands.lay(self.middle, self.extent, self.camera.yaw);
+                let clay = self.adopted(*clay);
+                let object = self.scene.active_mut();
+                (object.middle, object.extent) = (other.middle, other.extent);
+                let old = std::mem::replace(&mut object.clay, clay);
+                self.garbage.discard_owned(old);
+                self.scene.touch();
+                self.lay_hands();
             }
             (other, _) => {
                 self.garbage.discard_owned(other);
@@ -189,7 +292,7 @@ impl World {
 
     /// Whether nothing is under way: no stroke, nothing that waits, no open step.
     pub fn is_at_rest(&self) -> bool {
-        !self.mesh.is_in_step()
+        !self.scene.active().clay.is_in_step()
             && !self.report.paused
             && self.pens.iter().all(|s| !s.track.is_open() && s.track.is_idle())
     }
@@ -199,11 +302,12 @@ impl World {
         if !self.is_at_rest() {
             return None;
         }
+        let active = self.scene.active();
         let core = CoreRef {
             brush: &self.brush,
             camera: &self.camera,
-            middle: self.middle,
-            extent: self.extent,
+            middle: active.middle,
+            extent: active.extent,
             pens: &self.pens,
             strokes: self.strokes,
             hands: &self.hands,
@@ -213,37 +317,57 @@ impl World {
             desktop: &self.desktop,
             kept_brushes: &self.kept_brushes,
         };
+        let mut core = postcard::to_stdvec(&core).ok()?;
+        if !self.scene.is_plain() {
+            core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
+        }
         Some(Saved {
             tick: self.tick,
-            rest: self.mesh.rest(),
-            core: postcard::to_stdvec(&core).ok()?,
+            rest: active.clay.rest(),
+            core,
             thing: self.thing.as_ref().map(|t| t.plain.clone()),
             picture: self.scratch.picture.clone(),
-            levels: self.mesh.levels().cloned(),
+            levels: active.clay.levels().cloned(),
             steps: (self.undo_steps() as u32, self.redo_steps() as u32),
             field_counts: &[],
         })
     }
 
-    /// The world that was saved, around its clay.
+    /// The world that was saved, around the clays of its objects in their order, see
+    /// [`Saved::scene`]; one clay, where there is no list of objects.
     ///
     /// # Errors
-    /// [`BadState`] where the bytes are not those of a state.
+    /// [`BadState`] where the bytes are not those of a state, or the clays are not those of its
+    /// objects.
     pub fn restore(
-        mut mesh: Clay,
+        clays: Vec<Clay>,
         saved: Saved,
         workers: Workers,
         options: WorldOptions,
     ) -> Result<World, BadState> {
-        let core: Core = from_bytes(&saved.core, saved.field_counts).map_err(|_| BadState)?;
+        let (core, rest): (Core, _) =
+            take_from_bytes(&saved.core, saved.field_counts).map_err(|_| BadState)?;
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        mesh.set_levels(saved.levels);
-        let mut world = World::new(mesh, core.camera, core.brush, workers, options);
+        let list = SavedScene::read(rest)?;
+        let mut clays = clays.into_iter();
+        let mut scene = match list {
+            None => {
+                let mut scene = Scene::new(clays.next().ok_or(BadState)?);
+                let active = scene.active_mut();
+                (active.middle, active.extent) = (core.middle, core.extent);
+                scene
+            }
+            Some(list) => list.around(&mut clays)?,
+        };
+        if clays.next().is_some() {
+            return Err(BadState);
+        }
+        scene.active_mut().clay.set_levels(saved.levels);
+        let mut world = World::around(scene, core.camera, core.brush, workers, options);
         world.tick = saved.tick;
         world.camera = core.camera;
-        (world.middle, world.extent) = (core.middle, core.extent);
         world.pens = core.pens;
         world.strokes = core.strokes;
         world.hands = core.hands;

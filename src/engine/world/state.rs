@@ -6,9 +6,10 @@ use glam::Vec3;
 
 use super::{StepReport, World};
 use crate::camera::Camera;
-use crate::command::{Command, Jump};
+use crate::command::{Command, Jump, SceneJump};
 use crate::hand::{HandTools, HeldObject, Pose, Volume};
 use crate::payload::{Payload, PayloadId};
+use crate::scene::{Scene, SceneView};
 use crate::stroke::{CurveStroke, PenPoint};
 use sculptd_clay::brush::{BrushKind, BrushSettings, Picture};
 use sculptd_clay::{Clay, GarbageSink, Grafted, PageSupply};
@@ -36,24 +37,34 @@ impl World {
         self.tick
     }
 
-    /// The clay.
+    /// The active object's clay, in its own frame.
     pub fn mesh(&self) -> &Clay {
-        &self.mesh
+        &self.scene.active().clay
     }
 
-    /// Steps that undo can take back, replaced clay included.
+    /// The objects.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Steps that undo can take back, of all objects.
     pub fn undo_steps(&self) -> usize {
-        self.mesh.undo_steps() + self.works.past()
+        self.timeline.past()
     }
 
-    /// Steps that redo can do again, replaced clay included.
+    /// Steps that redo can do again, of all objects.
     pub fn redo_steps(&self) -> usize {
-        self.mesh.redo_steps() + self.works.future()
+        self.timeline.future()
     }
 
-    /// For publishing only: nothing of the clay changes.
+    /// The active object's clay, for publishing only: nothing of it changes.
     pub fn snapshot(&mut self) -> sculptd_clay::Snapshot {
-        self.mesh.snapshot()
+        self.scene.active_mut().clay.snapshot()
+    }
+
+    /// The list of objects as others see it, for publishing only: nothing of them changes.
+    pub fn scene_view(&mut self) -> Arc<SceneView> {
+        self.scene.view(&self.garbage)
     }
 
     /// The view that pens draw in.
@@ -90,19 +101,20 @@ impl World {
         }
     }
 
-    /// The brush's radius in mesh units at full pressure.
+    /// The brush's radius at full pressure, world units.
     pub fn brush_radius(&self) -> f32 {
-        self.brush.radius * self.extent
+        self.brush.radius * self.extent()
     }
 
-    /// Bounding radius of the object when it was put in place.
+    /// Bounding radius of the active object when it was put in place, world units.
     pub fn extent(&self) -> f32 {
-        self.extent
+        self.scene.active().world_extent()
     }
 
-    /// The centre of the object's bounding box when it was put in place: where mirrors stand.
+    /// The centre of the active object's bounding box when it was put in place: where mirrors
+    /// stand, in the world.
     pub fn middle(&self) -> Vec3 {
-        self.middle
+        self.scene.active().world_middle()
     }
 
     /// The tracked volume of hands over the object.
@@ -142,14 +154,18 @@ impl World {
 
     /// From now on, what is no longer needed goes to this sink. A new world frees it in place.
     pub fn set_garbage_sink(&mut self, sink: GarbageSink) {
-        self.mesh.set_garbage_sink(sink.clone());
+        for object in self.scene.objects_mut() {
+            object.clay.set_garbage_sink(sink.clone());
+        }
         self.garbage = sink;
     }
 
     /// Pages that dynamic topology needs come from this supply from now on, whatever clay is in
     /// place. A new world makes them in place.
     pub fn set_page_supply(&mut self, supply: PageSupply) {
-        self.mesh.set_page_supply(supply.clone());
+        for object in self.scene.objects_mut() {
+            object.clay.set_page_supply(supply.clone());
+        }
         self.pages = supply;
     }
 
@@ -159,6 +175,13 @@ impl World {
     pub fn deliver(&mut self, command: &mut Command, payload: Payload) {
         if let Command::Jump(jump) = command {
             self.deliver_for_jump(jump, payload);
+        } else if let Command::JumpScene(jump) = command {
+            self.deliver_for_scene_jump(jump, payload);
+        } else if let Command::Scene(scene) = command
+            && let Some(new) = scene.new_objects_mut().first_mut()
+        {
+            let id = *new.built.insert(self.payloads.number());
+            self.keep_payload(id, payload);
         } else if let Some(new) = command.new_clay_mut() {
             let id = *new.built.insert(self.payloads.number());
             self.keep_payload(id, payload);
@@ -170,6 +193,11 @@ impl World {
     /// The same for a jump, which names its payload itself: one that was read from a file works
     /// like one that was sent.
     pub fn deliver_for_jump(&mut self, jump: &Jump, payload: Payload) {
+        self.keep_payload(jump.payload_id(), payload);
+    }
+
+    /// The same for a jump to another scene.
+    pub fn deliver_for_scene_jump(&mut self, jump: &SceneJump, payload: Payload) {
         self.keep_payload(jump.payload_id(), payload);
     }
 
@@ -185,9 +213,10 @@ impl World {
         &self.cuts
     }
 
-    /// One number for the whole state of the clay; costs as much as the clay is large.
+    /// One number for the whole state of all objects; costs as much as they are large. That of one
+    /// object that stands where it is, is that of its clay.
     pub fn hash(&self) -> u64 {
-        self.mesh.hash()
+        self.scene.hash()
     }
 
     /// Checks everything that must hold of the world. Costs as much as the clay is large.
@@ -198,6 +227,6 @@ impl World {
         if !self.camera.is_sane() {
             return Err(format!("the camera is not sane: {:?}", self.camera));
         }
-        self.mesh.verify_invariants()
+        self.scene.verify_invariants()
     }
 }

@@ -4,7 +4,7 @@ use glam::{Mat3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::StepReport;
-use crate::camera::Camera;
+use super::local_camera::LocalCamera;
 use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::dab::IMAGES;
@@ -159,7 +159,10 @@ pub(super) struct StrokeContext<'a> {
     pub(super) mesh: &'a mut Clay,
     pub(super) workers: &'a Workers,
     pub(super) scratch: &'a mut Scratch,
-    pub(super) camera: &'a Camera,
+    /// As the object sees it.
+    pub(super) camera: LocalCamera<'a>,
+    /// Strokes reach the object: it is neither hidden nor locked.
+    pub(super) editable: bool,
     pub(super) brush: &'a BrushSettings,
     pub(super) middle: Vec3,
     pub(super) extent: f32,
@@ -407,7 +410,7 @@ impl StrokeContext<'_> {
         let (right, up) = self.camera.axes();
         let scale = self.world_per_view(&held.hit);
         let d = at.view - held.from.view;
-        right * (d.x * self.camera.aspect * scale) - up * (d.y * scale)
+        right * (d.x * self.camera.aspect() * scale) - up * (d.y * scale)
     }
 
     fn move_held(&mut self, mut held: HeldStroke, at: &PenPoint) -> HeldStroke {
@@ -459,7 +462,7 @@ impl StrokeContext<'_> {
 
 impl Surface for StrokeContext<'_> {
     fn pick(&mut self, view: Vec2) -> Option<Hit> {
-        self.mesh.pick(self.camera.ray(view))
+        self.mesh.pick(self.camera.ray(view)).filter(|_| self.editable)
     }
 
     fn spacing(&self, at: &PenPoint) -> f32 {
@@ -509,7 +512,7 @@ impl Surface for StrokeContext<'_> {
     }
 
     fn drop(&mut self, ray: Ray, far: f32) -> Option<Hit> {
-        self.mesh.pick(ray).filter(|h| h.t <= far)
+        self.mesh.pick(ray).filter(|h| self.editable && h.t <= far)
     }
 
     fn dab(&mut self, at: &PenPoint, hit: &Hit, laid: Laid) -> Flow {

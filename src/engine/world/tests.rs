@@ -140,7 +140,7 @@ fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
         if tick % 20 == 0 {
             let saved = world.save().expect("at rest");
             let again = World::restore(
-                clay(&plain),
+                vec![clay(&plain)],
                 saved,
                 Workers::new(1),
                 WorldOptions {

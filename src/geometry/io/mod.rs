@@ -20,6 +20,7 @@ mod text;
 mod threemf;
 mod write;
 mod write_packed;
+mod write_scene;
 
 use std::path::Path;
 
@@ -28,6 +29,7 @@ pub use format::MeshFormat;
 pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
 pub use regular::read_regular;
 pub use write::{encode, left_out, writable_format, write_mesh};
+pub use write_scene::{SceneMesh, merged, write_scene};
 
 use super::PolyMesh;
 use crate::job::Job;

@@ -4,6 +4,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use super::write_packed::GltfMesh;
 use super::{WriteError, extension, write_beside, write_packed};
 use crate::PolyMesh;
 
@@ -35,8 +36,8 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "stl" => stl(mesh, out),
         "ply" => ply(mesh, out),
         "off" => off(mesh, out),
-        "glb" => write_packed::glb(mesh, out),
-        "gltf" => write_packed::gltf(mesh, out),
+        "glb" => write_packed::glb(&[GltfMesh::bare(mesh)], out),
+        "gltf" => write_packed::gltf(&[GltfMesh::bare(mesh)], out),
         "3mf" => write_packed::threemf(mesh, out),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,

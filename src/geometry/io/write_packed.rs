@@ -2,63 +2,119 @@
 
 use std::io::{self, Cursor, Write};
 
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
 use crate::PolyMesh;
 
-/// A mesh as glTF has it: single precision, colours as bytes of linear light (the format's own).
+/// A mesh on its way to a glTF file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GltfMesh<'a> {
+    pub mesh: &'a PolyMesh,
+    /// The name of its node.
+    pub name: Option<&'a str>,
+    /// Shift, turn and scale of its node; `None`: it stands where it is.
+    pub place: Option<(DVec3, DQuat, f64)>,
+}
+
+impl<'a> GltfMesh<'a> {
+    /// Without a name and a place.
+    pub fn bare(mesh: &'a PolyMesh) -> GltfMesh<'a> {
+        GltfMesh { mesh, name: None, place: None }
+    }
+}
+
+/// Meshes as glTF has them: single precision, colours as bytes of linear light (the format's own).
 struct GltfScene<'a> {
-    json: serde_json::Value,
-    points: Vec<glam::Vec3>,
-    triangles: Vec<[u32; 3]>,
-    colours: Option<&'a [[u8; 4]]>,
+    json: Value,
+    parts: Vec<GltfPart<'a>>,
     /// Bytes of the buffer.
     total: usize,
 }
 
-fn scene(mesh: &PolyMesh) -> GltfScene<'_> {
-    let (triangles, _) = mesh.triangles();
-    let points: Vec<glam::Vec3> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
-    let (lo, hi) =
-        points.iter().fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(lo, hi), &p| {
-            (lo.min(p), hi.max(p))
-        });
-    let (place, index) = (points.len() * 12, triangles.len() * 12);
-    let colour = mesh.colours.as_ref().map_or(0, |c| c.len() * 4);
-    let total = place + index + colour;
-    let mut views = vec![
-        serde_json::json!({"buffer": 0, "byteOffset": 0, "byteLength": place, "target": 34962}),
-        serde_json::json!({"buffer": 0, "byteOffset": place, "byteLength": index, "target": 34963}),
-    ];
-    let mut accessors = vec![
-        serde_json::json!({"bufferView": 0, "componentType": 5126, "count": points.len(), "type": "VEC3",
-            "min": lo.to_array(), "max": hi.to_array()}),
-        serde_json::json!({"bufferView": 1, "componentType": 5125, "count": triangles.len() * 3, "type": "SCALAR"}),
-    ];
-    let mut attributes = serde_json::json!({"POSITION": 0});
-    if colour > 0 {
-        views.push(serde_json::json!({"buffer": 0, "byteOffset": place + index, "byteLength": colour, "target": 34962}));
-        accessors
-            .push(serde_json::json!({"bufferView": 2, "componentType": 5121, "normalized": true,
-            "count": points.len(), "type": "VEC4"}));
-        attributes["COLOR_0"] = 2.into();
+/// One mesh in the buffer.
+struct GltfPart<'a> {
+    points: Vec<glam::Vec3>,
+    triangles: Vec<[u32; 3]>,
+    colours: Option<&'a [[u8; 4]]>,
+}
+
+fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
+    let (mut views, mut accessors) = (Vec::new(), Vec::new());
+    let (mut nodes, mut listed) = (Vec::new(), Vec::new());
+    let (mut parts, mut total) = (Vec::new(), 0);
+    // No accessor may be empty: an empty solid has no node.
+    for one in meshes.iter().filter(|m| !m.mesh.positions.is_empty()) {
+        let (triangles, _) = one.mesh.triangles();
+        let points: Vec<glam::Vec3> = one.mesh.positions.iter().map(|p| p.as_vec3()).collect();
+        let none = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
+        let (lo, hi) = points.iter().fold(none, |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let mut view = |bytes: usize, target: u32| {
+            views.push(json!({
+                "buffer": 0, "byteOffset": total, "byteLength": bytes, "target": target,
+            }));
+            total += bytes;
+            views.len() - 1
+        };
+        let place = view(points.len() * 12, 34962);
+        let index = view(triangles.len() * 12, 34963);
+        let first = accessors.len();
+        accessors.push(json!({
+            "bufferView": place, "componentType": 5126, "count": points.len(), "type": "VEC3",
+            "min": lo.to_array(), "max": hi.to_array(),
+        }));
+        accessors.push(json!({
+            "bufferView": index, "componentType": 5125, "count": triangles.len() * 3,
+            "type": "SCALAR",
+        }));
+        let mut attributes = json!({"POSITION": first});
+        if let Some(colours) = &one.mesh.colours {
+            let colour = view(colours.len() * 4, 34962);
+            attributes["COLOR_0"] = accessors.len().into();
+            accessors.push(json!({
+                "bufferView": colour, "componentType": 5121, "normalized": true,
+                "count": points.len(), "type": "VEC4",
+            }));
+        }
+        let mut node = json!({"mesh": listed.len()});
+        if let Some(name) = one.name {
+            node["name"] = name.into();
+        }
+        if let Some((shift, turn, scale)) = one.place {
+            node["translation"] = json!(shift.to_array());
+            node["rotation"] = json!(turn.to_array());
+            node["scale"] = json!([scale, scale, scale]);
+        }
+        nodes.push(node);
+        listed.push(json!({
+            "primitives": [{"attributes": attributes, "indices": first + 1, "mode": 4}],
+        }));
+        let colours = one.mesh.colours.as_deref();
+        parts.push(GltfPart { points, triangles, colours });
     }
-    let mut json = serde_json::json!({
-        "asset": {"version": "2.0", "generator": "sculptd"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": attributes, "indices": 1, "mode": 4}]}],
-        "buffers": [{"byteLength": total}], "bufferViews": views, "accessors": accessors,
-    });
-    if points.is_empty() {
-        // No accessor may be empty: an empty solid is a scene without nodes.
-        json = serde_json::json!({
-            "asset": {"version": "2.0", "generator": "sculptd"}, "scene": 0, "scenes": [{}],
-        });
-    }
-    GltfScene { json, points, triangles, colours: mesh.colours.as_deref(), total }
+    let asset = json!({"version": "2.0", "generator": "sculptd"});
+    let json = if parts.is_empty() {
+        json!({"asset": asset, "scene": 0, "scenes": [{}]})
+    } else {
+        let shown: Vec<usize> = (0..nodes.len()).collect();
+        json!({
+            "asset": asset, "scene": 0, "scenes": [{"nodes": shown}], "nodes": nodes,
+            "meshes": listed, "buffers": [{"byteLength": total}], "bufferViews": views,
+            "accessors": accessors,
+        })
+    };
+    GltfScene { json, parts, total }
 }
 
 impl GltfScene<'_> {
     fn buffer(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.parts.iter().try_for_each(|part| part.write(out))
+    }
+}
+
+impl GltfPart<'_> {
+    fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         for p in &self.points {
             out.write_all(bytemuck::bytes_of(&p.to_array().map(|v| v.to_bits().to_le())))?;
         }
@@ -78,8 +134,8 @@ impl GltfScene<'_> {
 }
 
 /// glTF in its binary container.
-pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
-    let scene = scene(mesh);
+pub(super) fn glb(meshes: &[GltfMesh<'_>], out: &mut dyn Write) -> io::Result<()> {
+    let scene = scene(meshes);
     let total = scene.total;
     let mut json = serde_json::to_vec(&scene.json)?;
     json.resize(json.len().next_multiple_of(4), b' ');
@@ -97,8 +153,8 @@ pub(super) fn glb(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// glTF as JSON, its buffer inside.
-pub(super) fn gltf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
-    let mut scene = scene(mesh);
+pub(super) fn gltf(meshes: &[GltfMesh<'_>], out: &mut dyn Write) -> io::Result<()> {
+    let mut scene = scene(meshes);
     if scene.total > 0 {
         let mut bytes = Vec::with_capacity(scene.total);
         scene.buffer(&mut bytes)?;

@@ -36,7 +36,8 @@ pub fn act(
     }
     match action {
         Action::Frame => {
-            let (lo, hi) = view.state.mesh.bounds();
+            let state = view.state;
+            let (lo, hi) = state.transform().bounds(state.mesh.bounds());
             if lo.cmple(hi).all() {
                 camera.frame(lo, hi);
                 out.push(UiRequest::Camera(camera));

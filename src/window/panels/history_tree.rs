@@ -146,7 +146,10 @@ fn row(
     }
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = pos2(picture.right() + 8.0, rect.center().y);
-    let shown = if r.replaced { format!("{time}  replaced") } else { time };
+    let shown = match r.operation {
+        Some(what) => format!("{time}  {what}"),
+        None => time,
+    };
     let ink = if r.here { ui.visuals().strong_text_color() } else { theme::quiet(ui) };
     ui.painter().text(text, egui::Align2::LEFT_CENTER, shown, font, ink);
     response.on_hover_text(name)
@@ -175,6 +178,7 @@ mod tests {
                 extent: 1.0,
                 next: [0, 0],
                 levels: None,
+                scene: None,
             });
             tree.go(id);
         };

@@ -4,8 +4,8 @@ use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, help, hints, history,
-    keys, legend, look, masks, measure, messages, modal, preferences, pressure_curve, radial,
-    remesh, scene, search, start, symmetry, theme, timing, trim,
+    keys, legend, look, masks, measure, messages, modal, outliner, preferences, pressure_curve,
+    radial, remesh, scene, search, start, symmetry, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -116,6 +116,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     match ui_state.tab {
         Tab::Look => look::ui(ui, ui_state, out, view),
         Tab::Scene => {
+            outliner::ui(ui, view, ui_state, out);
             scene::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::levels(ui, view, ui_state, out);

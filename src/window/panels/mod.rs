@@ -25,6 +25,7 @@ pub mod masks;
 pub mod measure;
 pub mod messages;
 pub mod modal;
+pub mod outliner;
 pub mod preferences;
 pub mod pressure_curve;
 pub mod radial;

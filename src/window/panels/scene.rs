@@ -30,7 +30,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let quiet = theme::quiet(ui);
     let s = view.state;
     ui.strong("Object");
-    let (lo, hi) = s.mesh.bounds();
+    let (lo, hi) = s.transform().bounds(s.mesh.bounds());
     let size = (hi - lo).max(glam::Vec3::ZERO);
     ui.colored_label(quiet, format!("{} triangles", s.mesh.triangle_count()));
     ui.colored_label(quiet, format!("{:.2} x {:.2} x {:.2} mm", size.x, size.y, size.z));

@@ -9,12 +9,15 @@ use super::preview::Preview;
 use super::renderer::LineEnd;
 use crate::look::Look;
 use sculptd_engine::camera::Camera;
+use sculptd_engine::scene::SceneView;
 
 /// All that a picture of the clay is drawn from.
 #[derive(Debug, Clone)]
 pub(super) struct ClayPictureKey {
     /// The object and its revision.
     pub(super) object: (u32, u64),
+    /// All objects, kept so that no other list comes to lie at its address.
+    pub(super) scene: Arc<SceneView>,
     pub(super) camera: Camera,
     pub(super) look: Look,
     pub(super) brush: Option<(Vec3, f32)>,
@@ -37,6 +40,7 @@ impl PartialEq for ClayPictureKey {
         };
         same_preview
             && self.object == other.object
+            && Arc::ptr_eq(&self.scene, &other.scene)
             && self.camera == other.camera
             && self.look == other.look
             && self.brush == other.brush
@@ -53,6 +57,7 @@ mod tests {
     fn whatever_is_drawn_makes_another_picture() {
         let key = ClayPictureKey {
             object: (1, 2),
+            scene: Arc::default(),
             camera: Camera::default(),
             look: Look::default(),
             brush: None,
@@ -63,8 +68,9 @@ mod tests {
             size: (800, 600),
         };
         assert_eq!(key, key.clone());
-        let changes: [fn(&mut ClayPictureKey); 7] = [
+        let changes: [fn(&mut ClayPictureKey); 8] = [
             |k| k.object.1 += 1,
+            |k| k.scene = Arc::default(),
             |k| k.camera.yaw += 0.1,
             |k| k.look.wireframe = true,
             |k| k.brush = Some((Vec3::ZERO, 1.0)),

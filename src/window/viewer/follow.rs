@@ -10,6 +10,7 @@ use crate::panels::hand_menu;
 use crate::panels::state::{DistanceTarget, Tab, TrialStatus};
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
+use sculptd_engine::hand::Similarity;
 
 /// A preview that is not done after so long is given up for a newer one; before that it is shown
 /// late rather than never.
@@ -81,6 +82,13 @@ impl WindowState {
             }
             return shown || before != TrialStatus::Nothing;
         };
+        // The preview is of the clay, and drawn in the frame of its object.
+        let mut thing = thing.clone();
+        let own = state.transform().inverse();
+        if !own.is_none() {
+            let (shift, turn) = (own.shift.as_vec3(), own.turn.as_quat());
+            thing.place = thing.place.then(&Similarity { shift, turn, scale: own.scale as f32 });
+        }
         let key = (state.mesh.revision(), thing.place, choice);
         if self.asked_preview.as_ref().is_some_and(|(asked, _)| *asked == key) {
             return false;
@@ -92,8 +100,7 @@ impl WindowState {
         }
         self.asked_preview = Some((key, now));
         self.ui_state.trial.said = TrialStatus::UnderWay;
-        let wanted =
-            preview::PreviewRequest { mesh: state.mesh.clone(), thing: thing.clone(), choice };
+        let wanted = preview::PreviewRequest { mesh: state.mesh.clone(), thing, choice };
         self.workers.preview(wanted, &self.tasks);
         true
     }

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::clay_picture::ClayPictureKey;
+use super::objects::{self, Stance};
 use super::overlay;
 use super::pages::MapValues;
 use super::pointer::Drag;
@@ -24,25 +25,30 @@ impl WindowState {
         let mut lines = Vec::new();
         let mut brush = None;
         if self.ui_state.look.grid {
-            let floor = state.mesh.bounds().0.y;
+            let floor = state.world_bounds().0.y;
             overlay::grid(&mut lines, state.middle, floor, state.extent, self.ui_state.look.pale);
         }
         let mut ring_at = |view: Vec2, pressure: f32, tilt: Option<Vec2>, down: bool| {
             let ray = self.camera.ray(view);
             let radius = state.brush_radius * state.brush.pressure_radius.factor(pressure);
             let ring = overlay::Ring { radius, carve: state.brush.negative, mirrored: false, down };
-            if let Some(hit) = state.mesh.pick(ray) {
-                overlay::ring(&mut lines, &state.mesh, hit.position, hit.normal, &ring);
+            if let Some(hit) = state.pick(ray) {
+                overlay::ring(&mut lines, state, hit.position, hit.normal, &ring);
                 if let Some(tilt) = tilt {
                     overlay::barrel(&mut lines, &self.camera, hit.position, tilt, radius);
                 }
                 brush.get_or_insert((hit.position, radius));
             }
+            // Mirrors stand in the object's own frame.
+            let to_world = state.transform();
+            let own = to_world.inverse();
+            let (middle, ray) = (own.point(state.middle), own.ray(ray));
             for m in overlay::mirrors(state.brush.symmetry) {
-                let origin = state.middle + (ray.origin - state.middle) * m;
-                if let Some(hit) = state.mesh.pick(sculptd_clay::Ray { origin, dir: ray.dir * m }) {
+                let origin = middle + (ray.origin - middle) * m;
+                let mirrored = sculptd_clay::Ray { origin, dir: ray.dir * m };
+                if let Some(hit) = state.pick(to_world.ray(mirrored)) {
                     let ring = overlay::Ring { mirrored: true, ..ring };
-                    overlay::ring(&mut lines, &state.mesh, hit.position, hit.normal, &ring);
+                    overlay::ring(&mut lines, state, hit.position, hit.normal, &ring);
                 }
             }
         };
@@ -163,7 +169,8 @@ impl WindowState {
         let brush = brush.filter(|_| first.is_none());
         let preview = first.or(self.preview.as_ref());
         let key = ClayPictureKey {
-            object: (state.mesh.object_id(), state.mesh.revision()),
+            object: state.clay_revision(),
+            scene: state.scene.clone(),
             camera,
             look: self.ui_state.look,
             brush,
@@ -176,6 +183,7 @@ impl WindowState {
         let drawn = part && self.renderer.waiting == 0 && self.clay_key.as_ref() == Some(&key);
         self.uploaded = 0;
         if !drawn {
+            let others = objects::others(state);
             let scene = Scene {
                 mesh: &state.mesh,
                 camera: &camera,
@@ -184,7 +192,12 @@ impl WindowState {
                 look: self.ui_state.look,
                 values: shown(&self.ui_state, &self.values, &self.distances)
                     .filter(|v| v.pages.len() == pages),
-                beside: Beside { preview, overlay: Some(&self.overlay_mesh) },
+                beside: Beside {
+                    preview,
+                    overlay: Some(&self.overlay_mesh),
+                    stance: Stance::of(state),
+                    others: &others,
+                },
             };
             let view = target.create_view(&Default::default());
             self.renderer.draw(&self.gpu, encoder, &view, size, &scene);

@@ -7,12 +7,14 @@ use glam::Vec2;
 use winit::event::{MouseButton, Touch, TouchPhase};
 
 use super::fingers::{Contact, FingerAction, TouchStep};
+use super::objects;
 use super::pointer::{Drag, PLAIN, give_back, lent};
 use super::state::WindowState;
 use super::wiring::Wiring;
 use sculptd_daemon::adaptors::TABLET_IDS;
 use sculptd_devices::{Body, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::stroke::CurveAction;
 
 impl WindowState {
@@ -140,7 +142,16 @@ impl WindowState {
         // The handle of a curve may lie beside the clay.
         let draft = &state.draft;
         let handle = draft.handle_at(view, self.camera.aspect);
-        let on_clay = || handle.is_some() || state.mesh.pick(ray).is_some();
+        // Alt and a press on another object make it active: that is no stroke.
+        if button == MouseButton::Left
+            && self.mods.alt_key()
+            && let Some(id) = objects::under(&state, ray)
+            && state.scene.active().is_some_and(|o| o.id != id)
+        {
+            let _ = wiring.commands.try_send(Command::Scene(SceneCommand::Activate(id)));
+            return;
+        }
+        let on_clay = || handle.is_some() || state.pick(ray).is_some();
         if let (MouseButton::Right, Some(handle)) = (button, handle) {
             let _ = wiring.commands.try_send(Command::CurveStroke(CurveAction::Delete(handle)));
             return;

@@ -3,7 +3,8 @@
 use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
-use sculptd_clay::{Ray, Snapshot};
+use sculptd_clay::Ray;
+use sculptd_daemon::Published;
 use sculptd_devices::Hands;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::{HeldObject, Volume};
@@ -36,7 +37,7 @@ pub struct Ring {
 /// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped
 /// along the normal onto the clay, and where there is none within reach it stays in the tangent
 /// plane.
-pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3, ring: &Ring) {
+pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec3, ring: &Ring) {
     let radius = ring.radius;
     let mut colour = match (ring.mirrored, ring.carve) {
         (true, _) => MIRRORED,
@@ -51,7 +52,7 @@ pub fn ring(out: &mut Vec<LineEnd>, mesh: &Snapshot, centre: Vec3, normal: Vec3,
         let (s, c) = (i as f32 / CORNERS as f32 * std::f32::consts::TAU).sin_cos();
         let flat = centre + (u * c + v * s) * radius;
         let above = Ray { origin: flat + normal * radius, dir: -normal };
-        match mesh.pick(above) {
+        match state.pick(above) {
             Some(hit) if (hit.t - radius).abs() < 0.6 * radius => {
                 hit.position + normal * (radius * 0.01)
             }

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
+use super::frame_uniform::{Frame, in_view};
 use super::gpu::Gpu;
+use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
-use crate::look::{Look, Map, SCALE, linear};
+use crate::look::{Look, Map, linear};
 use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
 use crate::viewer::ssao::Ssao;
 use sculptd_clay::{Page, Snapshot};
@@ -26,22 +28,6 @@ pub struct LineEnd {
 
 /// Ends of lines a frame at most: a dozen rings, four hands and a held object.
 const MAX_LINE_ENDS: usize = 16_384;
-
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct Frame {
-    view_projection: [[f32; 4]; 4],
-    right: [f32; 4],
-    up: [f32; 4],
-    back: [f32; 4],
-    brush: [f32; 4],
-    base: [f32; 4],
-    finish: [f32; 4],
-    map: [f32; 4],
-    scale: [[f32; 4]; SCALE],
-    low: [f32; 4],
-    high: [f32; 4],
-}
 
 /// What is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -64,6 +50,10 @@ pub struct Beside<'a> {
     pub preview: Option<&'a Arc<Preview>>,
     /// Over the clay, seen through.
     pub overlay: Option<&'a Triangles>,
+    /// How the object stands that the clay is of.
+    pub stance: Stance,
+    /// The other objects.
+    pub others: &'a [OtherObject<'a>],
 }
 
 /// Depth, samples where there are several a pixel, pixels.
@@ -80,6 +70,7 @@ pub struct Renderer {
     overlay: wgpu::RenderPipeline,
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
+    objects: ObjectBuffers,
     samples: u32,
     format: wgpu::TextureFormat,
     targets: Option<Targets>,
@@ -207,6 +198,7 @@ impl Renderer {
             group,
             line_ends,
             pages: None,
+            objects: ObjectBuffers::new(layout),
             samples,
             format,
             targets: None,
@@ -271,11 +263,20 @@ impl Renderer {
         scene: &Scene<'_>,
     ) {
         self.targets(&gpu.device, size);
+        let (stance, others) = (scene.beside.stance, scene.beside.others);
+        self.objects.activate(stance.id, &mut self.pages);
         if self.pages.as_ref().is_none_or(|p| !p.fits(scene.mesh)) {
             self.pages = Some(Pages::new(&gpu.device, &gpu.queue, scene.mesh));
         }
         let framed = scene.beside.preview.and_then(|p| p.bounds);
-        let (lo, hi) = framed.unwrap_or_else(|| scene.mesh.bounds());
+        let all = || {
+            let own = stance.transform.bounds(scene.mesh.bounds());
+            others.iter().fold(own, |(lo, hi), o| {
+                let (a, b) = o.transform.bounds(o.clay.bounds());
+                (lo.min(a), hi.max(b))
+            })
+        };
+        let (lo, hi) = framed.unwrap_or_else(all);
         let radius = if lo.cmple(hi).all() {
             (hi - scene.camera.target).abs().max((lo - scene.camera.target).abs()).length()
         } else {
@@ -310,6 +311,7 @@ impl Renderer {
             high: linear(ground[1]),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        self.objects.send(gpu, &frame, &matrix, &stance, others);
         let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];
         gpu.queue.write_buffer(&self.line_ends, 0, bytemuck::cast_slice(lines));
         if let Some(pages) = &mut self.pages {
@@ -322,11 +324,14 @@ impl Renderer {
                 pages.need_edges(&gpu.device, &gpu.queue);
             }
         }
+        self.uploaded += self.objects.uploaded;
+        self.waiting += self.objects.waiting;
         let preview = self.beside(gpu, scene);
         let hidden = |i: u32| {
             preview.is_some_and(|p| p.hidden.as_ref().is_none_or(|h| h.binary_search(&i).is_ok()))
         };
-        let shown = |i: u32, page: &Page| !hidden(i) && in_view(&matrix, page);
+        let own = matrix * model(&stance.transform);
+        let shown = |i: u32, page: &Page| stance.visible && !hidden(i) && in_view(&own, page);
         let Some((depth, smooth, _)) = &self.targets else { return };
         let view = smooth.as_ref().unwrap_or(target);
         let resolve = smooth.as_ref().map(|_| target);
@@ -342,15 +347,20 @@ impl Renderer {
             pass.draw(0..3, 0..1);
             if let Some(pages) = &self.pages {
                 pass.set_pipeline(&self.clay);
+                pass.set_bind_group(0, self.objects.active_group(), &[]);
                 let drawn = pages.draw(&mut pass, shown);
-                self.drawn = (drawn, scene.mesh.page_count());
+                let all = others.iter().map(|o| o.clay.page_count()).sum::<usize>();
+                self.drawn = (drawn, scene.mesh.page_count() + all);
                 if preview.is_some() {
                     self.preview.draw(&mut pass);
                 }
                 if scene.look.wireframe {
                     pass.set_pipeline(&self.edge);
                     pages.draw_edges(&mut pass, shown);
+                    pass.set_pipeline(&self.clay);
                 }
+                self.drawn.0 += self.objects.draw(&mut pass, &matrix, others);
+                pass.set_bind_group(0, &self.group, &[]);
             }
             if !shaded {
                 self.over(scene, &mut pass, lines.len() as u32);
@@ -441,21 +451,4 @@ fn nearer(camera: &Camera, radius: f32) -> f32 {
     let far = (camera.distance + radius * 2.0).max(1e-3);
     let near = (camera.distance - radius * 2.0).max(far * 1e-4);
     2e-3 * far * near / (far - near)
-}
-
-/// Whether a page's box may be seen: not wholly beyond one plane of the view.
-fn in_view(matrix: &Mat4, page: &Page) -> bool {
-    let (lo, hi) = page.bounds();
-    let mut beyond = [0u8; 5];
-    for corner in 0..8u32 {
-        let pick = |axis: u32, lo: f32, hi: f32| if corner >> axis & 1 == 0 { lo } else { hi };
-        let p = Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z));
-        let c = *matrix * p.extend(1.0);
-        for (n, out) in
-            beyond.iter_mut().zip([c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0])
-        {
-            *n += u8::from(out);
-        }
-    }
-    beyond.iter().all(|&n| n < 8)
 }

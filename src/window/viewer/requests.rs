@@ -51,11 +51,21 @@ impl WindowState {
             UiRequest::ListFolder(folder) => self.tasks.list(folder),
             UiRequest::Export(path) => {
                 let (factor, unit) = self.ui_state.files.factor();
-                self.tasks.export(path, state.mesh.clone(), factor, unit);
+                self.tasks.export(path, state, factor, unit);
             }
             UiRequest::Join(choice) => {
                 self.ui_state.joining = true;
                 self.tasks.join(choice, wiring.published.clone(), wiring.commands.clone());
+            }
+            UiRequest::AddPrimitive(primitive) => {
+                self.tasks.primitive(primitive, None, wiring.commands.clone());
+            }
+            UiRequest::Reshape(id, primitive) => {
+                self.tasks.primitive(primitive, Some(id), wiring.commands.clone());
+            }
+            UiRequest::BooleanWith(pairing) => {
+                self.ui_state.joining = true;
+                self.tasks.pair(pairing, wiring.published.clone(), wiring.commands.clone());
             }
             UiRequest::Trim(part) => {
                 self.ui_state.joining = true;

@@ -3,8 +3,9 @@
 
 use std::path::PathBuf;
 
+use super::objects::{self, Stance};
 use super::picture::paint;
-use super::renderer::Scene;
+use super::renderer::{Beside, Scene};
 use super::state::WindowState;
 use super::tasks::free_name;
 use super::turntable::Turntable;
@@ -56,6 +57,7 @@ impl WindowState {
     fn shot(&mut self, state: &Published, camera: Camera, path: PathBuf, quiet: bool) {
         let (_, size) = self.view_rect();
         let (width, height) = (size.x as u32, size.y as u32);
+        let others = objects::others(state);
         let scene = Scene {
             mesh: &state.mesh,
             camera: &camera,
@@ -63,7 +65,7 @@ impl WindowState {
             lines: &[],
             look: self.ui_state.look,
             values: super::frame::shown(&self.ui_state, &self.values, &self.distances),
-            beside: Default::default(),
+            beside: Beside { stance: Stance::of(state), others: &others, ..Beside::default() },
         };
         match paint(&self.gpu, &mut self.renderer, &scene, width, height) {
             Ok(picture) => self.tasks.picture(path, picture, quiet),

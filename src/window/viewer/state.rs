@@ -319,7 +319,7 @@ impl WindowState {
         let frame = self.unframed && self.free.is_some();
         if frame || (self.camera.aspect - aspect).abs() > 1e-4 {
             self.camera.aspect = aspect;
-            let (lo, hi) = wiring.published.load().mesh.bounds();
+            let (lo, hi) = wiring.published.load().world_bounds();
             if frame && lo.cmple(hi).all() {
                 self.camera.frame(lo, hi);
             }

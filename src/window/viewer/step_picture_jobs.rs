@@ -3,7 +3,8 @@
 
 use std::sync::mpsc;
 
-use super::renderer::Scene;
+use super::objects::{self, Stance};
+use super::renderer::{Beside, Scene};
 use super::state::WindowState;
 use super::step_pictures::PendingPicture;
 use crate::look::{Look, Map};
@@ -89,7 +90,7 @@ impl WindowState {
             mapped_at_creation: false,
         });
         let mut camera = Camera { aspect: SIZE.0 as f32 / SIZE.1 as f32, ..self.camera };
-        let (lo, hi) = state.mesh.bounds();
+        let (lo, hi) = state.world_bounds();
         if lo.cmple(hi).all() {
             camera.frame(lo, hi);
         }
@@ -100,6 +101,7 @@ impl WindowState {
             shade: 0.0,
             ..self.ui_state.look
         };
+        let others = objects::others(state);
         let scene = Scene {
             mesh: &state.mesh,
             camera: &camera,
@@ -107,7 +109,7 @@ impl WindowState {
             lines: &[],
             look,
             values: None,
-            beside: Default::default(),
+            beside: Beside { stance: Stance::of(state), others: &others, ..Beside::default() },
         };
         let mut encoder = device.create_command_encoder(&Default::default());
         let view = texture.create_view(&Default::default());

@@ -15,22 +15,27 @@ use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::{self, Preview};
 use super::wiring::Wiring;
+use crate::panels::state::Pairing;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
 };
-use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
+use sculptd_clay::{Clay, Snapshot};
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
 use sculptd_daemon::remesh_job::Wanted;
+use sculptd_daemon::scene_jobs::Selection;
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
-use sculptd_daemon::{Published, boolean_jobs, remesh_job, startup};
+use sculptd_daemon::{Published, boolean_jobs, remesh_job, scene_jobs, startup};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
-use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_mesh};
+use sculptd_engine::scene::{
+    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
+};
+use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_scene};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
 use sculptd_geometry::projection::PlaneRegion;
@@ -184,15 +189,20 @@ impl Tasks {
         Some((load.name.clone(), (done * 50.0).floor() / 50.0))
     }
 
-    /// Writes the clay, each coordinate times `scale`.
-    pub fn export(&self, path: PathBuf, mesh: Snapshot, scale: f64, unit: &'static str) {
+    /// Writes the visible objects, each coordinate times `scale`.
+    pub fn export(&self, path: PathBuf, state: &Published, scale: f64, unit: &'static str) {
+        let (scene, mesh) = (state.scene.clone(), state.mesh.clone());
+        let (lo, hi) = state.world_bounds();
         let say = self.say.clone();
         thread("sculptd-export", move || {
-            let mut poly = mesh.to_tri().to_poly();
-            poly.positions.iter_mut().for_each(|p| *p *= scale);
-            let (lo, hi) = mesh.bounds();
             let size = (hi - lo).as_dvec3() * scale;
-            let said = match write_mesh(&path, &poly) {
+            let written = scene_jobs::selected(&scene, &mesh, Selection::Visible)
+                .map_err(|e| e.to_string())
+                .and_then(|mut meshes| {
+                    meshes.iter_mut().for_each(|m| m.enlarge(scale));
+                    write_scene(&path, &meshes).map_err(|e| e.to_string())
+                });
+            let said = match written {
                 Ok(_) => {
                     let text = format!(
                         "Saved {}: {:.4} x {:.4} x {:.4} {unit}",
@@ -204,9 +214,57 @@ impl Tasks {
                     let _ = say.send(TaskReport::Used(path));
                     TaskReport::Message(text, false)
                 }
-                Err(e) => TaskReport::Message(e.to_string(), true),
+                Err(e) => TaskReport::Message(e, true),
             };
             let _ = say.send(said);
+        });
+    }
+
+    /// Adds an object of a primitive, or gives one other numbers.
+    pub fn primitive(&self, primitive: Primitive, of: Option<ObjectId>, commands: CommandSender) {
+        let say = self.say.clone();
+        thread("sculptd-load", move || {
+            let built = primitive
+                .triangles()
+                .map_err(|e| e.to_string())
+                .and_then(|plain| Clay::build(&plain, &Job::default()).map_err(|e| e.to_string()));
+            let clay = match built {
+                Ok(clay) => clay,
+                Err(e) => {
+                    let _ = say.send(TaskReport::Message(e, true));
+                    return;
+                }
+            };
+            let source = ObjectSource::Primitive(primitive);
+            let new = NewObject::new(primitive.shape.name(), source, ObjectTransform::NONE);
+            let command = Command::Scene(match of {
+                Some(id) => SceneCommand::Reshape(id, new),
+                None => SceneCommand::Add(new),
+            });
+            let built = Payload::Clay(Box::new(clay));
+            let _ = commands.send(QueuedCommand::with_payload(command, built));
+        });
+    }
+
+    /// A Boolean of the active object and another, in the place of both.
+    pub fn pair(&self, pairing: Pairing, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
+        let say = self.say.clone();
+        thread("sculptd-boolean", move || {
+            let state = shown.load_full();
+            let active = state.scene.active().map_or(pairing.with, |o| o.id);
+            let (ids, job) = ([active, pairing.with], Job::default());
+            let (text, wrong) =
+                match scene_jobs::boolean(&state, ids, pairing.operation, false, &job) {
+                    Ok(done) => {
+                        let command = Command::Scene(SceneCommand::Exchange(done.exchange));
+                        let built = Payload::Clays(done.clays);
+                        let sent = commands.send(QueuedCommand::with_payload(command, built));
+                        (format!("{:?}: done", pairing.operation), sent.is_err())
+                    }
+                    Err(e) => (e.to_string(), true),
+                };
+            let _ = say.send(TaskReport::Message(text, wrong));
+            let _ = say.send(TaskReport::Joined);
         });
     }
 

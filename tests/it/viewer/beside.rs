@@ -97,7 +97,7 @@ fn what_a_join_would_make_is_drawn_where_it_is_and_nowhere_else() {
         let preview = tried(&mut mesh, Vec3::Z, choice);
         assert_eq!(preview.hidden.is_some(), local, "{choice:?}");
         assert!(preview.made > 100, "{choice:?}: {} triangles of the thing", preview.made);
-        let beside = Beside { preview: Some(&preview), overlay: None };
+        let beside = Beside { preview: Some(&preview), ..Beside::default() };
         let shown = drawn(&mut painter, &mesh.snapshot(), &camera, look, beside);
         let (before, now) = (clay.get_pixel(100, 100).0, shown.get_pixel(100, 100).0);
         // Where only what both have stays, the clay's own surface is in front.
@@ -142,7 +142,7 @@ fn balls_are_seen_through_and_the_one_in_use_stands_out() {
     balls.ball(Vec3::new(0.0, -0.4, 1.2), 0.15, [255, 190, 70, 225]);
     // Behind the work: not seen.
     balls.ball(Vec3::new(0.0, 0.0, -1.2), 0.15, [255, 0, 0, 255]);
-    let beside = Beside { preview: None, overlay: Some(&balls) };
+    let beside = Beside { overlay: Some(&balls), ..Beside::default() };
     let shown = drawn(&mut painter, &mesh.snapshot(), &camera, look, beside);
     let change = |x, y| (light(&clay, x, y) - light(&shown, x, y)).abs();
     let rows: Vec<u32> = (0..200).filter(|y| change(100, *y) > 8.0).collect();

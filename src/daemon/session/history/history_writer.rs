@@ -4,11 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::store::{Checkpoint, Name, Store, StoreError};
+use super::stored_scene::{
+    StoredClay, StoredObject, StoredScene, same_scene, unchanged, version, versions_of,
+};
 use super::tree::{Change, NOTHING, Node, Tree};
 use crate::session::VERSION;
 use crate::session::history::retention::{Freed, HighestNumbers, Pin, bound};
 use crate::session::history::thumbnail;
 use sculptd_clay::{Page, Snapshot};
+use sculptd_engine::scene::{ObjectId, ObjectSettings, SceneView};
 use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, SideData};
 
 /// Bytes of one transaction: the journal's own rows wait for no longer than that takes.
@@ -21,6 +25,10 @@ pub struct HistoryWriter {
     pub tree: Tree,
     /// The work at the cursor.
     pub now: Snapshot,
+    /// The objects at the cursor, as the world shows them and as they are stored; `None`: there is
+    /// one, as a session begins.
+    view: Arc<SceneView>,
+    scene: Option<Arc<StoredScene>>,
     /// The revision of each page's topology in `now`, where it is not 0.
     pub topology: BTreeMap<u32, u64>,
     names: BTreeMap<Name, u64>,
@@ -34,11 +42,6 @@ pub struct HistoryWriter {
     pub most: u64,
     /// Another person's work began: no history is kept from there on.
     pub closed: bool,
-}
-
-/// What a page's version is called.
-fn version(page: &Page) -> u64 {
-    if page.own() == 0 && page.revision() == 0 { NOTHING } else { page.revision() }
 }
 
 fn same(a: &SideData, b: &SideData) -> bool {
@@ -76,6 +79,7 @@ impl HistoryWriter {
             used.extend(
                 n.changes.iter().flat_map(|c| [(n.object_id, c.0, c.1), (n.object_id, c.0, c.2)]),
             );
+            used.extend(n.scene.iter().flat_map(|s| s.names()));
         }
         // What the log's jumps name stays, whatever became of the places.
         store.settle_pins(purge)?;
@@ -107,6 +111,8 @@ impl HistoryWriter {
             store,
             tree,
             now,
+            view: Arc::default(),
+            scene: None,
             topology: BTreeMap::new(),
             names,
             topologies,
@@ -127,6 +133,7 @@ impl HistoryWriter {
         at: Option<u64>,
     ) -> Result<(), StoreError> {
         let work = &first.work;
+        let scene = self.scene_of(&first.scene)?;
         let parent = at.filter(|id| self.tree.node(*id).is_some());
         let known = parent.map(|id| self.tree.versions(id)).unwrap_or_default();
         let object_id = parent.and_then(|id| self.tree.node(id)).map_or(0, |n| n.object_id);
@@ -144,7 +151,9 @@ impl HistoryWriter {
             let of = |(i, rev): (&u32, &u64)| Some((*i, *self.names.get(&(object_id, *i, *rev))?));
             known.iter().filter_map(of).filter(|(_, t)| *t != 0).collect()
         };
-        if parent.is_some() && changed.is_empty() {
+        let same = same_scene(parent.and_then(|p| self.tree.scene_at(p)), scene.as_ref());
+        (self.view, self.scene) = (first.scene.clone(), scene.clone());
+        if parent.is_some() && changed.is_empty() && same {
             self.tree.go(parent.unwrap_or_default());
             return Ok(());
         }
@@ -169,7 +178,58 @@ impl HistoryWriter {
             self.keep_page((work.object_id(), i, page.revision()), page.revision(), page)?;
             changes.push((i, before, page.revision()));
         }
-        self.finish_node(Node { changes, ..node }, work)
+        let scene = scene.filter(|_| !same);
+        self.finish_node(Node { changes, scene, ..node }, work)
+    }
+
+    /// The objects as they are stored, with the pages of those that are not active, which are
+    /// written where they are not stored yet. `None`: there is one, as a session begins.
+    fn scene_of(&mut self, view: &Arc<SceneView>) -> Result<Option<Arc<StoredScene>>, StoreError> {
+        if Arc::ptr_eq(view, &self.view) {
+            return Ok(self.scene.clone());
+        }
+        if view.is_plain() && self.scene.is_none() {
+            return Ok(None);
+        }
+        let before = (self.view.clone(), self.scene.clone());
+        self.store.db.execute_batch("BEGIN IMMEDIATE")?;
+        self.open = 0;
+        let mut objects = Vec::with_capacity(view.objects.len());
+        for o in &view.objects {
+            let clay = match (unchanged(o, &before.0, before.1.as_deref()), &o.clay) {
+                (Some(known), _) => Some(known.clone()),
+                (None, Some(clay)) => Some(StoredClay {
+                    number: clay.object_id(),
+                    pages: Arc::new(self.stored_pages(clay)?),
+                    middle: o.middle,
+                    extent: o.extent,
+                    next: clay.next_numbers(),
+                    levels: match clay.levels() {
+                        Some(levels) => Some(self.side(SideData::Levels(levels.clone()))?),
+                        None => None,
+                    },
+                }),
+                (None, None) => None,
+            };
+            objects.push(StoredObject { id: o.id, settings: o.settings.clone(), clay });
+        }
+        self.store.db.execute_batch("COMMIT")?;
+        Ok(Some(Arc::new(StoredScene { objects, active: view.active as u32 })))
+    }
+
+    /// Every page of a clay by name; those that are not stored are written.
+    fn stored_pages(&mut self, clay: &Snapshot) -> Result<Vec<(u32, u64)>, StoreError> {
+        let (number, all) = (clay.object_id(), versions_of(clay));
+        for &(i, revision) in &all {
+            // The pages of the start are the start's.
+            let known = revision == NOTHING || number == 0 && revision == 0;
+            if !known && !self.names.contains_key(&(number, i, revision)) {
+                let page = clay.page(i).clone();
+                self.keep_topology((number, i, revision), &page)?;
+                self.keep_page((number, i, revision), revision, &page)?;
+            }
+        }
+        Ok(all)
     }
 
     /// After an error: what the file holds is read again, for a part of it may not have been
@@ -205,6 +265,7 @@ impl HistoryWriter {
             extent: moment.extent,
             next: moment.work.next_numbers(),
             levels: levels.and_then(|l| self.side(l).ok()),
+            scene: None,
         }
     }
 
@@ -250,29 +311,39 @@ impl HistoryWriter {
             return Ok(());
         }
         let changes = self.differences(work);
+        let scene = self.scene_of(&moment.scene)?;
+        // Not what was seen last: after an error that may not have been written.
+        let same = same_scene(self.tree.scene_at(self.tree.cursor), scene.as_ref());
+        (self.view, self.scene) = (moment.scene.clone(), scene.clone());
+        let leads_here = |tree: &Tree, id: u64| same_scene(tree.scene_at(id), scene.as_ref());
         let known = match moment.deed {
             HistoryEvent::Jump(id) => self.tree.node(id).map(|n| n.id),
-            _ if changes.as_ref().is_some_and(|c| c.is_empty()) => Some(self.tree.cursor),
+            _ if same && changes.as_ref().is_some_and(|c| c.is_empty()) => Some(self.tree.cursor),
             HistoryEvent::Undo => self.tree.here().and_then(|here| {
                 let back = |c: &Change| (c.0, c.2, c.1);
                 let fits = match &changes {
                     Some(changes) => {
-                        here.deed != HistoryEvent::Replace
+                        !here.begins_clay()
                             && here.changes.iter().map(back).eq(changes.iter().copied())
                     }
-                    None => here.deed == HistoryEvent::Replace,
+                    None => here.begins_clay(),
                 };
                 here.parent.filter(|p| {
-                    fits && self.tree.node(*p).is_some_and(|p| p.object_id == work.object_id())
+                    fits && leads_here(&self.tree, *p)
+                        && self.tree.node(*p).is_some_and(|p| p.object_id == work.object_id())
                 })
             }),
             HistoryEvent::Redo => self.tree.children(self.tree.cursor).iter().copied().find(|id| {
                 self.tree.node(*id).is_some_and(|n| {
                     n.object_id == work.object_id()
+                        && leads_here(&self.tree, *id)
                         && changes.as_ref().is_none_or(|c| *c == n.changes)
                 })
             }),
-            HistoryEvent::Step | HistoryEvent::Replace | HistoryEvent::Begin => None,
+            HistoryEvent::Step
+            | HistoryEvent::Replace
+            | HistoryEvent::Begin
+            | HistoryEvent::Scene(_) => None,
         };
         if let Some(id) = known {
             self.tree.go(id);
@@ -280,11 +351,18 @@ impl HistoryWriter {
             return Ok(());
         }
         let parent = Some(self.tree.cursor);
-        let deed = if changes.is_none() { HistoryEvent::Replace } else { HistoryEvent::Step };
+        let deed = match (moment.deed, &changes) {
+            (HistoryEvent::Scene(event), None) => HistoryEvent::Scene(event),
+            (HistoryEvent::Scene(event), Some(c)) if c.is_empty() => HistoryEvent::Scene(event),
+            (_, None) => HistoryEvent::Replace,
+            (_, Some(_)) => HistoryEvent::Step,
+        };
         let mut node = self.node(tick, moment, parent, deed);
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         self.open = 0;
-        node.changes = match changes.filter(|_| deed == HistoryEvent::Step) {
+        // Where one object is left as a session begins, that is said too.
+        node.scene = (!same).then(|| scene.unwrap_or_else(|| Arc::new(StoredScene::plain())));
+        node.changes = match changes {
             Some(changes) => {
                 for &(i, before, after) in &changes {
                     self.step_page(work, i, before, after)?;
@@ -416,6 +494,16 @@ impl HistoryWriter {
         if self.closed || (saved.rest.object_id, saved.rest.revision) != now {
             return Ok(());
         }
+        let listed = saved.scene().ok().flatten();
+        let listed = listed.map_or(vec![(ObjectId(0), ObjectSettings::default())], |s| {
+            s.objects.into_iter().map(|o| (o.id, o.settings)).collect()
+        });
+        let plain = StoredScene::plain();
+        let stored = self.tree.scene_at(self.tree.cursor).map_or(&plain, |s| s);
+        let stored = stored.objects.iter().map(|o| (o.id, o.settings.clone()));
+        if !stored.eq(listed) {
+            return Ok(());
+        }
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         let sides = [
             saved.thing.clone().map(SideData::HeldObject),
@@ -462,7 +550,19 @@ impl HistoryWriter {
         pages: &[(u32, u64)],
         levels: Option<u64>,
     ) -> Result<(), StoreError> {
-        let Some(object_id) = self.tree.node(node).map(|n| n.object_id) else { return Ok(()) };
+        match self.tree.node(node).map(|n| n.object_id) {
+            Some(object_id) => self.pin_clay(object_id, pages, levels),
+            None => Ok(()),
+        }
+    }
+
+    /// The same for the pages of one clay.
+    pub fn pin_clay(
+        &mut self,
+        object_id: u32,
+        pages: &[(u32, u64)],
+        levels: Option<u64>,
+    ) -> Result<(), StoreError> {
         self.bytes += self.store.put_pin(&Pin { object_id, pages: pages.to_vec(), levels })? as u64;
         Ok(())
     }

@@ -14,12 +14,13 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 
 use super::store::{Store, StoreError};
-use super::tree::{Node, Tree, TreePath};
+use super::stored_scene::{StoredObject, StoredScene};
+use super::tree::{NOTHING, Node, Tree, TreePath};
 use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::session::history::history_writer::HistoryWriter;
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
 use sculptd_devices::Clock;
-use sculptd_engine::command::{Command, Jump, OtherWork};
+use sculptd_engine::command::{Command, Jump, JumpObject, OtherWork, SceneJump};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, World};
 use sculptd_geometry::job::Job;
@@ -383,7 +384,30 @@ impl HistoryThread {
                 self.ledger.pin(to, &jump.pages, levels)?;
                 Ok(Some(queued(jump, Payload::Clay(Box::new(mesh)))))
             }
+            TreePath::Scene => self.fetch_scene(to),
         }
+    }
+
+    /// A jump to a node with other objects: all of them come from the file.
+    fn fetch_scene(&mut self, to: u64) -> Result<Option<QueuedCommand>, StoreError> {
+        let Some(node) = self.ledger.tree.node(to).cloned() else { return Ok(None) };
+        let from = (self.ledger.now.object_id(), self.ledger.now.revision());
+        let scene = self.ledger.tree.scene_at(to).cloned();
+        let scene = scene.unwrap_or_else(|| Arc::new(StoredScene::plain()));
+        let base = base(&self.path)?;
+        let (mut objects, mut clays) = (Vec::new(), Vec::new());
+        for object in &scene.objects {
+            let (clay, pages) = described(&self.ledger, &node, object, base.page_count())?;
+            clays.push(assemble(&self.ledger.store, &base, &clay.rest, &pages, clay.levels)?);
+            let (id, settings) = (object.id, object.settings.clone());
+            objects.push(JumpObject { id, settings, pages, clay });
+        }
+        for o in &objects {
+            self.ledger.pin_clay(o.clay.rest.object_id, &o.pages, o.clay.levels)?;
+        }
+        let jump = SceneJump { node: to, from, objects, active: scene.active };
+        let command = Command::JumpScene(Box::new(jump));
+        Ok(Some(QueuedCommand::with_payload(command, Payload::Clays(clays))))
     }
 }
 
@@ -404,6 +428,31 @@ fn describe(
         empty: Vec::new(),
     };
     Ok((rest, ledger.tree.names(node, node.pages, first)))
+}
+
+/// The clay of an object at a node: that of the node itself where the object is active there.
+fn described(
+    ledger: &HistoryWriter,
+    node: &Node,
+    object: &StoredObject,
+    first: usize,
+) -> Result<(OtherWork, Vec<(u32, u64)>), StoreError> {
+    let Some(clay) = &object.clay else {
+        let (rest, names) = describe(ledger, node, first)?;
+        let (middle, extent, levels) = (node.middle, node.extent, node.levels);
+        return Ok((OtherWork { rest, middle, extent, levels }, names));
+    };
+    let high = ledger.high(clay.number)?;
+    let newest = clay.pages.iter().map(|p| p.1).filter(|r| *r != NOTHING).max().unwrap_or(0);
+    let rest = ObjectState {
+        pages: clay.pages.len() as u32,
+        revision: high.revision.max(newest).saturating_add(1),
+        object_id: clay.number,
+        next: [high.next[0].max(clay.next[0]), high.next[1].max(clay.next[1])],
+        empty: Vec::new(),
+    };
+    let (middle, extent, levels) = (clay.middle, clay.extent, clay.levels);
+    Ok((OtherWork { rest, middle, extent, levels }, clay.pages.to_vec()))
 }
 
 /// The work that the session began with.

@@ -18,8 +18,10 @@
 mod history_writer;
 pub mod keeper;
 pub mod listing;
+mod page_name;
 pub mod retention;
 pub mod store;
+pub mod stored_scene;
 mod thumbnail;
 pub mod tree;
 

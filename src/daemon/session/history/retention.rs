@@ -107,7 +107,8 @@ struct RetentionRun<'a> {
 
 fn named(node: &Node) -> impl Iterator<Item = Name> + '_ {
     let both = |c: &(u32, u64, u64)| [(node.object_id, c.0, c.1), (node.object_id, c.0, c.2)];
-    node.changes.iter().flat_map(both).filter(|n| n.2 != NOTHING)
+    let listed = node.scene.iter().flat_map(|s| s.names());
+    node.changes.iter().flat_map(both).filter(|n| n.2 != NOTHING).chain(listed)
 }
 
 impl<'a> RetentionRun<'a> {
@@ -195,7 +196,9 @@ impl<'a> RetentionRun<'a> {
             return Ok(());
         };
         let changes = tree.versions(next.id).into_iter().map(|(page, v)| (page, v, v)).collect();
-        let first = Node { parent: None, changes, ..next };
+        // It takes over the list of objects, if it has none of its own.
+        let scene = tree.scene_at(next.id).cloned();
+        let first = Node { parent: None, changes, scene, ..next.clone() };
         for name in named(&first) {
             *self.uses.entry(name).or_default() += 1;
         }
@@ -287,6 +290,7 @@ impl<'a> RetentionRun<'a> {
     /// Levels and other things beside the work that nothing names any more.
     fn levels(&mut self, tree: &Tree) -> Result<(), StoreError> {
         let mut used: BTreeSet<u64> = tree.nodes().filter_map(|n| n.levels).collect();
+        used.extend(tree.nodes().flat_map(|n| n.scene.iter()).flat_map(|s| s.levels()));
         used.extend(self.pins.iter().filter_map(|p| p.2.levels));
         used.extend(self.checkpoints.values().flatten().flat_map(|c| c.1.iter().copied()));
         for id in self.store.side_ids()? {

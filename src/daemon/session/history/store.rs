@@ -10,13 +10,15 @@ use rusqlite::{Connection, OptionalExtension};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::tree::{NOTHING, Node, Tree};
+use super::page_name::NOTHING;
+pub use super::page_name::Name;
+use super::tree::{Node, Tree};
 use crate::session::format::{field_counts, v3};
 use crate::session::{VERSION, connection};
 use sculptd_clay::brush::Picture;
 use sculptd_clay::page::PageTopology;
 use sculptd_clay::{Levels, ObjectState, Page};
-use sculptd_engine::old_layout::from_bytes;
+use sculptd_engine::old_layout::take_from_bytes;
 use sculptd_engine::world::{Saved, SideData};
 use sculptd_geometry::TriMesh;
 
@@ -81,9 +83,6 @@ pub enum StoreError {
     Damaged(String),
 }
 
-/// The name of a page's version.
-pub type Name = (u32, u32, u64);
-
 /// A state of the world, as it lies in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Checkpoint {
@@ -109,11 +108,26 @@ struct StoredRow {
 impl StoredRow {
     /// `None`: the bytes are not those that were written.
     fn decode<T: DeserializeOwned>(&self) -> Option<T> {
+        self.decode_with_rest().map(|(value, _)| value)
+    }
+
+    /// The value, and the bytes behind it.
+    fn decode_with_rest<T: DeserializeOwned>(&self) -> Option<(T, &[u8])> {
         let counts = field_counts(self.layout)?;
         if crc32fast::hash(&self.data) != self.crc {
             return None;
         }
-        from_bytes(&self.data, counts).ok()
+        take_from_bytes(&self.data, counts).ok()
+    }
+
+    /// A node, and the list of objects behind it, where there is one.
+    fn decode_node(&self) -> Option<Node> {
+        let (node, rest) = self.decode_with_rest::<Node>()?;
+        let scene = match rest {
+            [] => None,
+            rest => Some(Arc::new(postcard::from_bytes(rest).ok()?)),
+        };
+        Some(Node { scene, ..node })
     }
 }
 
@@ -171,7 +185,7 @@ impl Store {
         let mut rows = query.query([])?;
         while let Some(row) = rows.next()? {
             let row = StoredRow { crc: row.get(0)?, data: row.get(1)?, layout: row.get(2)? };
-            if let Some(node) = row.decode::<Node>()
+            if let Some(node) = row.decode_node()
                 && node.parent.is_none_or(|p| tree.node(p).is_some())
             {
                 tree.cursor = node.id;
@@ -277,7 +291,10 @@ impl Store {
     }
 
     pub fn put_node(&self, node: &Node) -> Result<usize, StoreError> {
-        let data = plain(postcard::to_stdvec(node))?;
+        let mut data = plain(postcard::to_stdvec(node))?;
+        if let Some(scene) = &node.scene {
+            data = plain(postcard::to_extend(scene.as_ref(), data))?;
+        }
         let row = (node.id as i64, crc32fast::hash(&data), &data, VERSION);
         self.db.execute(
             "INSERT OR REPLACE INTO node (id, crc, data, layout) VALUES (?1, ?2, ?3, ?4)",

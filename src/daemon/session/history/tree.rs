@@ -6,10 +6,9 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+pub use super::page_name::NOTHING;
+use super::stored_scene::{StoredScene, same_scene};
 use sculptd_engine::world::HistoryEvent;
-
-/// The revision of a page that was not there yet.
-pub const NOTHING: u64 = u64::MAX;
 
 /// A page that a step changed: its number, its revision before, and after.
 pub type Change = (u32, u64, u64);
@@ -31,6 +30,21 @@ pub struct Node {
     /// Numbers that the next new vertex and triangle get.
     pub next: [u32; 2],
     pub levels: Option<u64>,
+    /// The objects, where the list differs from that of the node before. Lies behind the node in
+    /// the same row.
+    #[serde(skip)]
+    pub scene: Option<Arc<StoredScene>>,
+}
+
+impl Node {
+    /// Whether another clay begins here, so that `changes` names all its pages.
+    pub fn begins_clay(&self) -> bool {
+        match self.deed {
+            HistoryEvent::Replace => true,
+            HistoryEvent::Scene(_) => !self.changes.is_empty(),
+            _ => false,
+        }
+    }
 }
 
 /// All nodes, and where the work is.
@@ -51,6 +65,8 @@ pub enum TreePath {
     Pages(Vec<(u32, u64)>),
     /// Another work.
     Other,
+    /// Other objects.
+    Scene,
 }
 
 impl Tree {
@@ -150,6 +166,11 @@ impl Tree {
         self.nodes.remove(&root).map(Arc::unwrap_or_clone)
     }
 
+    /// The objects at a node; `None`: there is one, as a session begins with it.
+    pub fn scene_at(&self, id: u64) -> Option<&Arc<StoredScene>> {
+        self.line(id).find_map(|n| n.scene.as_ref())
+    }
+
     /// The nodes from this one up to its root.
     pub fn line(&self, id: u64) -> impl Iterator<Item = &Node> {
         std::iter::successors(self.node(id), |n| n.parent.and_then(|p| self.node(p)))
@@ -169,10 +190,11 @@ impl Tree {
             down.push(node);
         }
         let up = &up[..meet?];
+        if !same_scene(self.scene_at(self.cursor), self.scene_at(to)) {
+            return Some(TreePath::Scene);
+        }
         let object_id = self.here()?.object_id;
-        if target.object_id != object_id
-            || up.iter().chain(&down).any(|n| n.deed == HistoryEvent::Replace)
-        {
+        if target.object_id != object_id || up.iter().chain(&down).any(|n| n.begins_clay()) {
             return Some(TreePath::Other);
         }
         let mut pages = BTreeMap::new();
@@ -203,7 +225,7 @@ impl Tree {
             for (page, _, after) in &node.changes {
                 found.entry(*page).or_insert(*after);
             }
-            if node.deed == HistoryEvent::Replace {
+            if node.begins_clay() {
                 break;
             }
         }
@@ -228,6 +250,7 @@ mod tests {
             extent: 1.0,
             next: [0, 0],
             levels: None,
+            scene: None,
         }
     }
 

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sculptd_daemon::session::history::Tree;
+use sculptd_engine::scene::SceneEvent;
 use sculptd_engine::world::HistoryEvent;
 
 /// Pictures kept.
@@ -33,9 +34,30 @@ pub struct VersionRow {
     /// 0: the line of the present version, with what redo leads to.
     pub lane: usize,
     pub tick: u64,
-    /// The object was replaced.
-    pub replaced: bool,
+    /// What was done, where it was more than a stroke.
+    pub operation: Option<&'static str>,
     pub here: bool,
+}
+
+fn operation(event: HistoryEvent) -> Option<&'static str> {
+    match event {
+        HistoryEvent::Replace => Some("replaced"),
+        HistoryEvent::Scene(event) => Some(match event {
+            SceneEvent::Add => "added",
+            SceneEvent::Remove => "removed",
+            SceneEvent::Duplicate => "duplicated",
+            SceneEvent::Rename => "renamed",
+            SceneEvent::Transform => "moved",
+            SceneEvent::Activate => "activated",
+            SceneEvent::Show => "shown or hidden",
+            SceneEvent::Lock => "locked or unlocked",
+            SceneEvent::Reshape => "reshaped",
+            SceneEvent::Boolean => "Boolean",
+            SceneEvent::Merge => "merged",
+            SceneEvent::Split => "split",
+        }),
+        _ => None,
+    }
 }
 
 /// The tree, and how it was last shown.
@@ -96,7 +118,7 @@ impl HistoryVersions {
                 parent,
                 lane,
                 tick,
-                replaced: n.deed == HistoryEvent::Replace,
+                operation: operation(n.deed),
                 here,
             });
         }

@@ -9,8 +9,10 @@ use sculptd_devices::pad_actions::{Binding, Control};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
+use sculptd_engine::scene::{ObjectId, Primitive};
 
 use super::action::Action;
+use super::outliner::Pairing;
 
 /// What a panel asks for.
 #[derive(Debug, Clone)]
@@ -31,6 +33,12 @@ pub enum UiRequest {
     OpenSession(PathBuf),
     /// The held object is joined with the object.
     Join(MenuItem),
+    /// An object of a primitive is added.
+    AddPrimitive(Primitive),
+    /// A primitive gets other numbers.
+    Reshape(ObjectId, Primitive),
+    /// A Boolean of the active object and another; the result takes the place of both.
+    BooleanWith(Pairing),
     /// What is seen in this part of the view is cut off.
     Trim(Part),
     /// The object one level finer, or coarser.

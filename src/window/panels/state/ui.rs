@@ -7,6 +7,7 @@ use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
+use super::outliner::Outliner;
 use super::pens::PenTrace;
 use super::preferences::Hint;
 use super::preferences::Preferences;
@@ -46,6 +47,8 @@ pub struct UiState {
     /// A Boolean is under way.
     pub joining: bool,
     pub trial: BooleanTrial,
+    /// What was begun in the outliner.
+    pub outliner: Outliner,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     pub trim: Option<Trim>,

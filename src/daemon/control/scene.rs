@@ -1,0 +1,215 @@
+//! What the methods of the scene do.
+
+use std::time::Duration;
+
+use crossbeam_channel as cc;
+use glam::{DQuat, DVec3};
+
+use super::host::{Host, MAX_MESH_FILE, failed};
+use crate::Published;
+use crate::command_queue::QueuedCommand;
+use crate::scene_jobs::{self, Combined, Selection};
+use crate::startup;
+use sculptd_clay::Clay;
+use sculptd_control::RpcError;
+use sculptd_control::edit::ExportReply;
+use sculptd_control::scene::{
+    AddParams, CombineReply, ExportObjects, ExportParams, ObjectInfo, ObjectReply, Placement,
+    PrimitiveShape as AskedShape, ReshapeParams, SceneReply, TransformParams,
+};
+use sculptd_devices::Clock;
+use sculptd_engine::command::Command;
+use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::{
+    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, PrimitiveShape, SceneCommand,
+};
+use sculptd_geometry::io::write_scene;
+use sculptd_geometry::job::Job;
+
+/// For the loop to say what came of a command.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+fn placed(asked: &Placement) -> Result<ObjectTransform, RpcError> {
+    let turn = DQuat::from_array(asked.turn);
+    let transform = ObjectTransform {
+        shift: DVec3::from_array(asked.shift),
+        turn: if turn.length() > 1e-6 { turn.normalize() } else { DQuat::NAN },
+        scale: asked.scale,
+    };
+    let bad = || RpcError::bad_params("transform.turn: expected a rotation, not four zeros");
+    transform.is_sane().then_some(transform).ok_or_else(bad)
+}
+
+fn placement(transform: &ObjectTransform) -> Placement {
+    Placement {
+        shift: transform.shift.to_array(),
+        turn: transform.turn.to_array(),
+        scale: transform.scale,
+    }
+}
+
+fn shape(asked: AskedShape) -> PrimitiveShape {
+    match asked {
+        AskedShape::Box(n) => PrimitiveShape::Box(n),
+        AskedShape::Ball(n) => PrimitiveShape::Ball(n),
+        AskedShape::Cylinder(n) => PrimitiveShape::Cylinder(n),
+        AskedShape::Cone(n) => PrimitiveShape::Cone(n),
+        AskedShape::Torus(n) => PrimitiveShape::Torus(n),
+        AskedShape::Tube(n) => PrimitiveShape::Tube(n),
+        AskedShape::Plane(n) => PrimitiveShape::Plane(n),
+    }
+}
+
+fn told_shape(shape: PrimitiveShape) -> AskedShape {
+    match shape {
+        PrimitiveShape::Box(n) => AskedShape::Box(n),
+        PrimitiveShape::Ball(n) => AskedShape::Ball(n),
+        PrimitiveShape::Cylinder(n) => AskedShape::Cylinder(n),
+        PrimitiveShape::Cone(n) => AskedShape::Cone(n),
+        PrimitiveShape::Torus(n) => AskedShape::Torus(n),
+        PrimitiveShape::Tube(n) => AskedShape::Tube(n),
+        PrimitiveShape::Plane(n) => AskedShape::Plane(n),
+    }
+}
+
+/// Every object.
+pub(super) fn list(shown: &Published) -> SceneReply {
+    let scene = &shown.scene;
+    let info = |(i, (o, clay)): (usize, (&sculptd_engine::scene::ObjectView, &_))| {
+        let clay: &sculptd_clay::Snapshot = clay;
+        let (lo, hi) = o.settings.transform.bounds(clay.bounds());
+        ObjectInfo {
+            id: o.id.0,
+            name: o.settings.name.clone(),
+            active: i == scene.active,
+            visible: o.settings.visible,
+            locked: o.settings.locked,
+            transform: placement(&o.settings.transform),
+            primitive: o
+                .settings
+                .primitive
+                .filter(|_| clay.revision() == 0)
+                .map(|p| told_shape(p.shape)),
+            vertices: clay.vertex_count() as u64,
+            triangles: clay.triangle_count() as u64,
+            bounds: [lo.to_array(), hi.to_array()],
+        }
+    };
+    let objects = scene.each(&shown.mesh).enumerate().map(info).collect();
+    SceneReply { active: scene.active().map_or(0, |o| o.id.0), objects }
+}
+
+/// Hands a command to the loop and waits for what came of it.
+pub(super) fn ask(
+    host: &Host,
+    command: impl Into<QueuedSceneCommand>,
+) -> Result<ObjectReply, RpcError> {
+    let QueuedSceneCommand { command, payload } = command.into();
+    let (answer, result) = cc::bounded(1);
+    let queued = QueuedCommand {
+        payload,
+        scene_result: Some(answer),
+        ..QueuedCommand::from(Command::Scene(command))
+    };
+    host.send(queued)?;
+    match result.recv_timeout(PATIENCE) {
+        Ok(done) => Ok(ObjectReply { id: done.map_err(failed)?.0, warnings: Vec::new() }),
+        Err(_) => Err(RpcError::failed("the loop has ended")),
+    }
+}
+
+/// A command to the scene with what it needs.
+pub(super) struct QueuedSceneCommand {
+    command: SceneCommand,
+    payload: Option<Payload>,
+}
+
+impl From<SceneCommand> for QueuedSceneCommand {
+    fn from(command: SceneCommand) -> Self {
+        QueuedSceneCommand { command, payload: None }
+    }
+}
+
+fn primitive(asked: AskedShape, edge: Option<f64>) -> Result<(Primitive, Clay), RpcError> {
+    let shape = shape(asked);
+    let primitive = Primitive { shape, edge: edge.unwrap_or_else(|| shape.usual_edge()) };
+    let bad = |e: &dyn std::fmt::Display| RpcError::bad_params(format!("primitive: {e}"));
+    let plain = primitive.triangles().map_err(|e| bad(&e))?;
+    let clay = Clay::build(&plain, &Job::default()).map_err(|e| bad(&e))?;
+    Ok((primitive, clay))
+}
+
+pub(super) fn add(host: &Host, params: AddParams) -> Result<ObjectReply, RpcError> {
+    let transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
+    let (source, clay, name, warnings) = match (params.primitive, &params.path) {
+        (Some(asked), None) => {
+            let (primitive, clay) = primitive(asked, params.edge)?;
+            let name = primitive.shape.name().to_owned();
+            (ObjectSource::Primitive(primitive), clay, name, Vec::new())
+        }
+        (None, Some(path)) => {
+            let loaded =
+                startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)?;
+            let source = ObjectSource::Mesh(loaded.plain.into());
+            (source, loaded.mesh, startup::object_name(path), loaded.warnings)
+        }
+        _ => return Err(RpcError::bad_params("expected one of `primitive` and `path`")),
+    };
+    let new = NewObject::new(params.name.as_deref().unwrap_or(&name), source, transform);
+    let command = SceneCommand::Add(new);
+    let payload = Some(Payload::Clay(Box::new(clay)));
+    Ok(ObjectReply { warnings, ..ask(host, QueuedSceneCommand { command, payload })? })
+}
+
+pub(super) fn reshape(host: &Host, params: &ReshapeParams) -> Result<ObjectReply, RpcError> {
+    let (primitive, clay) = primitive(params.primitive, params.edge)?;
+    let name = primitive.shape.name();
+    let source = ObjectSource::Primitive(primitive);
+    let new = NewObject::new(name, source, ObjectTransform::NONE);
+    let command = SceneCommand::Reshape(ObjectId(params.id), new);
+    ask(host, QueuedSceneCommand { command, payload: Some(Payload::Clay(Box::new(clay))) })
+}
+
+pub(super) fn transform(host: &Host, params: &TransformParams) -> Result<ObjectReply, RpcError> {
+    let (id, mut transform) = (ObjectId(params.id), placed(&params.transform)?);
+    if params.relative {
+        let shown = host.published.load();
+        let object = shown.scene.object(id);
+        let object = object.ok_or_else(|| failed(format!("there is no object {id}")))?;
+        transform = object.settings.transform.then(&transform);
+    }
+    ask(host, SceneCommand::Transform(id, transform))
+}
+
+/// Carries out what makes new objects of others. One at a time, and `progress` and `cancel` know of
+/// it.
+pub(super) fn combine(
+    host: &Host,
+    of: impl FnOnce(&Published, &Job) -> Result<Combined, scene_jobs::CombineError>,
+) -> Result<CombineReply, RpcError> {
+    let place = host.begin_boolean()?;
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let done = of(&host.published.load_full(), &place.job).map_err(failed)?;
+    let objects = done.clays.len() as u64;
+    let vertices = done.clays.iter().map(|c| c.vertex_count() as u64).sum();
+    let payload = Some(Payload::Clays(done.clays));
+    let command = SceneCommand::Exchange(done.exchange);
+    let ObjectReply { id, .. } = ask(host, QueuedSceneCommand { command, payload })?;
+    let seconds = (clock.now_us() - begun) as f64 * 1e-6;
+    Ok(CombineReply { id, objects, vertices, seconds })
+}
+
+pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, RpcError> {
+    let shown = host.published.load_full();
+    let which = match params.objects {
+        None | Some(ExportObjects::Visible) => Selection::Visible,
+        Some(ExportObjects::Active) => Selection::Active,
+        Some(ExportObjects::All) => Selection::All,
+        Some(ExportObjects::Object(id)) => Selection::One(ObjectId(id)),
+    };
+    let meshes = scene_jobs::selected(&shown.scene, &shown.mesh, which).map_err(failed)?;
+    write_scene(&params.path, &meshes).map_err(failed)?;
+    let vertices = meshes.iter().map(|m| m.mesh.positions.len() as u64).sum();
+    Ok(ExportReply { path: params.path, tick: shown.tick, vertices })
+}

@@ -1,0 +1,270 @@
+//! What is computed of whole objects: Booleans between two, merging, splitting, and what a file of
+//! a scene holds. It runs on the thread of whoever asks, against immutable snapshots; the result is
+//! a command that the loop carries out only where no operand has changed meanwhile.
+
+use std::sync::Arc;
+
+use sculptd_clay::{Clay, Snapshot};
+use sculptd_engine::scene::{
+    Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, SceneError,
+    SceneEvent, SceneView,
+};
+use sculptd_geometry::boolean::{self, BooleanOptions, Operation};
+use sculptd_geometry::disjoint_sets::DisjointSets;
+use sculptd_geometry::io::SceneMesh;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, TriMesh};
+
+use crate::published::Published;
+
+/// Why no new objects can be made of others.
+#[derive(Debug, thiserror::Error)]
+pub enum CombineError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Boolean(#[from] boolean::BooleanError),
+    #[error("expected two different objects")]
+    Same,
+    #[error("nothing would be left")]
+    Nothing,
+    #[error("object {0} is in one piece")]
+    OnePiece(ObjectId),
+    #[error("the result cannot be sculpted: {0}")]
+    Build(String),
+    #[error("no object is visible")]
+    NoneVisible,
+}
+
+/// New objects, and the clay of each.
+#[derive(Debug)]
+pub struct Combined {
+    pub exchange: Exchange,
+    pub clays: Vec<Clay>,
+}
+
+/// Which objects go into a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Selection {
+    Active,
+    Visible,
+    All,
+    One(ObjectId),
+}
+
+/// The objects of a selection as meshes with names and places.
+///
+/// # Errors
+/// Where none is selected.
+pub fn selected(
+    scene: &SceneView,
+    active: &Snapshot,
+    which: Selection,
+) -> Result<Vec<SceneMesh>, CombineError> {
+    let chosen = |(i, (o, _)): &(usize, (&ObjectView, &Snapshot))| match which {
+        Selection::Active => *i == scene.active,
+        Selection::Visible => o.settings.visible,
+        Selection::All => true,
+        Selection::One(id) => o.id == id,
+    };
+    let all: Vec<SceneMesh> = scene
+        .each(active)
+        .enumerate()
+        .filter(chosen)
+        .map(|(_, (o, clay))| {
+            let ObjectTransform { shift, turn, scale } = o.settings.transform;
+            let (name, mesh) = (o.settings.name.clone(), clay.to_tri().to_poly());
+            SceneMesh { name, mesh, shift, turn, scale }
+        })
+        .collect();
+    match which {
+        _ if !all.is_empty() => Ok(all),
+        Selection::One(id) => Err(SceneError::NoObject(id).into()),
+        _ => Err(CombineError::NoneVisible),
+    }
+}
+
+/// An object, its clay, and what an [`Exchange`] says of it.
+fn operand(
+    shown: &Published,
+    id: ObjectId,
+) -> Result<(&ObjectView, &Snapshot, (ObjectId, u32, u64, ObjectTransform)), CombineError> {
+    let found = shown.scene.each(&shown.mesh).find(|(o, _)| o.id == id);
+    let (object, clay) = found.ok_or(SceneError::NoObject(id))?;
+    if object.settings.locked {
+        return Err(SceneError::Locked(id).into());
+    }
+    let of = (id, clay.object_id(), clay.revision(), object.settings.transform);
+    Ok((object, clay, of))
+}
+
+/// The mesh of an object in the frame of another.
+fn seen_from(clay: &Snapshot, own: &ObjectTransform, frame: &ObjectTransform) -> PolyMesh {
+    let mut mesh = clay.to_tri().to_poly();
+    if own != frame {
+        let way = own.then(&frame.inverse());
+        mesh.positions.iter_mut().for_each(|p| *p = way.apply(*p));
+    }
+    mesh
+}
+
+fn built(plain: &TriMesh, job: &Job) -> Result<Clay, CombineError> {
+    Clay::build(plain, job).map_err(|e| CombineError::Build(e.to_string()))
+}
+
+/// A Boolean of two objects where they stand. The result stands where the first does. `keep`: the
+/// operands stay, hidden.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn boolean(
+    shown: &Published,
+    ids: [ObjectId; 2],
+    operation: Operation,
+    keep: bool,
+    job: &Job,
+) -> Result<Combined, CombineError> {
+    if ids[0] == ids[1] {
+        return Err(CombineError::Same);
+    }
+    let (a, a_clay, a_of) = operand(shown, ids[0])?;
+    let (b, b_clay, b_of) = operand(shown, ids[1])?;
+    let frame = a.settings.transform;
+    let first = seen_from(a_clay, &frame, &frame);
+    let second = seen_from(b_clay, &b.settings.transform, &frame);
+    let options = BooleanOptions::default();
+    let (solids, _) = boolean::compute([&first, &second], &[operation], &options, job, || 0.0)?;
+    let solid = solids.into_iter().next().ok_or(CombineError::Nothing)?;
+    if solid.mesh.face_count() == 0 {
+        return Err(CombineError::Nothing);
+    }
+    let plain = solid.mesh.triangulate().0;
+    let clay = built(&plain, job)?;
+    let source = ObjectSource::Mesh(Arc::new(plain));
+    let new = NewObject::new(&a.settings.name, source, frame);
+    let (remove, hide) = if keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
+    let event = SceneEvent::Boolean;
+    let exchange = Exchange { event, from: vec![a_of, b_of], remove, hide, add: vec![new] };
+    Ok(Combined { exchange, clays: vec![clay] })
+}
+
+/// Several objects as one, in the frame of the first.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn merge(shown: &Published, ids: &[ObjectId], job: &Job) -> Result<Combined, CombineError> {
+    let mut remove = ids.to_vec();
+    remove.sort_unstable();
+    remove.dedup();
+    if ids.len() < 2 || remove.len() != ids.len() {
+        return Err(CombineError::Same);
+    }
+    let (first, _, _) = operand(shown, ids[0])?;
+    let frame = first.settings.transform;
+    let mut from = Vec::with_capacity(ids.len());
+    let mut plain = TriMesh::default();
+    let mut colours = Vec::new();
+    for id in ids {
+        let (object, clay, of) = operand(shown, *id)?;
+        from.push(of);
+        let part = clay.to_tri();
+        let (offset, way) =
+            (plain.positions.len() as u32, object.settings.transform.then(&frame.inverse()));
+        let stays = object.settings.transform == frame;
+        let place = |p: &glam::Vec3| if stays { *p } else { way.point(*p) };
+        plain.positions.extend(part.positions.iter().map(place));
+        plain.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + offset)));
+        match part.colours {
+            Some(own) => {
+                colours.resize(offset as usize, [255; 4]);
+                colours.extend(own);
+            }
+            None if !colours.is_empty() => colours.resize(plain.positions.len(), [255; 4]),
+            None => {}
+        }
+    }
+    plain.colours = (!colours.is_empty()).then_some(colours);
+    let clay = built(&plain, job)?;
+    let new = NewObject::new(&first.settings.name, ObjectSource::Mesh(Arc::new(plain)), frame);
+    let event = SceneEvent::Merge;
+    let exchange = Exchange { event, from, remove, hide: Vec::new(), add: vec![new] };
+    Ok(Combined { exchange, clays: vec![clay] })
+}
+
+/// Each connected part of an object as an object of its own, the largest first.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn split(shown: &Published, id: ObjectId, job: &Job) -> Result<Combined, CombineError> {
+    let (object, clay, of) = operand(shown, id)?;
+    let parts = components(&clay.to_tri());
+    if parts.len() < 2 {
+        return Err(CombineError::OnePiece(id));
+    }
+    let (name, transform) = (&object.settings.name, object.settings.transform);
+    let mut clays = Vec::with_capacity(parts.len());
+    let mut add = Vec::with_capacity(parts.len());
+    for (k, part) in parts.into_iter().enumerate() {
+        clays.push(built(&part, job)?);
+        let source = ObjectSource::Mesh(Arc::new(part));
+        add.push(NewObject::new(&format!("{name} {}", k + 1), source, transform));
+    }
+    let event = SceneEvent::Split;
+    let exchange = Exchange { event, from: vec![of], remove: vec![id], hide: Vec::new(), add };
+    Ok(Combined { exchange, clays })
+}
+
+/// The connected parts of a mesh, by shared vertices: the one of most triangles first, ties in the
+/// order of their first triangle.
+fn components(mesh: &TriMesh) -> Vec<TriMesh> {
+    let mut sets = DisjointSets::new(mesh.positions.len());
+    for t in &mesh.triangles {
+        sets.join(t[0], t[1]);
+        sets.join(t[0], t[2]);
+    }
+    let mut part_of = vec![u32::MAX; mesh.positions.len()];
+    let mut place = vec![u32::MAX; mesh.positions.len()];
+    let mut parts: Vec<TriMesh> = Vec::new();
+    for t in &mesh.triangles {
+        let root = sets.root(t[0]) as usize;
+        if part_of[root] == u32::MAX {
+            part_of[root] = parts.len() as u32;
+            let colours = mesh.colours.as_ref().map(|_| Vec::new());
+            parts.push(TriMesh { colours, ..TriMesh::default() });
+        }
+        let part = &mut parts[part_of[root] as usize];
+        let corners = t.map(|v| {
+            if place[v as usize] == u32::MAX {
+                place[v as usize] = part.positions.len() as u32;
+                part.positions.push(mesh.positions[v as usize]);
+                if let (Some(to), Some(from)) = (&mut part.colours, &mesh.colours) {
+                    to.push(from[v as usize]);
+                }
+            }
+            place[v as usize]
+        });
+        part.triangles.push(corners);
+    }
+    parts.sort_by_key(|p| std::cmp::Reverse(p.triangles.len()));
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_geometry::shapes;
+
+    #[test]
+    fn parts_are_what_hangs_together_the_largest_first() {
+        let (small, large) = (shapes::icosphere(1.0, 2), shapes::icosphere(1.0, 4));
+        let mut both = small.clone();
+        let offset = both.positions.len() as u32;
+        both.positions.extend(large.positions.iter().map(|p| *p + glam::Vec3::X * 5.0));
+        both.triangles.extend(large.triangles.iter().map(|t| t.map(|v| v + offset)));
+        let parts = components(&both);
+        let sizes: Vec<_> = parts.iter().map(|p| (p.positions.len(), p.triangles.len())).collect();
+        let of = |m: &TriMesh| (m.positions.len(), m.triangles.len());
+        assert_eq!(sizes, [of(&large), of(&small)]);
+        assert_eq!(parts[1].bounds(), small.bounds());
+    }
+}

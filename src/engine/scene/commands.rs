@@ -1,0 +1,170 @@
+//! What can be asked of the scene, as plain data.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{ObjectId, ObjectTransform, Primitive};
+use crate::payload::PayloadId;
+use sculptd_geometry::TriMesh;
+
+/// Objects of a scene, at most.
+pub const MAX_OBJECTS: usize = 4096;
+
+/// Something that was asked of the scene. Each that is carried out is one step of undo.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum SceneCommand {
+    /// An object is added behind the others and made active.
+    Add(NewObject),
+    /// An object is removed, unless it is the last one or locked. Where it was active, a neighbour
+    /// is.
+    Remove(ObjectId),
+    /// A twin of an object, which shares its pages, is added right behind it and made active.
+    Duplicate(ObjectId),
+    /// An object gets another name, see [`super::clean_name`].
+    Rename(ObjectId, String),
+    /// An object stands here from now on.
+    Transform(ObjectId, ObjectTransform),
+    /// Strokes, masks and Booleans act on this object from now on.
+    Activate(ObjectId),
+    /// Whether an object is drawn, and reached by strokes.
+    Show(ObjectId, bool),
+    /// Whether an object is protected from strokes, transforms and removal.
+    Lock(ObjectId, bool),
+    /// Objects take the place of others: a Boolean, a merge, a split.
+    Exchange(Exchange),
+    /// An object of a primitive gets other numbers, as long as nothing has changed its clay.
+    Reshape(ObjectId, NewObject),
+}
+
+impl SceneCommand {
+    /// The new objects that it brings along.
+    pub fn new_objects_mut(&mut self) -> &mut [NewObject] {
+        match self {
+            SceneCommand::Add(new) | SceneCommand::Reshape(_, new) => std::slice::from_mut(new),
+            SceneCommand::Exchange(exchange) => &mut exchange.add,
+            _ => &mut [],
+        }
+    }
+
+    /// Whether it owns or shares memory beyond its own size.
+    pub fn owns_memory(&self) -> bool {
+        matches!(
+            self,
+            SceneCommand::Add(_)
+                | SceneCommand::Exchange(_)
+                | SceneCommand::Reshape(..)
+                | SceneCommand::Rename(..)
+        )
+    }
+}
+
+/// What a new object is made of.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum ObjectSource {
+    /// Triangles, in the object's own frame.
+    Mesh(Arc<TriMesh>),
+    /// The numbers of a primitive.
+    Primitive(Primitive),
+}
+
+/// An object to be added. Its clay is built by whoever asks and sent as a payload; without that the
+/// world builds it again, which takes as long as the mesh is large.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct NewObject {
+    /// Its name.
+    pub name: String,
+    /// What it is made of.
+    pub source: ObjectSource,
+    /// Where it stands.
+    pub transform: ObjectTransform,
+    /// The clay of its source in the world's store; not part of the bytes.
+    #[serde(skip)]
+    pub built: Option<PayloadId>,
+}
+
+impl NewObject {
+    /// A new object whose clay is not built yet.
+    pub fn new(name: &str, source: ObjectSource, transform: ObjectTransform) -> NewObject {
+        NewObject { name: name.into(), source, transform, built: None }
+    }
+}
+
+/// Objects that take the place of others, in one step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Exchange {
+    /// What it is called in the history.
+    pub event: SceneEvent,
+    /// The objects that the new ones were computed from, with the number and the revision of the
+    /// clay of each ([`sculptd_clay::Clay::object_id`]) and where each stood: nothing is done when
+    /// one has changed since.
+    pub from: Vec<(ObjectId, u32, u64, ObjectTransform)>,
+    /// Of these, the ones that go.
+    pub remove: Vec<ObjectId>,
+    /// Of these, the ones that stay but are hidden.
+    pub hide: Vec<ObjectId>,
+    /// What comes; the first of them is active afterwards. At least one.
+    pub add: Vec<NewObject>,
+}
+
+/// What was done to the scene, for the history.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SceneEvent {
+    /// An object was added.
+    Add,
+    /// An object was removed.
+    Remove,
+    /// An object was duplicated.
+    Duplicate,
+    /// An object was renamed.
+    Rename,
+    /// An object was moved, turned or scaled.
+    Transform,
+    /// Another object was made active.
+    Activate,
+    /// An object was shown or hidden.
+    Show,
+    /// An object was locked or unlocked.
+    Lock,
+    /// A primitive got other numbers.
+    Reshape,
+    /// A Boolean of two objects.
+    Boolean,
+    /// Several objects became one.
+    Merge,
+    /// One object became several.
+    Split,
+}
+
+/// Why a command to the scene was not carried out. Nothing was changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SceneError {
+    /// An id that no object has.
+    #[error("there is no object {0}")]
+    NoObject(ObjectId),
+    /// The object is locked.
+    #[error("object {0} is locked")]
+    Locked(ObjectId),
+    /// The last object cannot be removed.
+    #[error("the last object cannot be removed")]
+    Last,
+    /// The scene is full.
+    #[error("a scene has at most {MAX_OBJECTS} objects")]
+    Full,
+    /// A name that is empty or too long.
+    #[error("expected a name of 1 to 128 characters")]
+    Name,
+    /// A transform with values out of range.
+    #[error("expected a unit rotation, a scale of 1e-6 to 1e6 and a place within 1e9")]
+    Transform,
+    /// No clay can be made of the mesh or the numbers.
+    #[error("no clay can be made of it")]
+    Build,
+    /// An operand has changed since the result was computed, or is gone.
+    #[error("object {0} has changed meanwhile")]
+    Changed(ObjectId),
+    /// The clay of a primitive was changed, so its numbers mean nothing any more.
+    #[error("object {0} is no primitive, or its clay was changed")]
+    NotAPrimitive(ObjectId),
+}

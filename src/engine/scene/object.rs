@@ -1,0 +1,108 @@
+//! One object of the scene.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::{ObjectTransform, Primitive};
+use sculptd_clay::Clay;
+
+/// Names an object of a scene, for as long as the session lasts: no two objects ever have the same,
+/// and one that comes back by undo has the one that it had.
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct ObjectId(pub u32);
+
+impl std::fmt::Display for ObjectId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// Characters of a name, at most.
+pub const MAX_NAME: usize = 128;
+
+/// Everything of an object but its clay.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ObjectSettings {
+    /// For people; several objects may have the same. At most [`MAX_NAME`] characters.
+    pub name: String,
+    /// Where it stands.
+    pub transform: ObjectTransform,
+    /// Whether it is drawn, and written where the visible objects are.
+    pub visible: bool,
+    /// Strokes, Booleans, transforms and removal are refused.
+    pub locked: bool,
+    /// The numbers that it was made of, which can be changed as long as nothing has changed its
+    /// clay.
+    pub primitive: Option<Primitive>,
+}
+
+impl Default for ObjectSettings {
+    fn default() -> Self {
+        ObjectSettings {
+            name: "object".into(),
+            transform: ObjectTransform::NONE,
+            visible: true,
+            locked: false,
+            primitive: None,
+        }
+    }
+}
+
+/// A name without control characters and blanks at its ends, of 1 to [`MAX_NAME`] characters.
+pub fn clean_name(name: &str) -> Option<String> {
+    let kept: String = name.chars().filter(|c| !c.is_control()).collect();
+    let kept = kept.trim();
+    (1..=MAX_NAME).contains(&kept.chars().count()).then(|| kept.into())
+}
+
+/// An object: a form with a name and a place.
+#[derive(Debug)]
+pub struct Object {
+    /// Its name for programs.
+    pub id: ObjectId,
+    /// Everything but its clay.
+    pub settings: ObjectSettings,
+    /// Its form, in its own frame.
+    pub clay: Clay,
+    /// Centre of its bounding box when it was put in place, own frame: where mirrors stand.
+    pub middle: Vec3,
+    /// Its bounding radius then, own frame, > 0: the measure of brushes, mirrors and hands.
+    pub extent: f32,
+}
+
+impl Object {
+    /// An object around this clay, measured.
+    pub fn new(id: ObjectId, settings: ObjectSettings, clay: Clay) -> Object {
+        let mut object = Object { id, settings, clay, middle: Vec3::ZERO, extent: 1.0 };
+        object.measure();
+        object
+    }
+
+    /// Takes middle and extent from the clay as it is.
+    pub fn measure(&mut self) {
+        let (lo, hi) = self.clay.bounds();
+        let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (Vec3::splat(-1.0), Vec3::ONE) };
+        self.middle = (lo + hi) * 0.5;
+        self.extent = ((hi - lo).length() * 0.5).max(1e-12);
+    }
+
+    /// Whether strokes reach it.
+    pub fn is_editable(&self) -> bool {
+        self.settings.visible && !self.settings.locked
+    }
+
+    /// Centre of its bounding box when it was put in place, in the world.
+    pub fn world_middle(&self) -> Vec3 {
+        self.settings.transform.point(self.middle)
+    }
+
+    /// Its bounding radius then, world units.
+    pub fn world_extent(&self) -> f32 {
+        if self.settings.transform.is_none() {
+            return self.extent;
+        }
+        (f64::from(self.extent) * self.settings.transform.scale) as f32
+    }
+}

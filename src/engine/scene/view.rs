@@ -1,0 +1,86 @@
+//! The scene as others see it, immutable.
+
+use glam::Vec3;
+
+use super::{ObjectId, ObjectSettings};
+use sculptd_clay::Snapshot;
+
+/// One object as others see it.
+#[derive(Debug, Clone)]
+pub struct ObjectView {
+    /// Its name for programs.
+    pub id: ObjectId,
+    /// Everything but its clay.
+    pub settings: ObjectSettings,
+    /// As [`super::Object::middle`].
+    pub middle: Vec3,
+    /// As [`super::Object::extent`].
+    pub extent: f32,
+    /// Its clay; `None` of the active object, whose newest snapshot lies beside the view: a view
+    /// holds as long as no object is added, removed or set, and strokes go on meanwhile.
+    pub clay: Option<Snapshot>,
+}
+
+/// The list of objects, and which is active. Made anew only when one of them is added, removed, set
+/// or made active; strokes leave it as it is.
+#[derive(Debug, Clone, Default)]
+pub struct SceneView {
+    /// In the order of the scene.
+    pub objects: Vec<ObjectView>,
+    /// The place of the active object in the list.
+    pub active: usize,
+}
+
+impl SceneView {
+    /// The active object. `None` only of a view that was never filled.
+    pub fn active(&self) -> Option<&ObjectView> {
+        self.objects.get(self.active)
+    }
+
+    /// An object by its id.
+    pub fn object(&self, id: ObjectId) -> Option<&ObjectView> {
+        self.objects.iter().find(|o| o.id == id)
+    }
+
+    /// Every object with its clay. `active`: the newest snapshot of the active object.
+    pub fn each<'a>(
+        &'a self,
+        active: &'a Snapshot,
+    ) -> impl Iterator<Item = (&'a ObjectView, &'a Snapshot)> {
+        self.objects.iter().map(move |o| (o, o.clay.as_ref().unwrap_or(active)))
+    }
+
+    /// Whether there is nothing but one object that stands where it is: a world as it was before
+    /// there were scenes.
+    pub fn is_plain(&self) -> bool {
+        matches!(&self.objects[..], [one] if one.settings == ObjectSettings::default())
+    }
+
+    /// One number for the state of all objects; costs as much as they are large.
+    pub fn hash(&self, active: &Snapshot) -> u64 {
+        let all = self.each(active).map(|(o, clay)| (&o.settings, clay.hash()));
+        combined_hash(all, self.active)
+    }
+}
+
+/// The hash of one object that stands where it is, is that of its clay. Else FNV-1a over the clay,
+/// the transform, the name and the flags of each, and which is active.
+pub(crate) fn combined_hash<'a>(
+    objects: impl Iterator<Item = (&'a ObjectSettings, u64)>,
+    active: usize,
+) -> u64 {
+    let mut h = 0xcbf2_9ce4_8422_2325u64;
+    let (mut count, mut first, mut plain) = (0usize, 0, true);
+    let mut eat = |bits: u64| h = (h ^ bits).wrapping_mul(0x0000_0100_0000_01b3);
+    for (settings, clay) in objects {
+        count += 1;
+        first = clay;
+        plain &= count == 1 && settings.transform.is_none();
+        eat(clay);
+        settings.transform.bits().into_iter().for_each(&mut eat);
+        settings.name.bytes().for_each(|b| eat(u64::from(b)));
+        eat(u64::from(settings.visible) | u64::from(settings.locked) << 1);
+    }
+    eat(active as u64);
+    if plain { first } else { h }
+}

@@ -1,0 +1,104 @@
+//! What hands do to the world: they push clay, carry an object, choose from their menu.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use super::World;
+use crate::command::Command;
+use crate::hand::{Act, HeldObject, MenuItem, Similarity};
+use sculptd_clay::{Garbage, Kernel, Reach};
+use sculptd_geometry::portable::turn_about;
+use sculptd_geometry::{PolyMesh, TriMesh, shapes};
+
+impl World {
+    /// An object appears beside the clay, a third as large as it, for the hands to carry.
+    pub(super) fn take_up(&mut self, plain: Arc<TriMesh>) {
+        let (lo, hi) = plain.bounds();
+        let size = (hi - lo).length() * 0.5;
+        if !(size.is_finite() && size > 0.0) {
+            return;
+        }
+        let (middle, extent) = (self.middle(), self.extent());
+        let scale = extent / 3.0 / size;
+        let turn = turn_about(Vec3::Y, self.camera.yaw);
+        let at = middle + turn * Vec3::new(extent * 1.2, extent * 0.4, 0.0);
+        let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
+        if place.is_sane() {
+            self.put_down();
+            self.thing = Some(HeldObject { plain, place });
+            self.hands.carrying = true;
+        }
+    }
+
+    pub(super) fn put_down(&mut self) {
+        if let Some(held) = self.thing.take() {
+            self.garbage.discard(Garbage::Shared(held.plain));
+        }
+        self.hands.carrying = false;
+    }
+
+    pub(super) fn choose(&mut self, choice: MenuItem) {
+        let primitive = |solid: PolyMesh| Arc::new(solid.triangulate().0);
+        match choice {
+            MenuItem::Undo => self.apply_command(&Command::Undo),
+            MenuItem::Redo => self.apply_command(&Command::Redo),
+            MenuItem::PutAway => self.put_down(),
+            MenuItem::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
+            MenuItem::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
+            MenuItem::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
+            MenuItem::Add | MenuItem::Carve | MenuItem::Keep => self.report.join = Some(choice),
+        }
+    }
+
+    /// One act of a hand; returns what is left of the budget.
+    pub(super) fn by_hand(&mut self, act: &Act, left: u64) -> u64 {
+        // Hands are in the world, the clay is in the frame of its object.
+        let own = self.scene.active().settings.transform.inverse();
+        let camera = &mut self.camera;
+        match act {
+            Act::Orbit(by) => camera.orbit(*by),
+            Act::Zoom(factor) => camera.zoom(*factor),
+            Act::Move(by) => camera.target -= *by,
+            Act::Hold { before, after } => {
+                // The camera keeps its place among the hands.
+                let mm = before.turn.inverse() * (camera.target - before.origin) / before.scale;
+                camera.target = after.to_world(mm);
+                camera.distance = (camera.distance * after.scale / before.scale).clamp(1e-6, 1e9);
+            }
+            Act::Carry(by) => {
+                if let Some(thing) = &mut self.thing {
+                    thing.carry(by);
+                }
+            }
+            Act::Push(a) => {
+                let a = a.seen_from(&own);
+                return self.touch(&a.reach(), &a.kernel(), left);
+            }
+            Act::Drag(a) => {
+                let a = a.seen_from(&own);
+                return self.touch(&a.reach(), &a.kernel(), left);
+            }
+            Act::Palm(a) => {
+                let a = a.seen_from(&own);
+                return self.touch(&a.reach(), &a.kernel(), left);
+            }
+        }
+        left
+    }
+
+    fn touch<K: Kernel>(&mut self, reach: &Reach, kernel: &K, left: u64) -> u64 {
+        if !self.scene.active().is_editable() {
+            return left;
+        }
+        let clay = &mut self.scene.active_mut().clay;
+        clay.begin_step();
+        let report = clay.dab(reach, kernel, &self.workers);
+        if report.moved > 0 {
+            self.report.dabs += 1;
+            self.hands.sculpted();
+        }
+        self.report.vertices_moved += report.moved as u64;
+        left.saturating_sub(report.affected as u64 + 1)
+    }
+}

@@ -1,0 +1,419 @@
+//! What the world does with its scene: commands to it, undo over all objects, jumps to where it was
+//! another.
+
+use super::{HistoryEvent, World};
+use crate::command::{JumpObject, NewClay, OfClay, SceneJump};
+use crate::hand::ReachBox;
+use crate::payload::{Payload, PayloadId};
+use crate::scene::{
+    Exchange, MAX_OBJECTS, NewObject, Object, ObjectId, ObjectSettings, ObjectSource, Presence,
+    ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent, SceneStep, clean_name,
+};
+use sculptd_clay::Clay;
+
+/// What a command to the scene came to: the object that it made or was about.
+pub type SceneResult = Result<ObjectId, SceneError>;
+
+impl World {
+    /// What came of each [`crate::command::Command::Scene`] of the last step, in the order of the
+    /// commands.
+    pub fn scene_results(&self) -> &[SceneResult] {
+        &self.scene_results
+    }
+
+    /// Carries out a command to the scene.
+    pub(super) fn apply_scene(&mut self, command: &SceneCommand) {
+        let before = self.stance();
+        let result = self.scene_command(command);
+        if result.is_ok() {
+            self.scene.touch();
+            self.stand(before);
+            self.note(HistoryEvent::Scene(event_of(command)));
+        }
+        self.scene_results.push(result);
+    }
+
+    fn scene_command(&mut self, command: &SceneCommand) -> SceneResult {
+        // Every stroke ends first: it belongs to what is active now.
+        self.lift_all();
+        match command {
+            SceneCommand::Add(new) => {
+                let mut clays = self.take_clays(new.built);
+                let object = self.new_object(new, clays.pop())?;
+                Ok(self.add(self.scene.objects().len(), object))
+            }
+            SceneCommand::Remove(id) => {
+                self.unlocked(*id)?;
+                self.remove(*id).map(|_| *id)
+            }
+            SceneCommand::Duplicate(id) => {
+                let index = self.scene.index_of(*id).ok_or(SceneError::NoObject(*id))?;
+                self.room(1)?;
+                let twin = self.scene.fresh_id();
+                let number = self.fresh_clay_number();
+                let of = self.scene.object(*id).ok_or(SceneError::NoObject(*id))?;
+                let settings = ObjectSettings { locked: false, ..of.settings.clone() };
+                let (middle, extent) = (of.middle, of.extent);
+                let clay = of.clay.duplicate(number);
+                let clay = self.adopted(clay);
+                Ok(self.add(index + 1, Object { id: twin, settings, clay, middle, extent }))
+            }
+            SceneCommand::Rename(id, name) => {
+                let name = clean_name(name).ok_or(SceneError::Name)?;
+                self.set(*id, |settings| settings.name = name)
+            }
+            SceneCommand::Transform(id, transform) => {
+                self.unlocked(*id)?;
+                if !transform.is_sane() {
+                    return Err(SceneError::Transform);
+                }
+                self.set(*id, |settings| settings.transform = *transform)
+            }
+            SceneCommand::Show(id, visible) => self.set(*id, |s| s.visible = *visible),
+            SceneCommand::Lock(id, locked) => self.set(*id, |s| s.locked = *locked),
+            SceneCommand::Activate(id) => {
+                let before = self.scene.active().id;
+                if !self.scene.activate(*id) {
+                    return Err(SceneError::NoObject(*id));
+                }
+                if before != *id {
+                    self.push(SceneStep::Active(before));
+                }
+                Ok(*id)
+            }
+            SceneCommand::Exchange(exchange) => self.exchange(exchange),
+            SceneCommand::Reshape(id, new) => {
+                self.unlocked(*id)?;
+                let object = self.scene.object(*id).ok_or(SceneError::NoObject(*id))?;
+                let same = object.clay.revision() == 0 && object.settings.primitive.is_some();
+                let ObjectSource::Primitive(primitive) = new.source else {
+                    return Err(SceneError::NotAPrimitive(*id));
+                };
+                if !same {
+                    return Err(SceneError::NotAPrimitive(*id));
+                }
+                let mut clays = self.take_clays(new.built);
+                let Object { clay, middle, extent, .. } = self.new_object(new, clays.pop())?;
+                let mut other = Box::new(ReplacedClay { clay, middle, extent });
+                let object = self.scene.object_mut(*id).ok_or(SceneError::NoObject(*id))?;
+                other.exchange(object);
+                let old = object.settings.clone();
+                object.settings.primitive = Some(primitive);
+                self.push(SceneStep::Group(vec![
+                    SceneStep::Replaced(*id, other),
+                    SceneStep::Set(*id, Box::new(old)),
+                ]));
+                Ok(*id)
+            }
+        }
+    }
+
+    /// An object of the scene that is not locked.
+    fn unlocked(&self, id: ObjectId) -> Result<&Object, SceneError> {
+        let object = self.scene.object(id).ok_or(SceneError::NoObject(id))?;
+        if object.settings.locked { Err(SceneError::Locked(id)) } else { Ok(object) }
+    }
+
+    fn room(&self, more: usize) -> Result<(), SceneError> {
+        let fits = self.scene.objects().len() + more <= MAX_OBJECTS;
+        if fits { Ok(()) } else { Err(SceneError::Full) }
+    }
+
+    fn set(&mut self, id: ObjectId, change: impl FnOnce(&mut ObjectSettings)) -> SceneResult {
+        let object = self.scene.object_mut(id).ok_or(SceneError::NoObject(id))?;
+        let old = object.settings.clone();
+        change(&mut object.settings);
+        if old != object.settings {
+            self.push(SceneStep::Set(id, Box::new(old)));
+        }
+        Ok(id)
+    }
+
+    fn push(&mut self, step: SceneStep) {
+        let World { timeline, scene, garbage, options, .. } = self;
+        timeline.push(step, scene, options.undo_bytes, garbage);
+    }
+
+    /// Puts an object into the list and makes it active, as one step.
+    fn add(&mut self, index: usize, object: Object) -> ObjectId {
+        let (id, step) = self.put(index, object);
+        self.push(step);
+        id
+    }
+
+    fn put(&mut self, index: usize, object: Object) -> (ObjectId, SceneStep) {
+        let (id, other_active) = (object.id, self.scene.active().id);
+        self.scene.insert(index, object);
+        self.scene.activate(id);
+        (id, SceneStep::Present(Box::new(Presence { id, index, object: None, other_active })))
+    }
+
+    fn remove(&mut self, id: ObjectId) -> Result<(), SceneError> {
+        let step = self.cut_out(id)?;
+        self.push(step);
+        Ok(())
+    }
+
+    fn cut_out(&mut self, id: ObjectId) -> Result<SceneStep, SceneError> {
+        let index = self.scene.index_of(id).ok_or(SceneError::NoObject(id))?;
+        let other_active = self.scene.active().id;
+        let object = Some(self.scene.take(id).ok_or(SceneError::Last)?);
+        Ok(SceneStep::Present(Box::new(Presence { id, index, object, other_active })))
+    }
+
+    fn exchange(&mut self, exchange: &Exchange) -> SceneResult {
+        for (id, clay, revision, transform) in &exchange.from {
+            let same = self.scene.object(*id).is_some_and(|o| {
+                (o.clay.object_id(), o.clay.revision()) == (*clay, *revision)
+                    && o.settings.transform == *transform
+            });
+            if !same {
+                return Err(SceneError::Changed(*id));
+            }
+        }
+        for id in &exchange.remove {
+            self.unlocked(*id)?;
+        }
+        let Some(first) = exchange.add.first() else { return Err(SceneError::Build) };
+        self.room(exchange.add.len())?;
+        let mut clays = self.take_clays(first.built).into_iter();
+        let made: Result<Vec<Object>, SceneError> =
+            exchange.add.iter().map(|new| self.new_object(new, clays.next())).collect();
+        let made = made?;
+        let mut steps = Vec::with_capacity(made.len() + exchange.remove.len() + 2);
+        let mut ids = Vec::with_capacity(made.len());
+        for object in made {
+            let (id, step) = self.put(self.scene.objects().len(), object);
+            ids.push(id);
+            steps.push(step);
+        }
+        let shown = self.scene.active().id;
+        self.scene.activate(ids[0]);
+        steps.push(SceneStep::Active(shown));
+        for id in &exchange.remove {
+            // What is added is there already, so that none of these is the last.
+            steps.extend(self.cut_out(*id).ok());
+        }
+        for id in &exchange.hide {
+            if let Some(object) = self.scene.object_mut(*id) {
+                let old = object.settings.clone();
+                object.settings.visible = false;
+                steps.push(SceneStep::Set(*id, Box::new(old)));
+            }
+        }
+        self.push(SceneStep::Group(steps));
+        Ok(ids[0])
+    }
+
+    fn new_object(&mut self, new: &NewObject, built: Option<Clay>) -> Result<Object, SceneError> {
+        self.room(1)?;
+        if !new.transform.is_sane() {
+            return Err(SceneError::Transform);
+        }
+        let name = clean_name(&new.name).ok_or(SceneError::Name)?;
+        let mut clay = match (built, &new.source) {
+            (Some(clay), _) => clay,
+            (None, ObjectSource::Mesh(plain)) => {
+                Clay::build(plain, &Default::default()).map_err(|_| SceneError::Build)?
+            }
+            (None, ObjectSource::Primitive(p)) => {
+                let plain = p.triangles().map_err(|_| SceneError::Build)?;
+                Clay::build(&plain, &Default::default()).map_err(|_| SceneError::Build)?
+            }
+        };
+        clay.set_object_id(self.fresh_clay_number());
+        let primitive = match new.source {
+            ObjectSource::Primitive(p) => Some(p),
+            ObjectSource::Mesh(_) => None,
+        };
+        let settings =
+            ObjectSettings { name, transform: new.transform, primitive, ..Default::default() };
+        let id = self.scene.fresh_id();
+        let clay = self.adopted(clay);
+        Ok(Object::new(id, settings, clay))
+    }
+
+    /// A number that no clay of this world has had.
+    pub(super) fn fresh_clay_number(&mut self) -> u32 {
+        self.lineages += 1;
+        self.lineages
+    }
+
+    /// Clay that hands its garbage to the world's sink and takes pages from its supply. Its steps
+    /// are bounded by the timeline.
+    pub(super) fn adopted(&self, mut clay: Clay) -> Clay {
+        clay.set_garbage_sink(self.garbage.clone());
+        clay.set_page_supply(self.pages.clone());
+        clay.set_undo_bytes(u64::MAX);
+        clay
+    }
+
+    fn take_clays(&mut self, built: Option<PayloadId>) -> Vec<Clay> {
+        match built.and_then(|id| self.payloads.take(id)) {
+            Some(Payload::Clay(clay)) => vec![*clay],
+            Some(Payload::Clays(clays)) => clays,
+            Some(other) => {
+                self.garbage.discard_owned(other);
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
+    }
+
+    /// Takes the newest step back, in memory. False: there is none.
+    pub(super) fn undo_step(&mut self) -> bool {
+        let before = self.stance();
+        let done = self.timeline.undo(&mut self.scene);
+        self.stand(before);
+        done
+    }
+
+    /// Does the step again that was taken back last. False: there is none.
+    pub(super) fn redo_step(&mut self) -> bool {
+        let before = self.stance();
+        let done = self.timeline.redo(&mut self.scene);
+        self.stand(before);
+        done
+    }
+
+    /// Where the active object stands, and how large: what hands are laid over.
+    fn stance(&self) -> (glam::Vec3, f32) {
+        let active = self.scene.active();
+        (active.world_middle(), active.world_extent())
+    }
+
+    /// Lays the hands over the active object anew, where it stands elsewhere now.
+    fn stand(&mut self, before: (glam::Vec3, f32)) {
+        if self.stance() != before {
+            self.lay_hands();
+        }
+    }
+
+    /// Lays the tracked volume over the active object.
+    pub(super) fn lay_hands(&mut self) {
+        let (middle, extent) = self.stance();
+        self.hands.lay(middle, extent, self.camera.yaw);
+    }
+
+    pub(super) fn set_reach(&mut self, reach: ReachBox) {
+        if reach.is_sane() {
+            self.hands.settings.reach = reach;
+            self.lay_hands();
+        }
+    }
+
+    /// Turns the camera to the active object as a whole.
+    pub(super) fn frame(&mut self) {
+        let active = self.scene.active();
+        let (lo, hi) = active.settings.transform.bounds(active.clay.bounds());
+        if lo.cmple(hi).all() {
+            self.camera.frame(lo, hi);
+        }
+    }
+
+    /// Another command, where the clay that it was computed for is the active one.
+    pub(super) fn apply_of_clay(&mut self, of: &OfClay) {
+        let now = &self.scene.active().clay;
+        let fits = now.object_id() == of.clay
+            && of.revision.is_none_or(|r| r == now.revision() && !now.is_in_step());
+        match &of.command {
+            crate::command::Command::OfClay(_) => {}
+            command if fits => self.apply_command(command),
+            crate::command::Command::Cut(_) => self.cuts.push(None),
+            _ => {}
+        }
+    }
+
+    /// Other clay takes the place of the active object's: a Boolean's result, or a file.
+    pub(super) fn replace(&mut self, new: &NewClay, masks: &[f32]) {
+        self.lift_all();
+        if self.scene.active().settings.locked {
+            return;
+        }
+        let Some(mut clay) = self.built(new, masks) else { return };
+        clay.set_levels(new.levels.clone());
+        clay.set_object_id(self.fresh_clay_number());
+        let clay = self.adopted(clay);
+        let World { timeline, scene, garbage, options, .. } = self;
+        timeline.forget_future(scene, garbage);
+        if !new.keep_camera {
+            timeline.forget(scene, garbage);
+        }
+        let object = scene.active_mut();
+        let (id, middle, extent) = (object.id, object.middle, object.extent);
+        let old = std::mem::replace(&mut object.clay, clay);
+        // The numbers of a primitive say nothing of other clay.
+        let settings = object.settings.clone();
+        let shaped = object.settings.primitive.take().is_some();
+        if new.keep_camera {
+            let other = ReplacedClay { clay: old, middle, extent };
+            let mut step = SceneStep::Replaced(id, Box::new(other));
+            if shaped {
+                step = SceneStep::Group(vec![step, SceneStep::Set(id, Box::new(settings))]);
+            }
+            timeline.push(step, scene, options.undo_bytes, garbage);
+        } else {
+            garbage.discard_owned(old);
+            object.measure();
+            self.lay_hands();
+            self.frame();
+        }
+        if shaped || !new.keep_camera && !self.scene.is_plain() {
+            self.scene.touch();
+        }
+        self.note(HistoryEvent::Replace);
+    }
+
+    /// The scene as it was at another node.
+    pub(super) fn jump_scene(&mut self, jump: &SceneJump) {
+        let from = |world: &World| {
+            let clay = &world.scene.active().clay;
+            (clay.object_id(), clay.revision())
+        };
+        if jump.from != from(self) {
+            return;
+        }
+        let Some(payload) = self.payloads.take(jump.payload_id()) else { return };
+        self.lift_all();
+        let Payload::Clays(clays) = payload else {
+            self.garbage.discard_owned(payload);
+            return;
+        };
+        // A stroke that ended here has changed the object after all.
+        if jump.from != from(self) || clays.len() != jump.objects.len() {
+            self.garbage.discard_owned(clays);
+            return;
+        }
+        let object = |(of, clay): (&JumpObject, Clay)| Object {
+            id: of.id,
+            settings: of.settings.clone(),
+            clay: self.adopted(clay),
+            middle: of.clay.middle,
+            extent: of.clay.extent,
+        };
+        let objects = jump.objects.iter().zip(clays).map(object).collect();
+        let next_id = self.scene.next_id();
+        let Some(scene) = Scene::restored(objects, jump.active as usize, next_id) else { return };
+        let World { timeline, garbage, .. } = self;
+        timeline.forget(&mut self.scene, garbage);
+        self.garbage.discard_owned(std::mem::replace(&mut self.scene, scene));
+        self.lay_hands();
+        self.report.jumps += 1;
+        self.note(HistoryEvent::Jump(jump.node));
+    }
+}
+
+fn event_of(command: &SceneCommand) -> SceneEvent {
+    match command {
+        SceneCommand::Add(_) => SceneEvent::Add,
+        SceneCommand::Remove(_) => SceneEvent::Remove,
+        SceneCommand::Duplicate(_) => SceneEvent::Duplicate,
+        SceneCommand::Rename(..) => SceneEvent::Rename,
+        SceneCommand::Transform(..) => SceneEvent::Transform,
+        SceneCommand::Activate(_) => SceneEvent::Activate,
+        SceneCommand::Show(..) => SceneEvent::Show,
+        SceneCommand::Lock(..) => SceneEvent::Lock,
+        SceneCommand::Reshape(..) => SceneEvent::Reshape,
+        SceneCommand::Exchange(exchange) => exchange.event,
+    }
+}

@@ -1,0 +1,163 @@
+//! Several meshes, each with a name and a place, to one file.
+
+use std::io;
+use std::path::Path;
+
+use glam::{DQuat, DVec3};
+
+use super::write::{encode, writable_format};
+use super::write_packed::{self, GltfMesh};
+use super::{WriteError, write_beside};
+use crate::PolyMesh;
+
+/// A mesh with a name and a place.
+#[derive(Debug, Clone)]
+pub struct SceneMesh {
+    /// For people.
+    pub name: String,
+    /// In its own frame.
+    pub mesh: PolyMesh,
+    /// Where its origin is.
+    pub shift: DVec3,
+    /// How it is turned; unit length.
+    pub turn: DQuat,
+    /// World units for a unit of the mesh, > 0.
+    pub scale: f64,
+}
+
+impl SceneMesh {
+    /// Makes it and its distance from the world's origin larger by this factor.
+    pub fn enlarge(&mut self, factor: f64) {
+        if self.stands_still() {
+            self.mesh.positions.iter_mut().for_each(|p| *p *= factor);
+        } else {
+            self.shift *= factor;
+            self.scale *= factor;
+        }
+    }
+
+    fn stands_still(&self) -> bool {
+        self.shift == DVec3::ZERO && self.turn == DQuat::IDENTITY && self.scale == 1.0
+    }
+}
+
+/// Writes several meshes in the format that the extension of `path` names, whole or not at all.
+/// glTF keeps each as a node with its name and its transform; every other format gets one mesh, in
+/// which the transforms are applied, the meshes one after the other, and in OBJ each is a group.
+///
+/// # Errors
+/// An extension that no format has, and what the disk does not take.
+pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<(), WriteError> {
+    let kind = writable_format(path)?;
+    let failed = |source: io::Error| WriteError::Io { path: path.into(), source };
+    match kind {
+        "glb" | "gltf" => {
+            let parts: Vec<GltfMesh<'_>> = meshes
+                .iter()
+                .map(|m| GltfMesh {
+                    mesh: &m.mesh,
+                    name: Some(&m.name),
+                    place: (!m.stands_still()).then_some((m.shift, m.turn, m.scale)),
+                })
+                .collect();
+            write_beside(path, |out| match kind {
+                "glb" => write_packed::glb(&parts, out),
+                _ => write_packed::gltf(&parts, out),
+            })
+            .map_err(failed)
+        }
+        _ => {
+            let mesh = merged(meshes);
+            write_beside(path, |out| encode(kind, &mesh, out)).map_err(failed)
+        }
+    }
+}
+
+/// All meshes as one, in the world, each a group of its own where there are several. Colours stay
+/// where any mesh has them; the others are white.
+pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
+    let mut all = PolyMesh::new();
+    let coloured = meshes.iter().any(|m| m.mesh.colours.is_some());
+    let mut colours = Vec::new();
+    let mut groups = Vec::new();
+    for (g, part) in meshes.iter().enumerate() {
+        let first = all.positions.len() as u32;
+        let place = |p: &DVec3| match part.stands_still() {
+            true => *p,
+            false => part.shift + part.turn * (*p * part.scale),
+        };
+        all.positions.extend(part.mesh.positions.iter().map(place));
+        match &part.mesh.colours {
+            Some(own) => colours.extend_from_slice(own),
+            None if coloured => colours.resize(all.positions.len(), [255; 4]),
+            None => {}
+        }
+        let mut corners = Vec::new();
+        for face in part.mesh.faces() {
+            corners.clear();
+            corners.extend(face.iter().map(|v| v + first));
+            all.push_face(&corners);
+            groups.push(g as u32);
+        }
+    }
+    all.colours = coloured.then_some(colours);
+    all.groups = (meshes.len() > 1).then_some(groups);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::parse;
+    use crate::job::Job;
+    use crate::shapes;
+
+    fn scene() -> Vec<SceneMesh> {
+        let box_of = |size: f64| shapes::cuboid(DVec3::ZERO, DVec3::splat(size));
+        let turn = DQuat::from_rotation_y(1.0);
+        vec![
+            SceneMesh {
+                name: "lid \"A\"".into(),
+                mesh: box_of(1.0),
+                shift: DVec3::ZERO,
+                turn: DQuat::IDENTITY,
+                scale: 1.0,
+            },
+            SceneMesh {
+                name: "pot".into(),
+                mesh: box_of(2.0),
+                shift: DVec3::new(10.0, 2.0, -3.0),
+                turn,
+                scale: 0.5,
+            },
+        ]
+    }
+
+    #[test]
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    fn names_and_places_stand_in_gltf_and_are_applied_elsewhere() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let all = merged(&scene());
+        assert_eq!((all.positions.len(), all.face_count()), (16, 12));
+        for ending in ["glb", "gltf", "obj", "ply", "stl", "off", "3mf"] {
+            let path = dir.path().join(format!("scene.{ending}"));
+            write_scene(&path, &scene()).expect("written");
+            let bytes = std::fs::read(&path).expect("there");
+            let read = parse(&bytes, &path, &Job::default()).expect("readable").mesh;
+            let bounds = |mesh: &PolyMesh| {
+                let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                mesh.positions.iter().fold(none, |(lo, hi), p| (lo.min(*p), hi.max(*p)))
+            };
+            let (a, b) = (bounds(&all), bounds(&read));
+            assert!((a.0 - b.0).length() < 1e-5 && (a.1 - b.1).length() < 1e-5, "{ending}: {b:?}");
+            if ending == "gltf" {
+                let json: serde_json::Value = serde_json::from_slice(&bytes).expect("JSON");
+                assert_eq!(json["nodes"][0]["name"], "lid \"A\"");
+                assert_eq!(json["nodes"][0].get("translation"), None);
+                assert_eq!(json["nodes"][1]["translation"][0], 10.0);
+                assert_eq!(json["nodes"][1]["scale"], serde_json::json!([0.5, 0.5, 0.5]));
+                assert_eq!(json["scenes"][0]["nodes"], serde_json::json!([0, 1]));
+            }
+        }
+    }
+}

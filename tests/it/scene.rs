@@ -1,0 +1,203 @@
+//! The scene by the control protocol of a running loop: objects, Booleans, files, replay.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::waiting::until;
+use sculptd_clay::Workers;
+use sculptd_daemon::config::{Config, LoopConfig};
+use sculptd_daemon::control::Host;
+use sculptd_daemon::control::handler::call;
+use sculptd_daemon::live::Live;
+use sculptd_daemon::session;
+use sculptd_daemon::session::writer::WriterThread;
+use sculptd_daemon::startup;
+use sculptd_daemon::tick::Journal;
+use sculptd_devices::{Clock, queue};
+use sculptd_geometry::io::{read_mesh, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::measure::measures;
+use sculptd_geometry::shapes;
+
+/// A loop that runs, and its host.
+struct Running {
+    live: Live,
+    host: Host,
+    thread: Option<WriterThread>,
+    _senders: queue::SenderFactory,
+}
+
+impl Running {
+    fn begin(meshes: &[std::path::PathBuf], session: &Path) -> Running {
+        let config = Config {
+            r#loop: LoopConfig { workers: 1, ..Default::default() },
+            ..Default::default()
+        };
+        let begun = startup::begin_with(meshes, Some(session), &config, &Job::default());
+        let begun = begun.expect("begins");
+        let (writer, thread) = begun.journal.unzip();
+        let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
+        let (factory, receiver) = queue::channel(4096);
+        let clock = Clock::monotonic();
+        let live = Live::start(begun.world, receiver, clock, config.r#loop, 4096, journal);
+        let live = live.expect("runs");
+        let presets = sculptd::presets().clone();
+        let host = Host::new(live.commands.clone(), live.published.clone(), presets);
+        Running { live, host, thread, _senders: factory }
+    }
+
+    fn ask(&self, method: &str, params: Value) -> Value {
+        call(&self.host, method, params).unwrap_or_else(|e| panic!("{method}: {}", e.message))
+    }
+
+    fn refused(&self, method: &str, params: Value) -> String {
+        call(&self.host, method, params).expect_err(method).message
+    }
+
+    fn objects(&self) -> Vec<Value> {
+        // The reply to a command comes before the state that shows it.
+        let tick = self.live.published.load().tick;
+        until("two ticks more", || self.live.published.load().tick >= tick + 2);
+        self.ask("scene.list", json!({}))["objects"].as_array().expect("a list").clone()
+    }
+
+    /// Ends it; the hash of the world.
+    fn end(self) -> u64 {
+        let hash = self.live.stop().expect("ends").world.hash();
+        assert_eq!(self.thread.and_then(WriterThread::finish), None);
+        hash
+    }
+}
+
+fn names(objects: &[Value]) -> Vec<&str> {
+    objects.iter().map(|o| o["name"].as_str().expect("a name")).collect()
+}
+
+#[test]
+fn objects_are_added_moved_combined_and_written_by_request() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (ball, session) = (dir.path().join("pig.ply"), dir.path().join("s.sculpt"));
+    write_mesh(&ball, &shapes::icosphere(1.0, 24).to_poly()).expect("written");
+    let run = Running::begin(std::slice::from_ref(&ball), &session);
+    let plain = run.ask("hash", json!({}));
+    assert_eq!(names(&run.objects()), ["object"]);
+
+    let added = run.ask("scene.add", json!({ "primitive": { "box": [1, 1, 1] }, "edge": 0.1 }));
+    let id = added["id"].as_u64().expect("an id");
+    let objects = run.objects();
+    assert_eq!(names(&objects), ["object", "box"]);
+    assert_eq!((objects[1]["active"].clone(), objects[1]["id"].clone()), (json!(true), json!(id)));
+    assert_eq!(objects[1]["primitive"], json!({ "box": [1.0, 1.0, 1.0] }));
+    assert_eq!(objects[1]["bounds"], json!([[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]]));
+    run.ask("scene.reshape", json!({ "id": id, "primitive": { "box": [2, 1, 1] }, "edge": 0.1 }));
+    let place = json!({ "shift": [1.0, 0.0, 0.0] });
+    run.ask("scene.transform", json!({ "id": id, "transform": place }));
+    run.ask("scene.rename", json!({ "id": id, "name": "slot" }));
+    let slot = &run.objects()[1];
+    assert_eq!(slot["bounds"], json!([[0.0, -0.5, -0.5], [2.0, 0.5, 0.5]]));
+    assert_eq!(slot["name"], "slot");
+    let file = run.ask("scene.add", json!({ "path": ball, "name": "twin" }));
+    let twin = file["id"].as_u64().expect("an id");
+    run.ask("scene.show", json!({ "id": twin, "visible": false }));
+
+    // The ball without the box, the operands kept and hidden.
+    let made = json!({ "operation": "difference", "a": 0, "b": id, "keep": true });
+    let made = run.ask("scene.boolean", made);
+    let objects = run.objects();
+    assert_eq!(objects.len(), 4);
+    assert_eq!(objects[3]["id"], made["id"]);
+    let seen: Vec<&Value> = objects.iter().map(|o| &o["visible"]).collect();
+    assert_eq!(seen, [false, false, false, true]);
+    let path = dir.path().join("out.ply");
+    run.ask("export", json!({ "path": path }));
+    let read = |path: &Path| read_mesh(path, &Job::default()).expect("readable").mesh;
+    let volume = |path: &Path| measures(&read(path).triangulate().0).volume;
+    let whole = measures(&shapes::icosphere(1.0, 24)).volume;
+    // The box covers x of 0 to 1 of the ball, and y and z of half a unit to either side.
+    let cut = whole - volume(&path);
+    assert!(cut > 0.75 && cut < 1.0, "{cut}");
+
+    // Two operands that are gone in one step, and come back in one.
+    run.ask("undo", json!({}));
+    assert_eq!(names(&run.objects()), ["object", "slot", "twin"]);
+    let made = run.ask("scene.merge", json!({ "ids": [0, twin] }));
+    assert_eq!(run.objects().len(), 2);
+    let split = run.ask("scene.split", json!({ "id": made["id"] }));
+    assert_eq!(split["objects"], 2);
+    assert_eq!(names(&run.objects()), ["slot", "object 1", "object 2"]);
+
+    // glTF keeps the nodes.
+    let glb = dir.path().join("scene.gltf");
+    run.ask("export", json!({ "path": glb, "objects": "all" }));
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    let text = std::fs::read(&glb).expect("there");
+    let json: Value = serde_json::from_slice(&text).expect("JSON");
+    let nodes: Vec<&Value> = json["nodes"].as_array().expect("nodes").iter().collect();
+    assert_eq!(nodes.len(), 3);
+    assert_eq!(
+        (&nodes[0]["name"], &nodes[0]["translation"]),
+        (&json!("slot"), &json!([1.0, 0.0, 0.0]))
+    );
+
+    // What cannot be done is said.
+    let of = |id: u64| json!({ "id": id });
+    run.ask("scene.lock", json!({ "id": id, "locked": true }));
+    assert_eq!(run.refused("scene.remove", of(id)), format!("object {id} is locked"));
+    assert_eq!(run.refused("scene.remove", of(77)), "there is no object 77");
+    assert!(run.refused("scene.add", json!({})).contains("expected one of"));
+    assert!(run.refused("scene.add", json!({ "primitive": { "ball": -1 } })).contains("lengths"));
+    let wrong = json!({ "id": id, "transform": { "turn": [0, 0, 0, 0] } });
+    assert!(run.refused("scene.transform", wrong).contains("rotation"));
+    let same = json!({ "operation": "union", "a": id, "b": id });
+    assert!(run.refused("scene.boolean", same).contains("two different"));
+
+    // All taken back, the start has its bits.
+    let steps = run.live.published.load().undo_steps;
+    for _ in 0..steps {
+        run.ask("undo", json!({}));
+    }
+    assert_eq!(names(&run.objects()), ["object"]);
+    assert_eq!(run.ask("hash", json!({}))["hash"], plain["hash"]);
+    for _ in 0..steps {
+        run.ask("redo", json!({}));
+    }
+    assert_eq!(names(&run.objects()), ["slot", "object 1", "object 2"]);
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(3), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+    let quick = session::reopen(&session, &opened, None, 1, &Job::default()).expect("a checkpoint");
+    assert_eq!(quick.replayed.world.hash(), hash);
+}
+
+#[test]
+fn several_files_stand_in_their_true_size_and_place() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (pot, lid) = (dir.path().join("pot.ply"), dir.path().join("lid.ply"));
+    let solid = |lo: f64, hi: f64| {
+        shapes::cuboid(glam::DVec3::new(-20.0, lo, -20.0), glam::DVec3::new(20.0, hi, 20.0))
+    };
+    write_mesh(&pot, &solid(0.0, 30.0)).expect("written");
+    write_mesh(&lid, &solid(30.0, 35.0)).expect("written");
+    let session = dir.path().join("s.sculpt");
+    let run = Running::begin(&[pot, lid], &session);
+    let objects = run.objects();
+    assert_eq!(names(&objects), ["pot", "lid"]);
+    assert_eq!(objects[0]["bounds"], json!([[-20.0, 0.0, -20.0], [20.0, 30.0, 20.0]]));
+    assert_eq!(objects[1]["bounds"], json!([[-20.0, 30.0, -20.0], [20.0, 35.0, 20.0]]));
+    assert_eq!(objects[0]["active"], true);
+    // They touch in a square: their union is one box.
+    let made = json!({ "operation": "union", "a": objects[0]["id"], "b": objects[1]["id"] });
+    run.ask("scene.boolean", made);
+    let path = dir.path().join("both.stl");
+    run.objects();
+    run.ask("export", json!({ "path": path }));
+    let mesh = read_mesh(&path, &Job::default()).expect("readable").mesh;
+    let (volume, want) = (measures(&mesh.triangulate().0).volume, 40.0 * 40.0 * 35.0);
+    assert!((volume - want).abs() < 1e-3 * want, "{volume}");
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(1), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+}
