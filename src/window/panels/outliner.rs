@@ -89,11 +89,11 @@ fn row(
 ) {
     let (id, settings) = (object.id, &object.settings);
     ui.horizontal(|ui| {
-        let eye = ui.selectable_label(settings.visible, "👁").on_hover_text("Drawn");
+        let eye = ui.selectable_label(settings.visible, "eye").on_hover_text("Drawn");
         if eye.clicked() {
             ask(out, SceneCommand::Show(id, !settings.visible));
         }
-        let lock = ui.selectable_label(settings.locked, "🔒");
+        let lock = ui.selectable_label(settings.locked, "lock");
         if lock.on_hover_text("Protected from strokes, moves and removal").clicked() {
             ask(out, SceneCommand::Lock(id, !settings.locked));
         }

@@ -28,6 +28,7 @@ fn tree(count: u64, branches: &[(u64, u64)], cursor: u64) -> Tree {
             extent: 1.0,
             next: [0, 0],
             levels: None,
+            scene: None,
         });
         tree.go(id);
     }
