@@ -64,18 +64,19 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             ui_state.outliner.renaming = Some((id, active.settings.name.clone()));
         }
         let more = scene.objects.len() > 1 && !active.settings.locked;
-        if ui.add_enabled(more, egui::Button::new("Remove")).clicked() {
+        if more && ui.button("Remove").clicked() {
             ask(out, SceneCommand::Remove(id));
         }
     });
-    ui.add_enabled_ui(!active.settings.locked, |ui| {
+    if active.settings.locked {
+        ui.colored_label(theme::quiet(ui), "Locked: no stroke, no move, no removal");
+    } else {
         place(ui, active, view.state.extent, &mut ui_state.outliner, out);
-        if let Some(primitive) = active.settings.primitive
-            && view.state.mesh.revision() == 0
-        {
+        let untouched = view.state.mesh.revision() == 0;
+        if let Some(primitive) = active.settings.primitive.filter(|_| untouched) {
             numbers(ui, active, primitive, &mut ui_state.outliner, out);
         }
-    });
+    }
     ui.separator();
 }
 
