@@ -64,18 +64,19 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             ui_state.outliner.renaming = Some((id, active.settings.name.clone()));
         }
         let more = scene.objects.len() > 1 && !active.settings.locked;
-        if ui.add_enabled(more, egui::Button::new("Remove")).clicked() {
+        if more && ui.button("Remove").clicked() {
             ask(out, SceneCommand::Remove(id));
         }
     });
-    ui.add_enabled_ui(!active.settings.locked, |ui| {
+    if active.settings.locked {
+        ui.colored_label(theme::quiet(ui), "Locked: no stroke, no move, no removal");
+    } else {
         place(ui, active, view.state.extent, &mut ui_state.outliner, out);
-        if let Some(primitive) = active.settings.primitive
-            && view.state.mesh.revision() == 0
-        {
+        let untouched = view.state.mesh.revision() == 0;
+        if let Some(primitive) = active.settings.primitive.filter(|_| untouched) {
             numbers(ui, active, primitive, &mut ui_state.outliner, out);
         }
-    });
+    }
     ui.separator();
 }
 
@@ -89,11 +90,11 @@ fn row(
 ) {
     let (id, settings) = (object.id, &object.settings);
     ui.horizontal(|ui| {
-        let eye = ui.selectable_label(settings.visible, "👁").on_hover_text("Drawn");
+        let eye = ui.selectable_label(settings.visible, "eye").on_hover_text("Drawn");
         if eye.clicked() {
             ask(out, SceneCommand::Show(id, !settings.visible));
         }
-        let lock = ui.selectable_label(settings.locked, "🔒");
+        let lock = ui.selectable_label(settings.locked, "lock");
         if lock.on_hover_text("Protected from strokes, moves and removal").clicked() {
             ask(out, SceneCommand::Lock(id, !settings.locked));
         }
