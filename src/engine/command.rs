@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::camera::Camera;
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{ReachBox, Similarity};
+use crate::mask_region::MaskRegion;
 use crate::payload::PayloadId;
 use crate::stroke::CurveAction;
 use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
@@ -65,6 +66,8 @@ pub enum Command {
     /// Where the tablets' pens are in the view, as a window has learned it, and what lies over the
     /// view. A desktop with values that are not finite is ignored.
     DesktopLayout(DesktopLayout),
+    /// Sets the mask of what is seen in a region of the view: one step of undo.
+    MaskRegion(MaskRegion),
 }
 
 impl Command {
@@ -78,6 +81,7 @@ impl Command {
             | Command::Begin(_)
             | Command::Cut(_)
             | Command::Jump(_)
+            | Command::MaskRegion(_)
             | Command::ReplaceMasked(..) => true,
             Command::Brush(_)
             | Command::Camera(_)

@@ -22,12 +22,13 @@ use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{Act, HandSettings, HandTools, HeldObject, MenuItem, ReachBox, Similarity};
+use crate::mask_region::MaskSeen;
 use crate::payload::{Payload, PayloadStore};
 use crate::replaced::ReplacedClay;
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
-use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Measure, Method, Scratch};
+use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, Kernel, PageSupply, Reach, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 use sculptd_geometry::portable::turn_about;
@@ -214,7 +215,7 @@ impl World {
     fn apply_command(&mut self, command: &Command) {
         match command {
             Command::Brush(brush) => {
-                self.keep_brush(brush.kind);
+                self.keep_brush(brush);
                 self.brush = brush.clamped();
                 if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
                     self.mesh.prepare_topology();
@@ -295,11 +296,13 @@ impl World {
                 }
             }
             Command::Mask(action) => {
-                self.lift_all();
-                self.mesh.begin_step();
-                let kernel = MaskAll { action: *action, extent: self.extent };
-                self.mesh.dab(&MaskAction::reach(), &kernel, &self.workers);
-                self.close();
+                self.mask(&MaskAll { action: *action, extent: self.extent });
+            }
+            Command::MaskRegion(region) => {
+                let camera = self.camera;
+                if region.is_sane() {
+                    self.mask(&MaskSeen { region, camera: &camera });
+                }
             }
             Command::Place(place) => {
                 if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {

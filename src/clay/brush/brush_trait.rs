@@ -14,6 +14,9 @@ use crate::{Kernel, PageIn, Reach};
 pub trait RunKernel {
     /// Runs one kernel over what `reach` touches.
     fn run_kernel<K: Kernel>(&mut self, reach: &Reach, kernel: &K);
+
+    /// Whether the surface about a dab folds; see [`SurfaceQuery::is_folded`].
+    fn is_folded(&self, dab: &Dab<'_>) -> bool;
 }
 
 /// A vertex that a brush looks at.

@@ -10,7 +10,7 @@ use super::stamp::StampBy;
 use super::weigh::{Triples, WeightRules, weigh};
 use super::weights::{BLOCK, Weights};
 use crate::brush::automask::AutoMasking;
-use crate::brush::surface_query::{Scratch, SurfaceQuery};
+use crate::brush::surface_query::{Scratch, SurfaceQuery, folded};
 use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 
@@ -120,6 +120,10 @@ impl Tool<'_> {
 impl RunKernel for Tool<'_> {
     fn run_kernel<K: Kernel>(&mut self, reach: &Reach, kernel: &K) {
         self.run(reach, kernel);
+    }
+
+    fn is_folded(&self, dab: &Dab<'_>) -> bool {
+        folded(self.mesh, dab)
     }
 }
 
@@ -361,6 +365,8 @@ mod tests {
                 span: 0.6,
                 pace: 0.0,
                 heading: Vec3::X * 0.5,
+                course: Vec3::X,
+                bend: Vec3::ZERO,
                 pass: 0,
                 sign: if i == 2 { -1.0 } else { 1.0 },
                 motion: Vec3::X * (0.05 * i.min(1) as f32),

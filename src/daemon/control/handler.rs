@@ -29,6 +29,7 @@ use sculptd_control::{Handler, Request, RpcError};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::ReachBox;
+use sculptd_engine::mask_region::{MaskRegion, ViewRegion};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::boolean::Operation;
@@ -82,13 +83,17 @@ fn merged_brush(
 ) -> Result<(brush::BrushSettings, Option<Arc<Picture>>), RpcError> {
     if let Some(own) = named.kind.as_deref().and_then(|name| presets.own_of(name)) {
         let rest = asked::BrushSettings { kind: None, ..named.clone() };
-        let brush: brush::BrushSettings = merge(&presets.taken(&shown.brush, &own), rest)?;
+        let taken = presets.taken(&shown.brush, &shown.kept_brushes, &own);
+        let brush: brush::BrushSettings = merge(&taken, rest)?;
         brush.check().map_err(RpcError::bad_params)?;
         return Ok((brush.clamped(), own.picture));
     }
     let other = named.kind.as_deref().map(str::parse::<BrushKind>).transpose();
     let other = other.map_err(RpcError::bad_params)?;
-    let base = match other.filter(|k| *k != shown.brush.kind) {
+    // Who names the preset as well has asked for all settings and sends them back.
+    let whole = named.others.contains_key("preset");
+    let here = |k: BrushKind| k == shown.brush.kind && (whole || shown.brush.preset == 0);
+    let base = match other.filter(|k| !here(*k)) {
         Some(kind) => presets.recalled(&shown.brush, &shown.kept_brushes, kind),
         None => shown.brush,
     };
@@ -261,6 +266,28 @@ impl Handler for Host {
         Ok(SENT)
     }
 
+    fn mask_region(&self, params: asked::MaskRegionParams) -> Result<SentReply, RpcError> {
+        let ends = |[x, y, u, v]: [f32; 4]| [glam::Vec2::new(x, y), glam::Vec2::new(u, v)];
+        let region = MaskRegion {
+            region: match params.region {
+                asked::ViewRegion::Box(corners) => ViewRegion::Box(ends(corners)),
+                asked::ViewRegion::Line(points) => ViewRegion::Line(ends(points)),
+                asked::ViewRegion::Polygon(corners) => {
+                    let corners = corners.into_iter().map(glam::Vec2::from).collect();
+                    ViewRegion::Polygon(Arc::new(corners))
+                }
+            },
+            mask: params.mask,
+            front_faces: params.front_faces,
+        };
+        if !region.is_sane() {
+            let text = "region: expected a line of two places, or a polygon of 3 to 1000 corners";
+            return Err(RpcError::bad_params(text));
+        }
+        self.send(Command::MaskRegion(region))?;
+        Ok(SENT)
+    }
+
     fn curve(&self, params: asked::CurveParams) -> Result<asked::CurveReply, RpcError> {
         let points = self.published.load().draft.points().len() as u64;
         self.send(Command::CurveStroke(match params.act {
@@ -279,9 +306,9 @@ impl Handler for Host {
         let brush = brush.transpose()?;
         // With the settings that the other brush had, to be put back after the stroke.
         let brush = brush.map(|(settings, picture)| {
-            let kind = settings.kind;
-            let kept = || self.presets.recalled(&shown.brush, &shown.kept_brushes, kind);
-            LentBrush { settings, picture, kept: (kind != shown.brush.kind).then(kept) }
+            let key = settings.key();
+            let kept = || self.presets.kept(&shown.brush, &shown.kept_brushes, key);
+            LentBrush { settings, picture, kept: (key != shown.brush.key()).then(kept) }
         });
         let link = self.link();
         match pen.try_lock() {
