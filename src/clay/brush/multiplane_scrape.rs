@@ -16,7 +16,7 @@ use crate::brush::surface_query::{Plane, SurfaceQuery};
 use sculptd_geometry::portable::PortableMath;
 
 /// How wide the ridge is rounded, in radii.
-const RIDGE: f32 = 0.3;
+const RIDGE: f32 = 0.33;
 /// How far a dab reaches along the stroke, as a share of how far it reaches across.
 const LENGTH: f32 = 0.5;
 

@@ -11,6 +11,9 @@
 //! surface is open there, and by the way along the surface (by Dijkstra over the edges) where it
 //! folds: a finger is evened and the one beside it is not.
 
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+
 use glam::{Vec3, Vec4};
 
 use super::cotangent::{LANES, closed};
@@ -110,9 +113,10 @@ fn faded(d2: f32, radius: f32) -> f32 {
     fade * fade
 }
 
-impl Kernel for SmoothBrush {
+impl SmoothBrush {
+    /// Evens a page; says whether something within turns away by more than a right angle.
     #[inline(always)]
-    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+    fn even(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) -> bool {
         let radius2 = self.radius * self.radius;
         let (mut who, mut sums) = ([0u16; BLOCK], [Vec4::ZERO; BLOCK]);
         let w = &mut Weights::zero();
@@ -120,7 +124,8 @@ impl Kernel for SmoothBrush {
             let fade = 1.0 - d2 / radius2;
             self.lambda * (fade * fade)
         };
-        out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
+        let (within, turned) = w.sphere(page, self.centre, self.normal, radius2, fade);
+        out.visit_many(within);
         let weights = w.of(page);
         for first in (0..weights.len()).step_by(BLOCK) {
             let (mut count, mut regular) = (0, 0);
@@ -141,6 +146,29 @@ impl Kernel for SmoothBrush {
                     out.set(v, p + sum * (weights[v] / all));
                 }
             }
+        }
+        turned
+    }
+}
+
+impl Kernel for SmoothBrush {
+    #[inline(always)]
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        self.even(page, out);
+    }
+}
+
+/// The brush, and whether anything within it turned away: the next dab then looks for folds.
+struct WatchedSmooth {
+    brush: SmoothBrush,
+    turned: AtomicBool,
+}
+
+impl Kernel for WatchedSmooth {
+    #[inline(always)]
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        if self.brush.even(page, out) {
+            self.turned.store(true, Relaxed);
         }
     }
 }
@@ -185,7 +213,11 @@ impl Brush for SmoothBrush {
         if on.is_folded(dab) {
             return false;
         }
-        on.run_kernel(&Self::reach(dab), &SmoothBrush::of(dab));
+        let watched = WatchedSmooth { brush: SmoothBrush::of(dab), turned: false.into() };
+        on.run_kernel(&Self::reach(dab), &watched);
+        if !watched.turned.load(Relaxed) {
+            on.keep_flat(dab);
+        }
         true
     }
 }

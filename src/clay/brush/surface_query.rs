@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
@@ -18,6 +18,8 @@ pub struct Scratch {
     unrolls: Vec<StrokeParameters>,
     /// The alpha that was loaded.
     pub picture: Option<Arc<Picture>>,
+    /// The stroke whose last dab of this image met nothing that turned away.
+    pub(super) flat: [Option<u32>; IMAGES],
 }
 
 impl Scratch {
@@ -53,6 +55,8 @@ impl Scratch {
 
 /// Vertices looked at together.
 const BLOCK: usize = 64;
+/// Sums kept apart while a page is added up.
+const LANES: usize = 4;
 
 /// The clay before a dab.
 #[derive(Debug)]
@@ -109,7 +113,8 @@ impl WideWork for AddPage<'_> {
         let radius2 = mean.radius * mean.radius;
         let own = page.own();
         let blocks = page.point_rows()[..own].chunks(BLOCK);
-        let [mut point, mut normal] = mean.sums;
+        // Sums that do not wait for each other.
+        let mut lanes = [([0.0f64; 4], [0.0f64; 4]); LANES];
         for (rows, normals) in blocks.zip(page.normal_rows()[..own].chunks(BLOCK)) {
             let mut d2 = [f32::INFINITY; BLOCK];
             for (row, d2) in rows.iter().zip(&mut d2) {
@@ -125,20 +130,23 @@ impl WideWork for AddPage<'_> {
                 let counts = (d2 <= radius2) & (n.truncate().dot(mean.normal) > 0.0);
                 *weight = if counts { near } else { 0.0 };
             }
-            for ((row, n), &w) in rows.iter().zip(normals).zip(&weights) {
-                if w == 0.0 {
-                    continue;
-                }
+            for (i, ((row, n), &w)) in rows.iter().zip(normals).zip(&weights).enumerate() {
                 let w = f64::from(w);
                 let d = (row.truncate() - mean.centre).extend(1.0).to_array();
                 let n = n.truncate().extend(0.0).to_array();
+                let (point, normal) = &mut lanes[i % LANES];
                 for k in 0..4 {
                     point[k] += f64::from(d[k]) * w;
                     normal[k] += f64::from(n[k]) * w;
                 }
             }
         }
-        mean.sums = [point, normal];
+        for (point, normal) in &lanes {
+            for k in 0..4 {
+                mean.sums[0][k] += point[k];
+                mean.sums[1][k] += normal[k];
+            }
+        }
     }
 }
 
@@ -182,8 +190,9 @@ impl SurfaceQuery<'_> {
         self.scratch.walk_mut(image).flood(self.mesh, dab.centre, dab.normal, dab.radius);
     }
 
-    /// Whether the surface within a dab turns so far away from it that the way along the surface
-    /// is told badly by the way through the air: it folds, or belongs to something else nearby.
+    /// Whether the surface within a dab turns away from it by more than a right angle, so that the
+    /// way along the surface is told badly by the way through the air: it folds, or belongs to
+    /// something else nearby.
     pub fn is_folded(&self, dab: &Dab<'_>) -> bool {
         folded(self.mesh, dab)
     }
@@ -232,10 +241,6 @@ impl SurfaceQuery<'_> {
     }
 }
 
-/// The cosine of the angle to the dab's normal from which on the surface counts as folded: on a
-/// ball, the way along the surface to there is 6 % longer than that through the air.
-const FOLDED: f32 = 0.3;
-
 /// See [`SurfaceQuery::is_folded`].
 pub(super) fn folded(mesh: &Clay, dab: &Dab<'_>) -> bool {
     let mut any = false;
@@ -259,11 +264,10 @@ impl WideWork for FoldedPage<'_> {
         let radius2 = self.dab.radius * self.dab.radius;
         let rows = self.page.point_rows()[..own].chunks(BLOCK);
         rows.zip(self.page.normal_rows()[..own].chunks(BLOCK)).any(|(rows, normals)| {
-            let both = rows.iter().zip(normals).map(|(p, n)| {
-                let near = (p.truncate() - centre).length_squared() < radius2;
-                u32::from(near & (n.truncate().dot(normal) < FOLDED))
-            });
-            both.sum::<u32>() > 0
+            let near = |p: &Vec4| (p.truncate() - centre).length_squared() < radius2;
+            let both = |(p, n): (&Vec4, &Vec4)| near(p) & (n.truncate().dot(normal) < 0.0);
+            rows.iter().map(|p| u32::from(near(p))).sum::<u32>() > 0
+                && rows.iter().zip(normals).map(|pair| u32::from(both(pair))).sum::<u32>() > 0
         })
     }
 }

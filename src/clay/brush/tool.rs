@@ -122,8 +122,13 @@ impl RunKernel for Tool<'_> {
         self.run(reach, kernel);
     }
 
-    fn is_folded(&self, dab: &Dab<'_>) -> bool {
-        folded(self.mesh, dab)
+    fn is_folded(&mut self, dab: &Dab<'_>) -> bool {
+        let flat = self.scratch.flat[dab.image.min(IMAGES - 1)].take();
+        flat != Some(dab.stroke) && folded(self.mesh, dab)
+    }
+
+    fn keep_flat(&mut self, dab: &Dab<'_>) {
+        self.scratch.flat[dab.image.min(IMAGES - 1)] = Some(dab.stroke);
     }
 }
 
@@ -396,9 +401,10 @@ mod tests {
 
     #[test]
     fn blocks_of_vertices_move_as_single_vertices_do_to_the_bit() {
-        for kind in [BrushKind::Pinch, BrushKind::Layer] {
+        let kinds = [BrushKind::Pinch, BrushKind::Layer, BrushKind::Clay, BrushKind::ClayStrips];
+        for kind in kinds {
             for hardness in [0.0, 0.4] {
-                let blocks = BrushSettings { kind, hardness, ..BrushSettings::default() };
+                let blocks = BrushSettings { hardness, ..BrushSettings::new(kind) };
                 // A limit that is never reached is held vertex by vertex.
                 let single = BrushSettings { saturation: 1e6, ..blocks };
                 let blocks = stroke(&BrushSettings { accumulate: false, ..blocks });
