@@ -14,6 +14,7 @@
 //! | [`serial`] | serial pens: four protocols, resync, probing of allowed ports only | one a port |
 //! | [`leap`] | tracked hands: WebSocket client, frames, the tracker's clock | one a service |
 //! | [`calibration`], [`filter`] | settings for a tablet; jitter of tracked hands | none |
+//! | [`prediction`] | where a pen will be when a frame is seen; only to be shown | none |
 //! | [`queue`] | the channel to the consumer: bounded, lock-free, no transition lost | none |
 //! | [`recording`] | recorded bytes, played through the same decoders | none |
 //! | [`sim`] | simulated devices that send bytes, for tests and demos | one a device that plays |
@@ -76,6 +77,7 @@ pub mod leap;
 pub mod long_array;
 pub mod pad_actions;
 pub mod pen_state;
+pub mod prediction;
 pub mod pressure_use;
 pub mod queue;
 pub mod recording;

@@ -401,6 +401,8 @@ fn one_dab<'a>(
         span: 1.0,
         pace: 0.0,
         heading: along * 0.5,
+        course: along,
+        bend: Vec3::ZERO,
         pass: 0,
         sign,
         motion: along * (0.2 * radius),

@@ -149,6 +149,43 @@ pub enum MaskAction {
     Cavity(#[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32),
 }
 
+/// Parameters of `mask-region`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MaskRegionParams {
+    /// What is masked, all the way through.
+    pub region: ViewRegion,
+    /// The mask there: 1 protects, 0 frees.
+    #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))]
+    #[serde(default = "one")]
+    pub mask: f32,
+    /// Only what faces the eye.
+    #[serde(default)]
+    pub front_faces: bool,
+}
+
+/// A region of the view, (0, 0) top left to (1, 1) bottom right; [`crate::range::VIEW`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum ViewRegion {
+    /// Two opposite corners: x, y, x, y.
+    Box(
+        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
+        [f32; 4],
+    ),
+    /// Everything to the left of the line from the first point to the second: x, y, x, y.
+    Line(
+        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
+        [f32; 4],
+    ),
+    /// The corners of a closed polygon, as a lasso draws it freely or a polyline sets it point by
+    /// point: x, y of each, 3 to 1000. Where it crosses itself, what lies inside an odd number of
+    /// times.
+    Polygon(#[cfg_attr(feature = "schema", schemars(length(min = 3, max = 1000)))] Vec<[f32; 2]>),
+}
+
 /// Parameters of `curve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

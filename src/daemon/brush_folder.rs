@@ -216,6 +216,7 @@ impl BrushFolder {
 #[allow(clippy::disallowed_methods)] // Files as a person writes them.
 mod tests {
     use super::*;
+    use sculptd_clay::brush::own_brush::preset_number;
     use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings};
 
     fn folder() -> (tempfile::TempDir, BrushFolder, Presets) {
@@ -234,6 +235,7 @@ mod tests {
         folder.path = dir.path().into();
         assert!(!folder.refresh());
         let mut settings = BrushSettings::new(BrushKind::Texture);
+        settings.preset = preset_number("bark of oak");
         settings.strength = 0.123_456_79;
         settings.alpha = Alpha::Picture;
         settings.extra[1] = 0.1;

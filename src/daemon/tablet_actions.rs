@@ -173,6 +173,12 @@ impl TabletActions {
                 self.tablets[tablet].held.retain(|m| Some(*m) != what);
                 let lends = matches!(what, Some(Meaning::Brush(_) | Meaning::Invert));
                 if let Some(before) = self.before.take_if(|_| lends) {
+                    // First the lent one as it was before: the world remembers what it puts away.
+                    let lent = asked.brush.key();
+                    if lent != before.key() {
+                        let kept = asked.world.kept_brushes();
+                        asked.brush(self.presets.kept(&before, kept, lent));
+                    }
                     asked.brush(before);
                 }
             }
@@ -210,7 +216,10 @@ impl TabletActions {
                 asked.brush(match what {
                     Meaning::Brush(kind) => {
                         let kept = asked.world.kept_brushes();
-                        self.presets.recalled(&asked.brush, kept, kind)
+                        let now = self.presets.recalled(&asked.brush, kept, kind);
+                        // What is lent while a button is held works at the size in hand.
+                        let radius = if held { asked.brush.radius } else { now.radius };
+                        BrushSettings { radius, ..now }
                     }
                     _ => BrushSettings { negative: !asked.brush.negative, ..asked.brush },
                 });

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::camera::Camera;
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{ReachBox, Similarity};
+use crate::mask_region::MaskRegion;
 use crate::payload::PayloadId;
 use crate::scene::{ObjectId, ObjectSettings, SceneCommand};
 use crate::stroke::CurveAction;
@@ -73,6 +74,8 @@ pub enum Command {
     OfClay(Box<OfClay>),
     /// The whole scene becomes what it was at another node of its history.
     JumpScene(Box<SceneJump>),
+    /// Sets the mask of what is seen in a region of the view: one step of undo.
+    MaskRegion(MaskRegion),
 }
 
 /// A command that was computed for a clay, and that clay.
@@ -132,6 +135,7 @@ impl Command {
             | Command::Begin(_)
             | Command::Cut(_)
             | Command::Jump(_)
+            | Command::MaskRegion(_)
             | Command::ReplaceMasked(..)
             | Command::OfClay(_)
             | Command::JumpScene(_) => true,

@@ -16,6 +16,7 @@ pub mod camera;
 pub mod command;
 pub mod desktop_layout;
 pub mod hand;
+pub mod mask_region;
 pub mod old_layout;
 pub mod payload;
 pub mod scene;

@@ -26,12 +26,13 @@ use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
+use crate::mask_region::MaskSeen;
 use crate::payload::{Payload, PayloadStore};
 use crate::scene::{Scene, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
-use sculptd_clay::brush::{BrushSettings, Grip, MaskAction, Measure, Method, Scratch};
+use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 
@@ -205,7 +206,7 @@ impl World {
     fn apply_command(&mut self, command: &Command) {
         match command {
             Command::Brush(brush) => {
-                self.keep_brush(brush.kind);
+                self.keep_brush(brush);
                 self.brush = brush.clamped();
                 if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
                     self.scene.active_mut().clay.prepare_topology();
@@ -287,13 +288,13 @@ impl World {
                 }
             }
             Command::Mask(action) => {
-                self.lift_all();
-                let object = self.scene.active_mut();
-                if object.is_editable() {
-                    object.clay.begin_step();
-                    let kernel = MaskAll { action: *action, extent: object.extent };
-                    object.clay.dab(&MaskAction::reach(), &kernel, &self.workers);
-                    self.close();
+                let extent = self.scene.active().extent;
+                self.mask(&MaskAll { action: *action, extent });
+            }
+            Command::MaskRegion(region) => {
+                let (camera, transform) = (self.camera, self.scene.active().settings.transform);
+                if region.is_sane() {
+                    self.mask(&MaskSeen { region, camera: &camera, transform });
                 }
             }
             Command::Place(place) => {

@@ -14,6 +14,13 @@ use crate::{Kernel, PageIn, Reach};
 pub trait RunKernel {
     /// Runs one kernel over what `reach` touches.
     fn run_kernel<K: Kernel>(&mut self, reach: &Reach, kernel: &K);
+
+    /// Whether the surface about a dab folds; see [`SurfaceQuery::is_folded`]. It is not looked at
+    /// where [`RunKernel::keep_flat`] was told of the dab before it in the same stroke.
+    fn is_folded(&mut self, dab: &Dab<'_>) -> bool;
+
+    /// Nothing within this dab turned away.
+    fn keep_flat(&mut self, dab: &Dab<'_>);
 }
 
 /// A vertex that a brush looks at.

@@ -4,9 +4,10 @@
 //! The plane is that of the surface as the stroke found it (unless the stroke accumulates), so a
 //! stroke does not climb upon itself: it comes to one coat, however closely its dabs lie.
 
-use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
 use super::preset::OwnNumber;
+use super::weigh::Triples;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
 /// One dab of clay.
@@ -19,6 +20,7 @@ pub struct ClayBrush {
 
 impl Brush for ClayBrush {
     const FOUND: bool = true;
+    const BLOCKS: bool = true;
     const OWN_NUMBERS: &'static [OwnNumber] = &[
         OwnNumber {
             name: "lift",
@@ -45,6 +47,11 @@ impl Brush for ClayBrush {
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         coat(&self.plane, dab.sign, self.pace, spot)
     }
+
+    #[inline(always)]
+    fn change_block(&self, dab: &Dab<'_>, block: &BlockContext<'_>, by: &mut Triples) {
+        coat_block(&self.plane, dab.sign, self.pace, block, by);
+    }
 }
 
 /// Moves what lies under the plane (over it, if `sign` is negative) towards it at this pace, by its
@@ -55,5 +62,21 @@ pub(super) fn coat(plane: &Plane, sign: f32, pace: f32, spot: &VertexContext<'_>
         VertexChange::default()
     } else {
         VertexChange::by(plane.normal * (-h * part(pace, spot.weight)))
+    }
+}
+
+/// [`coat`] of a block of vertices.
+#[inline(always)]
+pub(super) fn coat_block(
+    plane: &Plane,
+    sign: f32,
+    pace: f32,
+    block: &BlockContext<'_>,
+    by: &mut Triples,
+) {
+    for (i, (row, weight)) in block.rows.iter().zip(block.weights).enumerate() {
+        let h = plane.height(row.truncate());
+        let way = -h * part(pace, *weight);
+        by.set(i, plane.normal * if h * sign >= 0.0 { 0.0 } else { way });
     }
 }

@@ -6,11 +6,12 @@
 
 use glam::Vec3;
 
-use super::clay::coat;
-use super::brush_trait::{Brush, VertexChange, VertexContext};
+use super::clay::{coat, coat_block};
+use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::Dab;
 use super::footprint::{Footprint, FootprintShape};
 use super::preset::OwnNumber;
+use super::weigh::Triples;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 use crate::Reach;
 
@@ -28,6 +29,7 @@ pub struct ClayStripsBrush {
 
 impl Brush for ClayStripsBrush {
     const FOUND: bool = true;
+    const BLOCKS: bool = true;
     const OWN_NUMBERS: &'static [OwnNumber] = &[
         OwnNumber {
             name: "lift",
@@ -80,5 +82,10 @@ impl Brush for ClayStripsBrush {
     #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         coat(&self.plane, dab.sign, self.pace, spot)
+    }
+
+    #[inline(always)]
+    fn change_block(&self, dab: &Dab<'_>, block: &BlockContext<'_>, by: &mut Triples) {
+        coat_block(&self.plane, dab.sign, self.pace, block, by);
     }
 }

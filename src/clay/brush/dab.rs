@@ -28,6 +28,12 @@ pub fn part(pace: f32, weight: f32) -> f32 {
     (e - 1.0) / e
 }
 
+/// The way over which the direction of a stroke is averaged, in radii.
+pub const HEADING: f32 = 0.5;
+
+/// The sharpest bend that [`Dab::bend`] tells, in inverse radii.
+pub const SHARPEST: f32 = 0.7;
+
 /// How a brush is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grip {
@@ -65,6 +71,13 @@ pub struct Dab<'a> {
     pub pace: f32,
     /// The direction of the stroke, averaged over half a radius; of any length, zero at its start.
     pub heading: Vec3,
+    /// Where the stroke goes here: `heading`, which lags behind where the stroke bends, turned on
+    /// by its lag. Of any length, zero at the start of a stroke.
+    pub course: Vec3,
+    /// How the stroke bends: towards the middle of the circle that it follows, one over that
+    /// circle's radius long ([`SHARPEST`] at most), and upright upon `course`. Zero for a stroke
+    /// that goes straight or turns on the spot.
+    pub bend: Vec3,
     /// Which of the brush's passes it is, from 0.
     pub pass: usize,
     /// 1, or -1 for the other way round.
@@ -156,6 +169,13 @@ impl Dab<'_> {
             .unwrap_or_else(|| self.normal.any_orthonormal_vector())
     }
 
+    /// [`Dab::course`] in the plane of this unit normal, unit length; for a stroke without a course
+    /// any direction there.
+    pub fn course_in(&self, normal: Vec3) -> Vec3 {
+        let flat = self.course - normal * self.course.dot(normal);
+        flat.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector())
+    }
+
     /// A ball about the centre, drawn out to where the stroke may have raised what lay in it.
     pub fn ball(&self, radii: f32) -> Reach {
         let radius = self.radius * radii;
@@ -173,4 +193,44 @@ impl Dab<'_> {
 #[inline(always)]
 pub(super) fn soft(x: f32, hardness: f32) -> f32 {
     ((x - hardness) / (1.0 - hardness)).max(0.0)
+}
+
+#[cfg(test)]
+impl<'a> Dab<'a> {
+    /// A dab by itself on a ball about the origin, seen from its normal.
+    pub(crate) fn resting(
+        settings: &'a BrushSettings,
+        centre: Vec3,
+        radius: f32,
+        strength: f32,
+    ) -> Dab<'a> {
+        let normal = centre.normalize();
+        let right = normal.any_orthonormal_vector();
+        let dab = Dab {
+            settings,
+            centre,
+            normal,
+            touch: centre,
+            found: false,
+            radius,
+            strength,
+            span: 1.0,
+            pace: 0.0,
+            heading: right * HEADING,
+            course: right,
+            bend: Vec3::ZERO,
+            pass: 0,
+            sign: 1.0,
+            motion: Vec3::ZERO,
+            last: Vec3::ZERO,
+            eye: normal,
+            right,
+            lens: Lens::default(),
+            hand: 1.0,
+            image: 0,
+            travelled: 0.0,
+            stroke: 1,
+        };
+        Dab { pace: dab.pace_of(strength), ..dab }
+    }
 }

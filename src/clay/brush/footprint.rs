@@ -22,7 +22,8 @@ pub enum FootprintShape {
         back: Vec3,
     },
     /// A square in the plane of `along` and `across`, both unit, faded along each of the two, and
-    /// cut off a radius over and under that plane.
+    /// cut off a radius over and under that plane. One of the two that is longer than one makes it
+    /// so many times shorter that way.
     Square {
         /// See [`FootprintShape::Square`].
         along: Vec3,

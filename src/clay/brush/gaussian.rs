@@ -47,9 +47,9 @@ impl Kernel for GaussianBrush {
     #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         let w = &mut Weights::zero();
-        out.visit_many(
-            w.sphere(page, self.centre, self.normal, self.radius2, |d2| exp(d2 * self.fall)),
-        );
+        let (within, _) =
+            w.sphere(page, self.centre, self.normal, self.radius2, |d2| exp(d2 * self.fall));
+        out.visit_many(within);
         out.push_all(self.offset, w.of(page));
     }
 }

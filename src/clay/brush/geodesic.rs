@@ -32,6 +32,15 @@ struct Block {
 /// order of a walk.
 const WORTH: f32 = 0.9;
 
+/// Which surface is walked over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WalkedSurface {
+    /// As it is.
+    Now,
+    /// As it was when the stroke began.
+    Before,
+}
+
 /// One walk. Its memory is used again by the next.
 #[derive(Debug, Default)]
 pub struct Geodesic {
@@ -225,10 +234,20 @@ impl Geodesic {
         None
     }
 
-    /// Distances over the edges from a point on the surface as it was before the stroke, as far as
-    /// `radius`. The first ring about the point is measured straight.
-    pub fn measure(&mut self, mesh: &Clay, centre: Vec3, normal: Vec3, radius: f32) {
+    /// Distances over the edges from a point on the surface, where the normal is as given, as far
+    /// as `radius`. The first ring about the point is measured straight.
+    pub fn measure(
+        &mut self,
+        mesh: &Clay,
+        (centre, normal): (Vec3, Vec3),
+        radius: f32,
+        surface: WalkedSurface,
+    ) {
         self.begin(mesh);
+        let at = |i: u32| match surface {
+            WalkedSurface::Now => mesh.page(i),
+            WalkedSurface::Before => mesh.before(i),
+        };
         let mut seed: Option<(f32, Key)> = None;
         let mut look = |number: u32, page: &Page| {
             for v in 0..page.own() {
@@ -238,28 +257,26 @@ impl Geodesic {
                 }
             }
         };
-        mesh.each_page_before(&Reach::Sphere { centre, radius }, |number, page| look(number, page));
+        let near = Reach::Sphere { centre, radius };
+        match surface {
+            WalkedSurface::Now => mesh.each_page(&near, |number, page| look(number, page)),
+            WalkedSurface::Before => {
+                mesh.each_page_before(&near, |number, page| look(number, page));
+            }
+        }
         let Some((d2, key)) = seed else { return };
         self.offer(mesh, key, d2.sqrt(), 1);
-        ring(
-            |i| mesh.before(i),
-            key,
-            |to, p| {
-                self.offer(mesh, to, (p - centre).length(), 1);
-            },
-        );
+        ring(at, key, |to, p| {
+            self.offer(mesh, to, (p - centre).length(), 1);
+        });
         while let Some((key, d)) = self.take() {
-            let from = mesh.before(key.0).point(key.1 as usize);
-            ring(
-                |i| mesh.before(i),
-                key,
-                |to, p| {
-                    let d = d + (p - from).length();
-                    if d < radius {
-                        self.offer(mesh, to, d, 1);
-                    }
-                },
-            );
+            let from = at(key.0).point(key.1 as usize);
+            ring(at, key, |to, p| {
+                let d = d + (p - from).length();
+                if d < radius {
+                    self.offer(mesh, to, d, 1);
+                }
+            });
         }
     }
 

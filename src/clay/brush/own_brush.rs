@@ -86,6 +86,14 @@ pub fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
+/// The number of a person's own brush of this name, for [`BrushSettings::preset`]: never 0. FNV-1a
+/// (Fowler, Noll, Vo), 32 bits: two of a hundred brushes share one by a chance of one in a million,
+/// and then only what the two remember.
+pub fn preset_number(name: &str) -> u32 {
+    let hash = |hash: u32, byte: u8| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
+    name.bytes().fold(0x811c_9dc5, hash).max(1)
+}
+
 /// Lays `over` upon `under`, tables within tables too.
 fn lay(under: &mut toml::Table, over: toml::Table) {
     for (key, value) in over {
@@ -140,11 +148,15 @@ impl OwnBrush {
             Some(toml::Value::Table(named)) => named,
             _ => toml::Table::new(),
         };
-        if let Some(key) = ["kind", "extra"].into_iter().find(|k| named.contains_key(*k)) {
-            let text = format!("settings.{key}: this is written outside of [settings]");
+        let elsewhere = ["kind", "extra", "preset"];
+        if let Some(key) = elsewhere.into_iter().find(|k| named.contains_key(*k)) {
+            let text = match key {
+                "preset" => format!("settings.{key}: the file's name tells which brush it is"),
+                _ => format!("settings.{key}: this is written outside of [settings]"),
+            };
             return Err(wrong(line_of(source, &["settings", key]), text));
         }
-        let base = preset(file.kind);
+        let base = BrushSettings { preset: preset_number(name), ..preset(file.kind) };
         let mut table = table_of(&base).map_err(|e| wrong(1, e))?;
         lay(&mut table, named);
         let mut settings: BrushSettings = table.try_into().map_err(parse)?;
@@ -194,7 +206,7 @@ impl OwnBrush {
     /// Where a value cannot be written; none is known.
     pub fn write(&self) -> Result<String, String> {
         let mut settings = table_of(&self.settings)?;
-        for key in ["kind", "extra"] {
+        for key in ["kind", "extra", "preset"] {
             settings.remove(key);
         }
         let own = self.settings.kind.own_numbers();

@@ -176,10 +176,20 @@ impl Presets {
         self.get(kind).settings
     }
 
-    /// An own brush in the same hand: its settings, with the mirrors of `now`.
+    /// An own brush in the same hand, as it was set when it was last used (the one of its key in
+    /// `kept`), or else as its file has it; with the mirrors of `now`. One that is in hand already
+    /// is taken as its file has it: so a person gets back what was saved.
     #[must_use]
-    pub fn taken(&self, now: &BrushSettings, own: &OwnBrush) -> BrushSettings {
-        BrushSettings { symmetry: now.symmetry, mirror: now.mirror, ..own.settings }
+    pub fn taken(
+        &self,
+        now: &BrushSettings,
+        kept: &[BrushSettings],
+        own: &OwnBrush,
+    ) -> BrushSettings {
+        let key = own.settings.key();
+        let last = kept.iter().find(|k| k.key() == key).filter(|_| now.key() != key);
+        let settings = last.unwrap_or(&own.settings);
+        BrushSettings { symmetry: now.symmetry, mirror: now.mirror, ..*settings }
     }
 
     /// Another brush in the same hand: its own settings, at the size and with the mirrors of `now`.
@@ -194,8 +204,9 @@ impl Presets {
         }
     }
 
-    /// Another brush in the same hand, as it was set when it was last used (the one of its kind in
-    /// `kept`), or else as its preset has it; at the size and with the mirrors of `now`.
+    /// Another brush of the program in the same hand, as it was set when it was last used (the one
+    /// of its key in `kept`), its size among it, with the mirrors of `now`; or else as its preset
+    /// has it, at the size of `now`.
     #[must_use]
     pub fn recalled(
         &self,
@@ -203,14 +214,24 @@ impl Presets {
         kept: &[BrushSettings],
         kind: BrushKind,
     ) -> BrushSettings {
-        match kept.iter().find(|k| k.kind == kind) {
-            Some(kept) => BrushSettings {
-                radius: now.radius,
-                symmetry: now.symmetry,
-                mirror: now.mirror,
-                ..*kept
-            },
+        match kept.iter().find(|k| k.key() == (kind, 0)) {
+            Some(kept) => BrushSettings { symmetry: now.symmetry, mirror: now.mirror, ..*kept },
             None => self.switched(now, kind),
+        }
+    }
+
+    /// The brush of this key as `kept` has it, or else as it begins: what a brush that was lent for
+    /// a while is put away as.
+    #[must_use]
+    pub fn kept(
+        &self,
+        now: &BrushSettings,
+        kept: &[BrushSettings],
+        key: (BrushKind, u32),
+    ) -> BrushSettings {
+        match self.own().iter().find(|own| own.settings.key() == key) {
+            Some(own) => self.taken(now, kept, own),
+            None => self.recalled(now, kept, key.0),
         }
     }
 }

@@ -109,6 +109,10 @@ pub struct BrushSettings {
     /// The brush follows the pen by a string of so many radii (at least a few pixels), which takes
     /// the tremble out of a hand and keeps a resting brush at rest. 0: no string; to 1.
     pub steady: f32,
+    /// Which preset it began as: 0 that of the program for its kind, else a person's own brush, see
+    /// [`super::own_brush::preset_number`]. Changes nothing that the brush does: by it and the kind
+    /// the world remembers how each brush was set.
+    pub preset: u32,
 }
 
 impl Default for BrushSettings {
@@ -140,6 +144,7 @@ impl Default for BrushSettings {
             auto_smooth: 0.0,
             accumulate: true,
             steady: 0.1,
+            preset: 0,
         }
     }
 }
@@ -153,6 +158,12 @@ impl BrushSettings {
             *value = number.value;
         }
         settings
+    }
+
+    /// What tells brushes apart that are remembered each by itself: the kind, and which preset of
+    /// that kind it began as.
+    pub fn key(&self) -> (BrushKind, u32) {
+        (self.kind, self.preset)
     }
 
     /// Every number within its stated range; a NaN becomes the default.

@@ -6,6 +6,13 @@
 //! Delaunay the sums are what leaves every vertex in its place. With `b` and `c` relative to `p`,
 //! the triangle's doubled area `|b x c|` is under both its cotangents: at `c` it is `(c.c - b.c) /
 //! |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
+//!
+//! How far a vertex is from the middle of the dab is told by the way through the air where the
+//! surface is open there, and by the way along the surface (by Dijkstra over the edges) where it
+//! folds: a finger is evened and the one beside it is not.
+
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{Vec3, Vec4};
 
@@ -30,12 +37,15 @@ pub struct SmoothBrush {
     radius: f32,
     /// The share of the way to the weighted mean of the ring, at the centre.
     lambda: f32,
+    /// The surface folds: a walk along it tells how far a vertex is.
+    folded: bool,
 }
 
 impl SmoothBrush {
     /// `lambda` 0 to 1: the share of the way to the weighted mean of the ring, at the centre.
     pub fn new(centre: Vec3, radius: f32, lambda: f32) -> Self {
-        SmoothBrush { centre, normal: Vec3::ZERO, radius, lambda: lambda.clamp(0.0, 1.0) }
+        let lambda = lambda.clamp(0.0, 1.0);
+        SmoothBrush { centre, normal: Vec3::ZERO, radius, lambda, folded: false }
     }
 
     fn of(dab: &Dab<'_>) -> Self {
@@ -96,9 +106,17 @@ pub(super) fn around(page: &PageIn<'_>, v: usize, p: Vec3) -> (Vec3, f32) {
     }
 }
 
-impl Kernel for SmoothBrush {
+/// The share of a dab of this radius at a squared distance from its middle.
+#[inline(always)]
+fn faded(d2: f32, radius: f32) -> f32 {
+    let fade = (1.0 - d2 / (radius * radius)).max(0.0);
+    fade * fade
+}
+
+impl SmoothBrush {
+    /// Evens a page; says whether something within turns away by more than a right angle.
     #[inline(always)]
-    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+    fn even(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) -> bool {
         let radius2 = self.radius * self.radius;
         let (mut who, mut sums) = ([0u16; BLOCK], [Vec4::ZERO; BLOCK]);
         let w = &mut Weights::zero();
@@ -106,7 +124,8 @@ impl Kernel for SmoothBrush {
             let fade = 1.0 - d2 / radius2;
             self.lambda * (fade * fade)
         };
-        out.visit_many(w.sphere(page, self.centre, self.normal, radius2, fade));
+        let (within, turned) = w.sphere(page, self.centre, self.normal, radius2, fade);
+        out.visit_many(within);
         let weights = w.of(page);
         for first in (0..weights.len()).step_by(BLOCK) {
             let (mut count, mut regular) = (0, 0);
@@ -128,12 +147,39 @@ impl Kernel for SmoothBrush {
                 }
             }
         }
+        turned
+    }
+}
+
+impl Kernel for SmoothBrush {
+    #[inline(always)]
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        self.even(page, out);
+    }
+}
+
+/// The brush, and whether anything within it turned away: the next dab then looks for folds.
+struct WatchedSmooth {
+    brush: SmoothBrush,
+    turned: AtomicBool,
+}
+
+impl Kernel for WatchedSmooth {
+    #[inline(always)]
+    fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
+        if self.brush.even(page, out) {
+            self.turned.store(true, Relaxed);
+        }
     }
 }
 
 impl Brush for SmoothBrush {
-    fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
-        SmoothBrush::of(dab)
+    fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
+        let folded = on.is_folded(dab);
+        if folded {
+            on.measure(dab);
+        }
+        SmoothBrush { folded, ..SmoothBrush::of(dab) }
     }
 
     fn footprint(&self, _: &Dab<'_>) -> Option<Footprint> {
@@ -142,22 +188,77 @@ impl Brush for SmoothBrush {
 
     #[inline(always)]
     fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
-        let fade = 1.0 - (p - self.centre).length_squared() / (dab.radius * dab.radius);
-        if fade > 0.0 { fade * fade } else { 0.0 }
+        let fade = faded((p - self.centre).length_squared(), dab.radius);
+        // The walk tells it; see `change`.
+        if self.folded && fade > 0.0 { 1.0 } else { fade }
     }
 
     #[inline]
-    fn change(&self, _: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+    fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
+        let mut weight = spot.weight;
+        if self.folded {
+            let walk = spot.scratch.walk(dab.image);
+            let far = walk.and_then(|w| w.distance(spot.number, spot.v));
+            weight *= far.map_or(0.0, |d| faded(d * d, dab.radius));
+        }
         let (sum, weights) = around(spot.page, spot.v, spot.p);
-        if weights > 0.0 {
-            VertexChange::by(sum * (self.lambda * spot.weight / weights))
+        if weights > 0.0 && weight > 0.0 {
+            VertexChange::by(sum * (self.lambda * weight / weights))
         } else {
             VertexChange::default()
         }
     }
 
     fn alone<R: RunKernel>(dab: &Dab<'_>, on: &mut R) -> bool {
-        on.run_kernel(&Self::reach(dab), &SmoothBrush::of(dab));
+        if on.is_folded(dab) {
+            return false;
+        }
+        let watched = WatchedSmooth { brush: SmoothBrush::of(dab), turned: false.into() };
+        on.run_kernel(&Self::reach(dab), &watched);
+        if !watched.turned.load(Relaxed) {
+            on.keep_flat(dab);
+        }
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::brush::{BrushKind, BrushSettings, Dab, Scratch, Tool};
+    use crate::{Clay, DabReport, Workers};
+    use sculptd_geometry::job::Job;
+    use sculptd_geometry::shapes;
+
+    #[test]
+    fn what_lies_beside_a_fold_is_left_alone() {
+        // Two rough balls that all but touch, and a dab on the one beside the gap, which reaches
+        // far over the other through the air.
+        let mut mesh = shapes::icosphere(1.0, 24);
+        let count = mesh.positions.len();
+        for (i, p) in mesh.positions.iter_mut().enumerate() {
+            *p *= 1.0 + 0.02 * ((i * 7919) % 101) as f32 / 101.0;
+        }
+        let other: Vec<Vec3> = mesh.positions.iter().map(|p| *p + Vec3::X * 2.05).collect();
+        mesh.positions.extend(&other);
+        let more = mesh.triangles.iter().map(|t| t.map(|v| v + count as u32));
+        mesh.triangles.extend(more.collect::<Vec<_>>());
+        let before = mesh.positions.clone();
+        let mut clay = Clay::build(&mesh, &Job::default()).expect("clay");
+        let settings = BrushSettings::new(BrushKind::Smooth);
+        let centre = Vec3::new(0.6, 0.0, 0.8);
+        let first = Dab::resting(&settings, centre, 0.9, 0.8);
+        clay.begin_step();
+        let (workers, mut scratch) = (Workers::new(1), Scratch::default());
+        let report = DabReport::default();
+        let mut tool = Tool { mesh: &mut clay, workers: &workers, scratch: &mut scratch, report };
+        BrushKind::Smooth.apply(&[first], &mut tool);
+        let after = clay.to_tri().positions;
+        let moved = |from: usize, to: usize| {
+            (from..to).map(|i| before[i].distance(after[i])).fold(0.0, f32::max)
+        };
+        assert!(moved(0, count) > 0.001, "the ball under the dab is evened");
+        assert_eq!(moved(count, 2 * count), 0.0, "the one beside it is left alone");
     }
 }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
-use crate::brush::geodesic::Geodesic;
+use crate::brush::geodesic::{Geodesic, WalkedSurface};
 use crate::brush::stroke_param::{StrokeParameters, StrokePlace};
 use crate::{Clay, Page, Reach};
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
@@ -18,6 +18,8 @@ pub struct Scratch {
     unrolls: Vec<StrokeParameters>,
     /// The alpha that was loaded.
     pub picture: Option<Arc<Picture>>,
+    /// The stroke whose last dab of this image met nothing that turned away.
+    pub(super) flat: [Option<u32>; IMAGES],
 }
 
 impl Scratch {
@@ -53,6 +55,8 @@ impl Scratch {
 
 /// Vertices looked at together.
 const BLOCK: usize = 64;
+/// Sums kept apart while a page is added up.
+const LANES: usize = 4;
 
 /// The clay before a dab.
 #[derive(Debug)]
@@ -109,7 +113,8 @@ impl WideWork for AddPage<'_> {
         let radius2 = mean.radius * mean.radius;
         let own = page.own();
         let blocks = page.point_rows()[..own].chunks(BLOCK);
-        let [mut point, mut normal] = mean.sums;
+        // Sums that do not wait for each other.
+        let mut lanes = [([0.0f64; 4], [0.0f64; 4]); LANES];
         for (rows, normals) in blocks.zip(page.normal_rows()[..own].chunks(BLOCK)) {
             let mut d2 = [f32::INFINITY; BLOCK];
             for (row, d2) in rows.iter().zip(&mut d2) {
@@ -118,20 +123,30 @@ impl WideWork for AddPage<'_> {
             if d2.iter().map(|d2| u32::from(*d2 <= radius2)).sum::<u32>() == 0 {
                 continue;
             }
-            for ((row, n), &d2) in rows.iter().zip(normals).zip(&d2) {
-                let n = n.truncate();
-                if d2 <= radius2 && n.dot(mean.normal) > 0.0 {
-                    let w = f64::from((1.0 - d2 / radius2).max(0.0));
-                    let d = (row.truncate() - mean.centre).extend(1.0).to_array();
-                    let n = n.extend(0.0).to_array();
-                    for k in 0..4 {
-                        point[k] += f64::from(d[k]) * w;
-                        normal[k] += f64::from(n[k]) * w;
-                    }
+            // The weights in wide steps, then the sums in their order.
+            let mut weights = [0.0f32; BLOCK];
+            for ((n, &d2), weight) in normals.iter().zip(&d2).zip(&mut weights) {
+                let near = (1.0 - d2 / radius2).max(0.0);
+                let counts = (d2 <= radius2) & (n.truncate().dot(mean.normal) > 0.0);
+                *weight = if counts { near } else { 0.0 };
+            }
+            for (i, ((row, n), &w)) in rows.iter().zip(normals).zip(&weights).enumerate() {
+                let w = f64::from(w);
+                let d = (row.truncate() - mean.centre).extend(1.0).to_array();
+                let n = n.truncate().extend(0.0).to_array();
+                let (point, normal) = &mut lanes[i % LANES];
+                for k in 0..4 {
+                    point[k] += f64::from(d[k]) * w;
+                    normal[k] += f64::from(n[k]) * w;
                 }
             }
         }
-        mean.sums = [point, normal];
+        for (point, normal) in &lanes {
+            for k in 0..4 {
+                mean.sums[0][k] += point[k];
+                mean.sums[1][k] += normal[k];
+            }
+        }
     }
 }
 
@@ -175,11 +190,27 @@ impl SurfaceQuery<'_> {
         self.scratch.walk_mut(image).flood(self.mesh, dab.centre, dab.normal, dab.radius);
     }
 
+    /// Whether the surface within a dab turns away from it by more than a right angle, so that the
+    /// way along the surface is told badly by the way through the air: it folds, or belongs to
+    /// something else nearby.
+    pub fn is_folded(&self, dab: &Dab<'_>) -> bool {
+        folded(self.mesh, dab)
+    }
+
+    /// Measures along the surface, as it is, how far each vertex is from the dab's centre: by
+    /// Dijkstra over the edges, no further than the radius.
+    pub fn measure(&mut self, dab: &Dab<'_>) {
+        let image = self.image;
+        let from = (dab.centre, dab.normal);
+        self.scratch.walk_mut(image).measure(self.mesh, from, dab.radius, WalkedSurface::Now);
+    }
+
     /// Measures along the surface, as it was when the stroke began, how far each vertex is from the
     /// dab's centre: by Dijkstra over the edges, no further than the radius.
     pub fn measure_before(&mut self, dab: &Dab<'_>) {
         let image = self.image;
-        self.scratch.walk_mut(image).measure(self.mesh, dab.centre, dab.normal, dab.radius);
+        let from = (dab.centre, dab.normal);
+        self.scratch.walk_mut(image).measure(self.mesh, from, dab.radius, WalkedSurface::Before);
     }
 
     /// Measures along the surface, as it was when the stroke began, how far each vertex is from the
@@ -207,6 +238,37 @@ impl SurfaceQuery<'_> {
             StrokePlace::Now(dab.centre, dab.normal)
         };
         if one.step(self.mesh, dab.stroke, place, radius) { one.count() } else { 0 }
+    }
+}
+
+/// See [`SurfaceQuery::is_folded`].
+pub(super) fn folded(mesh: &Clay, dab: &Dab<'_>) -> bool {
+    let mut any = false;
+    mesh.each_page(&Reach::Sphere { centre: dab.centre, radius: dab.radius }, |_, page| {
+        any = any || dispatch(false, FoldedPage { dab, page });
+    });
+    any
+}
+
+/// Whether an own vertex of a page is within a dab and faces away, compiled for this processor.
+struct FoldedPage<'a> {
+    dab: &'a Dab<'a>,
+    page: &'a Page,
+}
+
+impl WideWork for FoldedPage<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<W: Wide>(self, _: W) -> bool {
+        let (Dab { centre, normal, .. }, own) = (*self.dab, self.page.own());
+        let radius2 = self.dab.radius * self.dab.radius;
+        let rows = self.page.point_rows()[..own].chunks(BLOCK);
+        rows.zip(self.page.normal_rows()[..own].chunks(BLOCK)).any(|(rows, normals)| {
+            let near = |p: &Vec4| (p.truncate() - centre).length_squared() < radius2;
+            let both = |(p, n): (&Vec4, &Vec4)| near(p) & (n.truncate().dot(normal) < 0.0);
+            rows.iter().map(|p| u32::from(near(p))).sum::<u32>() > 0
+                && rows.iter().zip(normals).map(|pair| u32::from(both(pair))).sum::<u32>() > 0
+        })
     }
 }
 

@@ -10,7 +10,7 @@ use super::stamp::StampBy;
 use super::weigh::{Triples, WeightRules, weigh};
 use super::weights::{BLOCK, Weights};
 use crate::brush::automask::AutoMasking;
-use crate::brush::surface_query::{Scratch, SurfaceQuery};
+use crate::brush::surface_query::{Scratch, SurfaceQuery, folded};
 use crate::{Clay, DabReport, Kernel, PageIn, PageOut, Reach, Workers};
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 
@@ -120,6 +120,15 @@ impl Tool<'_> {
 impl RunKernel for Tool<'_> {
     fn run_kernel<K: Kernel>(&mut self, reach: &Reach, kernel: &K) {
         self.run(reach, kernel);
+    }
+
+    fn is_folded(&mut self, dab: &Dab<'_>) -> bool {
+        let flat = self.scratch.flat[dab.image.min(IMAGES - 1)].take();
+        flat != Some(dab.stroke) && folded(self.mesh, dab)
+    }
+
+    fn keep_flat(&mut self, dab: &Dab<'_>) {
+        self.scratch.flat[dab.image.min(IMAGES - 1)] = Some(dab.stroke);
     }
 }
 
@@ -361,6 +370,8 @@ mod tests {
                 span: 0.6,
                 pace: 0.0,
                 heading: Vec3::X * 0.5,
+                course: Vec3::X,
+                bend: Vec3::ZERO,
                 pass: 0,
                 sign: if i == 2 { -1.0 } else { 1.0 },
                 motion: Vec3::X * (0.05 * i.min(1) as f32),
@@ -390,9 +401,10 @@ mod tests {
 
     #[test]
     fn blocks_of_vertices_move_as_single_vertices_do_to_the_bit() {
-        for kind in [BrushKind::Pinch, BrushKind::Layer] {
+        let kinds = [BrushKind::Pinch, BrushKind::Layer, BrushKind::Clay, BrushKind::ClayStrips];
+        for kind in kinds {
             for hardness in [0.0, 0.4] {
-                let blocks = BrushSettings { kind, hardness, ..BrushSettings::default() };
+                let blocks = BrushSettings { hardness, ..BrushSettings::new(kind) };
                 // A limit that is never reached is held vertex by vertex.
                 let single = BrushSettings { saturation: 1e6, ..blocks };
                 let blocks = stroke(&BrushSettings { accumulate: false, ..blocks });

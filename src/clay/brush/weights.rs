@@ -29,7 +29,7 @@ impl Weights {
     /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) *
     /// (1 - mask)` within `radius2`, else 0. Returns how many lie within.
     /// What faces away from `normal` is left alone as [`super::Dab::facing`] has it; a normal of
-    /// zero: nothing is.
+    /// zero: nothing is. Says also whether something within turns away by more than a right angle.
     #[inline(always)]
     pub fn sphere(
         &mut self,
@@ -38,10 +38,10 @@ impl Weights {
         normal: Vec3,
         radius2: f32,
         profile: impl Fn(f32) -> f32,
-    ) -> usize {
+    ) -> (usize, bool) {
         let normals = page.normal_rows();
         let own = page.own().min(MOST);
-        let mut within = 0u32;
+        let (mut within, mut turned) = (0u32, 0u32);
         let blocks = page.rows()[..own].chunks(BLOCK).zip(normals[..own].chunks(BLOCK));
         for ((rows, normals), weights) in blocks.zip(self.weight.chunks_mut(BLOCK)) {
             let (mut d2, mut free) = ([f32::INFINITY; BLOCK], [0.0f32; BLOCK]);
@@ -57,16 +57,18 @@ impl Weights {
                 weights.fill(0.0);
                 continue;
             }
-            for (row, free) in normals.iter().zip(&mut free) {
+            for ((row, free), d2) in normals.iter().zip(&mut free).zip(&d2) {
                 let [x, y, z, _] = row.to_array();
-                *free *= facing(x * normal.x + y * normal.y + z * normal.z);
+                let c = x * normal.x + y * normal.y + z * normal.z;
+                *free *= facing(c);
+                turned |= u32::from((*d2 < radius2) & (c < 0.0));
             }
             for ((&d2, &free), weight) in d2.iter().zip(&free).zip(weights.iter_mut()) {
                 let w = profile(d2) * free;
                 *weight = if d2 < radius2 { w } else { 0.0 };
             }
         }
-        within as usize
+        (within as usize, turned != 0)
     }
 
     /// Every weight, for [`super::weigh`].

@@ -112,6 +112,8 @@ fn random_brush(clay: &mut Clay, hit: &Hit, radius: f32, dice: &mut Dice, worker
         span: 1.0,
         pace: 0.0,
         heading: along * 0.5,
+        course: along,
+        bend: Vec3::ZERO,
         pass: 0,
         sign: if dice.next() < 0.5 { 1.0 } else { -1.0 },
         motion: along * (0.2 * radius),

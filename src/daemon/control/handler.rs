@@ -10,6 +10,7 @@ use serde_json::Value;
 
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
+use super::mask_region::mask_region;
 use super::scene;
 use super::stroke::LentBrush;
 use crate::command_queue::QueuedCommand;
@@ -79,13 +80,17 @@ fn merged_brush(
 ) -> Result<(brush::BrushSettings, Option<Arc<Picture>>), RpcError> {
     if let Some(own) = named.kind.as_deref().and_then(|name| presets.own_of(name)) {
         let rest = asked::BrushSettings { kind: None, ..named.clone() };
-        let brush: brush::BrushSettings = merge(&presets.taken(&shown.brush, &own), rest)?;
+        let taken = presets.taken(&shown.brush, &shown.kept_brushes, &own);
+        let brush: brush::BrushSettings = merge(&taken, rest)?;
         brush.check().map_err(RpcError::bad_params)?;
         return Ok((brush.clamped(), own.picture));
     }
     let other = named.kind.as_deref().map(str::parse::<BrushKind>).transpose();
     let other = other.map_err(RpcError::bad_params)?;
-    let base = match other.filter(|k| *k != shown.brush.kind) {
+    // Who names the preset as well has asked for all settings and sends them back.
+    let whole = named.others.contains_key("preset");
+    let here = |k: BrushKind| k == shown.brush.kind && (whole || shown.brush.preset == 0);
+    let base = match other.filter(|k| !here(*k)) {
         Some(kind) => presets.recalled(&shown.brush, &shown.kept_brushes, kind),
         None => shown.brush,
     };
@@ -258,6 +263,11 @@ impl Handler for Host {
         Ok(SENT)
     }
 
+    fn mask_region(&self, params: asked::MaskRegionParams) -> Result<SentReply, RpcError> {
+        self.send(Command::MaskRegion(mask_region(params)?))?;
+        Ok(SENT)
+    }
+
     fn curve(&self, params: asked::CurveParams) -> Result<asked::CurveReply, RpcError> {
         let points = self.published.load().draft.points().len() as u64;
         self.send(Command::CurveStroke(match params.act {
@@ -276,9 +286,9 @@ impl Handler for Host {
         let brush = brush.transpose()?;
         // With the settings that the other brush had, to be put back after the stroke.
         let brush = brush.map(|(settings, picture)| {
-            let kind = settings.kind;
-            let kept = || self.presets.recalled(&shown.brush, &shown.kept_brushes, kind);
-            LentBrush { settings, picture, kept: (kind != shown.brush.kind).then(kept) }
+            let key = settings.key();
+            let kept = || self.presets.kept(&shown.brush, &shown.kept_brushes, key);
+            LentBrush { settings, picture, kept: (key != shown.brush.key()).then(kept) }
         });
         let link = self.link();
         match pen.try_lock() {

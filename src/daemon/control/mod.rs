@@ -16,6 +16,7 @@ pub mod events;
 pub mod handler;
 pub mod host;
 pub mod loop_link;
+mod mask_region;
 mod scene;
 pub mod server;
 pub mod stroke;

@@ -11,8 +11,8 @@ use crate::hand::{HandTools, HeldObject, Pose, Volume};
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{Scene, SceneView};
 use crate::stroke::{CurveStroke, PenPoint};
-use sculptd_clay::brush::{BrushKind, BrushSettings, Picture};
-use sculptd_clay::{Clay, GarbageSink, Grafted, PageSupply};
+use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
+use sculptd_clay::{Clay, GarbageSink, Grafted, Kernel, PageSupply};
 use sculptd_devices::{DeviceId, Hands};
 
 impl World {
@@ -82,22 +82,34 @@ impl World {
         self.scratch.picture.as_ref()
     }
 
-    /// What each brush was set to when it was last exchanged for another; the brush in use is not
-    /// among them, or as it was when it was last put away.
+    /// What each brush was set to when it was last exchanged for another, by its key
+    /// ([`BrushSettings::key`]): a person's own brush does not share with others of its kind. The
+    /// brush in use is not among them, or as it was when it was last put away.
     pub fn kept_brushes(&self) -> &Arc<Vec<BrushSettings>> {
         &self.kept_brushes
     }
 
-    /// Keeps the settings of the brush in use, if it is to be exchanged for one of kind `next`.
-    pub(super) fn keep_brush(&mut self, next: BrushKind) {
-        if self.brush.kind == next {
+    /// Keeps the settings of the brush in use, if it is to be exchanged for another than itself.
+    pub(super) fn keep_brush(&mut self, next: &BrushSettings) {
+        if self.brush.key() == next.key() {
             return;
         }
         let now = self.brush;
         let kept = Arc::make_mut(&mut self.kept_brushes);
-        match kept.iter_mut().find(|k| k.kind == now.kind) {
+        match kept.iter_mut().find(|k| k.key() == now.key()) {
             Some(old) => *old = now,
             None => kept.push(now),
+        }
+    }
+
+    /// Changes the mask of the whole active object: one step of undo.
+    pub(super) fn mask<K: Kernel>(&mut self, kernel: &K) {
+        self.lift_all();
+        let object = self.scene.active_mut();
+        if object.is_editable() {
+            object.clay.begin_step();
+            object.clay.dab(&MaskAction::reach(), kernel, &self.workers);
+            self.close();
         }
     }
 

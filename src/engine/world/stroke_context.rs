@@ -7,14 +7,15 @@ use super::StepReport;
 use super::local_camera::LocalCamera;
 use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 use crate::topology_work::TopologyWork;
-use sculptd_clay::brush::dab::IMAGES;
+use sculptd_clay::brush::dab::{HEADING, IMAGES, SHARPEST};
 use sculptd_clay::brush::restore::Restore;
 use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
 use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
 use sculptd_geometry::portable::{PortableMath, turn_matrix};
 
-/// The way over which the direction of a stroke is averaged, in radii.
-const HEADING: f32 = 0.5;
+/// Of the angle between the two averages of a stroke's direction that still tells of a bend; where
+/// they lie further apart, the stroke turned a corner.
+const LEAST_COSINE: f32 = 0.5;
 /// The way over which the pressure that counts may rise from nothing to all, in radii: a stroke
 /// begins softly however hard the pen comes down after its first touch. It falls at once.
 const ONSET: f32 = 0.35;
@@ -45,6 +46,12 @@ pub(super) struct Stroke {
     /// The pressure that counts: it rises no faster than [`ONSET`] allows.
     #[serde(default)]
     pressure: f32,
+    /// `heading`, averaged over as long a way once more.
+    #[serde(default)]
+    lagging: Vec3,
+    /// The way that the two average, in radii.
+    #[serde(default)]
+    way: f32,
 }
 
 /// Where a held brush took hold, and how far it was drawn.
@@ -64,6 +71,33 @@ struct HeldStroke {
 impl Stroke {
     pub(super) fn begin(&mut self, number: u32) {
         *self = Stroke { number, ..Stroke::default() };
+    }
+
+    /// [`Dab::course`] and [`Dab::bend`]. `heading` and `lagging` are averages, over one and over
+    /// two windows, of a direction that turns evenly, so each tells where it went a while ago: half
+    /// way into what it averages at the start of a stroke, one and two windows ago later. How far
+    /// apart the two are tells how fast it turns.
+    fn course(&self, radius: f32) -> (Vec3, Vec3) {
+        let straight = (self.heading, Vec3::ZERO);
+        let (Some(heading), Some(lagging)) =
+            (self.heading.try_normalize(), self.lagging.try_normalize())
+        else {
+            return straight;
+        };
+        let cosine = heading.dot(lagging);
+        if cosine < LEAST_COSINE {
+            return straight;
+        }
+        // The mean ages of what they average, in windows.
+        let x = (self.way / HEADING).clamp(0.3, 20.0);
+        let e = (-x).portable_exp();
+        let one = 1.0 - x * e / (1.0 - e);
+        let two = (2.0 - (x * x + 2.0 * x + 2.0) * e) / (1.0 - (1.0 + x) * e);
+        // Little is known of a bend while the stroke is short.
+        let turn = (heading * cosine - lagging) * ((1.0 - e) / (cosine * (two - one)));
+        let course = (heading + turn * one).normalize_or_zero();
+        let bend = (turn - course * turn.dot(course)) / (HEADING * radius);
+        (course, bend.clamp_length_max(SHARPEST / radius))
     }
 }
 
@@ -220,7 +254,10 @@ impl StrokeContext<'_> {
         let step = stroke.last_measured.map_or(Vec3::ZERO, |last| centre - last);
         stroke.last_measured = Some(centre);
         let way = step.length() / radius;
-        stroke.heading = stroke.heading * (-way / HEADING).portable_exp() + step / radius;
+        stroke.way += way;
+        let kept = (-way / HEADING).portable_exp();
+        stroke.heading = stroke.heading * kept + step / radius;
+        stroke.lagging = stroke.lagging * kept + stroke.heading * (1.0 - kept);
         let spaced =
             matches!(self.way(), StrokeMethod::Spaced | StrokeMethod::Line | StrokeMethod::Curve);
         let stroke = &mut self.stroke;
@@ -268,6 +305,7 @@ impl StrokeContext<'_> {
         let strength = s.strength * s.pressure_strength.factor(pressure);
         let (motion, last) = drag.unwrap_or((measured, Vec3::ZERO));
         let ray = self.camera.ray(at.view);
+        let (course, bend) = self.stroke.course(radius);
         let first = Dab {
             settings: s,
             centre,
@@ -279,6 +317,8 @@ impl StrokeContext<'_> {
             span,
             pace: 0.0,
             heading: self.stroke.heading,
+            course,
+            bend,
             pass: 0,
             sign: if s.negative != at.inverted { -1.0 } else { 1.0 },
             motion,
@@ -318,7 +358,9 @@ impl StrokeContext<'_> {
                 centre,
                 normal,
                 touch,
-                heading: image.m * self.stroke.heading,
+                heading: image.m * first.heading,
+                course: image.m * course,
+                bend: image.m * bend,
                 motion: image.m * motion,
                 last: image.m * last,
                 eye: image.m * first.eye,

@@ -110,32 +110,62 @@ fn what_is_replaced_and_what_no_command_takes_goes_to_the_sink() {
 
 #[test]
 fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
-    use sculptd_clay::brush::{BrushKind, Presets};
+    use sculptd_clay::brush::{BrushKind, OwnBrush, Presets};
     let plain = shapes::sphere_of_about(400);
     let presets = Presets::default();
+    // Several of one kind, and one of the kind that is in hand at the start.
+    let of_one = |(name, kind): &(&str, &str)| {
+        let text = format!("kind = '{kind}'\n[settings]\nspacing = 0.07\n");
+        OwnBrush::read(name, &text, &|kind| presets.of(kind)).expect("valid")
+    };
+    let names = [("bark", "texture"), ("oak", "texture"), ("soft", "draw"), ("hard", "clay")];
+    presets.set_own(names.iter().map(of_one).collect());
+    let own = presets.own();
     let mut world = world(&plain);
-    let mut set: Vec<BrushSettings> = BrushKind::ALL.iter().map(|k| presets.of(*k)).collect();
     let mut seed = 7u64;
     let mut dice = |most: usize| {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (seed >> 33) as usize % most
     };
-    // What a person sees is at the size of the brush before, so the sizes stay the same here.
-    let radius = world.brush().radius;
-    set.iter_mut().for_each(|b| b.radius = radius);
+    let count = BrushKind::ALL.len() + own.len();
+    // What each was last set to, once it was.
+    let mut set: Vec<Option<BrushSettings>> = vec![None; count];
+    set[world.brush().kind as usize] = Some(*world.brush());
+    let take = |world: &World, i: usize| {
+        let (now, kept) = (world.brush(), world.kept_brushes());
+        match BrushKind::ALL.get(i) {
+            Some(kind) if now.key() == (*kind, 0) => *now,
+            Some(kind) => presets.recalled(now, kept, *kind),
+            None if now.key() == own[i - BrushKind::ALL.len()].settings.key() => *now,
+            None => presets.taken(now, kept, &own[i - BrushKind::ALL.len()]),
+        }
+    };
     for tick in 1..=100u64 {
-        let kind = BrushKind::ALL[dice(BrushKind::ALL.len())];
-        let recalled = presets.recalled(world.brush(), world.kept_brushes(), kind);
-        let recalled = if kind == world.brush().kind { *world.brush() } else { recalled };
-        assert_eq!(recalled, set[kind as usize], "{kind} at switch {tick}");
+        // Every other time one of a person's own.
+        let i = match dice(2) {
+            0 => dice(count),
+            _ => BrushKind::ALL.len() + dice(own.len()),
+        };
+        let recalled = take(&world, i);
+        match set[i] {
+            Some(set) => assert_eq!(recalled, set, "{} at switch {tick}", recalled.kind),
+            None if i < BrushKind::ALL.len() => {
+                // What a person never set comes at the size in hand.
+                let radius = world.brush().radius;
+                let begins = presets.of(recalled.kind);
+                assert_eq!(recalled, BrushSettings { radius, ..begins }, "at switch {tick}");
+            }
+            None => assert_eq!(recalled, own[i - BrushKind::ALL.len()].settings),
+        }
         // Each time something else is set.
         let mut now = recalled;
+        now.radius = 0.01 + dice(500) as f32 / 1000.0;
         now.strength = dice(1000) as f32 / 1000.0;
         now.pressure_strength.gamma = 0.1 + dice(900) as f32 / 100.0;
         now.steady = dice(100) as f32 / 100.0;
         now.stamp.turn_degrees = dice(180) as f32;
         now.path.average = dice(64) as u8;
-        set[kind as usize] = now;
+        set[i] = Some(now);
         world.step(tick, &[], &[Command::Brush(now)]);
         if tick % 20 == 0 {
             let saved = world.save().expect("at rest");
@@ -152,10 +182,16 @@ fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
             world = again.expect("its own bytes");
         }
     }
-    for kind in BrushKind::ALL.iter().filter(|k| **k != world.brush().kind) {
-        let recalled = presets.recalled(world.brush(), world.kept_brushes(), *kind);
-        assert_eq!(recalled, set[*kind as usize], "{kind}");
+    for (i, set) in set.iter().enumerate() {
+        if let Some(set) = set {
+            assert_eq!(take(&world, i), *set, "{} at the end", set.kind);
+        }
     }
+    // Taken while it is in hand already, one's own brush is as its file has it.
+    let bark = &own[0];
+    let now = BrushSettings { strength: 0.125, ..bark.settings };
+    world.step(101, &[], &[Command::Brush(now)]);
+    assert_eq!(presets.taken(world.brush(), world.kept_brushes(), bark), bark.settings);
 }
 
 #[test]

@@ -91,10 +91,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
             for kind in kinds {
-                let response = picture(ui, kind, brush.kind == kind);
-                if response.on_hover_text(view.presets.get(kind).about()).clicked()
-                    && brush.kind != kind
-                {
+                let chosen = brush.key() == (kind, 0);
+                let response = picture(ui, kind, chosen);
+                if response.on_hover_text(view.presets.get(kind).about()).clicked() && !chosen {
                     brush = view.presets.recalled(&brush, &view.state.kept_brushes, kind);
                 }
             }
@@ -149,11 +148,10 @@ fn own_brushes(
     ui.label("Your own");
     ui.horizontal_wrapped(|ui| {
         for one in own.iter() {
-            let taken = view.presets.taken(brush, one);
-            let chosen = view.state.brush == taken.clamped();
+            let chosen = view.state.brush.key() == one.settings.key();
             let button = ui.selectable_label(chosen, &one.name);
             if button.on_hover_text(own_hint(one)).clicked() {
-                *brush = taken;
+                *brush = view.presets.taken(brush, &view.state.kept_brushes, one);
                 if let Some(picture) = &one.picture {
                     out.push(UiRequest::World(Command::Picture(picture.clone())));
                 }
@@ -164,7 +162,8 @@ fn own_brushes(
 
 fn own_hint(own: &OwnBrush) -> String {
     let kind = brush_title(own.settings.kind);
-    if own.about.is_empty() { kind } else { format!("{kind}: {}", own.about) }
+    let what = if own.about.is_empty() { kind } else { format!("{kind}: {}", own.about) };
+    format!("{what} (once more: as it was saved)")
 }
 
 /// A slider with what it means.

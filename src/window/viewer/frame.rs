@@ -19,8 +19,8 @@ use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
 
 impl WindowState {
-    /// The ring under the pointer and under every other pen, their mirror images, the tracked
-    /// hands.
+    /// The ring under the pointer and under every other pen (where that will be when the frame is
+    /// seen), their mirror images, the tracked hands.
     fn lines(&self, state: &Published, wiring: &Wiring) -> (Vec<LineEnd>, Option<(Vec3, f32)>) {
         let mut lines = Vec::new();
         let mut brush = None;
@@ -74,7 +74,8 @@ impl WindowState {
         for (id, pen) in state.pens.iter().flatten() {
             if *id != sculptd_daemon::adaptors::POINTER_ID {
                 let down = pen.pressure > 0.0;
-                ring_at(pen.view, if down { pen.pressure } else { 1.0 }, pen.tilt, down);
+                let view = self.predicted(*id, wiring).unwrap_or(pen.view);
+                ring_at(view, if down { pen.pressure } else { 1.0 }, pen.tilt, down);
             }
         }
         if let Some(thing) = &state.thing {
@@ -141,7 +142,7 @@ impl WindowState {
             self.answer(request, &state, wiring);
         }
         self.fit_camera(wiring);
-        if self.renderer.waiting > 0 {
+        if self.renderer.waiting > 0 || self.leads_a_pen(wiring) {
             self.pacing.want();
         }
     }

@@ -120,7 +120,7 @@ impl WindowState {
                 if let Some(brush) = self.pointer.lent.take() {
                     wiring.link.claim_lent(None);
                     let state = wiring.published.load();
-                    let (lent, kept) = (state.brush.kind, &state.kept_brushes);
+                    let (lent, kept) = (state.brush.key(), &state.kept_brushes);
                     for brush in give_back(lent, brush, &wiring.presets, kept) {
                         let _ = wiring.commands.try_send(Command::Brush(brush));
                     }

@@ -73,23 +73,27 @@ pub(super) fn lent(
 ) -> BrushSettings {
     let mut now = match (mods.shift_key(), brush.kind) {
         (true, BrushKind::SlideRelax) => BrushSettings { negative: !brush.negative, ..brush },
-        (true, _) => presets.recalled(&brush, kept, BrushKind::Smooth),
+        // At the size in hand: it evens what the other brush made.
+        (true, _) => BrushSettings {
+            radius: brush.radius,
+            ..presets.recalled(&brush, kept, BrushKind::Smooth)
+        },
         (false, _) => brush,
     };
     now.negative ^= mods.control_key() || mods.alt_key();
     now
 }
 
-/// The brushes to be told to the world, in this order, when `brush` comes back after one of kind
-/// `lent` had its place: first the lent one as it was before, not turned round as the keys had it,
-/// because the world remembers what it puts away.
+/// The brushes to be told to the world, in this order, when `brush` comes back after the one of the
+/// key `lent` had its place: first the lent one as it was before, not turned round as the keys had
+/// it, because the world remembers what it puts away.
 pub(super) fn give_back(
-    lent: BrushKind,
+    lent: (BrushKind, u32),
     brush: BrushSettings,
     presets: &Presets,
     kept: &[BrushSettings],
 ) -> impl Iterator<Item = BrushSettings> {
-    let before = (lent != brush.kind).then(|| presets.recalled(&brush, kept, lent));
+    let before = (lent != brush.key()).then(|| presets.kept(&brush, kept, lent));
     before.into_iter().chain([brush])
 }
 
@@ -113,14 +117,15 @@ mod tests {
     fn a_lent_brush_is_put_away_as_it_was() {
         let presets = Presets::default();
         let draw = presets.of(BrushKind::Draw);
-        let kept = [BrushSettings { strength: 0.7, ..presets.of(BrushKind::Smooth) }];
+        let smooth = presets.of(BrushKind::Smooth);
+        let kept = [BrushSettings { strength: 0.7, radius: 0.4, ..smooth }];
         let mods = ModifiersState::SHIFT | ModifiersState::CONTROL;
         let smooth = lent(draw, mods, &presets, &kept);
         assert!(smooth.kind == BrushKind::Smooth && smooth.negative);
-        let told: Vec<BrushSettings> = give_back(smooth.kind, draw, &presets, &kept).collect();
-        let at_size = BrushSettings { radius: draw.radius, ..kept[0] };
-        assert_eq!(told, [at_size, draw]);
-        assert_eq!(give_back(draw.kind, draw, &presets, &kept).count(), 1);
+        assert_eq!(smooth.radius, draw.radius, "it evens at the size in hand");
+        let told: Vec<BrushSettings> = give_back(smooth.key(), draw, &presets, &kept).collect();
+        assert_eq!(told, [kept[0], draw]);
+        assert_eq!(give_back(draw.key(), draw, &presets, &kept).count(), 1);
     }
 
     #[test]

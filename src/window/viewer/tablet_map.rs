@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use glam::{DMat3, DVec2, DVec3, Vec2};
 
 use sculptd_devices::DeviceId;
+use sculptd_devices::prediction::PenPredictor;
 use sculptd_engine::desktop_layout::DesktopLayout;
 
 /// Pairs that are remembered: some ten seconds of motion, so that they span much of the tablet.
@@ -99,6 +100,8 @@ pub struct TabletMap {
     apart: bool,
     /// When the map became known, microseconds.
     since_us: u64,
+    /// Where the pen goes.
+    predictor: PenPredictor,
 }
 
 /// What the window knows of the tablets.
@@ -126,6 +129,7 @@ impl TabletMap {
             (self.together, self.apart) = (false, false);
         }
         self.trail.push_back(Place { t_us, share, tip });
+        self.predictor.report(t_us, share);
         if self.trail.len() > TRAIL {
             self.trail.pop_front();
         }
@@ -150,6 +154,11 @@ impl TabletMap {
             self.fresh = 0;
             self.learn(t_us);
         }
+    }
+
+    /// Where the pen goes from its last report.
+    pub fn predictor(&self) -> &PenPredictor {
+        &self.predictor
     }
 
     /// The map, once it is known.

@@ -31,6 +31,31 @@ impl WindowState {
         at.as_dvec2() + DVec2::new(f64::from(corner.x), f64::from(corner.y))
     }
 
+    /// When a frame that is drawn now will be seen: the time that drawing and presenting take in
+    /// the median.
+    fn seen_us(&self, wiring: &Wiring) -> u64 {
+        let latency = wiring.link.present_latency();
+        let [_, _, draw, present, _] = latency.stages();
+        wiring.clock.now_us() + draw.quantiles().p50 + present.quantiles().p50
+    }
+
+    /// Where a tablet's pen will be over the view when a frame that is drawn now is seen; `None`
+    /// for another device. Nothing but the ring follows it: what is sculpted depends on the pen's
+    /// own samples alone.
+    pub(super) fn predicted(&self, device: DeviceId, wiring: &Wiring) -> Option<Vec2> {
+        let (_, map) = self.tablets.known.iter().find(|t| t.0 == device)?;
+        let share = map.predictor().place_at(self.seen_us(wiring))?;
+        Some(self.tablets.sent.place(device).unwrap_or_default().view(share.as_vec2()))
+    }
+
+    /// Whether a ring is shown ahead of its pen: the next frame shows it elsewhere, though nothing
+    /// else may have changed.
+    pub(super) fn leads_a_pen(&self, wiring: &Wiring) -> bool {
+        let now = wiring.clock.now_us();
+        let mut all = self.tablets.known.iter().map(|t| t.1.predictor().ahead(now));
+        all.any(|ahead| ahead.length() > f64::from(MOVED))
+    }
+
     /// Whether the pointer, where it is now, follows the pen of a tablet.
     pub(super) fn pointer_is_a_pen(&self, wiring: &Wiring) -> bool {
         let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
@@ -166,7 +191,7 @@ impl WindowState {
             wiring.link.claim_lent(self.pointer.lent);
         }
         if before.is_some() && self.pointer.lent.is_none() {
-            for brush in give_back(state.brush.kind, now, &wiring.presets, &state.kept_brushes) {
+            for brush in give_back(state.brush.key(), now, &wiring.presets, &state.kept_brushes) {
                 let _ = wiring.commands.try_send(Command::Brush(brush));
             }
         } else if self.pointer.lent != before {

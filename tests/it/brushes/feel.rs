@@ -274,15 +274,46 @@ fn strokes_are_smooth_on_a_ball_along_a_curve_and_with_a_trembling_pen() {
 }
 
 #[test]
-fn a_scraped_ridge_is_smooth_under_a_trembling_pen() {
+fn a_scraped_ridge_is_smooth_on_a_ball_along_a_curve_and_under_a_trembling_pen() {
     let brush = sculptd::presets().of(BrushKind::MultiplaneScrape);
-    for form in [TestForm::Plane, TestForm::Ball] {
+    for form in [TestForm::Plane, TestForm::Arc, TestForm::Ball] {
         for (across, tremble) in [10, 30, 100].into_iter().flat_map(|a| [(a, 0.0), (a, TREMBLE)]) {
             let (_, waviness) = Trial { form, across, tremble, ..Trial::new(brush) }.draw().crest();
             println!("{form:?}, {across} across, {tremble:.4}: {waviness:.3} degrees");
-            assert!(waviness <= 0.3, "{form:?}, {across}: {waviness} degrees");
+            let most = if form == TestForm::Plane && tremble == 0.0 { 0.1 } else { 0.3 };
+            assert!(waviness <= most, "{form:?}, {across}: {waviness} degrees");
         }
     }
+}
+
+#[test]
+fn strips_are_even_on_relief() {
+    // What is left of the relief along the middle of the strip, as a share of what was there.
+    let left = |kind: BrushKind| {
+        let trial = Trial { across: 60, ..Trial::new(sculptd::presets().of(kind)) };
+        let mut mesh = trial.form.mesh(trial.across);
+        for p in &mut mesh.positions {
+            p.z = 0.02 * (9.0 * p.x + 1.0).sin() * (8.0 * p.y).cos();
+        }
+        let mut studio = Studio::new(&mesh, trial.brush, 1);
+        studio.tell(Command::Camera(Camera { orthographic: true, ..*studio.world.camera() }));
+        let at = |i: i32| Vec3::new(0.008 * i as f32 - 0.6, 0.0, 0.0);
+        let points: Vec<_> = (0..=150).map(|i| (studio.view(at(i)), 0.7)).collect();
+        studio.stroke(&points);
+        let spread = |all: &[Vec3]| {
+            let near = all.iter().filter(|p| p.x.abs() < 0.4 && p.y.abs() < 0.3 * RADIUS);
+            let (n, sum, squares) = near.fold((0.0, 0.0, 0.0), |(n, sum, squares), p| {
+                (n + 1.0, sum + f64::from(p.z), squares + f64::from(p.z).powi(2))
+            });
+            (squares / n - (sum / n) * (sum / n)).max(0.0f64).sqrt()
+        };
+        spread(&studio.positions()) / spread(&mesh.positions)
+    };
+    let (strips, layer) = (left(BrushKind::ClayStrips), left(BrushKind::Layer));
+    println!("{strips:.3} of the relief is left by clay strips, {layer:.3} by layer");
+    // Blender 3.4's clay strips leave 0.53 after the same stroke.
+    assert!(strips < 0.65, "{strips} of the relief is left");
+    assert!(layer > 0.9, "a coat of even height keeps it: {layer}");
 }
 
 #[test]
@@ -384,7 +415,7 @@ fn what_levels_or_draws_together_does_not_depend_on_the_spacing_either() {
 
 #[test]
 fn nor_does_what_raises_on_relief() {
-    for kind in [BrushKind::Draw, BrushKind::Clay, BrushKind::Layer, BrushKind::Inflate] {
+    for kind in RAISING.into_iter().chain([BrushKind::Crease, BrushKind::MultiplaneScrape]) {
         let off = off_by_spacing(sculptd::presets().of(kind), Vec2::new(19.0, 23.0));
         assert!(off < 0.02, "{kind}: {off}");
     }

@@ -180,7 +180,9 @@ fn every_brush_draws_as_it_did() {
 
 #[test]
 fn every_option_draws_as_it_did() {
-    let base = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Gaussian) };
+    // A dab in a fifth of the radius, whatever the preset has.
+    let of = sculptd::presets().of(BrushKind::Gaussian);
+    let base = BrushSettings { radius: 0.2, spacing: 0.2, ..of };
     let draw = BrushSettings { radius: 0.2, ..sculptd::presets().of(BrushKind::Draw) };
     let options: Vec<(&str, BrushSettings)> = vec![
         ("negative", BrushSettings { negative: true, ..base }),
@@ -277,6 +279,9 @@ fn every_option_draws_as_it_did() {
 fn every_measure_alpha_and_stamp_draws_as_it_did() {
     let of = |kind: BrushKind, set: &dyn Fn(&mut BrushSettings)| {
         let mut b = BrushSettings { radius: 0.2, ..sculptd::presets().of(kind) };
+        if kind == Gaussian {
+            b.spacing = 0.2;
+        }
         set(&mut b);
         b
     };
