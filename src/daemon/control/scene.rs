@@ -139,7 +139,7 @@ fn primitive(asked: AskedShape, edge: Option<f64>) -> Result<(Primitive, Clay), 
     Ok((primitive, clay))
 }
 
-pub(super) fn add(host: &Host, params: AddParams) -> Result<ObjectReply, RpcError> {
+pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcError> {
     let transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
     let (source, clay, name, warnings) = match (params.primitive, &params.path) {
         (Some(asked), None) => {
