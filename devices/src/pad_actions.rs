@@ -370,12 +370,19 @@ pub struct ActionState {
     /// Actions that are held, by the control that holds each. A change of mode does not change
     /// what is released.
     held: Vec<(Control, String)>,
+    latest: Option<Control>,
 }
 
 impl ActionState {
     /// Begins in the first mode with nothing held.
     pub fn new(table: ActionTable, shapes: [TouchShape; 2]) -> Self {
-        ActionState { table, edges: ControlEdges::new(shapes), mode: 0, held: Vec::new() }
+        ActionState {
+            table,
+            edges: ControlEdges::new(shapes),
+            mode: 0,
+            held: Vec::new(),
+            latest: None,
+        }
     }
 
     /// The mode of the pad, from 0.
@@ -406,7 +413,15 @@ impl ActionState {
         self.mode = 0;
     }
 
+    /// The control that was pressed or turned since the last call, the newest one of several.
+    pub fn take_latest(&mut self) -> Option<Control> {
+        self.latest.take()
+    }
+
     fn apply(&mut self, event: ControlEvent, emit: &mut dyn FnMut(ActionEvent)) {
+        if let ControlEvent::Pressed(control) | ControlEvent::Turned(control, _) = event {
+            self.latest = Some(control);
+        }
         match event {
             ControlEvent::Released(control) => {
                 if let Some(at) = self.held.iter().position(|(c, _)| *c == control) {

@@ -74,6 +74,7 @@ pub fn window(
         recent: shown.recent.clone(),
         open_next: shown.open_next.clone(),
         demo_until_us: run.demo_ends_us(),
+        controls: run.controls.clone(),
         full_screen: shown.full_screen,
         open_first: shown.open_first.clone(),
         fresh: shown.fresh,

@@ -20,6 +20,7 @@ use sculptd_daemon::live_run::LiveOptions;
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
 use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed};
+use sculptd_daemon::tablet_controls::TabletControls;
 use sculptd_daemon::tick::Journal;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::catalogue::Catalogue;
@@ -173,6 +174,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             devices: true,
             players,
             limit_s: args.limit_s,
+            controls: tablet_controls(),
             settings: args.config.clone(),
             #[cfg(unix)]
             metrics: args.metrics,
@@ -221,6 +223,16 @@ fn own_brushes(named: Option<&Path>) -> Result<Option<BrushFolder>, Fail> {
         folder.refresh();
         folder
     }))
+}
+
+/// What a person has bound to the controls of tablets.
+fn tablet_controls() -> TabletControls {
+    let Some(file) = TabletControls::default_file() else { return TabletControls::default() };
+    let (controls, told) = TabletControls::of_file(&file);
+    if let Some(told) = told {
+        eprintln!("sculptd: keys of tablets not taken: {told}");
+    }
+    controls
 }
 
 /// Bytes of a file of a mesh from which on its loading takes a while.

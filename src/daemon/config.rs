@@ -316,7 +316,8 @@ impl Config {
         for (name, calibration) in &self.devices.calibration {
             calibration.check().map_err(|e| format!("devices.calibration.\"{name}\".{e}"))?;
         }
-        crate::tablet_actions::check(&self.devices.actions).map_err(|e| format!("devices.{e}"))?;
+        crate::tablet_vocabulary::check(&self.devices.actions)
+            .map_err(|e| format!("devices.{e}"))?;
         let h = &self.hand;
         within("hand.steady.min_cutoff", h.steady.min_cutoff, 0.05, 50.0)?;
         within("hand.steady.beta", h.steady.beta, 0.0, 10.0)?;

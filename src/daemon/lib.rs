@@ -38,6 +38,8 @@ pub mod startup;
 #[cfg(unix)]
 pub mod systemd;
 pub mod tablet_actions;
+pub mod tablet_controls;
+pub mod tablet_vocabulary;
 pub mod tick;
 pub mod tick_statistics;
 pub mod toml_text;

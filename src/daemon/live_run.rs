@@ -22,6 +22,7 @@ use crate::session::writer::WriterThread;
 use crate::simulated_loop::{Feed, summary};
 use crate::startup::{Area, Begun, RecordingFeed};
 use crate::tablet_actions::TabletActions;
+use crate::tablet_controls::TabletControls;
 use crate::tick::Journal;
 use crate::tick_statistics::Summary;
 use crate::window_link::{WindowLink, WindowStanding};
@@ -52,6 +53,8 @@ pub struct LiveOptions {
     pub players: Vec<(Player, Option<Area>)>,
     /// The run ends after so many seconds.
     pub limit_s: Option<f64>,
+    /// What a person has bound to the controls of tablets, and binds while the run lasts.
+    pub controls: TabletControls,
     /// The file of `--config`, for reading it again on SIGHUP.
     pub settings: Option<PathBuf>,
     /// Where the figures are served, if anywhere.
@@ -91,6 +94,8 @@ pub struct LiveRun {
     pub history: Option<Handle>,
     /// The screen of an installation, in the place of the panels.
     pub kiosk: Option<keeper::Screen>,
+    /// What is bound to the controls of tablets.
+    pub controls: TabletControls,
     /// How the window stands.
     pub window: WindowLink,
     /// One sentence each: what a person should know of how the run began.
@@ -155,7 +160,8 @@ impl LiveRun {
         let health = writing.as_ref().map(|t| t.health.clone());
         let history = writing.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
         let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
-        let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone());
+        let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone())
+            .with_controls(options.controls.clone());
         let drain = (config.channel.drain_per_tick, Some(actions));
         let live =
             Live::start_with(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)?;
@@ -212,6 +218,7 @@ impl LiveRun {
             stop,
             history,
             kiosk,
+            controls: options.controls,
             window,
             notices,
             demo,

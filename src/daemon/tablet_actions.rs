@@ -6,16 +6,19 @@
 //!   the journal see them: a replay needs neither the table nor this module.
 //! * A pen whose held button moves the view or a setting does not sculpt with the same motion.
 
+use std::sync::Arc;
+
 use glam::Vec2;
 
-use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
-use sculptd_devices::pad_actions::{
-    ActionEvent, ActionState, ActionTable, Binding, Control, TouchShape,
-};
+use sculptd_clay::brush::{BrushSettings, Presets};
+use sculptd_devices::pad_actions::{ActionEvent, ActionState, ActionTable, Control, TouchShape};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
+
+use crate::tablet_controls::TabletControls;
+use crate::tablet_vocabulary::{Meaning, meaning};
 
 /// Ids of tablets, serial pens and recordings of such; a pointer has its own buttons.
 const TABLETS: [std::ops::Range<u16>; 2] = [0..200, 300..400];
@@ -24,64 +27,6 @@ const MOST: usize = 16;
 /// The radius grows by this power of e, and the strength by this much, over the tablet's width and
 /// height.
 const DRAG: f32 = 3.0;
-
-/// What a name in a table means here.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Meaning {
-    Undo,
-    Redo,
-    Fit,
-    /// While held: the pen turns, slides or zooms the view.
-    Turn,
-    Slide,
-    Zoom,
-    /// While held: the pen drags the brush's radius (sideways) and strength (up and down).
-    RadiusAndStrength,
-    /// Carves where it would add, and the other way round; while held, or from now on.
-    Invert,
-    /// Another brush; while held, or from now on.
-    Brush(BrushKind),
-    /// Values.
-    Radius,
-    Strength,
-}
-
-/// The names that a table may use, for messages.
-pub const NAMES: &str = "undo, redo, view.fit, view.turn, view.slide, view.zoom, brush.radius, \
-    brush.strength, brush.radius-and-strength, brush.invert, or brush. and the name of a brush";
-
-fn meaning(name: &str) -> Option<Meaning> {
-    Some(match name {
-        "undo" => Meaning::Undo,
-        "redo" => Meaning::Redo,
-        "view.fit" => Meaning::Fit,
-        "view.turn" => Meaning::Turn,
-        "view.slide" => Meaning::Slide,
-        "view.zoom" => Meaning::Zoom,
-        "brush.radius-and-strength" => Meaning::RadiusAndStrength,
-        "brush.invert" => Meaning::Invert,
-        "brush.radius" => Meaning::Radius,
-        "brush.strength" => Meaning::Strength,
-        other => Meaning::Brush(other.strip_prefix("brush.")?.parse().ok()?),
-    })
-}
-
-/// Whether every name of a table is one that this program knows.
-///
-/// # Errors
-/// The control, the name that is not known, and those that are.
-pub fn check(table: &ActionTable) -> Result<(), String> {
-    table.check()?;
-    for (control, binding) in table.controls.iter().chain(table.modes.iter().flatten()) {
-        if let Binding::Press(name) | Binding::Hold(name) | Binding::Turn { value: name, .. } =
-            binding
-            && meaning(name).is_none()
-        {
-            return Err(format!("actions: {control}: '{name}': expected one of {NAMES}"));
-        }
-    }
-    Ok(())
-}
 
 /// One tablet's controls.
 #[derive(Debug)]
@@ -99,7 +44,11 @@ struct Tablet {
 /// The controls of all tablets.
 #[derive(Debug)]
 pub struct TabletActions {
+    /// Of the settings, over the defaults.
     table: ActionTable,
+    controls: TabletControls,
+    /// What the person has bound, as the tablets have it now.
+    own: Arc<ActionTable>,
     presets: Presets,
     tablets: Vec<Tablet>,
     /// The brush as it was before a held button changed it.
@@ -132,7 +81,34 @@ impl TabletActions {
                 table.controls.entry(Control::Ring(n)).or_insert(binding);
             }
         }
-        TabletActions { table, presets, tablets: Vec::new(), before: None }
+        let controls = TabletControls::default();
+        let own = controls.own();
+        TabletActions { table, controls, own, presets, tablets: Vec::new(), before: None }
+    }
+
+    /// With what a person binds while it runs.
+    pub fn with_controls(self, controls: TabletControls) -> Self {
+        TabletActions { controls, ..self }
+    }
+
+    /// The table that is in force: the person's own bindings over the settings.
+    fn table(&self) -> ActionTable {
+        ActionTable::clone(&self.own).over(self.table.clone())
+    }
+
+    /// Takes over what the person has bound since the last tick. What is held is released.
+    fn follow_controls(&mut self, asked: &mut Asked<'_>) {
+        let own = self.controls.own();
+        if Arc::ptr_eq(&own, &self.own) {
+            return;
+        }
+        self.own = own;
+        let table = self.table();
+        for i in 0..self.tablets.len() {
+            let mut events = Vec::new();
+            self.tablets[i].state.set_table(table.clone(), &mut |e| events.push(e));
+            events.into_iter().for_each(|e| self.apply(i, &e, asked));
+        }
     }
 
     /// Takes the samples of a tick; what their controls ask for is added to the tick's commands.
@@ -151,6 +127,8 @@ impl TabletActions {
             world,
             out,
         };
+        self.follow_controls(&mut asked);
+        let listens = self.controls.is_listening();
         for sample in samples.iter_mut().filter(|s| TABLETS.iter().any(|t| t.contains(&s.device.0)))
         {
             let Some(i) = self.tablet(sample.device) else { continue };
@@ -161,7 +139,11 @@ impl TabletActions {
                 Body::Pen(pen) => state.pen(pen, &mut |e| events.push(e)),
                 Body::Hands(_) => {}
             }
-            events.into_iter().for_each(|e| self.apply(i, &e, &mut asked));
+            if let Some(control) = state.take_latest() {
+                self.controls.note(sample.device, control);
+            }
+            let counts = |e: &ActionEvent| !listens || matches!(e, ActionEvent::Released { .. });
+            events.into_iter().filter(counts).for_each(|e| self.apply(i, &e, &mut asked));
             if let Body::Pen(pen) = &mut sample.body {
                 drag(&mut self.tablets[i], pen, &mut asked);
             }
@@ -172,7 +154,7 @@ impl TabletActions {
         let at = self.tablets.iter().position(|t| t.id == id);
         if at.is_none() && self.tablets.len() < MOST {
             // A ring's shorter way round is also right for a strip, where no finger jumps by half.
-            let state = ActionState::new(self.table.clone(), [TouchShape::Ring; 2]);
+            let state = ActionState::new(self.table(), [TouchShape::Ring; 2]);
             let (held, last) = (Vec::new(), None);
             self.tablets.push(Tablet { id, state, held, last, sculpts: false });
             return Some(self.tablets.len() - 1);
@@ -272,8 +254,10 @@ fn drag(tablet: &mut Tablet, pen: &mut Pen, asked: &mut Asked<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sculptd_clay::brush::BrushKind;
     use sculptd_clay::{Clay, Workers};
     use sculptd_devices::Pad;
+    use sculptd_devices::pad_actions::Binding;
     use sculptd_engine::world::WorldOptions;
     use sculptd_geometry::shapes;
 
@@ -366,14 +350,26 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_nobody_knows_is_refused_with_its_control() {
-        let table: ActionTable =
-            toml::from_str("[controls]\nkey-2 = { press = \"brush.clay\" }\n").expect("parses");
-        assert_eq!(check(&table), Ok(()));
-        let wrong: ActionTable =
-            toml::from_str("[controls]\nkey-2 = { press = \"fly\" }\n").expect("parses");
-        let said = check(&wrong).expect_err("refused");
-        assert!(said.contains("key-2") && said.contains("'fly'"), "{said}");
-        assert_eq!(check(&ActionTable::defaults()), Ok(()));
+    fn what_is_bound_while_it_runs_holds_from_the_next_tick_and_a_listened_key_does_nothing() {
+        let controls = TabletControls::default();
+        let (actions, mut world) = (actions(), world());
+        let mut actions = actions.with_controls(controls.clone());
+        controls.listen(true);
+        assert!(step(&mut actions, &mut world, vec![pad(1, 0), pad(0, 0)]).0.is_empty());
+        let worked = controls.last().expect("told");
+        assert_eq!((worked.device, worked.control), (DeviceId(3), Control::Key(1)));
+        controls.listen(false);
+        // It is not kept anywhere, and holds all the same.
+        let bound = controls.bind(Control::Key(1), Some(Binding::Hold("brush.clay".into())));
+        assert!(bound.is_err());
+        let before = *world.brush();
+        step(&mut actions, &mut world, vec![pad(1, 0)]);
+        assert_eq!(world.brush().kind, BrushKind::Clay);
+        // Bound anew while it is held: what it lent is given back.
+        let _ = controls.bind(Control::Key(1), None);
+        step(&mut actions, &mut world, vec![]);
+        assert_eq!(*world.brush(), before);
+        step(&mut actions, &mut world, vec![pad(0, 0)]);
+        assert!(matches!(step(&mut actions, &mut world, vec![pad(1, 0)]).0[..], [Command::Undo]));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
+use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
@@ -96,7 +97,8 @@ impl Daemon {
             let at = line.split("http://").nth(1).and_then(|a| a.split('/').next());
             daemon.figures = Some(at.and_then(|a| a.parse().ok()).expect("an address"));
         }
-        until("the control socket is there", || daemon.socket().exists());
+        // The file is there a moment before anybody listens.
+        until("the control socket answers", || UnixStream::connect(daemon.socket()).is_ok());
         daemon
     }
 

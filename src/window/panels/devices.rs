@@ -1,10 +1,10 @@
 //! What is connected and what it says now.
 
-use super::state::{PenTrace, View};
-use super::theme;
+use super::state::{UiRequest, UiState, View};
+use super::{tablet_keys, theme};
 use sculptd_daemon::adaptors::POINTER_ID;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &PenTrace) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong("Devices");
     if view.devices.is_empty() {
@@ -59,7 +59,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &PenTrace) {
         ui.colored_label(quiet, "nothing");
     }
     ui.add_space(8.0);
-    if trace.recent().next().is_some() {
+    if ui_state.devices.recent().next().is_some() {
         ui.colored_label(quiet, "The pressure curve on the left shows the pen's live trace.");
+        ui.add_space(8.0);
     }
+    tablet_keys::ui(ui, view, ui_state, out);
 }

@@ -128,7 +128,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
         Tab::Walls => analysis::ui(ui, view, ui_state, out),
         Tab::Measure => measure::ui(ui, view, ui_state, out),
         Tab::Files => files::ui(ui, view, ui_state, out),
-        Tab::Devices => devices::ui(ui, view, &ui_state.devices),
+        Tab::Devices => devices::ui(ui, view, ui_state, out),
         Tab::Loop => timing::ui(ui, view),
         Tab::More => {
             preferences::ui(ui, ui_state, view);

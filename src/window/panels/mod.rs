@@ -35,6 +35,7 @@ pub mod search;
 pub mod start;
 pub mod state;
 pub mod symmetry;
+pub mod tablet_keys;
 pub mod theme;
 pub mod timing;
 pub mod trim;

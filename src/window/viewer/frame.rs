@@ -12,7 +12,7 @@ use super::state::WindowState;
 use super::wiring::Wiring;
 use crate::look::Map;
 use crate::panels;
-use crate::panels::state::{KeyMap, UiRequest, UiState, View};
+use crate::panels::state::{KeyMap, TabletKeys, UiRequest, UiState, View};
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentedFrame;
 use sculptd_daemon::window_link::WindowStanding;
@@ -284,6 +284,10 @@ impl WindowState {
             presets: &wiring.presets,
             camera: self.camera,
             devices: &self.devices,
+            tablet: wiring
+                .kiosk
+                .is_none()
+                .then(|| TabletKeys { own: wiring.controls.own(), last: wiring.controls.last() }),
             session: wiring.session.as_deref(),
             recent: &wiring.recent,
             uploaded: self.uploaded,

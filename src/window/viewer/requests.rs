@@ -90,6 +90,12 @@ impl WindowState {
                     self.tasks.outline(path, &found.outline);
                 }
             }
+            UiRequest::TabletListen(listens) => wiring.controls.listen(listens),
+            UiRequest::TabletBinding(control, binding) => {
+                if let Err(e) = wiring.controls.bind(control, binding) {
+                    self.ui_state.say(e, true);
+                }
+            }
             UiRequest::Do(Action::OpenMesh) => {
                 self.tasks.open_dialog(FilePurpose::Open, wiring.clock.clone());
             }

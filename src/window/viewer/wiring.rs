@@ -9,6 +9,7 @@ use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::CommandSender;
 use sculptd_daemon::pen_trail::PenTrail;
+use sculptd_daemon::tablet_controls::TabletControls;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
@@ -41,6 +42,8 @@ pub struct Wiring {
     pub open_next: Arc<Mutex<Option<PathBuf>>>,
     /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
     pub demo_until_us: u64,
+    /// What is bound to the controls of tablets.
+    pub controls: TabletControls,
     pub full_screen: bool,
     /// A large mesh to load as soon as there is a window, so that its progress is seen.
     pub open_first: Option<PathBuf>,

@@ -35,6 +35,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             presets: sculptd::presets(),
             camera: s.published.camera,
             devices: &s.devices,
+            tablet: None,
             session: None,
             recent: &[],
             uploaded: 0,

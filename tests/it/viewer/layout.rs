@@ -267,6 +267,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
                 presets: sculptd::presets(),
                 camera: s.published.camera,
                 devices: &[],
+                tablet: None,
                 session: None,
                 recent: &[],
                 uploaded: 0,

@@ -3,11 +3,14 @@
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use sculptd_clay::brush::BrushKind;
-use sculptd_devices::DeviceId;
+use sculptd_clay::brush::{BrushKind, Presets};
+use sculptd_daemon::tablet_actions::TabletActions;
+use sculptd_daemon::tablet_controls::TabletControls;
+use sculptd_devices::pad_actions::{ActionTable, Binding, Control};
+use sculptd_devices::{Body, DeviceId, Pad, Sample};
 use sculptd_engine::stroke::PenPoint;
-use sculptd_window::panels::Tab;
-use sculptd_window::panels::state::{Action, Hint, HintsFollowed, KeySet};
+use sculptd_window::panels::state::{Action, Hint, HintsFollowed, KeySet, TabletKeys};
+use sculptd_window::panels::{Tab, UiRequest};
 
 use super::panels::{State, brushes, harness};
 
@@ -108,4 +111,51 @@ fn help_lists_gestures_pages_and_every_key() {
     h.key_press(Key::Escape);
     h.run_steps(2);
     assert!(h.query_by_label_contains("Bare hands over a tracker").is_none());
+}
+
+#[test]
+fn a_key_of_the_tablet_is_chosen_by_pressing_it() {
+    let controls = TabletControls::default();
+    let mut h = harness(Tab::Devices);
+    let see = |h: &mut Harness<'_, State>| {
+        let (own, last) = (controls.own(), controls.last());
+        h.state_mut().tablet = Some(TabletKeys { own, last });
+        h.run_steps(2);
+        for request in h.state_mut().asked.drain(..) {
+            match request {
+                UiRequest::TabletListen(listens) => controls.listen(listens),
+                // Kept nowhere, and said so.
+                UiRequest::TabletBinding(control, binding) => {
+                    assert!(controls.bind(control, binding).is_err());
+                }
+                _ => {}
+            }
+        }
+    };
+    see(&mut h);
+    h.get_by_label("Choose by pressing it").click();
+    see(&mut h);
+    assert!(controls.is_listening());
+    // The loop sees the third key of a tablet.
+    let mut actions = TabletActions::new(ActionTable::default(), Presets::default())
+        .with_controls(controls.clone());
+    let pad = Pad { keys: 0b100, ..Pad::default() };
+    let sample = Sample { device: DeviceId(3), t_us: 0, device_t_us: None, body: Body::Pad(pad) };
+    let mut asked = Vec::new();
+    actions.take(&mut [sample], &super::world(500), &mut asked);
+    assert!(asked.is_empty(), "a press that is listened to does nothing");
+    see(&mut h);
+    see(&mut h);
+    assert!(!controls.is_listening());
+    h.get_by_label("Action of Key 3").click();
+    see(&mut h);
+    h.get_by_label("Turn the view while held").click();
+    see(&mut h);
+    see(&mut h);
+    assert_eq!(controls.own().controls[&Control::Key(3)], Binding::Hold("view.turn".into()));
+    h.get_by_label("Key 3: Turn the view while held");
+    h.get_by_label("Reset").click();
+    see(&mut h);
+    see(&mut h);
+    assert!(controls.own().controls.is_empty());
 }

@@ -14,8 +14,8 @@ use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::look::Map;
 use sculptd_window::panels::state::{
-    Action, DistanceSummary, FrameFigures, KeyMap, Measured, StepPicture, ThicknessSummary,
-    ThinSpot, TrialStatus, Trim, TrimShape,
+    Action, DistanceSummary, FrameFigures, KeyMap, Measured, StepPicture, TabletKeys,
+    ThicknessSummary, ThinSpot, TrialStatus, Trim, TrimShape,
 };
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
@@ -25,6 +25,7 @@ pub(super) struct State {
     pub asked: Vec<UiRequest>,
     pub devices: Vec<String>,
     pub demo_runs: bool,
+    pub tablet: Option<TabletKeys>,
 }
 
 pub(super) fn state(tab: Tab) -> State {
@@ -35,6 +36,7 @@ pub(super) fn state(tab: Tab) -> State {
         asked: Vec::new(),
         devices: Vec::new(),
         demo_runs: false,
+        tablet: None,
     }
 }
 
@@ -46,6 +48,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         presets: sculptd::presets(),
         camera: s.published.camera,
         devices: &s.devices,
+        tablet: s.tablet.clone(),
         session: None,
         recent: &[],
         uploaded: 0,

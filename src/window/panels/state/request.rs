@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim::Part;
+use sculptd_devices::pad_actions::{Binding, Control};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
@@ -50,6 +51,10 @@ pub enum UiRequest {
     Reference,
     /// The shadow's outline is written.
     Outline(PathBuf),
+    /// The loop waits for a control of a tablet, which then does nothing, or no longer does.
+    TabletListen(bool),
+    /// What a control of a tablet does; `None`: as usual.
+    TabletBinding(Control, Option<Binding>),
     /// For the window: dialogs and pictures.
     Do(Action),
 }

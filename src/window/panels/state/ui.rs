@@ -14,6 +14,7 @@ use super::preferences::Preferences;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
 use super::tab::Tab;
+use super::tablet_keys::TabletKeysPage;
 use super::thickness::WallsPage;
 use crate::look::Look;
 use sculptd_daemon::remesh_job::Wanted;
@@ -29,6 +30,7 @@ pub struct UiState {
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
     pub keys: KeysPage,
+    pub tablet_keys: TabletKeysPage,
     pub lesson: LessonHand,
     /// The page that lists all is open.
     pub help: bool,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::action::Action;
 use super::key_map::KeyMap;
+use super::tablet_keys::TabletKeys;
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentLatency;
 use sculptd_engine::camera::Camera;
@@ -20,6 +21,8 @@ pub struct View<'a> {
     pub camera: Camera,
     /// One line a device, as the adaptors describe themselves.
     pub devices: &'a [String],
+    /// The controls of tablets; `None` in an installation.
+    pub tablet: Option<TabletKeys>,
     /// The session's file and whether it is well.
     pub session: Option<&'a str>,
     /// Earlier sessions, the newest first.
