@@ -55,7 +55,7 @@ pub enum PrimitiveShape {
     Plane([f64; 2]),
 }
 
-/// Parameters of `scene.add`: one of `primitive` and `path`.
+/// Parameters of `scene.add`: one of `primitive`, `path` and `held`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
@@ -72,6 +72,9 @@ pub struct AddParams {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: Option<PathBuf>,
+    /// What the hands hold, where they hold it; they hold nothing afterwards.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub held: bool,
     /// Its name; without it that of the file or the primitive.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use sculptd_clay::{Clay, Snapshot};
 use sculptd_engine::scene::{
-    Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, SceneError,
+    Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, Operand, SceneError,
     SceneEvent, SceneView,
 };
 use sculptd_geometry::boolean::{self, BooleanOptions, Operation};
@@ -88,13 +88,14 @@ pub fn selected(
 fn operand(
     shown: &Published,
     id: ObjectId,
-) -> Result<(&ObjectView, &Snapshot, (ObjectId, u32, u64, ObjectTransform)), CombineError> {
+) -> Result<(&ObjectView, &Snapshot, Operand), CombineError> {
     let found = shown.scene.each(&shown.mesh).find(|(o, _)| o.id == id);
     let (object, clay) = found.ok_or(SceneError::NoObject(id))?;
     if object.settings.locked {
         return Err(SceneError::Locked(id).into());
     }
-    let of = (id, clay.object_id(), clay.revision(), object.settings.transform);
+    let transform = object.settings.transform;
+    let of = Operand { id, clay: clay.object_id(), revision: clay.revision(), transform };
     Ok((object, clay, of))
 }
 

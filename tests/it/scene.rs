@@ -172,6 +172,35 @@ fn objects_are_added_moved_combined_and_written_by_request() {
 }
 
 #[test]
+fn what_the_hands_hold_becomes_an_object_where_they_hold_it() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (ball, session) = (dir.path().join("ball.ply"), dir.path().join("s.sculpt"));
+    write_mesh(&ball, &shapes::icosphere(1.0, 12).to_poly()).expect("written");
+    let run = Running::begin(std::slice::from_ref(&ball), &session);
+    assert!(run.refused("scene.add", json!({ "held": true })).contains("nothing is in the hands"));
+    run.ask("take-up", json!({ "path": ball }));
+    run.objects();
+    let held = run.live.published.load().thing.clone().expect("held");
+    let (lo, hi) = held.placed().bounds();
+    run.ask("scene.add", json!({ "held": true, "name": "snout" }));
+    let objects = run.objects();
+    assert_eq!(names(&objects), ["object", "snout"]);
+    assert!(run.live.published.load().thing.is_none());
+    for (corner, want) in [lo, hi].iter().enumerate() {
+        for axis in 0..3 {
+            let found = objects[1]["bounds"][corner][axis].as_f64().expect("a number");
+            // The box of the placed ball lies within that of its turned box.
+            let off = (found - f64::from(want[axis])) * if corner == 0 { -1.0 } else { 1.0 };
+            assert!((-1e-5..0.3).contains(&off), "{found} {want}");
+        }
+    }
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(1), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+}
+
+#[test]
 fn several_files_stand_in_their_true_size_and_place() {
     let dir = tempfile::tempdir().expect("a folder");
     let (pot, lid) = (dir.path().join("pot.ply"), dir.path().join("lid.ply"));

@@ -356,7 +356,7 @@ impl Handler for Host {
 
     fn scene_add(&self, p: asked_scene::AddParams) -> Result<asked_scene::ObjectReply, RpcError> {
         p.path.as_deref().map_or(Ok(()), safe)?;
-        scene::add(self, p)
+        scene::add(self, &p)
     }
 
     fn scene_remove(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {

@@ -139,26 +139,40 @@ fn primitive(asked: AskedShape, edge: Option<f64>) -> Result<(Primitive, Clay), 
     Ok((primitive, clay))
 }
 
-pub(super) fn add(host: &Host, params: AddParams) -> Result<ObjectReply, RpcError> {
-    let transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
-    let (source, clay, name, warnings) = match (params.primitive, &params.path) {
-        (Some(asked), None) => {
+pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcError> {
+    let mut transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
+    let (source, clay, name, warnings) = match (params.primitive, &params.path, params.held) {
+        (None, None, true) => {
+            let held = host.published.load().thing.clone();
+            let held = held.ok_or_else(|| RpcError::failed("nothing is in the hands"))?;
+            let clay = Clay::build(&held.plain, &Job::default()).map_err(failed)?;
+            // A transform that is named is in the place of the hands'.
+            if params.transform.is_none() {
+                transform = held.place.to_object();
+            }
+            (ObjectSource::Mesh(held.plain), clay, "held object".into(), Vec::new())
+        }
+        (Some(asked), None, false) => {
             let (primitive, clay) = primitive(asked, params.edge)?;
             let name = primitive.shape.name().to_owned();
             (ObjectSource::Primitive(primitive), clay, name, Vec::new())
         }
-        (None, Some(path)) => {
+        (None, Some(path), false) => {
             let loaded =
                 startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)?;
             let source = ObjectSource::Mesh(loaded.plain.into());
             (source, loaded.mesh, startup::object_name(path), loaded.warnings)
         }
-        _ => return Err(RpcError::bad_params("expected one of `primitive` and `path`")),
+        _ => return Err(RpcError::bad_params("expected one of `primitive`, `path` and `held`")),
     };
     let new = NewObject::new(params.name.as_deref().unwrap_or(&name), source, transform);
     let command = SceneCommand::Add(new);
     let payload = Some(Payload::Clay(Box::new(clay)));
-    Ok(ObjectReply { warnings, ..ask(host, QueuedSceneCommand { command, payload })? })
+    let reply = ask(host, QueuedSceneCommand { command, payload })?;
+    if params.held {
+        host.send(Command::PutDown)?;
+    }
+    Ok(ObjectReply { warnings, ..reply })
 }
 
 pub(super) fn reshape(host: &Host, params: &ReshapeParams) -> Result<ObjectReply, RpcError> {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::scene::ObjectTransform;
 use sculptd_geometry::TriMesh;
 
 /// `world = shift + turn * (own * scale)`.
@@ -32,6 +33,15 @@ impl Similarity {
     /// Where a point of the object is in the world.
     pub fn apply(&self, p: Vec3) -> Vec3 {
         self.shift + self.turn * (p * self.scale)
+    }
+
+    /// The same in double precision: an object of the scene that stands there.
+    pub fn to_object(&self) -> ObjectTransform {
+        ObjectTransform {
+            shift: self.shift.as_dvec3(),
+            turn: self.turn.as_dquat().normalize(),
+            scale: f64::from(self.scale),
+        }
     }
 
     /// First `self`, then `next`.

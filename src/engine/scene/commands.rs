@@ -90,15 +90,27 @@ impl NewObject {
     }
 }
 
+/// An object as it was when something was computed from it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Operand {
+    /// The object.
+    pub id: ObjectId,
+    /// The number of its clay, [`sculptd_clay::Clay::object_id`].
+    pub clay: u32,
+    /// The revision of its clay.
+    pub revision: u64,
+    /// Where it stood.
+    pub transform: ObjectTransform,
+}
+
 /// Objects that take the place of others, in one step.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Exchange {
     /// What it is called in the history.
     pub event: SceneEvent,
-    /// The objects that the new ones were computed from, with the number and the revision of the
-    /// clay of each ([`sculptd_clay::Clay::object_id`]) and where each stood: nothing is done when
-    /// one has changed since.
-    pub from: Vec<(ObjectId, u32, u64, ObjectTransform)>,
+    /// The objects that the new ones were computed from: nothing is done when one has changed
+    /// since.
+    pub from: Vec<Operand>,
     /// Of these, the ones that go.
     pub remove: Vec<ObjectId>,
     /// Of these, the ones that stay but are hidden.

@@ -21,7 +21,7 @@ mod view;
 use std::sync::Arc;
 
 pub use commands::{
-    Exchange, MAX_OBJECTS, NewObject, ObjectSource, SceneCommand, SceneError, SceneEvent,
+    Exchange, MAX_OBJECTS, NewObject, ObjectSource, Operand, SceneCommand, SceneError, SceneEvent,
 };
 pub use object::{MAX_NAME, Object, ObjectId, ObjectSettings, clean_name};
 pub use primitive::{BadPrimitive, Primitive, PrimitiveShape};

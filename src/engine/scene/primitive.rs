@@ -286,8 +286,8 @@ mod tests {
     const ALL: [(PrimitiveShape, f64, bool); 7] = [
         (PrimitiveShape::Box([2.0, 3.0, 1.0]), 6.0, true),
         (PrimitiveShape::Ball(1.0), 4.188_790_2, true),
-        (PrimitiveShape::Cylinder([1.0, 2.0]), 6.283_185_3, true),
-        (PrimitiveShape::Cone([1.0, 3.0]), 3.141_592_6, true),
+        (PrimitiveShape::Cylinder([1.0, 2.0]), TAU, true),
+        (PrimitiveShape::Cone([1.0, 3.0]), TAU * 0.5, true),
         (PrimitiveShape::Torus([2.0, 0.5]), 9.869_604_4, true),
         (PrimitiveShape::Tube([2.0, 1.0, 1.0]), 9.424_777_9, true),
         (PrimitiveShape::Plane([2.0, 1.0]), 0.0, false),

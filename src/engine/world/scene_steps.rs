@@ -162,13 +162,13 @@ impl World {
     }
 
     fn exchange(&mut self, exchange: &Exchange) -> SceneResult {
-        for (id, clay, revision, transform) in &exchange.from {
-            let same = self.scene.object(*id).is_some_and(|o| {
-                (o.clay.object_id(), o.clay.revision()) == (*clay, *revision)
-                    && o.settings.transform == *transform
+        for from in &exchange.from {
+            let same = self.scene.object(from.id).is_some_and(|o| {
+                (o.clay.object_id(), o.clay.revision()) == (from.clay, from.revision)
+                    && o.settings.transform == from.transform
             });
             if !same {
-                return Err(SceneError::Changed(*id));
+                return Err(SceneError::Changed(from.id));
             }
         }
         for id in &exchange.remove {

@@ -8,8 +8,8 @@ use crate::command::{Command, NewClay, OfClay};
 use crate::hand::HandSettings;
 use crate::payload::Payload;
 use crate::scene::{
-    Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, PrimitiveShape,
-    SceneCommand, SceneError, SceneEvent,
+    Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, Operand, Primitive,
+    PrimitiveShape, SceneCommand, SceneError, SceneEvent,
 };
 use sculptd_clay::brush::{BrushKind, BrushSettings, MaskAction, Measure, Presets};
 use sculptd_clay::{Clay, Workers};
@@ -172,7 +172,12 @@ fn operate(world: &mut World, dice: &mut Dice) {
         }
         _ => {
             let of = world.scene().object(id).expect("there");
-            let from = (id, of.clay.object_id(), of.clay.revision(), of.settings.transform);
+            let from = Operand {
+                id,
+                clay: of.clay.object_id(),
+                revision: of.clay.revision(),
+                transform: of.settings.transform,
+            };
             let exchange = Exchange {
                 event: SceneEvent::Boolean,
                 from: vec![from],

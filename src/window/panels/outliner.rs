@@ -13,8 +13,11 @@ use sculptd_engine::command::Command;
 use sculptd_engine::scene::{ObjectTransform, ObjectView, Primitive, PrimitiveShape, SceneCommand};
 use sculptd_geometry::boolean::Operation;
 
+/// A name, and the primitive of a size.
+type SizedPrimitive = (&'static str, fn(f64) -> PrimitiveShape);
+
 /// Primitives at the size of a scene: lengths are multiples of the active object's bounding radius.
-const PRIMITIVES: [(&str, fn(f64) -> PrimitiveShape); 7] = [
+const PRIMITIVES: [SizedPrimitive; 7] = [
     ("Box", |r| PrimitiveShape::Box([r; 3])),
     ("Ball", |r| PrimitiveShape::Ball(r * 0.5)),
     ("Cylinder", |r| PrimitiveShape::Cylinder([r * 0.5, r])),

@@ -83,6 +83,11 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
                 out.push(UiRequest::Join(choice));
             }
         }
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Put down").on_hover_text("It becomes an object where it is").clicked() {
+            out.push(UiRequest::AddHeld);
+        }
         if ui.button("Put away").clicked() {
             out.push(UiRequest::World(Command::PutDown));
         }

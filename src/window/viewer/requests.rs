@@ -60,6 +60,11 @@ impl WindowState {
             UiRequest::AddPrimitive(primitive) => {
                 self.tasks.primitive(primitive, None, wiring.commands.clone());
             }
+            UiRequest::AddHeld => {
+                if let Some(held) = &state.thing {
+                    self.tasks.held(held.clone(), wiring.commands.clone());
+                }
+            }
             UiRequest::Reshape(id, primitive) => {
                 self.tasks.primitive(primitive, Some(id), wiring.commands.clone());
             }

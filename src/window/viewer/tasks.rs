@@ -30,7 +30,7 @@ use sculptd_daemon::trim::Part;
 use sculptd_daemon::{Published, boolean_jobs, remesh_job, scene_jobs, startup};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
-use sculptd_engine::hand::MenuItem;
+use sculptd_engine::hand::{HeldObject, MenuItem};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
     NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
@@ -243,6 +243,26 @@ impl Tasks {
             });
             let built = Payload::Clay(Box::new(clay));
             let _ = commands.send(QueuedCommand::with_payload(command, built));
+        });
+    }
+
+    /// What the hands hold becomes an object where they hold it.
+    pub fn held(&self, held: HeldObject, commands: CommandSender) {
+        let say = self.say.clone();
+        thread("sculptd-load", move || {
+            let clay = match Clay::build(&held.plain, &Job::default()) {
+                Ok(clay) => clay,
+                Err(e) => {
+                    let _ = say.send(TaskReport::Message(e.to_string(), true));
+                    return;
+                }
+            };
+            let transform = held.place.to_object();
+            let new = NewObject::new("held object", ObjectSource::Mesh(held.plain), transform);
+            let command = Command::Scene(SceneCommand::Add(new));
+            let built = Payload::Clay(Box::new(clay));
+            let _ = commands.send(QueuedCommand::with_payload(command, built));
+            let _ = commands.send(Command::PutDown);
         });
     }
 

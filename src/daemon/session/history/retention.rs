@@ -198,7 +198,7 @@ impl<'a> RetentionRun<'a> {
         let changes = tree.versions(next.id).into_iter().map(|(page, v)| (page, v, v)).collect();
         // It takes over the list of objects, if it has none of its own.
         let scene = tree.scene_at(next.id).cloned();
-        let first = Node { parent: None, changes, scene, ..next.clone() };
+        let first = Node { parent: None, changes, scene, ..next };
         for name in named(&first) {
             *self.uses.entry(name).or_default() += 1;
         }

@@ -35,6 +35,8 @@ pub enum UiRequest {
     Join(MenuItem),
     /// An object of a primitive is added.
     AddPrimitive(Primitive),
+    /// What the hands hold becomes an object of the scene.
+    AddHeld,
     /// A primitive gets other numbers.
     Reshape(ObjectId, Primitive),
     /// A Boolean of the active object and another; the result takes the place of both.
