@@ -103,6 +103,15 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Longest mesh file that a request may load, bytes: its mesh must fit into memory beside the one
+/// in place.
+pub const MAX_MESH_FILE: u64 = 1 << 30;
+
+/// The refusal of a request that could not be carried out.
+pub(super) fn failed(e: impl std::fmt::Display) -> RpcError {
+    RpcError::failed(e.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,13 +140,4 @@ mod tests {
         assert!(host.begin_boolean().is_ok(), "the place is free again");
         assert!(host.thickness.is_poisoned() && locked(&host.thickness).is_none());
     }
-}
-
-/// Longest mesh file that a request may load, bytes: its mesh must fit into memory beside the one
-/// in place.
-pub const MAX_MESH_FILE: u64 = 1 << 30;
-
-/// The refusal of a request that could not be carried out.
-pub(super) fn failed(e: impl std::fmt::Display) -> RpcError {
-    RpcError::failed(e.to_string())
 }
