@@ -279,7 +279,7 @@ fn every_option_draws_as_it_did() {
 fn every_measure_alpha_and_stamp_draws_as_it_did() {
     let of = |kind: BrushKind, set: &dyn Fn(&mut BrushSettings)| {
         let mut b = BrushSettings { radius: 0.2, ..sculptd::presets().of(kind) };
-        if kind == BrushKind::Gaussian {
+        if kind == Gaussian {
             b.spacing = 0.2;
         }
         set(&mut b);
