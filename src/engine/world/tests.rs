@@ -207,3 +207,33 @@ fn a_session_that_is_opened_again_has_no_desktop() {
     world.step(2, &[], &[Command::Reopened]);
     assert_eq!(world.desktop, DesktopLayout::default());
 }
+
+#[test]
+fn what_is_seen_in_a_region_is_masked_as_one_step() {
+    use crate::mask_region::{MaskRegion, ViewRegion};
+    use glam::Vec2;
+    let plain = shapes::icosphere(1.0, 8);
+    let mut world = world(&plain);
+    let masked = |world: &mut World, front_faces: bool| {
+        let region = ViewRegion::Box([Vec2::ZERO, Vec2::new(0.5, 1.0)]);
+        let region = MaskRegion { region, mask: 1.0, front_faces };
+        let tick = world.tick() + 1;
+        world.step(tick, &[], &[Command::MaskRegion(region)]);
+        let masks = world.snapshot().masks().expect("some are protected");
+        let points = world.mesh().to_tri().positions;
+        let camera = *world.camera();
+        for (p, mask) in points.iter().zip(&masks) {
+            let left = camera.project(*p).expect("before the eye").x <= 0.5;
+            // A vertex of a ball faces the eye if the eye lies beyond its tangent plane.
+            let seen = !front_faces || (camera.eye() - *p).dot(*p) > 0.0;
+            if (camera.eye() - *p).normalize().dot(*p).abs() > 0.05 {
+                assert_eq!(*mask, f32::from(u8::from(left && seen)), "{p}");
+            }
+        }
+        world.step(tick + 1, &[], &[Command::Undo]);
+        assert_eq!(world.snapshot().masks(), None, "one step takes it back");
+        masks.iter().filter(|m| **m > 0.0).count()
+    };
+    let (through, front) = (masked(&mut world, false), masked(&mut world, true));
+    assert!(front > 0 && front < through, "{front} of {through} face the eye");
+}
