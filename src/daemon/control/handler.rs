@@ -429,7 +429,8 @@ impl Handler for Host {
 
     /// Brings the map that the host keeps up to the state of the mesh. The first call measures all.
     fn thickness(&self, params: edit::ThicknessParams) -> Result<edit::ThicknessReply, RpcError> {
-        let (mesh, job) = (&self.published.load_full().mesh, Job::default());
+        let state = self.published.load_full();
+        let (mesh, transform, job) = (&state.mesh, state.transform(), Job::default());
         let rays = params.rays as usize;
         let mut kept = locked(&self.thickness);
         // Taken out while it works, so that a panic leaves none rather than half of one.
@@ -440,9 +441,13 @@ impl Handler for Host {
             None => LiveMap::new(mesh, rays, &job).map_err(failed)?,
         };
         let measured = map.stale() as u64;
-        map.work(params.near.into(), usize::MAX, &job).map_err(failed)?;
+        map.work(transform.inverse().point(params.near.into()), usize::MAX, &job)
+            .map_err(failed)?;
         let values = map.values();
-        let valid: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        // The map is of the clay's own frame; walls are told in the world's unit.
+        let unit = transform.scale as f32;
+        let valid = values.iter().filter(|v| v.is_finite()).map(|v| v * unit);
+        let valid: Vec<f32> = valid.collect();
         let sum = valid.iter().map(|&v| f64::from(v)).sum::<f64>();
         let reply = edit::ThicknessReply {
             revision: map.revision(),

@@ -11,6 +11,7 @@ use super::tasks::TaskReport;
 use crate::panels::state::{DistanceSummary, Measured};
 use sculptd_clay::Snapshot;
 use sculptd_engine::hand::{HeldObject, Similarity};
+use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::distance::{DistanceSolid, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{measures, projected_area};
@@ -28,7 +29,7 @@ impl DistanceReference {
     fn same(&self, other: &DistanceReference) -> bool {
         match (self, other) {
             (DistanceReference::Before(a), DistanceReference::Before(b)) => {
-                a.revision() == b.revision()
+                (a.object_id(), a.revision()) == (b.object_id(), b.revision())
             }
             (DistanceReference::HeldObject(a), DistanceReference::HeldObject(b)) => {
                 Arc::ptr_eq(&a.plain, &b.plain)
@@ -48,6 +49,8 @@ impl DistanceReference {
 #[derive(Debug, Clone)]
 pub struct DistanceRequest {
     pub mesh: Snapshot,
+    /// From the clay to the world, in whose unit distances are told.
+    pub transform: ObjectTransform,
     pub to: DistanceReference,
 }
 
@@ -58,7 +61,7 @@ const BATCH: usize = 64;
 #[derive(Debug, Default)]
 pub struct DistanceField {
     to: Option<(DistanceReference, DistanceSolid)>,
-    place: Option<Similarity>,
+    place: Option<(Similarity, ObjectTransform)>,
     mesh: Option<Snapshot>,
     /// One a page; `None`: not known.
     pages: Vec<Option<Arc<[f32]>>>,
@@ -82,7 +85,7 @@ impl DistanceField {
         job: &Job,
         say: &cc::Sender<TaskReport>,
     ) -> Result<bool, Cancelled> {
-        let DistanceRequest { mesh, to } = request;
+        let DistanceRequest { mesh, transform, to } = request;
         if !self.to.as_ref().is_some_and(|(old, _)| old.same(&to)) {
             self.pages.clear();
             let plain = match &to {
@@ -93,10 +96,15 @@ impl DistanceField {
             self.to = Some((to.clone(), solid));
         }
         let place = to.place();
-        if self.place != Some(place) {
+        if self.place != Some((place, transform)) {
             self.pages.clear();
-            self.place = Some(place);
+            self.place = Some((place, transform));
         }
+        // The object as it was lies in the clay's own frame, what a hand holds in the world.
+        let (stand, unit) = match to {
+            DistanceReference::Before(_) => (ObjectTransform::NONE, transform.scale),
+            DistanceReference::HeldObject(_) => (transform, f64::from(place.scale)),
+        };
         match &self.mesh {
             Some(old) if self.pages.len() == mesh.page_count() => {
                 let pages = &mut self.pages;
@@ -107,7 +115,7 @@ impl DistanceField {
         self.mesh = Some(mesh.clone());
         let Some((_, solid)) = &self.to else { return Ok(true) };
         let back = place.turn.inverse();
-        let own = |p: Vec3| (back * (p - place.shift) / place.scale).as_dvec3();
+        let own = |p: Vec3| (back * (stand.point(p) - place.shift) / place.scale).as_dvec3();
         let missing: Vec<u32> =
             (0..mesh.page_count() as u32).filter(|&i| self.pages[i as usize].is_none()).collect();
         for batch in missing.chunks(BATCH) {
@@ -115,7 +123,7 @@ impl DistanceField {
                 let page = mesh.page(i);
                 let points: Vec<DVec3> = (0..page.own()).map(|v| own(page.point(v))).collect();
                 let found = solid.signed_distances(&points, job)?;
-                let values = found.iter().map(|d| (*d * f64::from(place.scale)) as f32).collect();
+                let values = found.iter().map(|d| (*d * unit) as f32).collect();
                 self.pages[i as usize] = Some(values);
             }
             if say.send(self.said(&mesh)).is_err() {
@@ -150,25 +158,41 @@ impl DistanceField {
     }
 }
 
-/// Measures of the object and its shadow along a direction.
-pub fn measure(mesh: &Snapshot, direction: DVec3, job: &Job) -> Result<Measured, Cancelled> {
-    let plain = mesh.to_tri();
+/// What is asked of the measures: the clay, where it stands, and what the shadow is looked along.
+pub type SizesRequest = (Snapshot, ObjectTransform, DVec3);
+
+/// Measures of the object and its shadow along a direction, in the world's unit.
+pub fn measure(request: &SizesRequest, job: &Job) -> Result<Measured, Cancelled> {
+    let (mesh, transform, direction) = request;
+    let mut plain = mesh.to_tri();
+    // No measure depends on the place, and far from the origin single precision would lose digits:
+    // the mesh is turned where it is, and the numbers are scaled.
+    let turned = ObjectTransform { turn: transform.turn, ..ObjectTransform::NONE };
+    if !turned.is_none() {
+        plain.positions.iter_mut().for_each(|p| *p = turned.point(*p));
+    }
+    let unit = transform.scale;
+    let direction = *direction;
     job.check()?;
     let found = measures(&plain);
     let mut projected = [0.0; 3];
     for (out, axis) in projected.iter_mut().zip([Vec3::X, Vec3::Y, Vec3::Z]) {
         *out = projected_area(&plain, axis, job)?;
     }
-    let outline = match ProjectionPlane::along(direction, 0.0) {
+    let mut outline = match ProjectionPlane::along(direction, 0.0) {
         Some(plane) => outline(&Topology::build(&plain), &plane),
         None => Vec::new(),
     };
+    for region in &mut outline {
+        let rings = std::iter::once(&mut region.outer).chain(&mut region.holes);
+        rings.flatten().for_each(|p| *p *= unit);
+    }
     Ok(Measured {
         revision: mesh.revision(),
-        volume: found.volume,
-        area: found.area,
-        dimensions: found.dimensions,
-        projected,
+        volume: found.volume * unit.powi(3),
+        area: found.area * unit.powi(2),
+        dimensions: found.dimensions.map(|d| d * unit),
+        projected: projected.map(|a| a * unit.powi(2)),
         direction,
         shadow: area(&outline),
         outline,

@@ -8,7 +8,6 @@ use super::wiring::Wiring;
 use crate::look::Map;
 use crate::panels::hand_menu;
 use crate::panels::state::{DistanceTarget, Tab, TrialStatus};
-use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 use sculptd_engine::hand::Similarity;
 
@@ -24,12 +23,17 @@ impl WindowState {
     pub(super) fn follow(&mut self, state: &Published, wiring: &Wiring) -> bool {
         let now = wiring.clock.now_us();
         let revision = state.mesh.revision();
+        let clay = (state.mesh.object_id(), revision);
         if self.rested.0 != revision {
             self.rested = (revision, now);
         }
         // Visitors of an installation compare nothing: old works are not kept.
         if wiring.kiosk.is_none() {
-            self.before.get_or_insert_with(|| state.mesh.clone());
+            // Another object is compared with itself, as it was when it became active.
+            let active = state.scene.active().map(|o| o.id);
+            if self.before.is_none() || self.before_of != active {
+                (self.before, self.before_of) = (Some(state.mesh.clone()), active);
+            }
         }
         let changed = self.follow_preview(state, now);
         if self.ui_state.look.map == Map::Distance {
@@ -43,12 +47,13 @@ impl WindowState {
                 .thing
                 .as_ref()
                 .filter(|_| self.ui_state.sizes.against == DistanceTarget::HeldObject);
-            let base = self.before.as_ref().map_or(0, Snapshot::revision);
-            let key = (revision, base, place.map(|t| t.place));
+            let base = self.before.as_ref().map_or((0, 0), |b| (b.object_id(), b.revision()));
+            let transform = state.transform();
+            let key = (clay, base, place.map(|t| t.place), transform);
             if let Some(to) = to.filter(|_| self.asked_distance != Some(key)) {
                 self.asked_distance = Some(key);
                 self.workers.distances(
-                    distance_field::DistanceRequest { mesh: state.mesh.clone(), to },
+                    distance_field::DistanceRequest { mesh: state.mesh.clone(), transform, to },
                     &self.tasks,
                 );
             }
@@ -57,13 +62,14 @@ impl WindowState {
         let rests = now.saturating_sub(self.rested.1) > REST_US;
         if self.ui_state.tab == Tab::Measure
             && !self.ui_state.hidden
-            && self.asked_sizes != Some((revision, direction))
+            && self.asked_sizes != Some((clay, direction, state.transform()))
         {
             // Another direction of an unchanged object is measured at once.
-            let turned = self.asked_sizes.is_some_and(|(r, _)| r == revision);
+            let turned = self.asked_sizes.is_some_and(|(c, ..)| c == clay);
             if rests || turned || self.ui_state.sizes.found.is_none() {
-                self.asked_sizes = Some((revision, direction));
-                self.workers.sizes((state.mesh.clone(), direction), &self.tasks);
+                let transform = state.transform();
+                self.asked_sizes = Some((clay, direction, transform));
+                self.workers.sizes((state.mesh.clone(), transform, direction), &self.tasks);
             }
         }
         changed

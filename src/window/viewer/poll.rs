@@ -171,10 +171,12 @@ impl WindowState {
         changed |= self.ui_state.look.scale != scale;
         self.ui_state.look.scale = scale;
         if self.ui_state.look.map == Map::Thickness {
-            let wanted = (state.mesh.revision(), self.ui_state.walls.limit);
+            let (limit, transform) = (self.ui_state.walls.limit, state.transform());
+            let clay = (state.mesh.object_id(), state.mesh.revision());
+            let wanted = (clay, limit, transform);
             if self.asked_map != Some(wanted) || self.values.is_none() && self.asked_map.is_none() {
                 self.asked_map = Some(wanted);
-                self.tasks.thickness(&state.mesh, self.camera.target, wanted.1);
+                self.tasks.thickness((&state.mesh, transform), self.camera.target, limit);
             }
         }
         changed

@@ -1,19 +1,16 @@
 //! The latest-wins workers that follow the newest snapshot: previews of Booleans, distances,
 //! measures. Each has a thread of its own, made when it is first asked for.
 
-use glam::DVec3;
-
-use super::distance_field::{self, DistanceField};
+use super::distance_field::{self, DistanceField, SizesRequest};
 use super::latest_wins::LatestWins;
 use super::preview;
 use super::tasks::{TaskReport, Tasks};
-use sculptd_clay::Snapshot;
 
 #[derive(Debug, Default)]
 pub struct SnapshotWorkers {
     preview: Option<LatestWins<preview::PreviewRequest>>,
     field: Option<LatestWins<distance_field::DistanceRequest>>,
-    sizes: Option<LatestWins<(Snapshot, DVec3)>>,
+    sizes: Option<LatestWins<SizesRequest>>,
 }
 
 impl SnapshotWorkers {
@@ -44,18 +41,15 @@ impl SnapshotWorkers {
         thread.request(wanted);
     }
 
-    pub fn sizes(&mut self, wanted: (Snapshot, DVec3), tasks: &Tasks) {
+    pub fn sizes(&mut self, wanted: SizesRequest, tasks: &Tasks) {
         let say = tasks.reporter();
         let thread = self.sizes.get_or_insert_with(|| {
-            LatestWins::start(
-                "sculptd-measure",
-                move |(mesh, direction): (Snapshot, DVec3), job| match distance_field::measure(
-                    &mesh, direction, job,
-                ) {
+            LatestWins::start("sculptd-measure", move |wanted: SizesRequest, job| {
+                match distance_field::measure(&wanted, job) {
                     Ok(found) => say.send(TaskReport::Measured(Box::new(found))).is_ok(),
                     Err(_) => true,
-                },
-            )
+                }
+            })
         });
         thread.request(wanted);
     }

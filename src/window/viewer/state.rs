@@ -34,6 +34,7 @@ use sculptd_daemon::kiosk::View as KioskView;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::{MenuItem, Similarity};
+use sculptd_engine::scene::{ObjectId, ObjectTransform};
 
 /// What a screen reader asks for, from its own thread.
 pub(super) type AccessibilityEvent = egui_winit::accesskit_winit::Event;
@@ -45,6 +46,9 @@ pub(super) type OverlayKey = (Option<(usize, Similarity)>, Option<MenuItem>, Vec
 /// So long the world's camera may lie behind the one that was sent: then something else has set
 /// it.
 const CAMERA_PATIENCE_US: u64 = 500_000;
+
+/// Which clay it is, and its revision.
+type ClayState = (u32, u64);
 
 /// An open window and all that it draws with.
 pub(super) struct WindowState {
@@ -71,7 +75,7 @@ pub(super) struct WindowState {
     pub(super) preferences_file: PreferencesFile,
     pub(super) values: Option<MapValues>,
     /// The revision and limit that a thickness map was last asked for.
-    pub(super) asked_map: Option<(u64, f32)>,
+    pub(super) asked_map: Option<(ClayState, f32, ObjectTransform)>,
     pub(super) devices: Vec<String>,
     /// When the devices were listed last.
     pub(super) listed_us: u64,
@@ -90,8 +94,10 @@ pub(super) struct WindowState {
     /// What distances are measured to, and the request that was sent last: the revision, that of
     /// `before`, the held object's transform.
     pub(super) before: Option<Snapshot>,
-    pub(super) asked_distance: Option<(u64, u64, Option<Similarity>)>,
-    pub(super) asked_sizes: Option<(u64, DVec3)>,
+    /// The object that `before` is of.
+    pub(super) before_of: Option<ObjectId>,
+    pub(super) asked_distance: Option<(ClayState, ClayState, Option<Similarity>, ObjectTransform)>,
+    pub(super) asked_sizes: Option<(ClayState, DVec3, ObjectTransform)>,
     /// The newest revision, and since when.
     pub(super) rested: (u64, u64),
     /// When a mesh was loaded that may not be published yet.
@@ -239,6 +245,7 @@ impl WindowState {
             preview: None,
             asked_preview: None,
             before: None,
+            before_of: None,
             asked_distance: None,
             asked_sizes: None,
             rested: (0, 0),

@@ -69,6 +69,8 @@ pub enum TaskReport {
 #[derive(Debug, Clone)]
 struct ThicknessRequest {
     mesh: Snapshot,
+    /// From the clay to the world, in whose unit walls are told.
+    transform: ObjectTransform,
     near: Vec3,
     limit: f32,
 }
@@ -410,13 +412,20 @@ impl Tasks {
     }
 
     /// Asks for the thickness map of this clay; the newest request counts.
-    pub fn thickness(&mut self, mesh: &Snapshot, near: Vec3, limit: f32) {
+    /// `near` is a place of the world, and the limit in its unit.
+    pub fn thickness(
+        &mut self,
+        (mesh, transform): (&Snapshot, ObjectTransform),
+        near: Vec3,
+        limit: f32,
+    ) {
         let reports = &self.say;
         let worker = self.thickness.get_or_insert_with(|| {
             let say = reports.clone();
             LatestWins::follow("sculptd-thickness", move |requests| follow(requests, &say))
         });
-        worker.request(ThicknessRequest { mesh: mesh.clone(), near, limit });
+        let near = transform.inverse().point(near);
+        worker.request(ThicknessRequest { mesh: mesh.clone(), transform, near, limit });
     }
 
     pub fn say(&self, text: impl Into<String>, wrong: bool) {
@@ -462,7 +471,8 @@ fn follow(requests: &cc::Receiver<Request<ThicknessRequest>>, say: &cc::Sender<T
             }
             let Some(map) = &mut map else { return };
             let left = pool.install(|| map.work(wanted.near, BATCH, &job)).unwrap_or(0);
-            gather(&wanted.mesh, map.values(), &mut pages);
+            let unit = wanted.transform.scale as f32;
+            gather(&wanted.mesh, map.values(), unit, &mut pages);
             let about = Box::new(about(&wanted, map, left));
             if say.send(TaskReport::Map(MapValues { pages: pages.clone() }, about)).is_err() {
                 return;
@@ -476,12 +486,12 @@ fn follow(requests: &cc::Receiver<Request<ThicknessRequest>>, say: &cc::Sender<T
     }
 }
 
-/// The values by page; a page with the same bits as before stays the same.
-fn gather(mesh: &Snapshot, values: &[f32], pages: &mut Vec<Arc<[f32]>>) {
+/// The values times `unit` by page; a page with the same bits as before stays the same.
+fn gather(mesh: &Snapshot, values: &[f32], unit: f32, pages: &mut Vec<Arc<[f32]>>) {
     pages.truncate(mesh.page_count());
     for (i, page) in mesh.pages().enumerate() {
         let ids = &page.topology().ids[..page.own()];
-        let value = |id: &u32| values.get(*id as usize).copied().unwrap_or(f32::NAN);
+        let value = |id: &u32| values.get(*id as usize).map_or(f32::NAN, |v| v * unit);
         let same = |old: &Arc<[f32]>| {
             old.len() == ids.len()
                 && old.iter().zip(ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
@@ -501,11 +511,12 @@ const SPOTS: usize = 5;
 
 fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSummary {
     let values = map.values();
+    let unit = wanted.transform.scale as f32;
     let mut known: Vec<(f32, u32)> = values
         .iter()
         .enumerate()
         .filter(|(_, v)| v.is_finite())
-        .map(|(i, v)| (*v, i as u32))
+        .map(|(i, v)| (v * unit, i as u32))
         .collect();
     known.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let at = |share: f64| {
@@ -520,7 +531,7 @@ fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSumm
     }
     // The thinnest places, each at least a tenth of the object's size from the others.
     let (lo, hi) = wanted.mesh.bounds();
-    let apart = (hi - lo).length() * 0.05;
+    let apart = (hi - lo).length() * 0.05 * unit;
     let mut places = vec![None; values.len()];
     let below = known.partition_point(|k| k.0 < wanted.limit);
     let thin = &known[..below.min(20_000)];
@@ -530,7 +541,7 @@ fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSumm
     for page in wanted.mesh.pages() {
         for (v, &id) in page.topology().ids[..page.own()].iter().enumerate() {
             if places.get(id as usize).is_some_and(Option::is_some) {
-                places[id as usize] = Some(page.point(v));
+                places[id as usize] = Some(wanted.transform.point(page.point(v)));
             }
         }
     }

@@ -3,11 +3,12 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 use image::RgbaImage;
 use sculptd_clay::{Clay, Snapshot};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::{HeldObject, MenuItem, Similarity};
+use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection::svg;
 use sculptd_geometry::{TriMesh, shapes};
@@ -154,7 +155,11 @@ fn balls_are_seen_through_and_the_one_in_use_stands_out() {
 fn measures_and_the_shadow_of_a_box_are_exact() {
     let solid = shapes::cuboid(DVec3::ZERO, DVec3::new(2.0, 3.0, 4.0));
     let mut mesh = Clay::build(&solid.triangulate().0, &Job::default()).expect("a box builds");
-    let found = measure(&mesh.snapshot(), DVec3::NEG_Y, &Job::default()).expect("not cancelled");
+    let mut sizes = |transform| {
+        let request = (mesh.snapshot(), transform, DVec3::NEG_Y);
+        measure(&request, &Job::default()).expect("not cancelled")
+    };
+    let found = sizes(ObjectTransform::NONE);
     assert!((found.volume - 24.0).abs() < 1e-9 && (found.area - 52.0).abs() < 1e-9, "{found:?}");
     assert_eq!(found.dimensions, [2.0, 3.0, 4.0]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
@@ -166,6 +171,13 @@ fn measures_and_the_shadow_of_a_box_are_exact() {
     assert!(near(found.shadow, 8.0), "{}", found.shadow);
     let drawing = svg(&found.outline);
     assert!(drawing.starts_with("<svg") && drawing.matches("<path").count() == 1, "{drawing}");
+    // The object stands far away, turned by a quarter about x, and is half as large again.
+    let turn = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    let placed = sizes(ObjectTransform { shift: DVec3::splat(1e6), turn, scale: 1.5 });
+    assert!((placed.volume - 81.0).abs() < 1e-4, "{placed:?}");
+    let wanted = [3.0, 6.0, 4.5];
+    assert!(placed.dimensions.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{placed:?}");
+    assert!((placed.shadow - 13.5).abs() < 1e-4, "{placed:?}");
 }
 
 #[test]
@@ -174,13 +186,16 @@ fn distances_follow_where_the_clay_changed_and_a_thing_where_it_goes() {
     let before = mesh.snapshot();
     let (say, said) = crossbeam_channel::unbounded();
     let mut field = DistanceField::default();
-    let mut last = |mesh: &Snapshot, to: DistanceReference| {
-        assert!(field.follow(DistanceRequest { mesh: mesh.clone(), to }, &Job::default(), &say));
+    let mut measured = |mesh: &Snapshot, transform, to: DistanceReference| {
+        let request = DistanceRequest { mesh: mesh.clone(), transform, to };
+        assert!(field.follow(request, &Job::default(), &say));
         match said.try_iter().last() {
             Some(TaskReport::Distances(values, about)) => (values, about),
             other => panic!("{other:?}"),
         }
     };
+    let at = |shift, scale| ObjectTransform { shift, scale, ..ObjectTransform::NONE };
+    let mut last = |mesh: &Snapshot, to| measured(mesh, ObjectTransform::NONE, to);
     let (first, about) = last(&before, DistanceReference::Before(before.clone()));
     assert_eq!(about.known, (before.vertex_count(), before.vertex_count()));
     assert!(about.max.abs() < 1e-6 && about.min.abs() < 1e-6, "{about:?}");
@@ -202,4 +217,12 @@ fn distances_follow_where_the_clay_changed_and_a_thing_where_it_goes() {
     assert!((about.min - 0.5).abs() < 2e-3 && (about.rms - 0.5).abs() < 0.02, "{about:?}");
     let (_, about) = last(&after, DistanceReference::HeldObject(thing(Vec3::X * 0.5)));
     assert!(about.min.abs() < 5e-3 && (about.max - 1.0).abs() < 0.02, "{about:?}");
+    // The object moved and made twice as large, its own distances with it; what a hand holds stays
+    // where it is in the world.
+    let placed = at(DVec3::X * 0.5, 2.0);
+    let (_, about) = measured(&after, placed, DistanceReference::Before(before.clone()));
+    assert!((0.08..0.1202).contains(&about.max), "{about:?}");
+    let held = DistanceReference::HeldObject(thing(Vec3::X * 0.5));
+    let (_, about) = measured(&after, placed, held);
+    assert!((about.min - 1.5).abs() < 5e-3, "{about:?}");
 }

@@ -152,8 +152,7 @@ fn fill(s: &mut State, tab: Tab) {
         }
         Tab::Measure => {
             let found = sculptd_window::viewer::distance_field::measure(
-                &s.published.mesh,
-                glam::DVec3::NEG_X,
+                &(s.published.mesh.clone(), Default::default(), glam::DVec3::NEG_X),
                 &Default::default(),
             )
             .expect("not cancelled");
