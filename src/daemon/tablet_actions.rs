@@ -367,7 +367,7 @@ mod tests {
         assert!(step(&mut actions, &mut world, vec![pad(1, 0), pad(0, 0)]).0.is_empty());
         let worked = controls.last().expect("told");
         assert_eq!((worked.device, worked.control), (DeviceId(3), Control::Key(1)));
-        controls.listen(false);
+        assert!(!controls.is_listening(), "one control is the answer");
         // It is not kept anywhere, and holds all the same.
         let bound = controls.bind(Control::Key(1), Some(Binding::Hold("brush.clay".into())));
         assert!(bound.is_err());

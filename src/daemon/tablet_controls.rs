@@ -4,7 +4,8 @@
 //! Laws kept here:
 //! * The tick thread waits for nobody: it loads the table, and tells the last control by one atomic
 //!   number.
-//! * While somebody listens for a control, what it is bound to is not done.
+//! * While somebody listens for a control, what it is bound to is not done. The first one ends it,
+//!   so that a window which is lost meanwhile leaves no tablet without its keys.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -120,7 +121,7 @@ impl TabletControls {
         write().map_err(|e| format!("{}: {e}", file.display()))
     }
 
-    /// Somebody waits for a control to be worked, or no longer does.
+    /// Somebody waits for the next control to be worked, or no longer does.
     pub fn listen(&self, listens: bool) {
         self.0.listening.store(listens, Relaxed);
     }
@@ -129,7 +130,7 @@ impl TabletControls {
         self.0.listening.load(Relaxed)
     }
 
-    /// A control was pressed or turned.
+    /// A control was pressed or turned: nobody listens any longer.
     pub(crate) fn note(&self, device: DeviceId, control: Control) {
         let (kind, number) = match control {
             Control::Key(n) => (0, n),
@@ -143,6 +144,7 @@ impl TabletControls {
         let count = u64::from(count.wrapping_add(1).max(1));
         let low = u64::from(device.0) << 16 | u64::from(kind as u8) << 8 | u64::from(number);
         self.0.last.store(count << 32 | low, Relaxed);
+        self.listen(false);
     }
 
     /// The control that was worked last.

@@ -5,7 +5,7 @@ use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, help, hints, history,
     keys, legend, look, masks, measure, messages, modal, outliner, preferences, pressure_curve,
-    radial, remesh, scene, search, start, symmetry, theme, timing, trim,
+    radial, remesh, scene, search, start, symmetry, tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -33,6 +33,9 @@ pub fn all(
     ui_state.devices.feel(view);
     for action in keys::pressed(&ctx, view, ui_state) {
         act(action, &ctx, view, ui_state, out);
+    }
+    if ui_state.hidden || ui_state.tab != Tab::Devices {
+        tablet_keys::leave(ui_state, out);
     }
     modal::ui(&ctx, view, ui_state, out);
     let narrow = ctx.content_rect().width() < NARROW;

@@ -26,6 +26,13 @@ fn words(control: Control, binding: Option<&Binding>) -> String {
     })
 }
 
+/// Nobody listens for a control whose page is not shown.
+pub fn leave(ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    if ui_state.tablet_keys.listens_from.take().is_some() {
+        out.push(UiRequest::TabletListen(false));
+    }
+}
+
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let Some(tablet) = &view.tablet else { return };
     let page = &mut ui_state.tablet_keys;
@@ -33,7 +40,6 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     if page.listens_from.is_some_and(|from| tablet.last.map_or(0, |l| l.count) != from) {
         page.chosen = tablet.last.map(|l| l.control);
         page.listens_from = None;
-        out.push(UiRequest::TabletListen(false));
     }
     let listens = page.listens_from.is_some();
     let text = if listens { "Press a key of the tablet now..." } else { "Choose by pressing it" };

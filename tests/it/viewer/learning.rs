@@ -158,4 +158,11 @@ fn a_key_of_the_tablet_is_chosen_by_pressing_it() {
     see(&mut h);
     see(&mut h);
     assert!(controls.own().controls.is_empty());
+    // Another page: nobody listens any longer.
+    h.get_by_label("Choose by pressing it").click();
+    see(&mut h);
+    assert!(controls.is_listening());
+    h.state_mut().ui_state.tab = Tab::Look;
+    see(&mut h);
+    assert!(!controls.is_listening());
 }
