@@ -69,6 +69,8 @@ fn program(dir: &Path, display: &str) -> Command {
     let mut program = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     program
         .env("DISPLAY", display)
+        // Widgets are found by their English names.
+        .env("LC_ALL", "C")
         .env_remove("WAYLAND_DISPLAY")
         .env("XDG_RUNTIME_DIR", dir)
         .env("XDG_CONFIG_HOME", dir)

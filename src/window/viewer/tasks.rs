@@ -14,7 +14,10 @@ use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::{self, Preview};
+use super::task_texts::{failed, operation_title, saved};
 use super::wiring::Wiring;
+use crate::language::{current, set_current, tr};
+use crate::panels::hand_menu;
 use crate::panels::state::Pairing;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
@@ -126,8 +129,14 @@ impl Default for Tasks {
     }
 }
 
+/// Runs something on a thread that speaks the language of this one.
 fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
-    let _ = std::thread::Builder::new().name(name.into()).spawn(what);
+    let language = current();
+    let run = move || {
+        set_current(&language);
+        what();
+    };
+    let _ = std::thread::Builder::new().name(name.into()).spawn(run);
 }
 
 /// A dialog that is gone sooner was never seen: no person dismisses one so quickly.
@@ -159,7 +168,8 @@ impl Tasks {
             };
             let said = match read_and_build(&path, &load, &shown, &say, &tell) {
                 Ok(loaded) => {
-                    let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
+                    let count = loaded.mesh.vertex_count();
+                    let mut text = tr!("task-loaded", name = name.as_str(), count = count);
                     for warning in loaded.warnings.iter().take(3) {
                         text.push_str("; ");
                         text.push_str(warning);
@@ -174,7 +184,7 @@ impl Tasks {
                             let _ = say.send(TaskReport::Used(path));
                             TaskReport::Message(text, false)
                         }
-                        Err(_) => TaskReport::Message("the loop has ended".into(), true),
+                        Err(_) => TaskReport::Message(tr!("task-loop-ended"), true),
                     }
                 }
                 Err(e) => TaskReport::Message(e.to_string(), true),
@@ -191,7 +201,8 @@ impl Tasks {
         Some((load.name.clone(), (done * 50.0).floor() / 50.0))
     }
 
-    /// Writes the visible objects, each coordinate times `scale`.
+    /// Writes the visible objects, each coordinate times `scale`; `unit` is the message of the
+    /// unit's name.
     pub fn export(&self, path: PathBuf, state: &Published, scale: f64, unit: &'static str) {
         let (scene, mesh) = (state.scene.clone(), state.mesh.clone());
         let (lo, hi) = state.world_bounds();
@@ -206,13 +217,9 @@ impl Tasks {
                 });
             let said = match written {
                 Ok(_) => {
-                    let text = format!(
-                        "Saved {}: {:.4} x {:.4} x {:.4} {unit}",
-                        path.display(),
-                        size.x,
-                        size.y,
-                        size.z
-                    );
+                    let [x, y, z] = size.to_array().map(|n| format!("{n:.4}"));
+                    let (name, unit) = (path.display().to_string(), tr!(unit));
+                    let text = tr!("task-exported", path = name, x = x, y = y, z = z, unit = unit);
                     let _ = say.send(TaskReport::Used(path));
                     TaskReport::Message(text, false)
                 }
@@ -281,7 +288,8 @@ impl Tasks {
                         let command = Command::Scene(SceneCommand::Exchange(done.exchange));
                         let built = Payload::Clays(done.clays);
                         let sent = commands.send(QueuedCommand::with_payload(command, built));
-                        (format!("{:?}: done", pairing.operation), sent.is_err())
+                        let operation = operation_title(pairing.operation);
+                        (tr!("task-done", operation = operation), sent.is_err())
                     }
                     Err(e) => (e.to_string(), true),
                 };
@@ -297,7 +305,7 @@ impl Tasks {
         thread("sculptd-boolean", move || {
             let (text, wrong) =
                 match boolean_jobs::at_rest(&shown, choice, &Job::default(), &commands) {
-                    Ok(_) => (format!("{}: done", choice.label()), false),
+                    Ok(_) => (tr!("task-done", operation = hand_menu::title(choice)), false),
                     Err(e) => (e.to_string(), true),
                 };
             let _ = say.send(TaskReport::Message(text, wrong));
@@ -329,7 +337,7 @@ impl Tasks {
     /// Cuts off what is seen in a part of the view.
     pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-trim", commands, move || {
-            Ok((trim::at_rest(&shown, &part)?, "Trimmed".into()))
+            Ok((trim::at_rest(&shown, &part)?, tr!("task-trimmed")))
         });
     }
 
@@ -337,7 +345,7 @@ impl Tasks {
     pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
-            Ok((vec![command], format!("Level {} of {of}", at + 1)))
+            Ok((vec![command], tr!("task-level", at = at + 1, all = of)))
         });
     }
 
@@ -346,12 +354,10 @@ impl Tasks {
         self.change("sculptd-remesh", commands, move || {
             let (command, made) = remesh_job::remeshed(&shown, &wanted, &Job::default())?;
             let [before, now] = made.volume;
-            let text = format!(
-                "Remeshed: {} triangles, voxels of {:.4}, volume {:+.2} %",
-                made.triangles,
-                made.voxel,
-                (now / before - 1.0) * 100.0
-            );
+            let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
+            let voxel = format!("{:.4}", made.voxel);
+            let count = made.triangles;
+            let text = tr!("task-remeshed", count = count, voxel = voxel, change = change);
             Ok((vec![command], text))
         });
     }
@@ -361,8 +367,8 @@ impl Tasks {
         let (say, drawing) = (self.say.clone(), projection::svg(outline));
         thread("sculptd-outline", move || {
             let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {
-                Ok(()) => (format!("Saved {}", path.display()), false),
-                Err(e) => (format!("{}: {e}", path.display()), true),
+                Ok(()) => (saved(&path), false),
+                Err(e) => (failed(&path, &e), true),
             };
             let _ = say.send(TaskReport::Message(text, wrong));
         });
@@ -382,7 +388,8 @@ impl Tasks {
         let (say, open) = (self.say.clone(), self.dialog.clone());
         thread("sculptd-dialog", move || {
             let begun_us = clock.now_us();
-            let dialog = rfd::AsyncFileDialog::new().add_filter("Meshes", &MESH_ENDINGS);
+            let dialog =
+                rfd::AsyncFileDialog::new().add_filter(tr!("chooser-meshes"), &MESH_ENDINGS);
             let chosen = match purpose {
                 _ if no_desktop() => None,
                 FilePurpose::Open => pollster::block_on(dialog.pick_file()),
@@ -439,12 +446,8 @@ impl Tasks {
             let said = super::picture::write_png(&path, &picture);
             match said {
                 Ok(()) if quiet => {}
-                Ok(()) => {
-                    drop(say.send(TaskReport::Message(format!("Saved {}", path.display()), false)))
-                }
-                Err(e) => {
-                    drop(say.send(TaskReport::Message(format!("{}: {e}", path.display()), true)))
-                }
+                Ok(()) => drop(say.send(TaskReport::Message(saved(&path), false))),
+                Err(e) => drop(say.send(TaskReport::Message(failed(&path, &e), true))),
             }
         });
     }
