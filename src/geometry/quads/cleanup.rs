@@ -115,6 +115,87 @@ fn turn_best(s: &mut QuadSurface, f: u32) -> bool {
     false
 }
 
+/// Quads of less than this are looked at by [`mend_folded`]: an angle of 10 or 170 degrees.
+const FOLDED: f64 = 0.015;
+
+/// Repairs quads that are reflex or folded: they are closed, or an edge of theirs is turned, where
+/// the least square of the faces around becomes squarer. How many were.
+pub(super) fn mend_folded(s: &mut QuadSurface) -> usize {
+    let mut done = 0;
+    for f in 0..s.faces.len() as u32 {
+        if !s.alive(f as usize) || shape(s, f) >= FOLDED {
+            continue;
+        }
+        done += usize::from(close_folded(s, f) || turn_folded(s, f));
+    }
+    done
+}
+
+/// The squareness of quad `f`; 1 for a triangle.
+fn shape(s: &QuadSurface, f: u32) -> f64 {
+    let face = s.faces[f as usize];
+    if face[3] == GONE {
+        return 1.0;
+    }
+    let up: glam::DVec3 =
+        face.iter().map(|&v| s.vertex_normal(v)).sum::<glam::DVec3>().normalize_or_zero();
+    squareness(face.map(|v| s.positions[v as usize]), up)
+}
+
+fn close_folded(s: &mut QuadSurface, f: u32) -> bool {
+    let face = s.faces[f as usize];
+    let at = |k: usize| s.positions[face[k % 4] as usize];
+    // The shorter diagonal first.
+    let first = usize::from(at(1).distance_squared(at(3)) < at(0).distance_squared(at(2)));
+    for k in [first, first + 2, first + 1, (first + 3) % 4] {
+        let (a, c) = (face[k], face[(k + 2) % 4]);
+        if !s.can_close(f, k) {
+            continue;
+        }
+        let to = if s.lines[a as usize].is_empty() {
+            s.positions[a as usize].midpoint(s.positions[c as usize])
+        } else {
+            s.positions[a as usize]
+        };
+        if closes_upright(s, f, a, c, to) {
+            s.close(f, k);
+            s.positions[a as usize] = to;
+            return true;
+        }
+    }
+    false
+}
+
+fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
+    let mut best: Option<(f64, u32, [u32; 6], usize)> = None;
+    for k in 0..4 {
+        let Some((g, six)) = s.hexagon(f, k) else { continue };
+        let now = shape(s, f).min(shape(s, g));
+        let few = |v: u32| {
+            s.around[v as usize].len() < if s.lines[v as usize].is_empty() { 4 } else { 2 }
+        };
+        if few(six[0]) || few(six[3]) {
+            continue;
+        }
+        let up = (s.normal(f) + s.normal(g)).normalize_or_zero();
+        for cut in [1, 2] {
+            if s.joined(six[cut], six[cut + 3]) {
+                continue;
+            }
+            let least = QuadSurface::cut(six, cut)
+                .iter()
+                .map(|q| squareness(q.map(|v| s.positions[v as usize]), up))
+                .fold(1.0, f64::min);
+            if least > now + 0.01 && best.is_none_or(|b| least > b.0) {
+                best = Some((least, g, six, cut));
+            }
+        }
+    }
+    let Some((_, g, six, cut)) = best else { return false };
+    s.turn(f, g, six, cut);
+    true
+}
+
 /// Cuts the quads that are reflex or folded into triangles; how many.
 pub(super) fn cut_folded(s: &mut QuadSurface) -> usize {
     let mut cut = 0;

@@ -166,7 +166,12 @@ fn at_step(
         cleanup::pass(&mut quads, job)?;
         smooth::smooth(&mut quads, target, step, 6, job)?;
     }
-    smooth::smooth(&mut quads, target, step, 10, job)?;
+    for _ in 0..4 {
+        smooth::smooth(&mut quads, target, step, 5, job)?;
+        if cleanup::mend_folded(&mut quads) == 0 {
+            break;
+        }
+    }
     if cleanup::cut_folded(&mut quads) > 0 {
         smooth::smooth(&mut quads, target, step, 4, job)?;
     }
