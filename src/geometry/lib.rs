@@ -58,6 +58,7 @@ pub mod picture;
 pub mod portable;
 pub mod projection;
 pub mod remesh;
+pub mod quads;
 pub mod repair;
 pub mod self_intersection;
 pub mod shapes;
