@@ -321,8 +321,8 @@ impl Stage {
     }
 
     /// Opens a field by a key, types into it once it is on the screen, and confirms what is typed
-    /// once that is there too, until the field is gone. On a loaded machine a window is late, and letters that come before
-    /// the field are shortcuts.
+    /// once that is there too, until the field is gone. On a loaded machine a window is late, and
+    /// letters that come before the field are shortcuts.
     pub fn answer(&self, key: &str, text: &str) {
         let before = self.look("before-the-field");
         self.drive(&["key", key]);
