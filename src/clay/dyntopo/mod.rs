@@ -24,6 +24,7 @@
 use std::sync::Arc;
 
 use super::clay::Clay;
+use super::layers::PageLayers;
 use super::page::Page;
 use super::pool::Pool;
 use super::workers::Workers;
@@ -199,8 +200,10 @@ impl Clay {
     }
 
     fn replace_page(&mut self, number: u32, mut page: Arc<Page>) {
+        let old = &self.pages[number as usize];
         if let Some(page) = Arc::get_mut(&mut page) {
             page.revision = self.revision;
+            PageLayers::keep_stack(old, page);
         }
         if page.own() == 0 {
             self.empty.push(number);

@@ -7,6 +7,7 @@ use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
+use super::layers::LayerPanel;
 use super::outliner::Outliner;
 use super::pens::PenTrace;
 use super::preferences::Hint;
@@ -49,6 +50,8 @@ pub struct UiState {
     pub trial: BooleanTrial,
     /// What was begun in the outliner.
     pub outliner: Outliner,
+    /// What was begun in the panel of layers.
+    pub layers: LayerPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     pub trim: Option<Trim>,
