@@ -21,8 +21,8 @@ use crate::edit::{
 };
 use crate::event::SubscribeReply;
 use crate::layers::{
-    LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams, LayerReply,
-    LayerSetParams, LayersReply,
+    LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
+    LayerReply, LayerSetParams, LayersReply,
 };
 use crate::scene::{
     AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,

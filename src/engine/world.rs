@@ -499,6 +499,8 @@ impl World {
 }
 
 #[cfg(test)]
+mod layer_tests;
+#[cfg(test)]
 mod scene_tests;
 #[cfg(test)]
 mod tap_tests;

@@ -81,6 +81,7 @@ impl Clay {
                     let place = stack.layers.len();
                     let intensity = in_range(layer.intensity)?;
                     ids.push(made(&mut stack, place, &layer.name, intensity));
+                    stack.layers[place].visible = layer.visible;
                 }
                 let first = ids.first().copied();
                 let pages = self.pages_of(|p| p.own() > 0);

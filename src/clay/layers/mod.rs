@@ -25,11 +25,13 @@
 //! stays with its offsets, and what it adds belongs to the base.
 
 mod edit;
+mod flat;
 mod kernel;
 mod offsets;
 mod stack;
 
 pub use edit::LayerJob;
+pub use flat::FlatLayers;
 pub use kernel::LayerOperation;
 pub use offsets::{LayerRow, LayerSum, PageLayers};
 pub use stack::{

@@ -100,6 +100,8 @@ pub struct LayerOffsets {
     pub name: String,
     /// Its intensity.
     pub intensity: f32,
+    /// Whether it is visible.
+    pub visible: bool,
     /// Numbers of vertices in the mesh that the clay was built from, ascending, each with its
     /// offset, object frame.
     pub offsets: Vec<(u32, [f32; 3])>,

@@ -20,8 +20,7 @@ pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<Thickne
         None => LiveMap::new(mesh, rays, &job).map_err(failed)?,
     };
     let measured = map.stale() as u64;
-    map.work(transform.inverse().point(params.near.into()), usize::MAX, &job)
-        .map_err(failed)?;
+    map.work(transform.inverse().point(params.near.into()), usize::MAX, &job).map_err(failed)?;
     let values = map.values();
     // The map is of the clay's own frame; walls are told in the world's unit.
     let unit = transform.scale as f32;

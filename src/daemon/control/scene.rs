@@ -141,6 +141,7 @@ fn primitive(asked: AskedShape, edge: Option<f64>) -> Result<(Primitive, Clay), 
 
 pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcError> {
     let mut transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
+    let mut layers = None;
     let (source, clay, name, warnings) = match (params.primitive, &params.path, params.held) {
         (None, None, true) => {
             let held = host.published.load().thing.clone();
@@ -160,6 +161,7 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
         (None, Some(path), false) => {
             let loaded =
                 startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)?;
+            layers = scene_jobs::layers_of(&loaded.targets);
             let source = ObjectSource::Mesh(loaded.plain.into());
             (source, loaded.mesh, startup::object_name(path), loaded.warnings)
         }
@@ -171,6 +173,9 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
     let reply = ask(host, QueuedSceneCommand { command, payload })?;
     if params.held {
         host.send(Command::PutDown)?;
+    }
+    if let Some(layers) = layers {
+        ask(host, SceneCommand::Layers(layers))?;
     }
     Ok(ObjectReply { warnings, ..reply })
 }

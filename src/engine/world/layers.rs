@@ -13,9 +13,7 @@ impl World {
             self.lift_all();
         }
         let cleaned = match edit {
-            LayerEdit::Add(name) => {
-                Some(LayerEdit::Add(clean_name(name).ok_or(SceneError::Name)?))
-            }
+            LayerEdit::Add(name) => Some(LayerEdit::Add(clean_name(name).ok_or(SceneError::Name)?)),
             LayerEdit::Rename(id, name) => {
                 Some(LayerEdit::Rename(*id, clean_name(name).ok_or(SceneError::Name)?))
             }

@@ -283,8 +283,7 @@ impl StrokeContext<'_> {
     ) {
         self.mesh.begin_step();
         let s = self.brush;
-        let cuts =
-            s.topology.by != Measure::Off && s.kind.cuts() && self.mesh.layer_count() == 0;
+        let cuts = s.topology.by != Measure::Off && s.kind.cuts() && self.mesh.layer_count() == 0;
         let found = s.kind.found() && !s.accumulate && !cuts;
         let (centre, normal) = if found { self.as_found(hit) } else { (hit.position, hit.normal) };
         let normal = match at.tilt {

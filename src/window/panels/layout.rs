@@ -4,8 +4,9 @@ use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, help, hints, history,
-    keys, layers, legend, look, masks, measure, messages, modal, outliner, preferences, pressure_curve,
-    radial, remesh, scene, search, start, symmetry, tablet_keys, theme, timing, trim,
+    keys, layers, legend, look, masks, measure, messages, modal, outliner, preferences,
+    pressure_curve, radial, remesh, scene, search, start, symmetry, tablet_keys, theme, timing,
+    trim,
 };
 
 /// Width of either panel, points.
