@@ -269,6 +269,22 @@ impl Page {
         self.layers.clone_from(&other.layers);
     }
 
+    /// What the page has of its object's layers; `None`: no layer changes it.
+    pub fn layers(&self) -> Option<&PageLayers> {
+        self.layers.as_deref()
+    }
+
+    /// The list of layers goes along from the page that this one takes the place of.
+    pub(super) fn keep_layer_stack(&mut self, old: &Page) {
+        let Some(stack) = old.layers().and_then(|l| l.stack.as_ref()) else { return };
+        if self.layers().is_some_and(|l| l.stack.is_some()) {
+            return;
+        }
+        let mut layers = self.layers().cloned().unwrap_or_default();
+        layers.stack = Some(stack.clone());
+        self.layers = layers.shared();
+    }
+
     /// What stands still while the page is only displaced.
     pub fn topology(&self) -> &Arc<PageTopology> {
         &self.topology

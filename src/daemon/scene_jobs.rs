@@ -4,8 +4,8 @@
 
 use std::sync::Arc;
 
-use sculptd_clay::layers::{FlatLayers, Layer, LayerOffsets, MAX_INTENSITY, MAX_LAYERS};
-use sculptd_clay::{Clay, LayerEdit, Snapshot};
+use sculptd_clay::layers::{Layer, LayerOffsets, MAX_INTENSITY, MAX_LAYERS};
+use sculptd_clay::{Clay, FlatLayers, LayerEdit, Snapshot};
 use sculptd_engine::scene::{
     Exchange, MAX_NAME, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, Operand,
     SceneError, SceneEvent, SceneView, clean_name,

@@ -52,7 +52,15 @@ pub struct Loaded {
 /// Reads a mesh from a file, or makes the ball that a session starts with.
 pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
     match path {
-        Some(path) => load_within(path, MAX_FILE, job),
+        Some(path) => {
+            let mut loaded = load_within(path, MAX_FILE, job)?;
+            if !loaded.targets.is_empty() {
+                let count = loaded.targets.len();
+                let text = "morph targets left out; the methods 'load' and 'scene.add' bring them";
+                loaded.warnings.push(format!("{count} {text} as layers"));
+            }
+            Ok(loaded)
+        }
         None => {
             let ball = shapes::sphere_of_about(START_VERTICES);
             build(ball, vec![], "the start ball".into(), job)

@@ -10,8 +10,7 @@
 //! * What a stroke did becomes offsets when it ends, as a part of its step.
 //! * Nothing is under way whenever the world is at rest: it is no part of a saved state.
 
-use sculptd_clay::layers::{LayerJob, LayerOperation};
-use sculptd_clay::{Clay, LayerEdit, LayerId, Workers};
+use sculptd_clay::{Clay, LayerEdit, LayerId, LayerJob, LayerOperation, Workers};
 
 /// Vertices of a tick: about two milliseconds on one core.
 const TICK_VERTICES: usize = 40_000;

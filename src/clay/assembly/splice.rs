@@ -337,7 +337,8 @@ fn layers(
         let Some(page) = pages.get_mut(p).and_then(Arc::get_mut) else { continue };
         page.layers = PageLayers::gathered(own.iter().enumerate().map(|(v, &r)| {
             let from = region.from.get(r as usize);
-            (page.points[v].truncate(), from.map(|h| (&**old.page(h.0), h.1 as usize)))
+            let from = from.and_then(|h| Some((old.page(h.0).layers()?, h.1 as usize)));
+            (page.points[v].truncate(), from)
         }));
     }
 }

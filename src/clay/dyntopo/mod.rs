@@ -24,7 +24,6 @@
 use std::sync::Arc;
 
 use super::clay::Clay;
-use super::layers::PageLayers;
 use super::page::Page;
 use super::pool::Pool;
 use super::workers::Workers;
@@ -203,7 +202,7 @@ impl Clay {
         let old = &self.pages[number as usize];
         if let Some(page) = Arc::get_mut(&mut page) {
             page.revision = self.revision;
-            PageLayers::keep_stack(old, page);
+            page.keep_layer_stack(old);
         }
         if page.own() == 0 {
             self.empty.push(number);

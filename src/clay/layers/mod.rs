@@ -8,12 +8,12 @@
 //!   the surface that the stroke left.
 //! * Base and offsets are kept by page, and only of pages that a layer changes. A page shares them
 //!   with its older versions, so a change of an intensity copies no offsets, and a stroke copies
-//!   them once, when it ends ([`LayerOperation::Capture`]).
+//!   them once, when it ends ([`LayerOperation::Capture`](crate::LayerOperation::Capture)).
 //! * They lie in the pages themselves, and the list of layers ([`LayerStack`]) lies in the first
 //!   page: whatever keeps or exchanges pages (undo, snapshots, the history of a session, duplicates
 //!   of an object) keeps and exchanges the layers with them.
 //! * An edit re-evaluates the pages of the layer that it is about and no others. The pages can be
-//!   worked through in any portions ([`Clay::edit_layers`], [`Clay::run_layers`]).
+//!   worked through in any portions ([`edit_layers`](crate::Clay::edit_layers), [`run_layers`](crate::Clay::run_layers)).
 //!
 //! Offsets are in the frame of the object, as in the shape keys of Blender and the morph targets of
 //! glTF, not in a frame of the surface below. Then the order of the sum is the only order that
@@ -24,20 +24,11 @@
 //! Where triangles change, offsets are carried along: a local Boolean leaves every vertex that
 //! stays with its offsets, and what it adds belongs to the base.
 
-mod edit;
-mod flat;
-mod kernel;
 mod offsets;
 mod stack;
 
-pub use edit::LayerJob;
-pub use flat::FlatLayers;
-pub use kernel::LayerOperation;
 pub use offsets::{LayerRow, LayerSum, PageLayers};
 pub use stack::{
     LEAST_INTENSITY, Layer, LayerEdit, LayerError, LayerId, LayerOffsets, LayerStack,
     MAX_INTENSITY, MAX_LAYERS,
 };
-
-#[cfg(test)]
-mod tests;

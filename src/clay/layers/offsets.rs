@@ -6,7 +6,6 @@ use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::stack::{LayerId, LayerStack, MAX_LAYERS};
-use crate::page::Page;
 
 /// The offsets of a layer in a page.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,17 +76,16 @@ impl PageLayers {
             })
     }
 
-    /// The layers of a page that is put together of vertices: where each is, and the own vertex of
-    /// an old page that it was, if it was one. A vertex that is new belongs to the base.
+    /// The layers of a page that is put together of vertices: where each is, and the layers of the
+    /// old page that it was an own vertex of, if it was one. A vertex that is new belongs to the base.
     pub(crate) fn gathered<'a>(
-        vertices: impl ExactSizeIterator<Item = (Vec3, Option<(&'a Page, usize)>)>,
+        vertices: impl ExactSizeIterator<Item = (Vec3, Option<(&'a PageLayers, usize)>)>,
     ) -> Option<Arc<PageLayers>> {
         let count = vertices.len();
         let mut base = Vec::with_capacity(count);
         let mut rows: Vec<(LayerId, Vec<DVec3>)> = Vec::new();
         for (v, (place, from)) in vertices.enumerate() {
-            let layers = from.and_then(|(page, v)| Some((page.layers()?, v)));
-            let old = layers.and_then(|(l, v)| l.base.get(v).map(|base| (l, v, *base)));
+            let old = from.and_then(|(l, v)| l.base.get(v).map(|base| (l, v, *base)));
             base.push(old.map_or(place.as_dvec3(), |o| o.2));
             let Some((layers, at, _)) = old else { continue };
             for row in &layers.rows {
@@ -102,17 +100,6 @@ impl PageLayers {
         rows.sort_unstable_by_key(|r| r.0);
         rows.into_iter().for_each(|(layer, offsets)| new.put(layer, offsets));
         new.shared()
-    }
-
-    /// The list of layers goes along from a page to the one that takes its place.
-    pub(crate) fn keep_stack(old: &Page, new: &mut Page) {
-        let Some(stack) = old.layers().and_then(|l| l.stack.as_ref()) else { return };
-        if new.layers().is_some_and(|l| l.stack.is_some()) {
-            return;
-        }
-        let mut layers = new.layers().cloned().unwrap_or_default();
-        layers.stack = Some(stack.clone());
-        new.layers = layers.shared();
     }
 
     /// Everything that it holds, as words for a hash.
@@ -141,13 +128,6 @@ impl PageLayers {
     /// What undo counts for it, bytes.
     pub(crate) fn weight(&self) -> usize {
         size_of::<PageLayers>() + self.base.len() * 24 * (1 + self.rows.len())
-    }
-}
-
-impl Page {
-    /// What the page has of its object's layers; `None`: no layer changes it.
-    pub fn layers(&self) -> Option<&PageLayers> {
-        self.layers.as_deref()
     }
 }
 
@@ -219,7 +199,7 @@ impl<'a> LayerSum<'a> {
 
     /// The offset of the active layer with which own vertex `v` is at `p`. The active layer takes
     /// strokes.
-    pub(super) fn offset_for(&self, v: usize, p: Vec3) -> DVec3 {
+    pub(crate) fn offset_for(&self, v: usize, p: Vec3) -> DVec3 {
         let Some(active) = self.active else { return DVec3::ZERO };
         let weight = self.parts[active].1;
         let mut offset = (p.as_dvec3() - self.with(v, active, DVec3::ZERO)) / weight;
@@ -235,13 +215,13 @@ impl<'a> LayerSum<'a> {
     }
 
     /// The offset of the active layer at own vertex `v`.
-    pub(super) fn offset(&self, v: usize) -> DVec3 {
+    pub(crate) fn offset(&self, v: usize) -> DVec3 {
         let row = self.active.map_or(&[][..], |k| self.parts[k].0);
         row.get(v).copied().unwrap_or(DVec3::ZERO)
     }
 
     /// Where the base of own vertex `v` is to be, so that the vertex is at `p`.
-    pub(super) fn base_for(&self, v: usize, p: Vec3) -> DVec3 {
+    pub(crate) fn base_for(&self, v: usize, p: Vec3) -> DVec3 {
         let mut base = self.base[v] + (p.as_dvec3() - self.with(v, usize::MAX, DVec3::ZERO));
         for _ in 0..3 {
             let mut there = LayerSum { base: &[base], ..*self };

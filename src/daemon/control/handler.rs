@@ -14,7 +14,7 @@ use super::layers::{self, LayerDone};
 use super::mask_region::mask_region;
 use super::measurement;
 use super::scene;
-use super::status_reply;
+use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
@@ -56,11 +56,6 @@ const SENT: SentReply = SentReply { sent: true };
 /// As [`Request::read`], and what the method refuses.
 pub fn call(host: &Host, name: &str, params: Value) -> Result<Value, RpcError> {
     method::answer(host, Request::read(name, params)?)
-}
-
-/// The same data in another type of the same JSON form.
-pub(super) fn convert<T: DeserializeOwned>(value: impl Serialize) -> Result<T, RpcError> {
-    serde_json::to_value(value).and_then(serde_json::from_value).map_err(failed)
 }
 
 /// Lays the named fields over what is in force. An unknown field is refused by its name.
@@ -132,8 +127,10 @@ fn boolean(
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
+    let layers = layers::count(host);
     let joined = work(&place.job).map_err(failed)?;
     Ok(edit::BooleanReply {
+        layers_baked: if joined.local { 0 } else { layers },
         local: joined.local,
         pages_written: joined.pages_written as u64,
         pages_shared: joined.pages_shared as u64,
@@ -298,6 +295,9 @@ impl Handler for Host {
         let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
         let built = Payload::Clay(Box::new(loaded.mesh));
         self.send(QueuedCommand::with_payload(command, built))?;
+        if let Some(targets) = scene_jobs::layers_of(&loaded.targets) {
+            self.send(Command::Scene(SceneCommand::Layers(targets)))?;
+        }
         Ok(edit::LoadReply { vertices, warnings: loaded.warnings })
     }
 
@@ -463,7 +463,8 @@ impl Handler for Host {
         let (command, (level, levels)) =
             boolean_jobs::level(&self.published, finer).map_err(failed)?;
         self.send(command)?;
-        Ok(edit::LevelReply { level: level as u64, levels: levels as u64 })
+        let layers_baked = layers::count(self);
+        Ok(edit::LevelReply { level: level as u64, levels: levels as u64, layers_baked })
     }
 
     fn remesh(&self, params: edit::RemeshParams) -> Result<edit::RemeshReply, RpcError> {
@@ -473,8 +474,10 @@ impl Handler for Host {
         let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
         let (command, made) =
             remesh_job::remeshed(&self.published, &wanted, &place.job).map_err(failed)?;
+        let layers_baked = layers::count(self);
         self.send(command)?;
         Ok(edit::RemeshReply {
+            layers_baked,
             voxel: made.voxel,
             vertices: made.vertices as u64,
             triangles: made.triangles as u64,
@@ -548,18 +551,4 @@ impl Handler for Host {
         self.stop.store(true, Relaxed);
         Ok(status::ShutdownReply { stopping: true })
     }
-}
-
-pub(super) fn losses(shown: &Published) -> status::Losses {
-    let l = shown.figures.losses;
-    status::Losses { motion: l.motion, transition: l.transition }
-}
-
-pub(super) fn other_version(theirs: Versions) -> RpcError {
-    let ours = Versions::OURS;
-    let text = format!(
-        "this daemon speaks versions {} to {}, the client {} to {}",
-        ours.min, ours.max, theirs.min, theirs.max
-    );
-    RpcError::new(Code::Version, text)
 }

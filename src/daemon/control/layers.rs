@@ -29,6 +29,11 @@ pub(super) fn list(shown: &Published) -> LayersReply {
     }
 }
 
+/// How many layers the active object has.
+pub(super) fn count(host: &Host) -> u64 {
+    host.published.load().mesh.layers().map_or(0, |s| s.layers.len() as u64)
+}
+
 /// Hands an edit to the loop and waits for what came of it.
 pub(super) fn edit(host: &Host, edit: LayerEdit) -> LayerDone {
     let done = ask(host, SceneCommand::Layers(edit))?;

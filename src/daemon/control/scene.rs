@@ -211,12 +211,18 @@ pub(super) fn combine(
     let begun = clock.now_us();
     let done = of(&host.published.load_full(), &place.job).map_err(failed)?;
     let objects = done.clays.len() as u64;
+    let shown = host.published.load_full();
+    let layers = |(o, clay): (&sculptd_engine::scene::ObjectView, &sculptd_clay::Snapshot)| {
+        let operand = done.exchange.from.iter().any(|from| from.id == o.id);
+        clay.layers().filter(|_| operand).map_or(0, |s| s.layers.len() as u64)
+    };
+    let layers_baked = shown.scene.each(&shown.mesh).map(layers).sum();
     let vertices = done.clays.iter().map(|c| c.vertex_count() as u64).sum();
     let payload = Some(Payload::Clays(done.clays));
     let command = SceneCommand::Exchange(done.exchange);
     let ObjectReply { id, .. } = ask(host, QueuedSceneCommand { command, payload })?;
     let seconds = (clock.now_us() - begun) as f64 * 1e-6;
-    Ok(CombineReply { id, objects, vertices, seconds })
+    Ok(CombineReply { id, objects, vertices, seconds, layers_baked })
 }
 
 pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, RpcError> {

@@ -2,12 +2,15 @@
 
 use std::sync::atomic::Ordering::Relaxed;
 
-use super::handler::{convert, losses, other_version};
-use super::host::Host;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::host::{Host, failed};
 use crate::Published;
 use crate::window_link::WindowStanding;
 use sculptd_control::RpcError;
 use sculptd_control::status::{self, Versions};
+use sculptd_control::wire::Code;
 
 /// The pens whose rings are shown, and where: `view` is the view's corner and size on the desktop.
 fn pens(shown: &Published, view: Option<[glam::DVec2; 2]>) -> Vec<status::PenStatus> {
@@ -62,4 +65,23 @@ pub(super) fn status(
         },
         session: host.window.session().map(|p| p.display().to_string()),
     })
+}
+
+/// The same data in another type of the same JSON form.
+pub(super) fn convert<T: DeserializeOwned>(value: impl Serialize) -> Result<T, RpcError> {
+    serde_json::to_value(value).and_then(serde_json::from_value).map_err(failed)
+}
+
+pub(super) fn losses(shown: &Published) -> status::Losses {
+    let l = shown.figures.losses;
+    status::Losses { motion: l.motion, transition: l.transition }
+}
+
+pub(super) fn other_version(theirs: Versions) -> RpcError {
+    let ours = Versions::OURS;
+    let text = format!(
+        "this daemon speaks versions {} to {}, the client {} to {}",
+        ours.min, ours.max, theirs.min, theirs.max
+    );
+    RpcError::new(Code::Version, text)
 }

@@ -72,7 +72,7 @@ fn large_world(workers: usize) -> World {
 fn everywhere(world: &World) -> LayerEdit {
     let count = world.mesh().vertex_count() as u32;
     let offsets = (0..count).map(|v| (v, [0.01, 0.0, (v % 7) as f32 * 1e-3])).collect();
-    let layer = LayerOffsets { name: "all".into(), intensity: 1.0, offsets };
+    let layer = LayerOffsets { name: "all".into(), intensity: 1.0, visible: true, offsets };
     LayerEdit::Import(Arc::new(vec![layer]))
 }
 

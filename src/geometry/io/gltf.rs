@@ -358,7 +358,8 @@ impl GltfFile<'_> {
             let mut offsets: Vec<(u32, Vec3)> = Vec::new();
             for &(p, first) in starts {
                 let primitive = &source.primitives[p];
-                let Some(at) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+                let Some(at) = primitive.attributes.get(&Checked::Valid(Semantic::Positions))
+                else {
                     continue;
                 };
                 let what = format!("morph target {k} of primitive {p} of mesh {mesh}");

@@ -113,10 +113,10 @@ pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
 mod tests {
     use super::*;
     use crate::io::MorphTarget;
-    use glam::Vec3;
     use crate::io::parse;
     use crate::job::Job;
     use crate::shapes;
+    use glam::Vec3;
 
     fn scene() -> Vec<SceneMesh> {
         let box_of = |size: f64| shapes::cuboid(DVec3::ZERO, DVec3::splat(size));

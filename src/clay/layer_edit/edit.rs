@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use super::kernel::{LayerKernel, LayerOperation, StackKernel};
-use super::offsets::{LayerSum, PageLayers};
-use super::stack::{Layer, LayerEdit, LayerError, LayerId, LayerStack, MAX_INTENSITY, MAX_LAYERS};
+use crate::layers::{
+    Layer, LayerEdit, LayerError, LayerId, LayerStack, LayerSum, MAX_INTENSITY, MAX_LAYERS,
+    PageLayers,
+};
 use crate::{Clay, DabReport, Workers};
 
 /// What is still to be done to pages after the list of layers was changed.

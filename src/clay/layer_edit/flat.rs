@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::stack::Layer;
 use crate::Snapshot;
+use crate::layers::Layer;
 
 /// The layers of an object by the places of vertices in [`Snapshot::to_tri`].
 #[derive(Debug, Clone, PartialEq)]

@@ -3,9 +3,9 @@ use std::sync::Arc;
 use glam::Vec3;
 use proptest::prelude::*;
 
-use super::*;
 use crate::brush::GaussianBrush;
-use crate::{Clay, Page, Reach, Workers};
+use crate::layers::{LayerEdit, LayerError, LayerId, LayerOffsets};
+use crate::{Clay, LayerOperation, Page, Reach, Workers};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes::icosphere;
 

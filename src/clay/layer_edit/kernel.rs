@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::offsets::{LayerRow, LayerSum, PageLayers};
-use super::stack::{LayerId, LayerOffsets, LayerStack};
+use crate::layers::{LayerId, LayerOffsets, LayerRow, LayerStack, LayerSum, PageLayers};
 use crate::{Kernel, PageIn, PageOut};
 
 /// What is to be done to each page of a list. All but [`LayerOperation::Capture`] and
