@@ -13,7 +13,8 @@
 //!   page: whatever keeps or exchanges pages (undo, snapshots, the history of a session, duplicates
 //!   of an object) keeps and exchanges the layers with them.
 //! * An edit re-evaluates the pages of the layer that it is about and no others. The pages can be
-//!   worked through in any portions ([`edit_layers`](crate::Clay::edit_layers), [`run_layers`](crate::Clay::run_layers)).
+//!   worked through in any portions ([`edit_layers`](crate::Clay::edit_layers),
+//!   [`run_layers`](crate::Clay::run_layers)).
 //!
 //! Offsets are in the frame of the object, as in the shape keys of Blender and the morph targets of
 //! glTF, not in a frame of the surface below. Then the order of the sum is the only order that

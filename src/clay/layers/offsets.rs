@@ -77,7 +77,8 @@ impl PageLayers {
     }
 
     /// The layers of a page that is put together of vertices: where each is, and the layers of the
-    /// old page that it was an own vertex of, if it was one. A vertex that is new belongs to the base.
+    /// old page that it was an own vertex of, if it was one. A vertex that is new belongs to the
+    /// base.
     pub(crate) fn gathered<'a>(
         vertices: impl ExactSizeIterator<Item = (Vec3, Option<(&'a PageLayers, usize)>)>,
     ) -> Option<Arc<PageLayers>> {
