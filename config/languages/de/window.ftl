@@ -321,6 +321,7 @@ history-reshaped = umgeformt
 history-boolean = boolesch
 history-merged = vereint
 history-split = geteilt
+history-layers = Ebenen
 
 ## Page: look
 

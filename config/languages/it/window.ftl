@@ -321,6 +321,7 @@ history-reshaped = rimodellato
 history-boolean = booleana
 history-merged = unito
 history-split = diviso
+history-layers = livelli
 
 ## Page: look
 

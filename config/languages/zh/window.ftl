@@ -323,6 +323,7 @@ history-reshaped = reshaped
 history-boolean = Boolean
 history-merged = merged
 history-split = split
+history-layers = 图层
 
 ## Page: look
 
