@@ -3,6 +3,7 @@
 
 mod beside;
 mod kiosk;
+mod layers;
 mod layout;
 mod learning;
 mod panels;
