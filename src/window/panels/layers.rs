@@ -64,7 +64,7 @@ fn row(
     out: &mut Vec<UiRequest>,
 ) {
     let id = layer.id;
-    ui.horizontal(|ui| {
+    let named = ui.horizontal(|ui| {
         let eye = ui.selectable_label(layer.visible, "eye").on_hover_text("Seen");
         if eye.clicked() {
             let visible = Some(!layer.visible);
@@ -78,7 +78,7 @@ fn row(
             } else {
                 field.request_focus();
             }
-            return;
+            return None;
         }
         let active = stack.active == Some(id);
         let name = ui.add(egui::Button::selectable(active, &layer.name).truncate());
@@ -87,10 +87,14 @@ fn row(
         } else if name.clicked() && !active {
             ask(out, LayerEdit::Activate(Some(id)));
         }
+        Some(name.id)
     });
     let mut shown = panel.dragged.filter(|d| d.0 == id).map_or(layer.intensity, |d| d.1);
     let slider = egui::Slider::new(&mut shown, -MAX_INTENSITY..=MAX_INTENSITY).fixed_decimals(2);
-    let slider = ui.push_id(id.0, |ui| ui.add(slider)).inner;
+    let mut slider = ui.push_id(id.0, |ui| ui.add(slider)).inner;
+    if let Some(name) = named.inner {
+        slider = slider.labelled_by(name);
+    }
     let set = |live| LayerEdit::Set { id, intensity: Some(shown), visible: None, live };
     if slider.drag_stopped() {
         panel.dragged = None;
