@@ -120,6 +120,8 @@ kind-surface-smooth = Λεία επιφάνεια
     .about = Εξομαλύνει την επιφάνεια και κρατά τον όγκο της (Taubin 1995).
 kind-boundary = Όριο
     .about = Το όριο μιας ανοιχτής επιφάνειας ακολουθεί την πένα, και μαζί η επιφάνεια πίσω του.
+kind-erase-layer = Σβήσιμο στρώσης
+    .about = Αφαιρεί ό,τι κάνει η ενεργή στρώση· η επιφάνεια επιστρέφει σε ό,τι είναι από κάτω.
 
 ## Numbers of single brushes
 
@@ -318,6 +320,7 @@ history-activated = ενεργοποίηση
 history-shown = προβολή
 history-locked = κλείδωμα
 history-reshaped = αναμόρφωση
+history-layers = στρώσεις
 history-boolean = Boolean
 history-merged = συγχώνευση
 history-split = διαχωρισμός
@@ -410,6 +413,32 @@ operation-difference = Διαφορά
     .tip = Αυτό το αντικείμενο κόβεται από το ενεργό
 operation-reverse-difference = Αντίστροφη διαφορά
     .tip = Το ενεργό κόβεται από αυτό
+
+layers-heading = Στρώσεις
+layers-add = Νέα στρώση
+    .tip = Οι κινήσεις πάνε στη νέα στρώση
+layers-name = στρώση { $number }
+layers-base = βάση
+    .tip = Οι κινήσεις μένουν κάτω από όλες τις στρώσεις
+layers-unseen = Η ενεργή στρώση είναι κρυφή ή έχει ένταση 0: οι κινήσεις δεν θα φαίνονταν
+layers-topology = Η δυναμική τοπολογία ηρεμεί όσο το αντικείμενο έχει στρώσεις· ενσωματώστε τες για να τη χρησιμοποιήσετε
+layers-eye = όψη
+    .tip = Ορατή
+layers-up = Πάνω
+    .tip = Πάνω από την επόμενη στρώση
+layers-down = Κάτω
+    .tip = Κάτω από την επόμενη στρώση
+layers-merge = Ένωση κάτω
+    .tip = Την προσθέτει στην από κάτω στρώση, ή στη βάση. Πρέπει να φαίνονται και οι δύο
+layers-duplicate = Διπλή στρώση
+    .tip = Ένα κρυφό αντίγραφο από πάνω
+layers-clear = Άδειασμα στρώσης
+    .tip = Αφαιρεί ό,τι κάνει
+layers-remove = Αφαίρεση στρώσης
+    .tip = Την αφαιρεί μαζί με ό,τι κάνει
+layers-rename = Όνομα στρώσης
+layers-bake = Ενσωμάτωση
+    .tip = Η επιφάνεια όπως είναι γίνεται βάση
 
 levels-heading = Επίπεδα
 levels-at = επίπεδο { $at } από { $all }, { $count } τρίγωνα
@@ -846,6 +875,7 @@ task-done = { $operation }: έγινε
 task-trimmed = Περικόπηκε
 task-level = Επίπεδο { $at } από { $all }
 task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος { $change } %
+task-layers-baked = Στρώσεις που ενσωματώθηκαν στη νέα επιφάνεια: { $count }
 task-preferences-unreadable = { $path }: { $error }· φυλάχτηκε ως { $aside }
 task-preferences-stuck = { $path }: { $error }· δεν μπορεί να παραμεριστεί: { $why }
 task-preferences-unread = { $path }: οι προτιμήσεις δεν διαβάζονται: { $error }

@@ -120,6 +120,8 @@ kind-surface-smooth = Suavizar superficie
     .about = Iguala la superficie y conserva su volumen (Taubin 1995).
 kind-boundary = Borde
     .about = El borde de una superficie abierta sigue al lápiz, y la superficie tras él.
+kind-erase-layer = Borrar capa
+    .about = Quita lo que hace la capa activa; la superficie vuelve a lo que hay debajo.
 
 ## Numbers of single brushes
 
@@ -318,6 +320,7 @@ history-activated = activado
 history-shown = mostrado u oculto
 history-locked = bloqueado o no
 history-reshaped = reformado
+history-layers = capas
 history-boolean = booleana
 history-merged = unido
 history-split = separado
@@ -410,6 +413,32 @@ operation-difference = Diferencia
     .tip = Este objeto se corta del activo
 operation-reverse-difference = Diferencia inversa
     .tip = El activo se corta de este
+
+layers-heading = Capas
+layers-add = Añadir capa
+    .tip = Los trazos van a la nueva capa
+layers-name = capa { $number }
+layers-base = base
+    .tip = Los trazos quedan bajo todas las capas
+layers-unseen = La capa activa está oculta o su intensidad es 0: los trazos no se verían
+layers-topology = La topología dinámica descansa mientras el objeto tiene capas; consolídalas para usarla
+layers-eye = ver
+    .tip = Visible
+layers-up = Subir
+    .tip = Sobre la capa siguiente
+layers-down = Bajar
+    .tip = Bajo la capa siguiente
+layers-merge = Unir hacia abajo
+    .tip = La añade a la capa de abajo, o a la base. Ambas deben verse
+layers-duplicate = Duplicar capa
+    .tip = Una gemela oculta sobre ella
+layers-clear = Vaciar capa
+    .tip = Quita lo que hace
+layers-remove = Quitar capa
+    .tip = La quita con lo que hace
+layers-rename = Renombrar capa
+layers-bake = Consolidar capas
+    .tip = La superficie como está pasa a ser la base
 
 levels-heading = Niveles
 levels-at = nivel { $at } de { $all }, { $count } triángulos
@@ -846,6 +875,7 @@ task-done = { $operation }: hecho
 task-trimmed = Recortado
 task-level = Nivel { $at } de { $all }
 task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volumen { $change } %
+task-layers-baked = Capas consolidadas en la nueva superficie: { $count }
 task-preferences-unreadable = { $path }: { $error }; se conserva como { $aside }
 task-preferences-stuck = { $path }: { $error }; no se puede apartar: { $why }
 task-preferences-unread = { $path }: no se pueden leer las preferencias: { $error }

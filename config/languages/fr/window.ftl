@@ -120,6 +120,8 @@ kind-surface-smooth = Adoucir surface
     .about = Égalise la surface et garde son volume (Taubin 1995).
 kind-boundary = Bord
     .about = Le bord d'une surface ouverte suit le stylet, et la surface derrière lui.
+kind-erase-layer = Effacer calque
+    .about = Enlève ce que fait le calque actif ; la surface revient à ce qui est dessous.
 
 ## Numbers of single brushes
 
@@ -318,6 +320,7 @@ history-activated = activé
 history-shown = montré ou caché
 history-locked = verrou changé
 history-reshaped = reformé
+history-layers = calques
 history-boolean = booléenne
 history-merged = fusionné
 history-split = séparé
@@ -410,6 +413,32 @@ operation-difference = Différence
     .tip = Cet objet est découpé de l'actif
 operation-reverse-difference = Différence inverse
     .tip = L'actif est découpé de celui-ci
+
+layers-heading = Calques
+layers-add = Ajouter un calque
+    .tip = Les traits vont au nouveau calque
+layers-name = calque { $number }
+layers-base = base
+    .tip = Les traits restent sous tous les calques
+layers-unseen = Le calque actif est caché ou son intensité est 0 : les traits ne se verraient pas
+layers-topology = La topologie dynamique repose tant que l'objet a des calques ; fusionnez-les pour l'utiliser
+layers-eye = œil
+    .tip = Visible
+layers-up = Monter
+    .tip = Au-dessus du calque suivant
+layers-down = Descendre
+    .tip = Au-dessous du calque suivant
+layers-merge = Fusionner vers le bas
+    .tip = L'ajoute au calque du dessous, ou à la base. Les deux doivent être visibles
+layers-duplicate = Dupliquer calque
+    .tip = Un jumeau caché au-dessus
+layers-clear = Vider calque
+    .tip = Enlève ce qu'il fait
+layers-remove = Retirer calque
+    .tip = Le retire avec ce qu'il fait
+layers-rename = Renommer calque
+layers-bake = Tout fusionner
+    .tip = La surface telle quelle devient la base
 
 levels-heading = Niveaux
 levels-at = niveau { $at } sur { $all }, { $count } triangles
@@ -846,6 +875,7 @@ task-done = { $operation } : fait
 task-trimmed = Rogné
 task-level = Niveau { $at } sur { $all }
 task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume { $change } %
+task-layers-baked = Calques fusionnés dans la nouvelle surface : { $count }
 task-preferences-unreadable = { $path } : { $error } ; il est gardé sous { $aside }
 task-preferences-stuck = { $path } : { $error } ; il ne peut être mis de côté : { $why }
 task-preferences-unread = { $path } : les préférences ne peuvent être lues : { $error }

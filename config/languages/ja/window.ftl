@@ -120,6 +120,8 @@ kind-surface-smooth = 面スムーズ
     .about = 体積を保って面をならします (Taubin 1995)。
 kind-boundary = 境界
     .about = 開いた面の境界がペンに付いて動き、その奥の面も動きます。
+kind-erase-layer = レイヤー消去
+    .about = アクティブなレイヤーの効果を取り除き、下の面に戻します。
 
 ## Numbers of single brushes
 
@@ -317,6 +319,7 @@ history-activated = アクティブ化
 history-shown = 表示の切り替え
 history-locked = ロックの切り替え
 history-reshaped = 形状の変更
+history-layers = レイヤー
 history-boolean = ブーリアン
 history-merged = 結合
 history-split = 分離
@@ -409,6 +412,32 @@ operation-difference = 差分
     .tip = アクティブなものからこれを切り取ります
 operation-reverse-difference = 逆の差分
     .tip = これからアクティブなものを切り取ります
+
+layers-heading = レイヤー
+layers-add = レイヤーを追加
+    .tip = ストロークは新しいレイヤーに入ります
+layers-name = レイヤー { $number }
+layers-base = ベース
+    .tip = ストロークはすべてのレイヤーの下に入ります
+layers-unseen = アクティブなレイヤーが非表示か強さ 0 のため、ストロークは見えません
+layers-topology = レイヤーがある間、ダイナミックトポロジーは働きません。使うには統合してください
+layers-eye = 表示
+    .tip = 表示中
+layers-up = 上へ
+    .tip = 次のレイヤーの上へ
+layers-down = 下へ
+    .tip = 次のレイヤーの下へ
+layers-merge = 下に結合
+    .tip = 下のレイヤーまたはベースに加えます。両方が表示されている必要があります
+layers-duplicate = レイヤーを複製
+    .tip = 上に非表示の複製を作ります
+layers-clear = レイヤーを消去
+    .tip = 効果を取り除きます
+layers-remove = レイヤーを削除
+    .tip = 効果とともに削除します
+layers-rename = 名前を変更
+layers-bake = レイヤーを統合
+    .tip = 今の面がベースになります
 
 levels-heading = レベル
 levels-at = レベル { $at } / { $all }、三角形 { $count } 枚
@@ -842,6 +871,7 @@ task-done = { $operation }: 完了
 task-trimmed = トリムしました
 task-level = レベル { $at } / { $all }
 task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxel }、体積 { $change } %
+task-layers-baked = 新しい面に統合したレイヤー: { $count }
 task-preferences-unreadable = { $path }: { $error }。{ $aside } として残しました
 task-preferences-stuck = { $path }: { $error }。別名にできません: { $why }
 task-preferences-unread = { $path }: プリファレンスを読めません: { $error }

@@ -120,6 +120,8 @@ kind-surface-smooth = 表面光滑
     .about = 使表面平整并保持体积 (Taubin 1995)。
 kind-boundary = 边界
     .about = 开放表面的边界随笔移动, 其后的表面亦然。
+kind-erase-layer = 擦除图层
+    .about = 去除活动图层的效果; 表面回到其下方的样子。
 
 ## Numbers of single brushes
 
@@ -317,6 +319,7 @@ history-activated = 激活
 history-shown = 显示或隐藏
 history-locked = 锁定或解锁
 history-reshaped = 改形
+history-layers = 图层
 history-boolean = 布尔
 history-merged = 合并
 history-split = 拆分
@@ -409,6 +412,32 @@ operation-difference = 差集
     .tip = 从活动物体中切去此物体
 operation-reverse-difference = 反向差集
     .tip = 从此物体中切去活动物体
+
+layers-heading = 图层
+layers-add = 添加图层
+    .tip = 笔画进入新图层
+layers-name = 图层 { $number }
+layers-base = 基底
+    .tip = 笔画位于所有图层之下
+layers-unseen = 活动图层已隐藏或强度为 0: 看不到笔画
+layers-topology = 物体有图层时动态拓扑不工作; 烘焙图层后可用
+layers-eye = 显示
+    .tip = 可见
+layers-up = 上移
+    .tip = 移到上一图层之上
+layers-down = 下移
+    .tip = 移到下一图层之下
+layers-merge = 向下合并
+    .tip = 并入下方图层或基底。两者都须可见
+layers-duplicate = 复制图层
+    .tip = 在其上方建隐藏副本
+layers-clear = 清空图层
+    .tip = 去除其效果
+layers-remove = 移除图层
+    .tip = 连同效果移除
+layers-rename = 重命名图层
+layers-bake = 烘焙图层
+    .tip = 当前表面成为基底
 
 levels-heading = 级别
 levels-at = 级别 { $at } / { $all }, { $count } 个三角面
@@ -842,6 +871,7 @@ task-done = { $operation }: 完成
 task-trimmed = 已修剪
 task-level = 级别 { $at } / { $all }
 task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体积 { $change } %
+task-layers-baked = 烘焙到新表面的图层: { $count }
 task-preferences-unreadable = { $path }: { $error }; 已保留为 { $aside }
 task-preferences-stuck = { $path }: { $error }; 无法另存: { $why }
 task-preferences-unread = { $path }: 无法读取偏好设置: { $error }

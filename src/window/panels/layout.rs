@@ -4,7 +4,7 @@ use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, files, fonts, hand_menu, help, hints,
-    history, keys, legend, look, masks, measure, messages, modal, outliner, preferences,
+    history, keys, layers, legend, look, masks, measure, messages, modal, outliner, preferences,
     pressure_curve, radial, remesh, rows, scene, search, start, symmetry, tablet_keys, theme,
     timing, trim,
 };
@@ -120,6 +120,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
         Tab::Look => look::ui(ui, ui_state, out, view),
         Tab::Scene => {
             outliner::ui(ui, view, ui_state, out);
+            layers::ui(ui, view, ui_state, out);
             scene::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::levels(ui, view, ui_state, out);

@@ -19,6 +19,7 @@ pub mod history;
 pub mod history_tree;
 pub mod keys;
 pub mod kiosk;
+pub mod layers;
 pub mod layout;
 pub mod legend;
 pub mod look;

@@ -4,6 +4,7 @@
 use super::state::WindowState;
 use super::tasks::TaskReport;
 use super::wiring::Wiring;
+use crate::language::tr;
 use crate::look::Map;
 use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
 use sculptd_daemon::Published;
@@ -41,6 +42,9 @@ impl WindowState {
         let now = wiring.clock.now_us();
         self.follow_tablets(&state, wiring);
         let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
+        if let Some(count) = self.ui_state.layers.baked(&state) {
+            self.ui_state.say(tr!("task-layers-baked", count = count), false);
+        }
         changed |= self.drawn_demo != (now < wiring.demo_until_us);
         changed |= self.asked_camera.is_some()
             || self.camera_animation.is_some()

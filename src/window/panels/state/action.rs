@@ -114,6 +114,7 @@ fn also_of(kind: BrushKind) -> &'static str {
         BrushKind::Paint => "colour color",
         BrushKind::Mask => "protect freeze",
         BrushKind::Texture => "alpha picture stamp",
+        BrushKind::EraseLayer => "remove back morph",
         BrushKind::Density | BrushKind::Simplify => "topology triangles detail",
         _ => "",
     }

@@ -55,6 +55,7 @@ fn operation(event: HistoryEvent) -> Option<&'static str> {
             SceneEvent::Boolean => "history-boolean",
             SceneEvent::Merge => "history-merged",
             SceneEvent::Split => "history-split",
+            SceneEvent::Layers => "history-layers",
         }),
         _ => None,
     }

@@ -5,6 +5,7 @@ use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
 use super::keys::KeysPage;
 use super::kiosk::KioskPad;
+use super::layers::LayerPanel;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
 use super::outliner::Outliner;
@@ -49,6 +50,8 @@ pub struct UiState {
     pub trial: BooleanTrial,
     /// What was begun in the outliner.
     pub outliner: Outliner,
+    /// What was begun in the panel of layers.
+    pub layers: LayerPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     pub trim: Option<Trim>,
