@@ -68,8 +68,7 @@ pub(super) fn prepare(
     }
     // Into a box of half side 1 first: areas of tiny and huge meshes do not fit.
     let mut positions: Vec<DVec3> = clean.positions.iter().map(|&p| (p - centre) / size).collect();
-    let mut triangles: Vec<[u32; 3]> =
-        clean.faces().map(|f| [f[0], f[1], f[2]]).collect();
+    let mut triangles: Vec<[u32; 3]> = clean.faces().map(|f| [f[0], f[1], f[2]]).collect();
     let split = split_fans(&mut positions, &mut triangles);
     if split > 0 {
         warnings.push(format!("{split} vertices where the surface only touches itself were split"));

@@ -105,7 +105,8 @@ pub(super) fn positions(
             };
         }
         for (q, n) in next.iter_mut().zip(&levels[l].normals) {
-            *q = (*q - *n * q.dot(*n)).try_normalize().unwrap_or_else(|| n.any_orthonormal_vector());
+            *q =
+                (*q - *n * q.dot(*n)).try_normalize().unwrap_or_else(|| n.any_orthonormal_vector());
         }
         by_level.push(next);
     }
