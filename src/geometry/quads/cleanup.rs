@@ -42,7 +42,8 @@ fn close_best(s: &mut QuadSurface, f: u32) -> bool {
     for k in 0..4 {
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| face[(k + i) % 4]);
         let n = |v: u32| s.around[v as usize].len();
-        let before = excess(s, a, n(a)) + excess(s, b, n(b)) + excess(s, c, n(c)) + excess(s, d, n(d));
+        let before =
+            excess(s, a, n(a)) + excess(s, b, n(b)) + excess(s, c, n(c)) + excess(s, d, n(d));
         if n(b) == 0 || n(d) == 0 {
             continue;
         }
@@ -212,4 +213,3 @@ pub(super) fn cut_folded(s: &mut QuadSurface) -> usize {
     }
     cut
 }
-

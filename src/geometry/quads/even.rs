@@ -35,11 +35,7 @@ pub(super) fn even_out(
 }
 
 /// Splits edges above the limit at their middle, longest first, until there are none.
-pub(super) fn split_long(
-    s: &mut EditSurface,
-    limit: f64,
-    job: &Job,
-) -> Result<(), Cancelled> {
+pub(super) fn split_long(s: &mut EditSurface, limit: f64, job: &Job) -> Result<(), Cancelled> {
     for _ in 0..PASSES {
         job.check()?;
         let mut long: Vec<(f64, u32, u32)> = s
@@ -106,9 +102,10 @@ fn fits(s: &EditSurface, keep: u32, gone: u32, to: DVec3, long: f64) -> bool {
             if tri.contains(&other) {
                 continue;
             }
-            if tri.iter().any(|&w| {
-                w != v && s.positions[w as usize].distance_squared(to) > long * long
-            }) {
+            if tri
+                .iter()
+                .any(|&w| w != v && s.positions[w as usize].distance_squared(to) > long * long)
+            {
                 return false;
             }
             let (old, new) = (s.normal(t), s.normal_with(t, v, to));
@@ -173,13 +170,14 @@ fn relax(s: &mut EditSurface, target: &ProjectionTarget, job: &Job) -> Result<()
                 return target.line(p + (middle - p) * 0.5);
             }
             s.neighbours(v, near);
-            let middle = near.iter().map(|&w| s.positions[w as usize]).sum::<DVec3>()
-                / near.len() as f64;
+            let middle =
+                near.iter().map(|&w| s.positions[w as usize]).sum::<DVec3>() / near.len() as f64;
             let up = s.vertex_normal(v).normalize_or_zero();
             let step = middle - p;
             let to = target.surface(p + (step - up * step.dot(up)) * 0.7, up);
             // No triangle may turn.
-            let turns = s.around[v as usize].iter().any(|&t| s.normal_with(t, v, to).dot(up) <= 0.0);
+            let turns =
+                s.around[v as usize].iter().any(|&t| s.normal_with(t, v, to).dot(up) <= 0.0);
             if turns { p } else { to }
         })
         .collect();

@@ -67,8 +67,7 @@ pub fn figures(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadFigure
     job.check()?;
     let old = CentredMesh::new(from, 1.0);
     let new = CentredMesh::about(made, old.centre, 1.0);
-    out.hausdorff =
-        [farthest(&new.mesh, &old.mesh, job)?, farthest(&old.mesh, &new.mesh, job)?];
+    out.hausdorff = [farthest(&new.mesh, &old.mesh, job)?, farthest(&old.mesh, &new.mesh, job)?];
     Ok(out)
 }
 
@@ -105,6 +104,7 @@ fn farthest(a: &TriMesh, b: &TriMesh, job: &Job) -> Result<f64, Cancelled> {
         }
         Ok(worst)
     };
-    let all: Vec<f64> = (0..a.triangles.len()).into_par_iter().map(each).collect::<Result<_, _>>()?;
+    let all: Vec<f64> =
+        (0..a.triangles.len()).into_par_iter().map(each).collect::<Result<_, _>>()?;
     Ok(all.into_iter().fold(0.0, f64::max))
 }

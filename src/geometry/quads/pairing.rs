@@ -141,8 +141,7 @@ impl PartnerSearch {
             }
             for k in 0..self.across[v as usize].len() {
                 let to = self.across[v as usize][k];
-                if self.base[v as usize] == self.base[to as usize]
-                    || self.partner[v as usize] == to
+                if self.base[v as usize] == self.base[to as usize] || self.partner[v as usize] == to
                 {
                     continue;
                 }

@@ -65,11 +65,7 @@ impl QuadSurface {
     pub fn normal(&self, f: u32) -> DVec3 {
         let p = |v: u32| self.positions[v as usize];
         let [a, b, c, d] = self.faces[f as usize];
-        if d == GONE {
-            (p(b) - p(a)).cross(p(c) - p(a))
-        } else {
-            (p(c) - p(a)).cross(p(d) - p(b))
-        }
+        if d == GONE { (p(b) - p(a)).cross(p(c) - p(a)) } else { (p(c) - p(a)).cross(p(d) - p(b)) }
     }
 
     /// The unit normal at a vertex, weighted by area; zero where there is none.
@@ -179,9 +175,7 @@ impl QuadSurface {
         }
         let g = *self.around[q as usize].iter().find(|&&g| {
             let other = self.faces[g as usize];
-            g != f
-                && other[3] != GONE
-                && (0..4).any(|i| other[i] == p && other[(i + 1) % 4] == q)
+            g != f && other[3] != GONE && (0..4).any(|i| other[i] == p && other[(i + 1) % 4] == q)
         })?;
         let other = self.faces[g as usize];
         let i = (0..4).find(|&i| other[i] == p)?;

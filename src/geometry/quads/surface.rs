@@ -131,8 +131,8 @@ impl EditSurface {
 
     /// Twice the area of triangle `t` with vertex `v` at `p`, as a vector.
     pub fn normal_with(&self, t: u32, v: u32, p: DVec3) -> DVec3 {
-        let [a, b, c] = self.triangles[t as usize]
-            .map(|w| if w == v { p } else { self.positions[w as usize] });
+        let [a, b, c] =
+            self.triangles[t as usize].map(|w| if w == v { p } else { self.positions[w as usize] });
         (b - a).cross(c - a)
     }
 
