@@ -22,11 +22,11 @@
 mod cleanup;
 mod creases;
 mod even;
-mod figures;
 mod guides;
 mod hierarchy;
 mod input;
 mod lattice;
+mod metrics;
 mod orientation;
 mod pairing;
 mod position;
@@ -40,7 +40,7 @@ mod tests;
 
 use glam::DVec3;
 
-pub use figures::{QuadFigures, figures};
+pub use metrics::{QuadMetrics, metrics};
 
 use crate::job::{Cancelled, Job};
 use crate::{PolyMesh, TriMesh};

@@ -2,13 +2,13 @@ use super::*;
 use crate::check::{MeshReport, report};
 use crate::{repair, shapes};
 
-fn remeshed(mesh: &PolyMesh, quads: usize, creases: Option<f64>) -> (PolyMesh, QuadFigures) {
+fn remeshed(mesh: &PolyMesh, quads: usize, creases: Option<f64>) -> (PolyMesh, QuadMetrics) {
     let job = Job::default();
     let settings = QuadSettings { quads, creases, guides: Vec::new() };
     let out = quad_remesh(mesh, &settings, &job).expect("a quad mesh").mesh;
-    let figures = figures(&out, mesh, &job).unwrap();
-    println!("{figures:?}");
-    (out, figures)
+    let metrics = metrics(&out, mesh, &job).unwrap();
+    println!("{metrics:?}");
+    (out, metrics)
 }
 
 fn facts(mesh: &PolyMesh) -> MeshReport {
@@ -16,13 +16,13 @@ fn facts(mesh: &PolyMesh) -> MeshReport {
 }
 
 /// Closed, manifold and oriented, with these handles, nearly all quads, and about so many.
-fn sound(mesh: &PolyMesh, figures: &QuadFigures, genus: i64, quads: usize) {
+fn sound(mesh: &PolyMesh, metrics: &QuadMetrics, genus: i64, quads: usize) {
     let r = facts(mesh);
     assert!(r.closed && r.manifold && r.oriented && r.unused_vertices == 0, "{r:?}");
     assert_eq!((r.genus, r.self_intersections), (Some(genus), Some(0)));
     assert!(r.volume.unwrap() > 0.0);
-    assert!(figures.other == 0 && figures.triangles * 100 <= figures.quads, "{figures:?}");
-    assert!(figures.quads.abs_diff(quads) * 10 <= quads, "{figures:?}");
+    assert!(metrics.other == 0 && metrics.triangles * 100 <= metrics.quads, "{metrics:?}");
+    assert!(metrics.quads.abs_diff(quads) * 10 <= quads, "{metrics:?}");
 }
 
 fn joined(a: &PolyMesh, b: &PolyMesh, shift: DVec3) -> PolyMesh {
