@@ -1,4 +1,4 @@
-//! Pictures of the gestures, drawn from the same simulated hands that the tests feed to the parsers.
+//! Pictures of the gestures, drawn from the same simulated hands that tests feed to the parsers.
 //!
 //! `cargo run --release -p sculptd-devices --example gesture_pictures -- FOLDER` writes one SVG a
 //! gesture: a right hand (or two) as its owner sees it, from above and behind.
