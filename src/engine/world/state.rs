@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{StepReport, World};
+use super::{StepReport, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::{Command, Jump, SceneJump};
 use crate::hand::{HandTools, HeldObject, Pose, Volume};
@@ -30,6 +30,11 @@ impl World {
     /// that steps this world.
     pub fn warm(&self) {
         self.workers.warm();
+    }
+
+    /// What is fixed for the life of this world.
+    pub fn options(&self) -> &WorldOptions {
+        &self.options
     }
 
     /// The tick of the last step.
