@@ -74,8 +74,13 @@ impl Executor {
         Executor { rate_hz, person, busy: false }
     }
 
-    /// The ticks without input before the one of a frame: those that are to be stepped. While nothing
-    /// goes on by itself they change nothing, and none is.
+    /// The replica's person has this number from now on.
+    pub fn set_person(&mut self, person: PersonId, rate_hz: u32) {
+        (self.person, self.rate_hz) = (person, rate_hz);
+    }
+
+    /// The ticks without input before the one of a frame: those that are to be stepped. While
+    /// nothing goes on by itself they change nothing, and none is.
     pub fn empty_ticks(&self, world: &World, frame: &Frame) -> std::ops::Range<u64> {
         let first = world.tick() + 1;
         match self.busy {
@@ -109,7 +114,7 @@ impl Executor {
     }
 
     /// What follows a tick that was stepped; `frame`: where it was a frame's own.
-    pub fn stepped(&mut self, world: &mut World, frame: Option<&Frame>) -> Asked {
+    pub fn after_step(&mut self, world: &mut World, frame: Option<&Frame>) -> Asked {
         let report = *world.report();
         self.busy = report.paused || report.resting || !world.is_at_rest();
         let Some(frame) = frame else { return Asked::default() };
@@ -128,10 +133,10 @@ impl Executor {
     pub fn execute(&mut self, world: &mut World, frame: &Frame) -> Asked {
         for tick in self.empty_ticks(world, frame) {
             world.step(tick, &[], &[]);
-            self.stepped(world, None);
+            self.after_step(world, None);
         }
         let input = self.input(frame, world);
         world.step(input.tick, &input.samples, &input.commands);
-        self.stepped(world, Some(frame))
+        self.after_step(world, Some(frame))
     }
 }

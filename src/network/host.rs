@@ -1,7 +1,7 @@
 //! The host: lets people in, orders input into frames, sends them, compares hashes.
 //!
 //! Laws kept here:
-//! * Nobody without a key gets further than a greeting, of which only so many a second are answered.
+//! * Nobody without a key gets further than a greeting, and only so many a second are answered.
 //! * A batch is acknowledged when it is in a frame that a replica has too.
 //! * What a member may send is bounded in bytes a second, in batches that wait, and by its role;
 //!   what goes beyond is dropped, counted and told.
@@ -9,10 +9,12 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
+use crate::comparison::HashComparison;
 use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
-use crate::keyring::{Invitation, Keyring};
+use crate::host_members::{BatchQueue, Greeted, JoinedMember, PER_MESSAGE, bounded};
+use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
-use crate::seal::{Seal, Secret};
+use crate::seal::Secret;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
 use crate::wire::message::{
     Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, Nonce, Offer, Reached, Term,
@@ -37,51 +39,8 @@ const ALONE_US: u64 = 15_000_000;
 const REST_US: u64 = 2_000_000;
 /// After the last input so long every tick has its frame.
 const BUSY_US: u64 = 1_000_000;
-/// Frames of one message, and of their input's entries.
-const PER_MESSAGE: (usize, usize) = (64, 2048);
 /// Chunks that one request may ask for.
 const MAX_WANTED: u32 = 64;
-
-/// Who said hello and may join next.
-#[derive(Debug)]
-struct Greeted {
-    up: Seal,
-    down: Seal,
-    invitation: Invitation,
-    at_us: u64,
-}
-
-/// Who joined.
-#[derive(Debug)]
-struct Member {
-    person: PersonId,
-    name: String,
-    role: Role,
-    up: Seal,
-    down: Seal,
-    heard_us: u64,
-    /// Waits for a checkpoint.
-    waits: bool,
-    /// Frames up to this one are there; `None`: the checkpoint is not, yet.
-    have: Option<u64>,
-    /// Frames up to this one were sent.
-    sent: u64,
-    progress_us: u64,
-    next_us: u64,
-    trip: RoundTrip,
-    limit: RateLimit,
-    violations: u32,
-    told_us: u64,
-}
-
-/// A person's batches on their way into frames.
-#[derive(Debug, Default)]
-struct Waiting {
-    /// All up to this one were received.
-    received: u64,
-    ready: VecDeque<Batch>,
-    early: BTreeMap<u64, Batch>,
-}
 
 /// The host's state.
 #[derive(Debug)]
@@ -92,8 +51,8 @@ pub struct Host {
     group: Secret,
     heirs: HeirsSeal,
     greeted: BTreeMap<Address, Greeted>,
-    members: BTreeMap<Address, Member>,
-    waiting: BTreeMap<PersonId, Waiting>,
+    members: BTreeMap<Address, JoinedMember>,
+    waiting: BTreeMap<PersonId, BatchQueue>,
     arrivals: Vec<Arrival>,
     strangers: RateLimit,
     /// The last batch of each person in each frame that is not acknowledged.
@@ -105,8 +64,7 @@ pub struct Host {
     last_frame_us: u64,
     compare_us: u64,
     input_since_compare: bool,
-    hashes: BTreeMap<u64, u64>,
-    early_hashes: Vec<(u64, Address, u64)>,
+    comparison: HashComparison,
     /// Somebody waits for a checkpoint since.
     wanted_us: Option<u64>,
     /// The frame of the checkpoint that is being made.
@@ -141,8 +99,7 @@ impl Host {
             last_frame_us: now_us,
             compare_us: now_us,
             input_since_compare: true,
-            hashes: BTreeMap::new(),
-            early_hashes: Vec::new(),
+            comparison: HashComparison::default(),
             wanted_us: None,
             making: None,
             checkpoint: None,
@@ -275,7 +232,7 @@ impl Host {
             (next..=254).find(|n| !taken(*n) && (*n == next || core.log.person(*n).is_none()))
         });
         let clean = !name.trim().is_empty() && !name.chars().any(char::is_control);
-        let there = |m: &Member| m.name == name && now_us < m.heard_us + LOST_US * 2;
+        let there = |m: &JoinedMember| m.name == name && now_us < m.heard_us + LOST_US * 2;
         let refused = match (greeted.invitation.allows(&name, role), number) {
             (Err(why), _) => Some(why),
             _ if !clean => Some("a name is text without control characters".into()),
@@ -300,7 +257,7 @@ impl Host {
             self.arrivals.push(arrival);
         }
         let resumes = role == Role::Device || reached.is_some_and(|r| core.log.continues(r));
-        let member = Member {
+        let member = JoinedMember {
             person,
             name,
             role,
@@ -397,7 +354,11 @@ impl Host {
                     core.down(from, &mut member.down, &chunk);
                 }
             }
-            FromMember::Hash { index, hash } => self.compare(core, index, from, hash),
+            FromMember::Hash { index, hash } => {
+                if let Some(own) = self.comparison.take(index, from, hash) {
+                    self.differs(core, index, from, own);
+                }
+            }
             FromMember::Leave => {
                 let name = member.name.clone();
                 self.members.remove(&from);
@@ -441,36 +402,17 @@ impl Host {
         }
     }
 
-    /// A hash of the own world, or of a member's.
-    fn compare(&mut self, core: &mut Core, index: u64, from: Address, hash: u64) {
-        match self.hashes.get(&index) {
-            Some(own) if *own != hash => {
-                let Some(member) = self.members.get_mut(&from) else { return };
-                let text = format!("'{}' differs after frame {index}: it joins anew", member.name);
-                let differs = FromHost::Differs { index, hash: *own };
-                core.down(from, &mut member.down, &differs);
-                self.members.remove(&from);
-                core.note(text);
-            }
-            Some(_) => {}
-            None if self.early_hashes.len() < 256 => self.early_hashes.push((index, from, hash)),
-            None => {}
+    /// The hash of the own world after a frame.
+    pub fn own_hash(&mut self, core: &mut Core, index: u64, hash: u64) {
+        for from in self.comparison.take_own(index, hash) {
+            self.differs(core, index, from, hash);
         }
     }
 
-    /// The hash of the own world after a frame.
-    pub fn own_hash(&mut self, core: &mut Core, index: u64, hash: u64) {
-        self.hashes.insert(index, hash);
-        while self.hashes.len() > 64 {
-            self.hashes.pop_first();
-        }
-        let early = std::mem::take(&mut self.early_hashes);
-        for (at, from, hash) in early {
-            match at {
-                at if at == index => self.compare(core, at, from, hash),
-                at if at > index => self.early_hashes.push((at, from, hash)),
-                _ => {}
-            }
+    fn differs(&mut self, core: &mut Core, index: u64, from: Address, hash: u64) {
+        if let Some(mut member) = self.members.remove(&from) {
+            core.note(format!("'{}' differs after frame {index}: it joins anew", member.name));
+            core.down(from, &mut member.down, &FromHost::Differs { index, hash });
         }
     }
 
@@ -497,16 +439,28 @@ impl Host {
         }
     }
 
+    /// No checkpoint could be made after a frame with that mark: another is tried.
+    pub fn checkpoint_failed(&mut self, index: u64, now_us: u64) {
+        if self.making == Some(index) {
+            self.making = None;
+            self.wanted_us = Some(now_us);
+        }
+    }
+
     /// Whether the world had nothing under way after the last frame.
-    pub fn stepped(&mut self, at_rest: bool) {
+    pub fn after_step(&mut self, at_rest: bool) {
         self.at_rest = at_rest;
     }
 
     /// Makes the frames that are due, and sends what is to be sent.
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
         self.order(core, now_us);
-        let gone: Vec<Address> =
-            self.members.iter().filter(|(_, m)| now_us >= m.heard_us + GONE_US).map(|m| *m.0).collect();
+        let gone: Vec<Address> = self
+            .members
+            .iter()
+            .filter(|(_, m)| now_us >= m.heard_us + GONE_US)
+            .map(|m| *m.0)
+            .collect();
         for address in gone {
             if let Some(member) = self.members.remove(&address) {
                 core.note(format!("'{}' is gone", member.name));
@@ -623,7 +577,8 @@ impl Host {
             (member.sent, member.progress_us) = (have, now_us);
         }
         let wants = member.role != Role::Device && member.have.is_some();
-        let frames = if wants { core.log.from(member.sent + 1, PER_MESSAGE.0) } else { Some(vec![]) };
+        let frames =
+            if wants { core.log.from(member.sent + 1, PER_MESSAGE.0) } else { Some(vec![]) };
         let Some(frames) = frames else {
             return self.dismiss(core, to, "is too far behind: join again");
         };
@@ -656,22 +611,4 @@ impl Host {
         };
         core.down(to, &mut member.down, &down);
     }
-}
-
-/// As many of the frames as one message may hold; one at least.
-fn bounded(mut frames: Vec<Arc<Frame>>) -> Vec<Arc<Frame>> {
-    let entries = |f: &Arc<Frame>| {
-        f.batches.iter().map(|b| b.samples.len() + 64 * b.commands.len() + 1).sum::<usize>()
-    };
-    let mut sum = 0;
-    let mut count = 0;
-    for frame in frames.iter().take(PER_MESSAGE.0) {
-        sum += entries(frame);
-        if sum > PER_MESSAGE.1 && count > 0 {
-            break;
-        }
-        count += 1;
-    }
-    frames.truncate(count);
-    frames
 }

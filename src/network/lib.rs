@@ -1,11 +1,11 @@
 //! One sculpture shared over a network. Each daemon sends its samples and commands to a host; the
-//! host orders them into ticks and sends the ticks to all; every replica steps the same world, which
-//! is deterministic. What is sent is input, never a mesh; only who joins is given the pages of a
-//! checkpoint.
+//! host orders them into ticks and sends the ticks to all; every replica steps the same world,
+//! which is deterministic. What is sent is input, never a mesh; only who joins is given the pages
+//! of a checkpoint.
 //!
 //! Where to start: [`station`], the protocol as a state machine without clock, IO and threads;
-//! [`wire`], its messages; [`executor`], which steps a world by frames. [`live`] runs a station
-//! beside the tick loop, and `zenoh_link` carries its datagrams.
+//! [`wire`], its messages; [`executor`], which steps a world by frames. With the feature
+//! `zenoh`, `live` runs a station beside the tick loop, and `zenoh_link` carries its datagrams.
 //!
 //! ```text
 //! devices -> own batches -> host: frames -> every replica's world
@@ -20,15 +20,24 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod checkpoint;
+pub mod comparison;
 pub mod core;
 pub mod executor;
 pub mod host;
+pub mod host_members;
 pub mod keyring;
+#[cfg(feature = "zenoh")]
+pub mod live;
 pub mod member;
 pub mod outbox;
 pub mod policy;
+pub mod random;
 pub mod rate_limit;
 pub mod replica_log;
 pub mod seal;
 pub mod station;
+#[cfg(feature = "zenoh")]
+pub mod transport;
 pub mod wire;
+#[cfg(feature = "zenoh")]
+pub mod zenoh_link;

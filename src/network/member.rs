@@ -24,7 +24,7 @@ const MAX_EARLY: usize = 4096;
 
 /// How far a member is.
 #[derive(Debug)]
-enum Phase {
+enum MemberPhase {
     /// Says hello to whoever hosts.
     Greets { nonce: Nonce, next_us: u64 },
     /// Asks to be let in.
@@ -51,7 +51,7 @@ struct Fetch {
 #[derive(Debug)]
 pub struct Member {
     invitation: Invitation,
-    phase: Phase,
+    phase: MemberPhase,
     host: Address,
     /// The host's turn.
     pub term: Term,
@@ -76,7 +76,7 @@ impl Member {
     pub fn new(core: &mut Core, invitation: Invitation, now_us: u64) -> Member {
         Member {
             invitation,
-            phase: Phase::Greets { nonce: core.nonce(), next_us: now_us },
+            phase: MemberPhase::Greets { nonce: core.nonce(), next_us: now_us },
             host: 0,
             term: Term::default(),
             seals: None,
@@ -95,12 +95,12 @@ impl Member {
 
     /// Whether it follows a host.
     pub fn follows(&self) -> bool {
-        matches!(self.phase, Phase::Follows)
+        matches!(self.phase, MemberPhase::Follows)
     }
 
     /// Begins anew with a greeting.
     pub fn greet(&mut self, core: &mut Core, now_us: u64) {
-        self.phase = Phase::Greets { nonce: core.nonce(), next_us: now_us };
+        self.phase = MemberPhase::Greets { nonce: core.nonce(), next_us: now_us };
         self.seals = None;
         self.early.clear();
         self.heard_us = now_us;
@@ -108,7 +108,7 @@ impl Member {
 
     /// Takes an answer to a greeting.
     pub fn greeting(&mut self, core: &mut Core, from: Address, greeting: &Greeting, now_us: u64) {
-        let Phase::Greets { nonce: own, .. } = self.phase else { return };
+        let MemberPhase::Greets { nonce: own, .. } = self.phase else { return };
         match greeting {
             Greeting::Challenge { to, nonce, term, proof } if *to == own => {
                 if !self.invitation.secret.proves(proof, &own, nonce, term) || *term < self.term {
@@ -117,7 +117,7 @@ impl Member {
                 self.seals = Some(self.invitation.secret.seals(&own, nonce));
                 (self.host, self.term) = (from, *term);
                 self.heard_us = now_us;
-                self.phase = Phase::Joins { next_us: now_us, tries: 0 };
+                self.phase = MemberPhase::Joins { next_us: now_us, tries: 0 };
                 self.advance(core, now_us);
             }
             Greeting::Refused { to, reason } if *to == own => {
@@ -158,7 +158,9 @@ impl Member {
                     }
                 }
             }
-            FromHost::Chunk { index, number, bytes } => self.chunk(core, index, number, bytes, now_us),
+            FromHost::Chunk { index, number, bytes } => {
+                self.chunk(core, index, number, bytes, now_us)
+            }
             FromHost::Differs { index, hash } => {
                 let own = self.hashes.get(&index).copied().unwrap_or_default();
                 core.events.push_back(Event::Differs { index, hashes: (own, hash) });
@@ -169,7 +171,7 @@ impl Member {
     }
 
     fn enter(&mut self, core: &mut Core, entry: Box<Entry>, now_us: u64) {
-        if !matches!(self.phase, Phase::Joins { .. }) {
+        if !matches!(self.phase, MemberPhase::Joins { .. }) {
             return;
         }
         self.told = None;
@@ -201,7 +203,7 @@ impl Member {
                 self.level = false;
                 let (left, entry) = (chunks.len(), *entry);
                 let fetch = Fetch { entry, offer, chunks, left, window: 0, asked_us: 0 };
-                self.phase = Phase::Fetches(Box::new(fetch));
+                self.phase = MemberPhase::Fetches(Box::new(fetch));
                 self.advance(core, now_us);
             }
         }
@@ -210,7 +212,7 @@ impl Member {
     fn follow(&mut self, core: &mut Core, entry: &Entry, now_us: u64) {
         core.outbox.begin_after(entry.applied);
         self.received = entry.applied;
-        self.phase = Phase::Follows;
+        self.phase = MemberPhase::Follows;
         self.level = core.role != Role::Device;
         self.trip = RoundTrip::default();
         (self.heard_us, self.next_us, self.lost) = (now_us, now_us, false);
@@ -219,7 +221,7 @@ impl Member {
     }
 
     fn chunk(&mut self, core: &mut Core, index: u64, number: u32, bytes: Vec<u8>, now_us: u64) {
-        let Phase::Fetches(fetch) = &mut self.phase else { return };
+        let MemberPhase::Fetches(fetch) = &mut self.phase else { return };
         let slot = fetch.chunks.get_mut(number as usize).filter(|_| fetch.offer.index == index);
         let Some(slot) = slot else { return };
         if slot.is_none() {
@@ -233,7 +235,8 @@ impl Member {
         if fetch.left > 0 {
             return self.advance(core, now_us);
         }
-        let Phase::Fetches(fetch) = std::mem::replace(&mut self.phase, Phase::Follows) else {
+        let MemberPhase::Fetches(fetch) = std::mem::replace(&mut self.phase, MemberPhase::Follows)
+        else {
             return;
         };
         let Fetch { entry, offer, chunks, .. } = *fetch;
@@ -269,7 +272,7 @@ impl Member {
         while self.hashes.len() > 64 {
             self.hashes.pop_first();
         }
-        if let (Phase::Follows, Some((up, _))) = (&self.phase, &mut self.seals) {
+        if let (MemberPhase::Follows, Some((up, _))) = (&self.phase, &mut self.seals) {
             core.up(self.host, up, &FromMember::Hash { index, hash });
         }
     }
@@ -285,13 +288,13 @@ impl Member {
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
         let silent = now_us >= self.heard_us + LOST_US;
         match &mut self.phase {
-            Phase::Greets { nonce, next_us } if now_us >= *next_us => {
+            MemberPhase::Greets { nonce, next_us } if now_us >= *next_us => {
                 *next_us = now_us + GREET_US;
                 let (nonce, key) = (*nonce, self.invitation.secret.name());
                 core.greet(To::Host, &Greeting::Hello { version: VERSION, nonce, key });
             }
-            Phase::Greets { .. } => {}
-            Phase::Joins { next_us, tries } => {
+            MemberPhase::Greets { .. } => {}
+            MemberPhase::Joins { next_us, tries } => {
                 if now_us < *next_us {
                     return;
                 }
@@ -312,7 +315,7 @@ impl Member {
                     core.up(self.host, up, &up_to);
                 }
             }
-            Phase::Fetches(fetch) => {
+            MemberPhase::Fetches(fetch) => {
                 if silent {
                     return self.greet(core, now_us);
                 }
@@ -326,7 +329,7 @@ impl Member {
                     core.up(self.host, up, &FromMember::Want { index, first, count });
                 }
             }
-            Phase::Follows => {
+            MemberPhase::Follows => {
                 self.lost = silent;
                 if now_us < self.next_us {
                     return;

@@ -145,10 +145,8 @@ mod tests {
         assert!(all > 0 && outbox.dropped > CONGESTED as u64 / 2, "{} dropped", outbox.dropped);
         let waiting: Vec<_> = outbox.after(0, usize::MAX).collect();
         let tips = |s: &Sample| matches!(s.body, Body::Pen(p) if p.tip);
-        let transitions = waiting
-            .windows(2)
-            .filter(|w| tips(&w[0].samples[0]) != tips(&w[1].samples[0]))
-            .count();
+        let transitions =
+            waiting.windows(2).filter(|w| tips(&w[0].samples[0]) != tips(&w[1].samples[0])).count();
         assert_eq!(transitions, CONGESTED * 2 / 50 - usize::from(CONGESTED * 2 % 50 == 0));
         assert!(waiting.windows(2).all(|w| w[0].number + 1 == w[1].number), "no gap");
     }

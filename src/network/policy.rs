@@ -1,7 +1,7 @@
 //! What may be shared. Commands that need what only one daemon has, or that put everybody's work
 //! aside, may not; they are refused where they are made, and by the host again.
 
-use crate::wire::frame::Batch;
+use crate::wire::frame::{Batch, MAX_COMMAND};
 use sculptd_engine::command::Command;
 
 /// Why a command cannot be shared; `None`: it can.
@@ -24,4 +24,9 @@ pub fn refused_command(command: &Command) -> Option<&'static str> {
 /// Why a batch is not taken; `None`: it is.
 pub fn refused(batch: &Batch) -> Option<&'static str> {
     batch.commands.iter().find_map(refused_command)
+}
+
+/// Whether a command takes more bytes than one may ([`MAX_COMMAND`]).
+pub fn is_too_large(command: &Command) -> bool {
+    postcard::to_stdvec(command).map_or(true, |bytes| bytes.len() > MAX_COMMAND)
 }

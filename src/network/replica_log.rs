@@ -87,8 +87,7 @@ impl ReplicaLog {
         self.people.get(&person).map_or(0, |p| p.1)
     }
 
-    /// Appends the next frame. False, and nothing done, where it is not the next, or a batch in it is
-    /// not the person's next.
+    /// Appends the next frame. False, and nothing done, where it is not the next.
     pub fn append(&mut self, frame: &Arc<Frame>) -> bool {
         if frame.index != self.last + 1 || frame.tick < self.tick {
             return false;
@@ -124,7 +123,7 @@ impl ReplicaLog {
         Some(self.frames.iter().skip(at).take(most).cloned().collect())
     }
 
-    /// Whether a log that ends there is the beginning of this one, and the frames after it are here.
+    /// Whether a log that ends there is the beginning of this one, and what follows is here.
     pub fn continues(&self, reached: Reached) -> bool {
         let (term, index) = reached;
         index <= self.last

@@ -105,11 +105,8 @@ impl Seal {
         let mut out = Vec::with_capacity(plain.len() + SEAL);
         out.extend(self.sealed.to_le_bytes());
         out.extend(plain);
-        let tag = self.key.seal_in_place_separate_tag(
-            once(self.sealed),
-            Aad::empty(),
-            &mut out[8..],
-        );
+        let tag =
+            self.key.seal_in_place_separate_tag(once(self.sealed), Aad::empty(), &mut out[8..]);
         match tag {
             Ok(tag) => out.extend(tag.as_ref()),
             // Only beyond 256 GiB: no message is so large.

@@ -2,8 +2,8 @@
 //! own input go in; datagrams and events come out. It has no clock, no IO, no threads, and its
 //! random bytes come from outside, so that a test can run many of them on a simulated network.
 //!
-//! **When the host is silent** for [`LOST_US`], the members that may take over tell each other where
-//! their logs end; after [`DECIDE_US`] the one with the longest log (of equals, the one with the
+//! **When the host is silent** for [`LOST_US`], the members that may take over tell each other
+//! where their logs end; after [`DECIDE_US`] the one with the longest log (of equals, the one with the
 //! lowest address) hosts in a new turn. The others greet it. A host that hears of a greater turn
 //! becomes a member again. Where the network is split, each part goes on; when it heals, the
 //! smaller turn's stations join the greater's, and send again what of their own input it lacks.
@@ -48,7 +48,7 @@ impl std::fmt::Debug for Identity {
 }
 
 #[derive(Debug)]
-enum Phase {
+enum StationPhase {
     Hosts(Box<Host>),
     Follows(Box<Member>),
 }
@@ -67,7 +67,7 @@ struct Election {
 #[derive(Debug)]
 pub struct Station {
     core: Core,
-    phase: Phase,
+    phase: StationPhase,
     invitation: Invitation,
     election: Option<Election>,
     heirs: Option<HeirsSeal>,
@@ -109,19 +109,28 @@ impl Station {
         let group = fresh(&mut core.entropy);
         let term = Term { number: 1, base: 0, host: core.address };
         let host = Host::new(&mut core, keyring, group, term, now_us);
-        Station::of(core, Phase::Hosts(Box::new(host)), invitation)
+        Station::of(core, StationPhase::Hosts(Box::new(host)), invitation)
     }
 
     /// Somebody who joins whoever hosts.
     pub fn join(identity: Identity, now_us: u64) -> Station {
         let (mut core, invitation) = Station::core(identity, 1);
         let member = Member::new(&mut core, invitation.clone(), now_us);
-        Station::of(core, Phase::Follows(Box::new(member)), invitation)
+        Station::of(core, StationPhase::Follows(Box::new(member)), invitation)
     }
 
-    fn of(core: Core, phase: Phase, invitation: Invitation) -> Station {
+    fn of(core: Core, phase: StationPhase, invitation: Invitation) -> Station {
         let (election, heirs) = (None, None);
-        Station { core, phase, invitation, election, heirs, known: 1, heard_host_us: 0, ended: false }
+        Station {
+            core,
+            phase,
+            invitation,
+            election,
+            heirs,
+            known: 1,
+            heard_host_us: 0,
+            ended: false,
+        }
     }
 
     /// The own name on the network.
@@ -134,14 +143,19 @@ impl Station {
         self.core.person
     }
 
+    /// Ticks a second, as the host has them.
+    pub fn rate_hz(&self) -> u32 {
+        self.core.rate_hz
+    }
+
     /// Whether this station hosts.
     pub fn hosts(&self) -> bool {
-        matches!(self.phase, Phase::Hosts(_))
+        matches!(self.phase, StationPhase::Hosts(_))
     }
 
     /// Whether this station follows a host.
     pub fn follows(&self) -> bool {
-        matches!(&self.phase, Phase::Follows(m) if m.follows())
+        matches!(&self.phase, StationPhase::Follows(m) if m.follows())
     }
 
     /// The ordered input as this station has it.
@@ -154,15 +168,15 @@ impl Station {
         &self.core.outbox
     }
 
-    /// Takes the own input of a tick: rounded samples whose devices are numbered from 0, and commands
-    /// that may be shared ([`crate::policy`]). Before the first entry there is nobody to take it,
-    /// and a viewer gives none.
+    /// Takes the own input of a tick: rounded samples whose devices are numbered from 0, and
+    /// commands that may be shared ([`crate::policy`]). Before the first entry there is nobody to
+    /// take it, and a viewer gives none.
     pub fn submit(&mut self, samples: Vec<Sample>, commands: Vec<Command>, now_us: u64) {
         if self.core.person == 0 || self.core.role == Role::Viewer {
             return;
         }
         self.core.outbox.push(samples, commands);
-        if let Phase::Follows(member) = &mut self.phase {
+        if let StationPhase::Follows(member) = &mut self.phase {
             member.hurry(now_us);
         }
     }
@@ -179,12 +193,16 @@ impl Station {
             (GREETING, phase) => {
                 let Ok(greeting) = Greeting::from_bytes(body) else { return };
                 match phase {
-                    Phase::Hosts(host) => host.greeting(&mut self.core, from, &greeting, now_us),
-                    Phase::Follows(m) => m.greeting(&mut self.core, from, &greeting, now_us),
+                    StationPhase::Hosts(host) => {
+                        host.greeting(&mut self.core, from, &greeting, now_us)
+                    }
+                    StationPhase::Follows(m) => m.greeting(&mut self.core, from, &greeting, now_us),
                 }
             }
-            (UP, Phase::Hosts(host)) => host.receive(&mut self.core, from, body, now_us),
-            (DOWN, Phase::Follows(member)) => member.receive(&mut self.core, from, body, now_us),
+            (UP, StationPhase::Hosts(host)) => host.receive(&mut self.core, from, body, now_us),
+            (DOWN, StationPhase::Follows(member)) => {
+                member.receive(&mut self.core, from, body, now_us)
+            }
             (HEIRS, _) => self.among_heirs(body, now_us),
             _ => {}
         }
@@ -194,8 +212,8 @@ impl Station {
 
     fn group(&self) -> Option<(Keyring, Secret)> {
         match &self.phase {
-            Phase::Hosts(host) => Some(host.succession()),
-            Phase::Follows(member) => member.succession.clone(),
+            StationPhase::Hosts(host) => Some(host.succession()),
+            StationPhase::Follows(member) => member.succession.clone(),
         }
     }
 
@@ -209,17 +227,17 @@ impl Station {
             AmongHeirs::Host { term } => {
                 self.known = self.known.max(term.number);
                 match &mut self.phase {
-                    Phase::Hosts(host) if term > host.term => {
+                    StationPhase::Hosts(host) if term > host.term => {
                         self.core.note("another host has a later turn: joining it");
                         self.core.events.push_back(Event::Hosting(false));
                         let mut member =
                             Member::new(&mut self.core, self.invitation.clone(), now_us);
                         member.level = true;
                         member.succession = Some(host.succession());
-                        self.phase = Phase::Follows(Box::new(member));
+                        self.phase = StationPhase::Follows(Box::new(member));
                         self.election = None;
                     }
-                    Phase::Follows(member) if term >= member.term => {
+                    StationPhase::Follows(member) if term >= member.term => {
                         self.heard_host_us = now_us;
                         if term > member.term && (member.follows() || self.election.is_some()) {
                             member.greet(&mut self.core, now_us);
@@ -246,8 +264,8 @@ impl Station {
             return;
         }
         match &mut self.phase {
-            Phase::Hosts(host) => host.advance(&mut self.core, now_us),
-            Phase::Follows(member) => {
+            StationPhase::Hosts(host) => host.advance(&mut self.core, now_us),
+            StationPhase::Follows(member) => {
                 member.advance(&mut self.core, now_us);
                 let may = member.level && member.succession.is_some();
                 if member.lost && self.core.role != Role::Sculptor {
@@ -308,8 +326,8 @@ impl Station {
         let term = Term { number, base, host: self.core.address };
         self.core.note(format!("takes over as the host of turn {number}, after frame {base}"));
         let host = Host::new(&mut self.core, keyring, group, term, now_us);
-        self.phase = Phase::Hosts(Box::new(host));
-        if let Phase::Hosts(host) = &mut self.phase {
+        self.phase = StationPhase::Hosts(Box::new(host));
+        if let StationPhase::Hosts(host) = &mut self.phase {
             host.advance(&mut self.core, now_us);
         }
     }
@@ -327,36 +345,43 @@ impl Station {
     /// The hash of the own world after a frame with the mark.
     pub fn own_hash(&mut self, index: u64, hash: u64) {
         match &mut self.phase {
-            Phase::Hosts(host) => host.own_hash(&mut self.core, index, hash),
-            Phase::Follows(member) => member.own_hash(&mut self.core, index, hash),
+            StationPhase::Hosts(host) => host.own_hash(&mut self.core, index, hash),
+            StationPhase::Follows(member) => member.own_hash(&mut self.core, index, hash),
         }
     }
 
     /// The own world's checkpoint after a frame with the mark. Only a host needs it.
     pub fn checkpoint(&mut self, index: u64, bytes: Arc<Vec<u8>>) {
-        if let Phase::Hosts(host) = &mut self.phase {
+        if let StationPhase::Hosts(host) = &mut self.phase {
             host.checkpoint(&mut self.core, index, bytes);
+        }
+    }
+
+    /// The world was not at rest after all: another checkpoint is tried.
+    pub fn checkpoint_failed(&mut self, index: u64, now_us: u64) {
+        if let StationPhase::Hosts(host) = &mut self.phase {
+            host.checkpoint_failed(index, now_us);
         }
     }
 
     /// The own world could not be made of a checkpoint: another is asked for.
     pub fn restore_failed(&mut self, now_us: u64) {
-        if let Phase::Follows(member) = &mut self.phase {
+        if let StationPhase::Follows(member) = &mut self.phase {
             member.level = false;
             member.greet(&mut self.core, now_us);
         }
     }
 
     /// Whether the own world had nothing under way after the last frame that was stepped.
-    pub fn stepped(&mut self, at_rest: bool) {
-        if let Phase::Hosts(host) = &mut self.phase {
-            host.stepped(at_rest);
+    pub fn after_step(&mut self, at_rest: bool) {
+        if let StationPhase::Hosts(host) = &mut self.phase {
+            host.after_step(at_rest);
         }
     }
 
     /// Goes; what is to be sent is still to be taken.
     pub fn leave(&mut self) {
-        if let Phase::Follows(member) = &mut self.phase {
+        if let StationPhase::Follows(member) = &mut self.phase {
             member.leave(&mut self.core);
         }
     }
@@ -365,7 +390,7 @@ impl Station {
     pub fn next_us(&self, now_us: u64) -> u64 {
         let tick = 1_000_000 / u64::from(self.core.rate_hz.max(30));
         match self.phase {
-            Phase::Hosts(_) if !self.core.outbox.is_empty() => now_us + tick,
+            StationPhase::Hosts(_) if !self.core.outbox.is_empty() => now_us + tick,
             _ => now_us + (LOST_US / 50).min(2 * tick),
         }
     }

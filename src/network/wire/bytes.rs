@@ -1,5 +1,5 @@
-//! Bytes out and in: variable-length integers (LEB128), zigzag for signed ones, and lengths that are
-//! checked before anything is allocated.
+//! Bytes out and in: variable-length integers (LEB128), zigzag for signed ones, and lengths that
+//! are checked before anything is allocated.
 
 /// The bytes are not those of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -1,5 +1,5 @@
-//! The messages. Those of [`Greeting`] go in the clear and only lead to a key; all others are sealed
-//! ([`crate::seal`]): whoever holds no key can neither read nor write one.
+//! The messages. Those of [`Greeting`] go in the clear and only lead to a key; all others are
+//! sealed ([`crate::seal`]): whoever holds no key can neither read nor write one.
 
 use std::sync::Arc;
 
@@ -517,12 +517,14 @@ mod tests {
     fn messages() -> Vec<Vec<u8>> {
         let term = Term { number: 3, base: 900, host: 77 };
         let person = Arrival { person: 2, name: "Ada".into(), role: Role::Viewer };
-        let batch = Batch { person: 2, number: 9, commands: vec![Command::Undo], ..Batch::default() };
+        let batch =
+            Batch { person: 2, number: 9, commands: vec![Command::Undo], ..Batch::default() };
         let frame = |index, mark, batches| {
             let arrivals = vec![person.clone()];
             Arc::new(Frame { index, tick: index * 3, mark, arrivals, batches })
         };
-        let frames = vec![frame(4, Mark::Compare, vec![batch.clone()]), frame(5, Mark::None, vec![])];
+        let frames =
+            vec![frame(4, Mark::Compare, vec![batch.clone()]), frame(5, Mark::None, vec![])];
         let entry = Entry {
             person: 2,
             term,

@@ -1,13 +1,13 @@
 //! Samples on the wire: integers, and the change of the change from sample to sample.
 //!
-//! A shared sculpture is sculpted with what was sent, by the sender too. So a sample is rounded once,
-//! before it is ordered, and every replica steps the same bits: position to 5 µm, pressure to
-//! 1/1023, angles to 1/128 rad. A pen that moves evenly takes about six bytes a sample.
+//! A shared sculpture is sculpted with what was sent, by the sender too. So a sample is rounded
+//! once, before it is ordered, and every replica steps the same bits: position to 5 µm, pressure
+//! to 1/1023, angles to 1/128 rad. A pen that moves evenly takes about six bytes a sample.
 //!
-//! What nobody but its own daemon uses is left out: device counts, the device's clock, and the time,
-//! which becomes that of the tick.
+//! What nobody but its own daemon uses is left out: device counts, the device's clock, and the
+//! time, which becomes that of the tick.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::bytes::{BadBytes, ByteReader, put_bytes, put_number, put_signed};
 use sculptd_devices::{Body, DeviceId, Hands, Pen, Sample, Tool};
@@ -109,6 +109,28 @@ impl WholePen {
     }
 }
 
+/// Whether all numbers of the hands are some: a tracker's parser gives no others.
+fn is_finite(hands: &Hands) -> bool {
+    let place = |v: Vec3| v.is_finite();
+    let places = |v: Option<Vec3>| v.is_none_or(place);
+    let number = |x: Option<f32>| x.is_none_or(f32::is_finite);
+    hands.as_slice().iter().all(|h| {
+        let fingers = h.fingers.iter().flatten().all(|f| {
+            place(f.tip)
+                && places(f.direction)
+                && number(f.width)
+                && f.joints.iter().all(|j| places(*j))
+        });
+        let all = [h.palm_normal, h.direction, h.palm_velocity, h.wrist, h.elbow];
+        let numbers = [h.grab, h.pinch, h.confidence, h.time_visible, h.palm_width];
+        place(h.palm)
+            && all.into_iter().all(places)
+            && numbers.into_iter().all(number)
+            && h.orientation.is_none_or(|q| q.is_finite())
+            && fingers
+    })
+}
+
 /// The sample as it is sent and as everybody steps it; `None` of a tablet's own keys, which their
 /// daemon has turned into commands. Rounding twice changes nothing.
 pub fn rounded(sample: &Sample) -> Option<Sample> {
@@ -206,8 +228,8 @@ impl SampleCodec {
         let device = bytes.at_most(u64::from(u16::MAX))? as u16;
         let sample = |body| Sample { device: DeviceId(device), t_us: 0, device_t_us: None, body };
         if changed == HANDS {
-            let hands: Hands = postcard::from_bytes(bytes.bytes(MAX_HANDS_BYTES)?)
-                .map_err(|_| BadBytes)?;
+            let hands = postcard::from_bytes(bytes.bytes(MAX_HANDS_BYTES)?);
+            let hands: Hands = hands.ok().filter(is_finite).ok_or(BadBytes)?;
             return rounded(&sample(Body::Hands(hands))).ok_or(BadBytes);
         }
         if changed & !0b1_1111 != 0 || self.last.len() >= 256 {

@@ -74,7 +74,8 @@ fn floods_and_nonsense_are_bounded_and_the_sculpture_goes_on() {
     let mut random = Random(7);
     for round in 0..200 {
         for _ in 0..50 {
-            let mut bytes: Vec<u8> = (0..random.next() % 200).map(|_| random.next() as u8).collect();
+            let mut bytes: Vec<u8> =
+                (0..random.next() % 200).map(|_| random.next() as u8).collect();
             if let Some(kind) = bytes.first_mut() {
                 *kind = (random.next() % 5) as u8;
             }
@@ -105,7 +106,8 @@ fn floods_and_nonsense_are_bounded_and_the_sculpture_goes_on() {
     }
     s.run(20.0, |i| i == 0);
     let told = s.replicas[0].notes.join("\n");
-    let bounded = s.replicas[guest].refused.is_some() || s.replicas[guest].station.outbox().is_empty();
+    let bounded =
+        s.replicas[guest].refused.is_some() || s.replicas[guest].station.outbox().is_empty();
     assert!(bounded, "{told}");
     assert!(s.replicas[0].station.hosts());
 }

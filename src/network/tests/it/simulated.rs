@@ -107,7 +107,8 @@ impl Simulation {
     /// A host, and nobody else yet.
     pub fn new(seed: u64, faults: Faults) -> Simulation {
         let mut entropy = Random::entropy(seed ^ 0xabcd);
-        let of = |role, entropy: &mut Entropy| Invitation { role, name: None, secret: fresh(entropy) };
+        let of =
+            |role, entropy: &mut Entropy| Invitation { role, name: None, secret: fresh(entropy) };
         let roles = [Role::Sculptor, Role::Viewer, Role::Device];
         let keyring = Keyring(roles.map(|r| of(r, &mut entropy)).to_vec());
         let mut simulation = Simulation {
@@ -129,7 +130,8 @@ impl Simulation {
     }
 
     pub fn identity(&self, name: &str, role: Role, invitation: Invitation) -> Identity {
-        let entropy = Random::entropy(self.seed.wrapping_mul(1000) + self.replicas.len() as u64 + 1);
+        let entropy =
+            Random::entropy(self.seed.wrapping_mul(1000) + self.replicas.len() as u64 + 1);
         Identity { name: name.into(), role, invitation, entropy }
     }
 
@@ -187,7 +189,8 @@ impl Simulation {
             tilt: Some(Vec2::new((part * 0.9).sin() as f32 * 0.3, 0.2)),
             ..Pen::default()
         };
-        let sample = Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
+        let sample =
+            Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
         if replica.station.person() != 0 && tip != replica.tip {
             (replica.tip, replica.transitions_given) = (tip, replica.transitions_given + 1);
         }
@@ -238,13 +241,14 @@ impl Simulation {
                         replica.station.own_hash(frame.index, hash);
                     }
                     if frame.mark == Mark::Checkpoint {
-                        let captured = asked.captured.expect("a checkpoint's tick ends all strokes");
+                        let captured =
+                            asked.captured.expect("a checkpoint's tick ends all strokes");
                         if replica.station.hosts() {
                             let bytes = captured.to_bytes();
                             replica.station.checkpoint(frame.index, bytes.into());
                         }
                     }
-                    replica.station.stepped(world.is_at_rest());
+                    replica.station.after_step(world.is_at_rest());
                 }
                 Event::Restore { checkpoint, .. } => {
                     let world = Captured::restore(&checkpoint, Workers::new(1)).expect("whole");
@@ -254,7 +258,7 @@ impl Simulation {
                     replica.restored += 1;
                 }
                 Event::Entered { person, rate_hz } => {
-                    replica.executor = Executor::new(rate_hz, person);
+                    replica.executor.set_person(person, rate_hz);
                 }
                 Event::Hosting(_) => {}
                 Event::Differs { .. } => replica.differed += 1,
@@ -313,7 +317,11 @@ impl Simulation {
             let told = r.notes.join("\n");
             assert_eq!(r.station.log().last(), log.last(), "replica {i} is behind:\n{told}");
             assert_eq!(r.world.as_ref().map(World::hash), hash, "replica {i} differs:\n{told}");
-            assert!(r.station.outbox().is_empty(), "replica {i}: {} wait", r.station.outbox().len());
+            assert!(
+                r.station.outbox().is_empty(),
+                "replica {i}: {} wait",
+                r.station.outbox().len()
+            );
             assert_eq!(r.station.outbox().dropped, 0);
             assert_eq!(r.differed, 0, "replica {i}:\n{told}");
             for (at, own) in &self.replicas[host].hashes {
