@@ -11,6 +11,10 @@ use std::sync::Arc;
 
 use crate::comparison::HashComparison;
 use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::host_limits::{
+    ALONE_US, BUSY_US, BYTES, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE,
+    REST_US,
+};
 use crate::host_members::{BatchQueue, Greeted, JoinedMember, PER_MESSAGE, bounded};
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
@@ -20,27 +24,6 @@ use crate::wire::message::{
     Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, Nonce, Offer, Reached, Term,
     VERSION,
 };
-
-/// People in one sculpture at once.
-pub const MAX_MEMBERS: usize = 64;
-/// Bytes that a member may send at once, and a second: a command with a mesh, then strokes.
-const BYTES: (f64, f64) = (24e6, 48e3);
-/// Greetings that are answered at once, and a second, of all strangers together.
-const GREETINGS: (f64, f64) = (64.0, 20.0);
-/// Batches of one person that wait for their ticks.
-const MAX_WAITING: usize = 4096;
-/// Violations after which a member is sent away.
-const PATIENCE: u32 = 200;
-/// A member that was not heard for so long is gone.
-const GONE_US: u64 = 5_000_000;
-/// A host that had replicas and has none waits so long before it acknowledges alone.
-const ALONE_US: u64 = 15_000_000;
-/// Strokes are waited for so long before a checkpoint ends them.
-const REST_US: u64 = 2_000_000;
-/// After the last input so long every tick has its frame.
-const BUSY_US: u64 = 1_000_000;
-/// Chunks that one request may ask for.
-const MAX_WANTED: u32 = 64;
 
 /// The host's state.
 #[derive(Debug)]

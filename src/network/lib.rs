@@ -24,6 +24,7 @@ pub mod comparison;
 pub mod core;
 pub mod executor;
 pub mod host;
+pub mod host_limits;
 pub mod host_members;
 pub mod keyring;
 #[cfg(feature = "zenoh")]

@@ -3,9 +3,9 @@
 //! random bytes come from outside, so that a test can run many of them on a simulated network.
 //!
 //! **When the host is silent** for [`LOST_US`], the members that may take over tell each other
-//! where their logs end; after [`DECIDE_US`] the one with the longest log (of equals, the one with the
-//! lowest address) hosts in a new turn. The others greet it. A host that hears of a greater turn
-//! becomes a member again. Where the network is split, each part goes on; when it heals, the
+//! where their logs end; after [`DECIDE_US`] the one with the longest log (of equals, the one with
+//! the lowest address) hosts in a new turn. The others greet it. A host that hears of a greater
+//! turn becomes a member again. Where the network is split, each part goes on; when it heals, the
 //! smaller turn's stations join the greater's, and send again what of their own input it lacks.
 
 use std::sync::Arc;
