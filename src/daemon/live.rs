@@ -333,7 +333,7 @@ impl TickBuffers {
         if command.is_cut() {
             self.results.push(result);
         }
-        if matches!(command, Command::Scene(_)) {
+        if command.is_scene() {
             self.scene_results.push(scene_result);
         }
     }

@@ -6,7 +6,7 @@ use crate::checkpoint::Captured;
 use crate::wire::frame::{Frame, Mark, PersonId};
 use sculptd_clay::Snapshot;
 use sculptd_devices::{DeviceId, Sample};
-use sculptd_engine::command::Command;
+use sculptd_engine::command::{Command, OfPerson};
 use sculptd_engine::scene::SceneView;
 use sculptd_engine::world::World;
 
@@ -104,7 +104,14 @@ impl Executor {
                 if batch.person == self.person {
                     input.own.push(input.commands.len());
                 }
-                input.commands.push(command.clone());
+                let mut command = command.clone();
+                if let Command::DesktopLayout(desktop) = &mut command {
+                    for (device, _) in desktop.tablets.iter_mut().flatten() {
+                        *device = world_device(batch.person, *device);
+                    }
+                }
+                let of = OfPerson { person: batch.person, command };
+                input.commands.push(Command::OfPerson(Box::new(of)));
             }
         }
         if frame.mark == Mark::Checkpoint {
@@ -115,6 +122,7 @@ impl Executor {
 
     /// What follows a tick that was stepped; `frame`: where it was a frame's own.
     pub fn after_step(&mut self, world: &mut World, frame: Option<&Frame>) -> Asked {
+        world.show_to(self.person);
         let report = *world.report();
         self.busy = report.paused || report.resting || !world.is_at_rest();
         let Some(frame) = frame else { return Asked::default() };

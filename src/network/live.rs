@@ -281,6 +281,14 @@ impl SharedInput for SharedLink {
             sample.device = DeviceId(number as u16);
             own.push(sample);
         }
+        for command in commands.iter_mut() {
+            let Command::DesktopLayout(desktop) = command else { continue };
+            for entry in &mut desktop.tablets {
+                // A tablet that has sent nothing yet has no number on the wire.
+                let device = entry.and_then(|(d, _)| self.devices.iter().position(|o| *o == d));
+                *entry = entry.zip(device).map(|((_, at), n)| (DeviceId(n as u16), at));
+            }
+        }
         if own.is_empty() && commands.is_empty() {
             return;
         }
