@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::people::People;
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::Jump;
@@ -141,11 +142,16 @@ impl SavedScene {
     }
 
     /// What stands behind the rest of a state; `None` where nothing does.
-    fn read(bytes: &[u8]) -> Result<Option<SavedScene>, BadState> {
+    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People)>, BadState> {
         if bytes.is_empty() {
             return Ok(None);
         }
-        postcard::from_bytes(bytes).map(Some).map_err(|_| BadState)
+        let (scene, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
+        let people = match rest {
+            [] => People::default(),
+            rest => postcard::from_bytes(rest).map_err(|_| BadState)?,
+        };
+        Ok(Some((scene, people)))
     }
 
     fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
@@ -167,7 +173,7 @@ impl Saved {
     pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
         let (_, rest): (Core, _) =
             take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
-        SavedScene::read(rest)
+        Ok(SavedScene::read(rest)?.map(|(scene, _)| scene))
     }
 }
 
@@ -319,8 +325,13 @@ impl World {
             kept_brushes: &self.kept_brushes,
         };
         let mut core = postcard::to_stdvec(&core).ok()?;
-        if !self.scene.is_plain() {
+        let alone = self.people.is_nobody();
+        if !self.scene.is_plain() || !alone {
             core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
+        }
+        if !alone {
+            // Behind the list of objects; a world of one person has nothing there.
+            core = postcard::to_extend(&self.people, core).ok()?;
         }
         Some(Saved {
             tick: self.tick,
@@ -351,7 +362,7 @@ impl World {
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        let list = SavedScene::read(rest)?;
+        let (list, people) = SavedScene::read(rest)?.unzip();
         let mut clays = clays.into_iter();
         let mut scene = match list {
             None => {
@@ -378,6 +389,7 @@ impl World {
         world.lineages = core.lineages;
         world.desktop = core.desktop;
         world.kept_brushes = Arc::new(core.kept_brushes);
+        world.people = people.unwrap_or_default();
         Ok(world)
     }
 }
