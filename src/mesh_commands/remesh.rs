@@ -1,4 +1,5 @@
-//! `sculptd remesh`: one closed surface of even triangles out of any mesh.
+//! `sculptd remesh`: one closed surface of even triangles out of any mesh, or a mesh of quads that
+//! follow the shape.
 
 use std::path::{Path, PathBuf};
 
@@ -6,6 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::distance::{Ready, solid, timed, warn};
+use super::remesh_quads::{QuadArgs, remesh_quads};
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::io::{writable_format, write_mesh};
@@ -24,6 +26,8 @@ pub struct RemeshArgs {
     /// Keep sharp edges.
     #[arg(long)]
     pub sharp: bool,
+    #[command(flatten)]
+    pub quads: QuadArgs,
 }
 
 /// How fine the field is sampled.
@@ -85,6 +89,9 @@ pub fn finish(
 }
 
 pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
+    if let Some(quads) = args.quads.quads {
+        return remesh_quads(&args.mesh, &args.out, quads, &args.quads, json);
+    }
     let job = Job::default();
     writable_format(&args.out)?;
     let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;

@@ -14,7 +14,11 @@ use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::{self, Preview};
+use super::task_texts::{failed, operation_title, saved};
+use super::thickness_task::{ThicknessRequest, follow};
 use super::wiring::Wiring;
+use crate::language::{current, set_current, tr};
+use crate::panels::hand_menu;
 use crate::panels::state::Pairing;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
@@ -62,17 +66,6 @@ pub enum TaskReport {
     /// The desktop offers no dialog.
     NoDialog(FilePurpose),
     Listed(PathBuf, FolderListing),
-}
-
-/// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is
-/// too thin.
-#[derive(Debug, Clone)]
-struct ThicknessRequest {
-    mesh: Snapshot,
-    /// From the clay to the world, in whose unit walls are told.
-    transform: ObjectTransform,
-    near: Vec3,
-    limit: f32,
 }
 
 /// A mesh on its way into the loop.
@@ -126,8 +119,14 @@ impl Default for Tasks {
     }
 }
 
+/// Runs something on a thread that speaks the language of this one.
 fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
-    let _ = std::thread::Builder::new().name(name.into()).spawn(what);
+    let language = current();
+    let run = move || {
+        set_current(&language);
+        what();
+    };
+    let _ = std::thread::Builder::new().name(name.into()).spawn(run);
 }
 
 /// A dialog that is gone sooner was never seen: no person dismisses one so quickly.
@@ -159,7 +158,8 @@ impl Tasks {
             };
             let said = match read_and_build(&path, &load, &shown, &say, &tell) {
                 Ok(loaded) => {
-                    let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
+                    let count = loaded.mesh.vertex_count();
+                    let mut text = tr!("task-loaded", name = name.as_str(), count = count);
                     for warning in loaded.warnings.iter().take(3) {
                         text.push_str("; ");
                         text.push_str(warning);
@@ -174,7 +174,7 @@ impl Tasks {
                             let _ = say.send(TaskReport::Used(path));
                             TaskReport::Message(text, false)
                         }
-                        Err(_) => TaskReport::Message("the loop has ended".into(), true),
+                        Err(_) => TaskReport::Message(tr!("task-loop-ended"), true),
                     }
                 }
                 Err(e) => TaskReport::Message(e.to_string(), true),
@@ -191,7 +191,8 @@ impl Tasks {
         Some((load.name.clone(), (done * 50.0).floor() / 50.0))
     }
 
-    /// Writes the visible objects, each coordinate times `scale`.
+    /// Writes the visible objects, each coordinate times `scale`; `unit` is the message of the
+    /// unit's name.
     pub fn export(&self, path: PathBuf, state: &Published, scale: f64, unit: &'static str) {
         let (scene, mesh) = (state.scene.clone(), state.mesh.clone());
         let (lo, hi) = state.world_bounds();
@@ -206,13 +207,9 @@ impl Tasks {
                 });
             let said = match written {
                 Ok(_) => {
-                    let text = format!(
-                        "Saved {}: {:.4} x {:.4} x {:.4} {unit}",
-                        path.display(),
-                        size.x,
-                        size.y,
-                        size.z
-                    );
+                    let [x, y, z] = size.to_array().map(|n| format!("{n:.4}"));
+                    let (name, unit) = (path.display().to_string(), tr!(unit));
+                    let text = tr!("task-exported", path = name, x = x, y = y, z = z, unit = unit);
                     let _ = say.send(TaskReport::Used(path));
                     TaskReport::Message(text, false)
                 }
@@ -281,7 +278,8 @@ impl Tasks {
                         let command = Command::Scene(SceneCommand::Exchange(done.exchange));
                         let built = Payload::Clays(done.clays);
                         let sent = commands.send(QueuedCommand::with_payload(command, built));
-                        (format!("{:?}: done", pairing.operation), sent.is_err())
+                        let operation = operation_title(pairing.operation);
+                        (tr!("task-done", operation = operation), sent.is_err())
                     }
                     Err(e) => (e.to_string(), true),
                 };
@@ -297,7 +295,7 @@ impl Tasks {
         thread("sculptd-boolean", move || {
             let (text, wrong) =
                 match boolean_jobs::at_rest(&shown, choice, &Job::default(), &commands) {
-                    Ok(_) => (format!("{}: done", choice.label()), false),
+                    Ok(_) => (tr!("task-done", operation = hand_menu::title(choice)), false),
                     Err(e) => (e.to_string(), true),
                 };
             let _ = say.send(TaskReport::Message(text, wrong));
@@ -329,7 +327,7 @@ impl Tasks {
     /// Cuts off what is seen in a part of the view.
     pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-trim", commands, move || {
-            Ok((trim::at_rest(&shown, &part)?, "Trimmed".into()))
+            Ok((trim::at_rest(&shown, &part)?, tr!("task-trimmed")))
         });
     }
 
@@ -337,7 +335,7 @@ impl Tasks {
     pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
-            Ok((vec![command], format!("Level {} of {of}", at + 1)))
+            Ok((vec![command], tr!("task-level", at = at + 1, all = of)))
         });
     }
 
@@ -346,12 +344,10 @@ impl Tasks {
         self.change("sculptd-remesh", commands, move || {
             let (command, made) = remesh_job::remeshed(&shown, &wanted, &Job::default())?;
             let [before, now] = made.volume;
-            let text = format!(
-                "Remeshed: {} triangles, voxels of {:.4}, volume {:+.2} %",
-                made.triangles,
-                made.voxel,
-                (now / before - 1.0) * 100.0
-            );
+            let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
+            let voxel = format!("{:.4}", made.voxel);
+            let count = made.triangles;
+            let text = tr!("task-remeshed", count = count, voxel = voxel, change = change);
             Ok((vec![command], text))
         });
     }
@@ -361,8 +357,8 @@ impl Tasks {
         let (say, drawing) = (self.say.clone(), projection::svg(outline));
         thread("sculptd-outline", move || {
             let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {
-                Ok(()) => (format!("Saved {}", path.display()), false),
-                Err(e) => (format!("{}: {e}", path.display()), true),
+                Ok(()) => (saved(&path), false),
+                Err(e) => (failed(&path, &e), true),
             };
             let _ = say.send(TaskReport::Message(text, wrong));
         });
@@ -382,7 +378,8 @@ impl Tasks {
         let (say, open) = (self.say.clone(), self.dialog.clone());
         thread("sculptd-dialog", move || {
             let begun_us = clock.now_us();
-            let dialog = rfd::AsyncFileDialog::new().add_filter("Meshes", &MESH_ENDINGS);
+            let dialog =
+                rfd::AsyncFileDialog::new().add_filter(tr!("chooser-meshes"), &MESH_ENDINGS);
             let chosen = match purpose {
                 _ if no_desktop() => None,
                 FilePurpose::Open => pollster::block_on(dialog.pick_file()),
@@ -422,7 +419,10 @@ impl Tasks {
         let reports = &self.say;
         let worker = self.thickness.get_or_insert_with(|| {
             let say = reports.clone();
-            LatestWins::follow("sculptd-thickness", move |requests| follow(requests, &say))
+            let told = move |map: MapValues, about: ThicknessSummary| {
+                say.send(TaskReport::Map(map, Box::new(about))).is_ok()
+            };
+            LatestWins::follow("sculptd-thickness", move |requests| follow(requests, &told))
         });
         let near = transform.inverse().point(near);
         worker.request(ThicknessRequest { mesh: mesh.clone(), transform, near, limit });
@@ -439,129 +439,10 @@ impl Tasks {
             let said = super::picture::write_png(&path, &picture);
             match said {
                 Ok(()) if quiet => {}
-                Ok(()) => {
-                    drop(say.send(TaskReport::Message(format!("Saved {}", path.display()), false)))
-                }
-                Err(e) => {
-                    drop(say.send(TaskReport::Message(format!("{}: {e}", path.display()), true)))
-                }
+                Ok(()) => drop(say.send(TaskReport::Message(saved(&path), false))),
+                Err(e) => drop(say.send(TaskReport::Message(failed(&path, &e), true))),
             }
         });
-    }
-}
-
-/// Vertices measured before the thread looks for a newer request: some ten milliseconds.
-const BATCH: usize = 40_000;
-
-/// Keeps the map of the newest clay until the window is gone.
-fn follow(requests: &cc::Receiver<Request<ThicknessRequest>>, say: &cc::Sender<TaskReport>) {
-    // One worker is left to the loop.
-    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads((cores - 1).max(1)).build() else {
-        return;
-    };
-    let job = Job::default();
-    let mut map: Option<LiveMap> = None;
-    let mut pages: Vec<Arc<[f32]>> = Vec::new();
-    while let Ok((mut wanted, _)) = requests.recv() {
-        loop {
-            if map.as_mut().is_none_or(|m| pool.install(|| m.advance(&wanted.mesh)).is_err()) {
-                map = pool.install(|| LiveMap::new(&wanted.mesh, 1, &job)).ok();
-                pages.clear();
-            }
-            let Some(map) = &mut map else { return };
-            let left = pool.install(|| map.work(wanted.near, BATCH, &job)).unwrap_or(0);
-            let unit = wanted.transform.scale as f32;
-            gather(&wanted.mesh, map.values(), unit, &mut pages);
-            let about = Box::new(about(&wanted, map, left));
-            if say.send(TaskReport::Map(MapValues { pages: pages.clone() }, about)).is_err() {
-                return;
-            }
-            match requests.try_recv() {
-                Ok((newer, _)) => wanted = newer,
-                Err(_) if left > 0 => {}
-                Err(_) => break,
-            }
-        }
-    }
-}
-
-/// The values times `unit` by page; a page with the same bits as before stays the same.
-fn gather(mesh: &Snapshot, values: &[f32], unit: f32, pages: &mut Vec<Arc<[f32]>>) {
-    pages.truncate(mesh.page_count());
-    for (i, page) in mesh.pages().enumerate() {
-        let ids = &page.topology().ids[..page.own()];
-        let value = |id: &u32| values.get(*id as usize).map_or(f32::NAN, |v| v * unit);
-        let same = |old: &Arc<[f32]>| {
-            old.len() == ids.len()
-                && old.iter().zip(ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
-        };
-        if !pages.get(i).is_some_and(same) {
-            let new: Arc<[f32]> = ids.iter().map(value).collect();
-            match pages.get_mut(i) {
-                Some(slot) => *slot = new,
-                None => pages.push(new),
-            }
-        }
-    }
-}
-
-/// Spots listed.
-const SPOTS: usize = 5;
-
-fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSummary {
-    let values = map.values();
-    let unit = wanted.transform.scale as f32;
-    let mut known: Vec<(f32, u32)> = values
-        .iter()
-        .enumerate()
-        .filter(|(_, v)| v.is_finite())
-        .map(|(i, v)| (v * unit, i as u32))
-        .collect();
-    known.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let at = |share: f64| {
-        known.get(((known.len().max(1) - 1) as f64 * share) as usize).map_or(0.0, |k| k.0)
-    };
-    let (min, max, high) = (at(0.0), at(1.0), at(0.98));
-    let mut histogram = vec![0u32; ThicknessSummary::CLASSES];
-    let span = (high - min).max(1e-12);
-    for (v, _) in &known {
-        let class = ((v - min) / span * ThicknessSummary::CLASSES as f32) as usize;
-        histogram[class.min(ThicknessSummary::CLASSES - 1)] += 1;
-    }
-    // The thinnest places, each at least a tenth of the object's size from the others.
-    let (lo, hi) = wanted.mesh.bounds();
-    let apart = (hi - lo).length() * 0.05 * unit;
-    let mut places = vec![None; values.len()];
-    let below = known.partition_point(|k| k.0 < wanted.limit);
-    let thin = &known[..below.min(20_000)];
-    for &(_, id) in thin {
-        places[id as usize] = Some(Vec3::NAN);
-    }
-    for page in wanted.mesh.pages() {
-        for (v, &id) in page.topology().ids[..page.own()].iter().enumerate() {
-            if places.get(id as usize).is_some_and(Option::is_some) {
-                places[id as usize] = Some(wanted.transform.point(page.point(v)));
-            }
-        }
-    }
-    let mut spots: Vec<ThinSpot> = Vec::new();
-    for &(thickness, id) in thin {
-        let Some(place) = places[id as usize] else { continue };
-        if spots.len() < SPOTS && spots.iter().all(|s| s.place.distance(place) > apart) {
-            spots.push(ThinSpot { place, thickness });
-        }
-    }
-    ThicknessSummary {
-        min,
-        max,
-        high,
-        median: at(0.5),
-        measured: values.len() - left,
-        vertices: values.len(),
-        below: below as f32 / known.len().max(1) as f32,
-        histogram,
-        spots,
     }
 }
 

@@ -64,8 +64,19 @@ pub struct UiState {
     pub versions: HistoryVersions,
     /// The screen of an installation.
     pub pad: KioskPad,
+    /// The language that is shown.
+    pub shown_language: ShownLanguage,
     /// A theme and scale that are in force, so that they are set once.
     pub applied: Option<(bool, u32)>,
+}
+
+/// The language that is shown.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ShownLanguage {
+    /// The code of the one that was last chosen.
+    pub(in crate::panels) chosen: Option<String>,
+    /// The computer has no font for it, and English stands in.
+    pub fontless: bool,
 }
 
 /// The hand that shows a hint over the clay.
