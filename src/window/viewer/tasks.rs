@@ -11,7 +11,7 @@ use crossbeam_channel as cc;
 use glam::Vec3;
 
 use super::folder_listing::list_folder;
-use super::latest_wins::{LatestWins, Request};
+use super::latest_wins::LatestWins;
 use super::pages::MapValues;
 use super::preview::{self, Preview};
 use super::task_texts::{failed, operation_title, saved};
@@ -21,9 +21,8 @@ use crate::language::{current, set_current, tr};
 use crate::panels::hand_menu;
 use crate::panels::state::Pairing;
 use crate::panels::state::{
-    DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
+    DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary,
 };
-use sculptd_clay::live_thickness::LiveMap;
 use sculptd_clay::{Clay, Snapshot};
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};

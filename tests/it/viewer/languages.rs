@@ -144,6 +144,9 @@ fn every_page_fits_in_every_language() {
                 s.ui_state.look.map = Default::default();
                 s.published.hands = None;
                 fill(s, tab);
+                if tab == Tab::Scene {
+                    assert!(s.published.mesh.layers().is_some(), "the page shows a layer");
+                }
                 h.run_steps(3);
                 assert_eq!(current().code(), language.code());
                 pages += 1;
@@ -177,6 +180,10 @@ fn what_unfolds_and_what_lies_over_the_clay_fits_in_every_language() {
             }
             // The animation of what unfolds.
             h.run_steps(8);
+            let inner = ["dab-hardness", "stamp-size", "automask-cavity", "topology-length"];
+            for inner in inner.map(|id| language.find(id, &[]).expect("a message")) {
+                assert!(h.query_all_by_label(&inner).next().is_some(), "{inner} is unfolded");
+            }
             let at = format!("{} {width} at {scale}", language.code());
             bad.extend(misplaced(&h).into_iter().map(|what| format!("{at}, unfolded: {what}")));
             for which in ["help", "keys", "search"] {
