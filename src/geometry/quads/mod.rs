@@ -169,8 +169,8 @@ fn at_step(
         cleanup::pass(&mut quads, job)?;
         smooth::smooth(&mut quads, target, step, 6, job)?;
     }
-    for _ in 0..4 {
-        smooth::smooth(&mut quads, target, step, 5, job)?;
+    for _ in 0..12 {
+        smooth::smooth(&mut quads, target, step, 3, job)?;
         if cleanup::mend_folded(&mut quads) == 0 {
             break;
         }
