@@ -106,7 +106,7 @@ const FINE: f64 = 0.4;
 /// How often the size is corrected to meet the number of quads.
 const SIZES: usize = 3;
 /// The number of quads is met to this share.
-const NEAR_ENOUGH: f64 = 0.03;
+const NEAR_ENOUGH: f64 = 0.05;
 
 /// A quad mesh of the surface `mesh`, which may be open and of several parts.
 pub fn quad_remesh(
