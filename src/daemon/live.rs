@@ -14,7 +14,7 @@ use crossbeam_channel as cc;
 use super::pacer::Pacer;
 use super::page_thread::PageThread;
 use super::published::{Published, PublishedFigures, Publisher};
-use crate::boolean_jobs::BooleanJobs;
+use crate::boolean_jobs::{BooleanJobs, HandRequest};
 use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
@@ -193,11 +193,6 @@ impl Ticking {
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, &self.world);
             }
-            if let Some(choice) = report.join
-                && !self.joiner.as_ref().is_some_and(|j| j.ask(choice))
-            {
-                tracing::warn!("{}: another join is under way", choice.label());
-            }
             for (result, made) in results.drain(..).zip(self.world.cut_results()) {
                 if let Some(result) = result {
                     let _ = result.try_send(*made);
@@ -219,6 +214,13 @@ impl Ticking {
             }
             (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = newest;
             self.publisher.publish(Published::of(&mut self.world, shown), &garbage);
+            // After the state that they are about is to be seen.
+            let put_down = report.put_down.map(HandRequest::LayDown);
+            for request in report.join.map(HandRequest::Join).into_iter().chain(put_down) {
+                if !self.joiner.as_ref().is_some_and(|j| j.ask(request)) {
+                    tracing::warn!("{request:?}: another join is under way");
+                }
+            }
             pacer.done(self.clock.now_us());
             figures.overruns = pacer.overruns;
         }

@@ -11,8 +11,9 @@ use serde_json::Value;
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
 use super::mask_region::mask_region;
-use super::scene;
+use super::snap::operation;
 use super::stroke::LentBrush;
+use super::{scene, snap};
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
@@ -26,6 +27,7 @@ use sculptd_control::edit::{self, LevelStep, TrimRegion};
 use sculptd_control::event;
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
+use sculptd_control::snap::{SnapParams, SnapReply};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::wire::Code;
@@ -36,7 +38,6 @@ use sculptd_engine::hand::ReachBox;
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
 use sculptd_engine::stroke::CurveAction;
-use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::io::{read_mesh_within, read_regular};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::repair;
@@ -147,15 +148,6 @@ fn boolean(
         tries: joined.tries as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
     })
-}
-
-fn operation(asked: edit::Operation) -> Operation {
-    match asked {
-        edit::Operation::Union => Operation::Union,
-        edit::Operation::Intersection => Operation::Intersection,
-        edit::Operation::Difference => Operation::Difference,
-        edit::Operation::ReverseDifference => Operation::ReverseDifference,
-    }
 }
 
 impl Handler for Host {
@@ -400,14 +392,15 @@ impl Handler for Host {
         scene::reshape(self, &p)
     }
 
+    fn scene_snap(&self, p: SnapParams) -> Result<SnapReply, RpcError> {
+        snap::snap(self, &p)
+    }
+
     fn scene_boolean(
         &self,
         p: asked_scene::SceneBooleanParams,
     ) -> Result<asked_scene::CombineReply, RpcError> {
-        let ids = [ObjectId(p.a), ObjectId(p.b)];
-        scene::combine(self, |shown, job| {
-            scene_jobs::boolean(shown, ids, operation(p.operation), p.keep, job)
-        })
+        snap::boolean(self, &p)
     }
 
     fn scene_merge(

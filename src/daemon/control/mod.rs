@@ -19,6 +19,7 @@ pub mod loop_link;
 mod mask_region;
 mod scene;
 pub mod server;
+mod snap;
 pub mod stroke;
 
 pub use host::Host;

@@ -35,6 +35,8 @@ pub enum SceneCommand {
     Exchange(Exchange),
     /// An object of a primitive gets other numbers, as long as nothing has changed its clay.
     Reshape(ObjectId, NewObject),
+    /// An object is placed flush on a face of another.
+    Snap(Box<FlushPlacing>),
 }
 
 impl SceneCommand {
@@ -55,6 +57,7 @@ impl SceneCommand {
                 | SceneCommand::Exchange(_)
                 | SceneCommand::Reshape(..)
                 | SceneCommand::Rename(..)
+                | SceneCommand::Snap(_)
         )
     }
 }
@@ -119,6 +122,18 @@ pub struct Exchange {
     pub add: Vec<NewObject>,
 }
 
+/// An object was placed flush: what the transform was computed from. Nothing is done when one of
+/// the two has changed since.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FlushPlacing {
+    /// The object that is moved, as it was.
+    pub moved: Operand,
+    /// The object that it is put on, as it was.
+    pub target: Operand,
+    /// Where the moved object stands from now on.
+    pub transform: ObjectTransform,
+}
+
 /// What was done to the scene, for the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -147,6 +162,8 @@ pub enum SceneEvent {
     Merge,
     /// One object became several.
     Split,
+    /// An object was placed flush on a face of another.
+    Snap,
 }
 
 /// Why a command to the scene was not carried out. Nothing was changed.

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::in_hand::{ObjectsInHand, SavedHolding};
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::Jump;
@@ -141,11 +142,17 @@ impl SavedScene {
     }
 
     /// What stands behind the rest of a state; `None` where nothing does.
-    fn read(bytes: &[u8]) -> Result<Option<SavedScene>, BadState> {
+    fn read(bytes: &[u8]) -> Result<(Option<SavedScene>, SavedHolding), BadState> {
         if bytes.is_empty() {
-            return Ok(None);
+            return Ok((None, SavedHolding::default()));
         }
-        postcard::from_bytes(bytes).map(Some).map_err(|_| BadState)
+        let (scene, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
+        // What hands carry stands behind the list, where they carry something.
+        let holding = match rest {
+            [] => SavedHolding::default(),
+            rest => postcard::from_bytes(rest).map_err(|_| BadState)?,
+        };
+        Ok((Some(scene), holding))
     }
 
     fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
@@ -167,7 +174,7 @@ impl Saved {
     pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
         let (_, rest): (Core, _) =
             take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
-        SavedScene::read(rest)
+        Ok(SavedScene::read(rest)?.0)
     }
 }
 
@@ -294,6 +301,7 @@ impl World {
     pub fn is_at_rest(&self) -> bool {
         !self.scene.active().clay.is_in_step()
             && !self.report.paused
+            && !self.in_hand.is_held()
             && self.pens.iter().all(|s| !s.track.is_open() && s.track.is_idle())
     }
 
@@ -318,8 +326,12 @@ impl World {
             kept_brushes: &self.kept_brushes,
         };
         let mut core = postcard::to_stdvec(&core).ok()?;
-        if !self.scene.is_plain() {
+        let holding = self.in_hand.saved();
+        if !self.scene.is_plain() || holding.picking {
             core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
+        }
+        if holding.picking {
+            core = postcard::to_extend(&holding, core).ok()?;
         }
         Some(Saved {
             tick: self.tick,
@@ -350,7 +362,7 @@ impl World {
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        let list = SavedScene::read(rest)?;
+        let (list, holding) = SavedScene::read(rest)?;
         let mut clays = clays.into_iter();
         let mut scene = match list {
             None => {
@@ -373,6 +385,7 @@ impl World {
         world.hands = core.hands;
         world.last_hands = core.last_hands;
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
+        world.in_hand = ObjectsInHand::restored(holding);
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
         world.desktop = core.desktop;

@@ -31,7 +31,7 @@ pub fn menu_balls(state: &Published) -> Vec<MenuBall> {
         radius: RADIUS_MM * state.volume.scale,
         ring: state.menu.filter(|m| m.0 == i).map(|m| m.1),
     };
-    Menu::choices(state.thing.is_some()).iter().enumerate().map(one).collect()
+    Menu::choices(state.thing.is_some() || state.picking).iter().enumerate().map(one).collect()
 }
 
 pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {

@@ -55,6 +55,7 @@ fn operation(event: HistoryEvent) -> Option<&'static str> {
             SceneEvent::Boolean => "Boolean",
             SceneEvent::Merge => "merged",
             SceneEvent::Split => "split",
+            SceneEvent::Snap => "snapped",
         }),
         _ => None,
     }
