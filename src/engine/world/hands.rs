@@ -72,7 +72,7 @@ impl World {
                 Some(thing) => thing.carry(by),
                 None => self.carry_object(by),
             },
-            // Hands that carry objects do not sculpt: a hand that opens beside a part would press it.
+            // Hands that carry objects do not sculpt: one that opens beside a part would press it.
             Act::Push(_) | Act::Drag(_) | Act::Palm(_) if self.in_hand.picking => {}
             Act::Push(a) => {
                 let a = a.seen_from(&own);

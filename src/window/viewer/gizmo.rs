@@ -198,7 +198,7 @@ impl Gizmo {
             }
             GizmoHandle::Scale => {
                 let normal = -from.dir.as_dvec3().normalize();
-                let off = |ray| self.meet(normal, ray).map(|p| (p - self.centre).length());
+                let off = |ray| self.intersect(normal, ray).map(|p| (p - self.centre).length());
                 let (a, b) = (off(from)?, off(to)?);
                 let mut scale = before.scale * b / a.max(self.size * 1e-3);
                 if let Some(steps) = steps {
@@ -221,7 +221,7 @@ impl Gizmo {
     }
 
     /// Where a ray meets the plane through the middle.
-    fn meet(&self, normal: DVec3, ray: Ray) -> Option<DVec3> {
+    fn intersect(&self, normal: DVec3, ray: Ray) -> Option<DVec3> {
         let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
         let fall = dir.dot(normal);
         (fall.abs() > 1e-4 * dir.length())
@@ -230,7 +230,7 @@ impl Gizmo {
 
     /// From the middle to where a ray meets the plane of a circle.
     fn spoke(&self, axis: usize, ray: Ray) -> Option<DVec3> {
-        (self.meet(AXES[axis], ray)? - self.centre).try_normalize()
+        (self.intersect(AXES[axis], ray)? - self.centre).try_normalize()
     }
 }
 

@@ -300,7 +300,7 @@ impl Tasks {
         commands: CommandSender,
     ) {
         let say = self.say.clone();
-        thread("sculptd-snap", move || {
+        thread("sculptd-boolean", move || {
             let align = FaceAlignment::Nearest;
             let placed = face_to_face(&shown.load_full(), moved, target, align, 0.0);
             let (text, wrong) = match placed {
