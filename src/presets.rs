@@ -46,6 +46,7 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "sharpen",
     "surface-smooth",
     "boundary",
+    "erase-layer",
 ];
 
 /// The embedded presets, read once.

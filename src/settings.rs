@@ -12,6 +12,16 @@ pub const LANGUAGES: &[(&str, &str)] = &[
     ("el", include_str!("../config/languages/el.toml")),
 ];
 
+macro_rules! window_texts {
+    ($($code:literal,)*) => {
+        &[$(($code, include_str!(concat!("../config/languages/", $code, "/window.ftl"))),)*]
+    };
+}
+
+/// What the window says, by the language's code: messages in Fluent's syntax.
+pub const WINDOW_TEXTS: &[(&str, &str)] =
+    window_texts!["en", "de", "el", "es", "fr", "it", "ja", "zh",];
+
 #[cfg(test)]
 mod tests {
     use sculptd_daemon::config::{Config, Resolved};

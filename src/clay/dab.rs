@@ -16,7 +16,8 @@ use std::sync::Arc;
 use super::clay::Clay;
 use super::dab_buffers::{DabBuffers, HaloPart, PageOutput, PageTask};
 use super::kernel::{Kernel, PageIn, PageOut};
-use super::normals::{MOVED, PAINTED, TURNED, around_moved};
+use super::layers::LayerStack;
+use super::normals::{LAYERED, MOVED, PAINTED, TURNED, around_moved};
 use super::page::{BLOCK, Page, block_of};
 use super::reach::Reach;
 use super::workers::Workers;
@@ -67,24 +68,44 @@ fn add_neighbours(mesh: &mut Clay, from: usize, kinds: u8) {
 /// each brush; only the pass over one page is.
 trait PageKernel: Sync {
     /// [`displace`], compiled for this processor.
-    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, old: &Page, before: &Page);
+    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>);
+}
+
+/// A page before a dab.
+struct Was<'a> {
+    old: &'a Page,
+    /// When the open step began.
+    before: &'a Page,
+    stack: Option<&'a LayerStack>,
 }
 
 impl<K: Kernel> PageKernel for K {
-    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, old: &Page, before: &Page) {
-        dispatch(false, Displace { slot, side, old, before, kernel: self });
+    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>) {
+        dispatch(false, Displace { slot, side, was, kernel: self });
     }
 }
 
 impl Clay {
     /// Lets `kernel` change what `reach` touches. See the module for what happens.
     pub fn dab<K: Kernel>(&mut self, reach: &Reach, kernel: &K, workers: &Workers) -> DabReport {
-        self.dab_pages(reach, kernel, workers)
+        self.dab_pages(Some(reach), &[], kernel, workers)
     }
 
+    /// Lets `kernel` change these pages, ascending.
+    pub(super) fn dab_on<K: Kernel>(
+        &mut self,
+        pages: &[u32],
+        kernel: &K,
+        workers: &Workers,
+    ) -> DabReport {
+        self.dab_pages(None, pages, kernel, workers)
+    }
+
+    /// What `reach` touches is changed, or without one the pages of a list.
     fn dab_pages(
         &mut self,
-        reach: &Reach,
+        reach: Option<&Reach>,
+        list: &[u32],
         kernel: &dyn PageKernel,
         workers: &Workers,
     ) -> DabReport {
@@ -93,14 +114,16 @@ impl Clay {
         let mut rows = 0;
         {
             let Clay { top, buffers, pool, pages, .. } = self;
-            top.walk_boxes(
-                |lo, hi| reach.touches(lo, hi),
-                |p| {
-                    rows += pages[p].points.len();
-                    buffers.add(p as u32, pool.take());
-                },
-            );
+            let mut add = |p: usize| {
+                rows += pages[p].points.len();
+                buffers.add(p as u32, pool.take());
+            };
+            match reach {
+                Some(reach) => top.walk_boxes(|lo, hi| reach.touches(lo, hi), add),
+                None => list.iter().for_each(|&p| add(p as usize)),
+            }
         }
+        let stack = self.layers().cloned();
         let t1 = now();
         let parallel = rows > PARALLEL;
         let selected = self.buffers.slots.len();
@@ -109,7 +132,8 @@ impl Clay {
             workers.each(parallel, &mut buffers.slots, &mut buffers.sides, |slot, side| {
                 let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
                 let same = |b: &&Arc<Page>| Arc::ptr_eq(&b.topology, &old.topology);
-                kernel.displace(slot, side, old, before.filter(same).unwrap_or(old));
+                let before = before.filter(same).unwrap_or(old);
+                kernel.displace(slot, side, &Was { old, before, stack: stack.as_deref() });
             });
         }
         add_neighbours(self, selected, MOVED | PAINTED);
@@ -198,6 +222,10 @@ impl Clay {
                 report.pages += 1;
                 if let Some(page) = Arc::get_mut(&mut page) {
                     page.revision = *revision;
+                    page.layers = match slot.layers.take() {
+                        Some(layers) => layers,
+                        None => pages[slot.index as usize].layers.clone(),
+                    };
                     top.set_leaf(slot.index as usize, page.lo, page.hi);
                 }
                 stale.add(slot.index);
@@ -222,8 +250,7 @@ impl Clay {
 struct Displace<'a, K> {
     slot: &'a mut PageOutput,
     side: &'a mut PageTask,
-    old: &'a Page,
-    before: &'a Page,
+    was: &'a Was<'a>,
     kernel: &'a K,
 }
 
@@ -231,7 +258,7 @@ impl<K: Kernel> WideWork for Displace<'_, K> {
     type Output = ();
     #[inline(always)]
     fn run<W: Wide>(self, _: W) {
-        displace(self.slot, self.side, self.old, self.before, self.kernel);
+        displace(self.slot, self.side, self.was, self.kernel);
     }
 }
 
@@ -253,13 +280,8 @@ impl WideWork for Turn<'_> {
 
 /// Copies the points and lets the kernel write.
 #[inline(always)]
-fn displace<K: Kernel>(
-    slot: &mut PageOutput,
-    side: &mut PageTask,
-    old: &Page,
-    before: &Page,
-    kernel: &K,
-) {
+fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>, kernel: &K) {
+    let old = was.old;
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
     page.points.clear();
     page.points.extend_from_slice(&old.points);
@@ -270,10 +292,13 @@ fn displace<K: Kernel>(
         marks: &mut slot.marks,
         colours: &mut side.colours,
         affected: 0,
+        layers: None,
     };
-    kernel.page(&PageIn::new(slot.index, old, before), &mut out);
+    kernel.page(&PageIn::new(slot.index, old, was.before, was.stack), &mut out);
     slot.affected = out.affected;
+    slot.layers = out.layers;
     tally(slot);
+    slot.any |= if slot.layers.is_some() { LAYERED } else { 0 };
 }
 
 /// Joins all marks, counts them, and finds the blocks in which something moved.

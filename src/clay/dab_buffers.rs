@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec4;
 
+use super::layers::PageLayers;
 use super::page::Page;
 
 /// Nanoseconds spent since the clock was set, by phase.
@@ -41,6 +42,8 @@ pub(super) struct PageOutput {
     pub(super) affected: usize,
     /// The page holds the old page's normals and tree already.
     pub(super) complete: bool,
+    /// What the page has of the layers from now on; `None`: what the old page has.
+    pub(super) layers: Option<Option<Arc<PageLayers>>>,
     pub(super) normals_ns: u64,
     pub(super) bvh_ns: u64,
 }
@@ -111,6 +114,7 @@ impl DabBuffers {
             moved: 0,
             affected: 0,
             complete: false,
+            layers: None,
             normals_ns: 0,
             bvh_ns: 0,
         };
@@ -144,6 +148,7 @@ impl DabBuffers {
         slot.marks.clear();
         (slot.any, slot.touched, slot.moved, slot.affected, slot.complete) = (0, 0, 0, 0, false);
         (slot.normals_ns, slot.bvh_ns) = (0, 0);
+        slot.layers = None;
         side.incoming.clear();
         side.rows.clear();
         side.colours.clear();

@@ -1,7 +1,10 @@
 //! What a brush sees of a page, and where it writes.
 
+use std::sync::Arc;
+
 use glam::{BVec4A, Vec3, Vec4};
 
+use super::layers::{LayerStack, LayerSum, PageLayers};
 use super::normals::{MOVED, PAINTED};
 use super::page::{BLOCK, BREAK, Page, Points, Ring};
 use sculptd_geometry::simd::cotangents;
@@ -21,6 +24,8 @@ pub struct PageIn<'a> {
     page: &'a Page,
     before: &'a Page,
     number: u32,
+    /// Whether a layer is active, and the sum of the page's layers.
+    layers: (bool, Option<LayerSum<'a>>),
     /// Own, then halo.
     pub positions: Points<'a>,
     /// Own, then halo; zero where all triangles are degenerate.
@@ -29,11 +34,18 @@ pub struct PageIn<'a> {
 
 impl<'a> PageIn<'a> {
     /// `before`: the page when the stroke began, of the same topology.
-    pub(super) fn new(number: u32, page: &'a Page, before: &'a Page) -> Self {
+    pub(super) fn new(
+        number: u32,
+        page: &'a Page,
+        before: &'a Page,
+        stack: Option<&LayerStack>,
+    ) -> Self {
+        let sum = stack.zip(page.layers()).and_then(|(stack, own)| LayerSum::new(stack, own));
         PageIn {
             page,
             before,
             number,
+            layers: (stack.is_some_and(|s| s.active.is_some()), sum),
             positions: Points(&page.points),
             normals: Points(&page.normals),
         }
@@ -112,6 +124,18 @@ impl<'a> PageIn<'a> {
         self.before.colour(local)
     }
 
+    /// What the page has of its object's layers, as it was when the open step began.
+    pub fn layers(&self) -> Option<&'a PageLayers> {
+        self.page.layers()
+    }
+
+    /// Where an own vertex would be without the active layer. `None`: the base is active.
+    #[inline(always)]
+    pub fn below_active_layer(&self, own: usize) -> Option<Vec3> {
+        let (active, sum) = &self.layers;
+        active.then(|| sum.as_ref().map_or_else(|| self.before(own), |s| s.below(own)))
+    }
+
     /// The vertex's number in the mesh that was loaded: a seed that does not depend on the pages.
     /// Own vertices only.
     #[inline(always)]
@@ -184,9 +208,16 @@ pub struct PageOut<'a> {
     pub(super) marks: &'a mut [u8],
     pub(super) colours: &'a mut Vec<(u16, [u8; 4])>,
     pub(super) affected: usize,
+    /// What the page has of the layers from now on; `None`: what it has.
+    pub(super) layers: Option<Option<Arc<PageLayers>>>,
 }
 
 impl PageOut<'_> {
+    /// Gives the page other layers.
+    pub(super) fn set_layers(&mut self, layers: Option<Arc<PageLayers>>) {
+        self.layers = Some(layers);
+    }
+
     /// Counts a vertex within the reach.
     #[inline(always)]
     pub fn visit(&mut self) {

@@ -15,6 +15,7 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::{BoxTree, LEAF};
+use super::layers::PageLayers;
 use sculptd_geometry::simd::leaves::Leaves;
 use sculptd_geometry::simd::rings::Hexes;
 
@@ -237,6 +238,8 @@ pub struct Page {
     pub(super) hi: Vec3,
     /// The clay's revision that wrote this page.
     pub(super) revision: u64,
+    /// Base and offsets of the layers that change the page.
+    pub(super) layers: Option<Arc<PageLayers>>,
 }
 
 impl Page {
@@ -250,6 +253,7 @@ impl Page {
             lo: self.lo,
             hi: self.hi,
             revision: self.revision,
+            layers: self.layers.clone(),
         }
     }
 
@@ -262,6 +266,23 @@ impl Page {
         self.normals.extend_from_slice(&other.normals);
         self.tree.copy_from(&other.tree);
         (self.lo, self.hi) = (other.lo, other.hi);
+        self.layers.clone_from(&other.layers);
+    }
+
+    /// What the page has of its object's layers; `None`: no layer changes it.
+    pub fn layers(&self) -> Option<&PageLayers> {
+        self.layers.as_deref()
+    }
+
+    /// The list of layers goes along from the page that this one takes the place of.
+    pub(super) fn keep_layer_stack(&mut self, old: &Page) {
+        let Some(stack) = old.layers().and_then(|l| l.stack.as_ref()) else { return };
+        if self.layers().is_some_and(|l| l.stack.is_some()) {
+            return;
+        }
+        let mut layers = self.layers().cloned().unwrap_or_default();
+        layers.stack = Some(stack.clone());
+        self.layers = layers.shared();
     }
 
     /// What stands still while the page is only displaced.
@@ -347,6 +368,7 @@ impl Page {
     /// Makes room for a page of `own` vertices, a halo as large, and eight triangles a leaf for
     /// four triangles a vertex; what it held is gone.
     pub(super) fn make_room(&mut self, own: usize) {
+        self.layers = None;
         self.points.clear();
         self.normals.clear();
         self.points.reserve(2 * own);
@@ -376,7 +398,8 @@ impl Page {
     /// for a replay must forget the same steps.
     pub(super) fn weight(&self) -> usize {
         // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
-        size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4
+        let layers = self.layers.as_ref().map_or(0, |l| l.weight());
+        size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4 + layers
     }
 
     /// Heap bytes of what a copy on write copies.
@@ -385,5 +408,6 @@ impl Page {
             + 16
             + (self.points.capacity() + self.normals.capacity()) * 16
             + self.tree.bytes()
+            + self.layers.as_ref().map_or(0, |l| l.weight())
     }
 }

@@ -147,6 +147,9 @@ impl Pool {
         for _ in 0..count.min(self.waiting.len()) {
             let Some(mut page) = self.waiting.pop_front() else { return };
             if let Some(free) = Arc::get_mut(&mut page) {
+                if let Some(layers) = free.layers.take() {
+                    self.sink.discard(Garbage::Shared(layers));
+                }
                 // The last page that lets go of a topology leaves it here.
                 let mut topology = std::mem::replace(&mut free.topology, self.blank.clone());
                 if Arc::get_mut(&mut topology).is_some() {

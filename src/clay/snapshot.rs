@@ -12,6 +12,7 @@ use super::boxtree::BoxRay;
 use super::page::Page;
 use super::pick::{self, Found};
 use super::ray::{Hit, Ray};
+use crate::layers::{LayerStack, PageLayers};
 use crate::multires::Levels;
 use sculptd_geometry::TriMesh;
 
@@ -57,6 +58,12 @@ impl Snapshot {
     /// As [`super::Clay::levels`].
     pub fn levels(&self) -> Option<&Arc<Levels>> {
         self.levels.as_ref()
+    }
+
+    /// As [`super::Clay::layers`].
+    pub fn layers(&self) -> Option<&Arc<LayerStack>> {
+        let first = (self.totals.pages > 0).then(|| self.page(0))?;
+        first.layers.as_ref()?.stack.as_ref()
     }
 
     /// All pages in order. A page that did not change between two snapshots is the same `Arc` in
@@ -245,7 +252,7 @@ pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) ->
 }
 
 /// FNV-1a, 64 bits, a word at a time, over positions, mask, colours and triangles in the loaded
-/// order.
+/// order, then over the layers, where there are any.
 pub(super) fn hash<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> u64 {
     let plain = to_tri(page, totals);
     let rank = ranks(page, totals);
@@ -266,5 +273,8 @@ pub(super) fn hash<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> u
         eat(plain.colours.as_ref().map_or(u32::MAX, |c| u32::from_le_bytes(c[v])));
     }
     plain.triangles.iter().flatten().for_each(|&v| eat(v));
+    for p in 0..totals.pages as u32 {
+        page(p).layers().map(PageLayers::words).into_iter().flatten().for_each(&mut eat);
+    }
     h
 }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::boxtree::LEAF;
 use super::clay::Clay;
+use super::layers::PageLayers;
 use super::page::{BREAK, Page, PageTopology};
 use crate::assembly::Built;
 
@@ -68,7 +69,8 @@ impl PageTopology {
 }
 
 impl Page {
-    /// What a dab may change: points and normals, own and halo, 32 bytes a vertex.
+    /// What a dab may change: points and normals, own and halo, 32 bytes a vertex. Behind them what
+    /// the page has of its object's layers (postcard), where it has anything.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.points.len() * 32);
         for row in self.points.iter().chain(&self.normals) {
@@ -76,7 +78,11 @@ impl Page {
                 out.extend_from_slice(&x.to_bits().to_le_bytes());
             }
         }
-        out
+        match self.layers() {
+            // Plain data always serialises.
+            Some(layers) => postcard::to_extend(layers, out).unwrap_or_default(),
+            None => out,
+        }
     }
 
     /// The page again, with what stands still in it.
@@ -89,7 +95,14 @@ impl Page {
         revision: u64,
     ) -> Result<Page, BadPage> {
         let all = topology.own + topology.halo_sources.len();
-        if bytes.len() != all * 32 {
+        let Some((bytes, rest)) = bytes.split_at_checked(all * 32) else { return Err(BadPage) };
+        let layers = if rest.is_empty() {
+            None
+        } else {
+            let layers: PageLayers = postcard::from_bytes(rest).map_err(|_| BadPage)?;
+            Some(Arc::new(layers)).filter(|l| l.fits(topology.own))
+        };
+        if layers.is_none() && !rest.is_empty() {
             return Err(BadPage);
         }
         let row = |b: &[u8]| {
@@ -107,7 +120,7 @@ impl Page {
             return Err(BadPage);
         }
         let leaves = topology.triangles.len().div_ceil(LEAF);
-        let mut page = Page { topology, points, normals, revision, ..Page::default() };
+        let mut page = Page { topology, points, normals, revision, layers, ..Page::default() };
         page.tree.reset(leaves);
         if page.topology.own == 0 && page.topology.triangles.is_empty() {
             (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);

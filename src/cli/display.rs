@@ -65,6 +65,7 @@ pub fn window(
         pen_trail: run.live.pen_trail.clone(),
         pointer: run.factory.sender(),
         pointer_id: sculptd_daemon::adaptors::POINTER_ID,
+        translations: translations(),
         presets: crate::presets().clone(),
         clock: run.clock.clone(),
         stop: run.stop.clone(),
@@ -83,6 +84,19 @@ pub fn window(
         kiosk: run.kiosk.clone(),
     };
     Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))
+}
+
+/// The languages of the window: those that the program brings along, and those of the person's own
+/// folder, `languages/CODE/window.ftl` beside the preferences. The first one is guessed from the
+/// environment, as `setlocale` reads it.
+#[cfg(feature = "viewer")]
+fn translations() -> sculptd_window::language::Translations {
+    let set = |name: &&str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let locale = ["LC_ALL", "LC_MESSAGES", "LANG"].iter().find_map(set).unwrap_or_default();
+    let folder = directories::ProjectDirs::from("", "", "sculptd")
+        .map(|dirs| dirs.config_dir().join("languages"));
+    let texts = crate::settings::WINDOW_TEXTS;
+    sculptd_window::language::Translations::new(texts, folder.as_deref(), &locale)
 }
 
 #[cfg(not(feature = "viewer"))]

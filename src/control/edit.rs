@@ -68,6 +68,10 @@ pub struct BooleanReply {
     pub tries: u64,
     /// How long it took, seconds.
     pub seconds: f64,
+    /// Layers that were baked into the surface, because all of it was computed anew. Where only the
+    /// surroundings of the tool were, the layers stay.
+    #[serde(default)]
+    pub layers_baked: u64,
 }
 
 /// Parameters of `trim`.
@@ -142,6 +146,9 @@ pub struct LevelReply {
     pub level: u64,
     /// How many there are.
     pub levels: u64,
+    /// Layers that were baked into the surface before another level took its place.
+    #[serde(default)]
+    pub layers_baked: u64,
 }
 
 /// Parameters of `remesh`.
@@ -174,6 +181,9 @@ pub struct RemeshReply {
     pub volume: f64,
     /// How long it took, seconds.
     pub seconds: f64,
+    /// Layers that were baked into the surface, which is another one now.
+    #[serde(default)]
+    pub layers_baked: u64,
 }
 
 /// Parameters of `jump`.

@@ -4,7 +4,7 @@
 //! knows nobody: a program that drives a daemon needs it alone.
 //!
 //! Read first: [`method`] (every method, in one table), then [`client`] (how to call one), then
-//! the types: [`status`], [`brush`], [`view`], [`edit`], [`scene`], [`snap`], [`event`].
+//! the types: [`status`], [`brush`], [`view`], [`edit`], [`scene`], [`layers`], [`snap`], [`event`].
 //! [`wire`] has the lines, the limits and the errors, [`range`](mod@range) the range of each
 //! number. The same for other languages is [`SCHEMA`].
 //!
@@ -34,6 +34,7 @@ mod check;
 pub mod client;
 pub mod edit;
 pub mod event;
+pub mod layers;
 pub mod method;
 pub mod range;
 pub mod scene;

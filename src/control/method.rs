@@ -20,6 +20,10 @@ use crate::edit::{
     TakeUpReply, ThicknessParams, ThicknessReply, TrimParams,
 };
 use crate::event::SubscribeReply;
+use crate::layers::{
+    LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
+    LayerReply, LayerSetParams, LayersReply,
+};
 use crate::scene::{
     AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,
     RenameParams, ReshapeParams, SceneBooleanParams, SceneReply, ShowParams, TransformParams,
@@ -249,6 +253,28 @@ methods! {
     "scene.merge" SceneMerge scene_merge(MergeParams) -> CombineReply;
     /// Makes each connected part of an object an object of its own.
     "scene.split" SceneSplit scene_split(ObjectParams) -> CombineReply;
+    /// The layers of the active object, from the lowest up.
+    "layers.list" LayersList layers_list(NoParams) -> LayersReply;
+    /// Adds a layer above the others, and makes it the one that strokes change.
+    "layers.add" LayersAdd layers_add(LayerAddParams) -> LayerReply;
+    /// Removes a layer with what it does.
+    "layers.remove" LayersRemove layers_remove(LayerParams) -> LayerReply;
+    /// Gives a layer another name.
+    "layers.rename" LayersRename layers_rename(LayerRenameParams) -> LayerReply;
+    /// Puts a layer at another place in the order.
+    "layers.move" LayersMove layers_move(LayerMoveParams) -> LayerReply;
+    /// Sets the intensity of a layer, shows or hides it.
+    "layers.set" LayersSet layers_set(LayerSetParams) -> LayerReply;
+    /// Makes a layer, or the base, the one that strokes change.
+    "layers.activate" LayersActivate layers_activate(LayerActivateParams) -> LayerReply;
+    /// Adds a layer to the one below it, or to the base. Neither may be hidden.
+    "layers.merge" LayersMerge layers_merge(LayerParams) -> LayerReply;
+    /// Adds a hidden twin of a layer right above it, and makes it the one that strokes change.
+    "layers.duplicate" LayersDuplicate layers_duplicate(LayerParams) -> LayerReply;
+    /// Takes away what a layer does; the layer stays.
+    "layers.clear" LayersClear layers_clear(LayerParams) -> LayerReply;
+    /// Makes the surface as it is the base, without layers.
+    "layers.bake" LayersBake layers_bake(NoParams) -> LayerReply;
     /// How far the Boolean is that is under way.
     "progress" Progress progress(NoParams) -> ProgressReply;
     /// Ends the Boolean that is under way; nothing is changed.

@@ -212,6 +212,9 @@ pub struct CombineReply {
     pub vertices: u64,
     /// How long it took, seconds.
     pub seconds: f64,
+    /// Layers of the operands: the new objects have their surfaces, baked.
+    #[serde(default)]
+    pub layers_baked: u64,
 }
 
 /// Reply of `scene.list`.

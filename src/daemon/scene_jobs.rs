@@ -4,14 +4,15 @@
 
 use std::sync::Arc;
 
-use sculptd_clay::{Clay, Snapshot};
+use sculptd_clay::layers::{Layer, LayerOffsets, MAX_INTENSITY, MAX_LAYERS};
+use sculptd_clay::{Clay, FlatLayers, LayerEdit, Snapshot};
 use sculptd_engine::scene::{
-    Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, Operand, SceneError,
-    SceneEvent, SceneView,
+    Exchange, MAX_NAME, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, Operand,
+    SceneError, SceneEvent, SceneView, clean_name,
 };
 use sculptd_geometry::boolean::{self, BooleanOptions, Operation};
 use sculptd_geometry::disjoint_sets::DisjointSets;
-use sculptd_geometry::io::SceneMesh;
+use sculptd_geometry::io::{MorphTarget, MorphedMesh, SceneMesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
@@ -53,6 +54,31 @@ pub enum Selection {
     One(ObjectId),
 }
 
+/// The layers of an object as morph targets.
+fn morphed(clay: &Snapshot) -> Option<MorphedMesh> {
+    let FlatLayers { base, layers } = clay.flat_layers()?;
+    let target = |(layer, offsets): (Layer, _)| MorphTarget {
+        name: layer.name,
+        weight: layer.intensity,
+        visible: layer.visible,
+        offsets,
+    };
+    Some(MorphedMesh { base, targets: layers.into_iter().map(target).collect() })
+}
+
+/// Morph targets that came with a mesh, as layers to be added; `None`: there are none.
+pub fn layers_of(targets: &[MorphTarget]) -> Option<LayerEdit> {
+    let layer = |t: &MorphTarget| LayerOffsets {
+        name: clean_name(&t.name.chars().take(MAX_NAME).collect::<String>())
+            .unwrap_or_else(|| "layer".into()),
+        intensity: t.weight.clamp(-MAX_INTENSITY, MAX_INTENSITY),
+        visible: t.visible,
+        offsets: t.offsets.iter().map(|o| (o.0, o.1.to_array())).collect(),
+    };
+    let layers: Vec<LayerOffsets> = targets.iter().take(MAX_LAYERS).map(layer).collect();
+    (!layers.is_empty()).then(|| LayerEdit::Import(Arc::new(layers)))
+}
+
 /// The objects of a selection as meshes with names and places.
 ///
 /// # Errors
@@ -75,7 +101,7 @@ pub fn selected(
         .map(|(_, (o, clay))| {
             let ObjectTransform { shift, turn, scale } = o.settings.transform;
             let (name, mesh) = (o.settings.name.clone(), polygons::polygons(&clay.to_tri()));
-            SceneMesh { name, mesh, shift, turn, scale }
+            SceneMesh { name, mesh, shift, turn, scale, morphed: morphed(clay) }
         })
         .collect();
     match which {

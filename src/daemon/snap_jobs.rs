@@ -5,9 +5,10 @@
 use glam::DVec3;
 
 use sculptd_clay::Snapshot;
+use sculptd_engine::command::Command;
 use sculptd_engine::scene::{
     FaceAlignment, FlatFace, FlushPlacing, ObjectId, ObjectTransform, ObjectView, Operand,
-    SceneError, flush,
+    SceneCommand, SceneError, flush,
 };
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::bvh::nearest_on_triangle;
@@ -113,6 +114,16 @@ pub fn face_to_face(
     let transform = transform.ok_or(SnapError::NoSide)?;
     let placing = FlushPlacing { moved: own.operand, target: other.operand, transform };
     Ok(Placed { placing, off: own_off + other_off, areas: [own_area, other_area] })
+}
+
+/// The command that lays the first face on the second by the shortest way.
+///
+/// # Errors
+/// [`SnapError`]
+pub fn command(shown: &Published, faces: [PickedFace; 2]) -> Result<Command, SnapError> {
+    let [moved, target] = faces;
+    let placed = face_to_face(shown, moved, target, FaceAlignment::Nearest, 0.0)?;
+    Ok(Command::Scene(SceneCommand::Snap(Box::new(placed.placing))))
 }
 
 /// How near a held object's face must be to another's to be laid on it when it is let go.
@@ -226,8 +237,7 @@ mod tests {
     use crate::published::PublishedFigures;
     use crate::scene_jobs::{CombineError, SceneBoolean, boolean};
     use glam::DQuat;
-    use sculptd_engine::command::Command;
-    use sculptd_engine::scene::{NewObject, ObjectSource, SceneCommand};
+    use sculptd_engine::scene::{NewObject, ObjectSource};
     use sculptd_engine::world::World;
     use sculptd_geometry::boolean::Operation;
     use sculptd_geometry::job::Job;

@@ -16,7 +16,7 @@ use sculptd_engine::scene::{
     MAX_NAME, NewObject, ObjectSource, ObjectTransform, SceneCommand, clean_name,
 };
 use sculptd_engine::world::{World, WorldOptions};
-use sculptd_geometry::io::{MAX_FILE, ReadError, read_mesh_within};
+use sculptd_geometry::io::{MAX_FILE, MorphTarget, ReadError, read_mesh_within};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -46,12 +46,22 @@ pub struct Loaded {
     pub plain: TriMesh,
     pub mesh: Clay,
     pub warnings: Vec<String>,
+    /// Morph targets of the mesh, which stands without them.
+    pub targets: Vec<MorphTarget>,
 }
 
 /// Reads a mesh from a file, or makes the ball that a session starts with.
 pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
     match path {
-        Some(path) => load_within(path, MAX_FILE, job),
+        Some(path) => {
+            let mut loaded = load_within(path, MAX_FILE, job)?;
+            if !loaded.targets.is_empty() {
+                let count = loaded.targets.len();
+                let text = "morph targets left out; the methods 'load' and 'scene.add' bring them";
+                loaded.warnings.push(format!("{count} {text} as layers"));
+            }
+            Ok(loaded)
+        }
         None => {
             let ball = shapes::sphere_of_about(START_VERTICES);
             build(ball, vec![], "the start ball".into(), job)
@@ -64,7 +74,8 @@ pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, Startup
     let loaded = read_mesh_within(path, limit, job)?;
     let (plain, _) = loaded.mesh.triangulate();
     polygons::remember(loaded.mesh, &plain);
-    build(plain, loaded.warnings, path.display().to_string(), job)
+    let built = build(plain, loaded.warnings, path.display().to_string(), job)?;
+    Ok(Loaded { targets: loaded.targets, ..built })
 }
 
 /// Makes clay of a mesh that was read; `path` names it in an error.
@@ -79,7 +90,7 @@ pub fn build(
 ) -> Result<Loaded, StartupError> {
     let mesh = Clay::build(&plain, job).map_err(|source| StartupError::Build { path, source })?;
     warnings.extend(mesh.warnings().iter().cloned());
-    Ok(Loaded { plain, mesh, warnings })
+    Ok(Loaded { plain, mesh, warnings, targets: Vec::new() })
 }
 
 /// The world of a fresh session.

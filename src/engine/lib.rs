@@ -16,6 +16,7 @@ pub mod camera;
 pub mod command;
 pub mod desktop_layout;
 pub mod hand;
+mod layer_work;
 pub mod mask_region;
 pub mod old_layout;
 pub mod payload;

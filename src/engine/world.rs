@@ -10,6 +10,7 @@
 mod hands;
 mod held;
 mod in_hand;
+mod layers;
 mod local_camera;
 mod saved;
 mod scene_steps;
@@ -29,6 +30,7 @@ use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
+use crate::layer_work::LayerWork;
 use crate::mask_region::MaskSeen;
 use crate::payload::{Payload, PayloadStore};
 use crate::scene::{ObjectId, Scene, Timeline};
@@ -110,6 +112,8 @@ pub struct World {
     scratch: Scratch,
     /// Where triangles are still to be brought to their size.
     topology: TopologyWork,
+    /// Pages that are still to follow an edit of layers, or a stroke on one.
+    layers: LayerWork,
     /// Strokes begun.
     strokes: u32,
     hands: HandTools,
@@ -172,6 +176,7 @@ impl World {
             desktop: DesktopLayout::default(),
             scratch: Scratch::default(),
             topology: TopologyWork::new(),
+            layers: LayerWork::new(),
             strokes: 0,
             hands: HandTools::new(options.hands),
             last_hands: None,
@@ -361,6 +366,7 @@ impl World {
     /// see the strokes ended. So is topology that was carried over, as a part of the stroke's undo
     /// step: a stroke that is taken back and done again is whole.
     fn lift_all(&mut self) {
+        self.end_layer_edit();
         for seat in &mut self.pens {
             seat.track.lift();
         }
@@ -371,11 +377,12 @@ impl World {
         self.close();
     }
 
-    /// Closes the open step.
+    /// Closes the open step, with all that is still to be done to layers.
     fn close(&mut self) {
+        let event = self.finish_layers();
         let World { timeline, scene, garbage, options, .. } = self;
         if timeline.end_step(scene, options.undo_bytes, garbage) {
-            self.note(HistoryEvent::Step);
+            self.note(event);
         }
     }
 
@@ -419,6 +426,10 @@ impl World {
     }
 
     fn sculpt(&mut self) {
+        if !self.layers_may_wait() {
+            self.report.paused = true;
+            return;
+        }
         let left = self.advance_strokes(self.options.dab_budget);
         if !self.topology.is_empty() {
             let visited = self.options.dab_budget - left;
@@ -430,9 +441,7 @@ impl World {
         let active = self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle())
             || self.hands.is_touching()
             || !self.topology.is_empty();
-        if !active {
-            self.close();
-        }
+        self.settle_layers(active);
     }
 
     /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
@@ -442,7 +451,7 @@ impl World {
         let every = self.brush.path.every_ticks as u32;
         let object = self.scene.active_mut();
         let mut clay = StrokeContext {
-            editable: object.is_editable(),
+            editable: object.takes_strokes(),
             camera: LocalCamera::new(&self.camera, &object.settings.transform),
             middle: object.middle,
             extent: object.extent,
@@ -499,6 +508,8 @@ impl World {
     }
 }
 
+#[cfg(test)]
+mod layer_tests;
 #[cfg(test)]
 mod scene_tests;
 #[cfg(test)]

@@ -58,6 +58,7 @@ pub mod offset;
 pub mod picture;
 pub mod portable;
 pub mod projection;
+pub mod quads;
 pub mod remesh;
 pub mod repair;
 pub mod self_intersection;

@@ -136,9 +136,19 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 fn read_points(path: &Path) -> Result<Vec<DVec3>, Fail> {
+    Ok(read_polylines(path)?.concat())
+}
+
+/// Points as text, three numbers a line; what follows a `#` is left out. An empty line ends a
+/// polyline.
+pub(super) fn read_polylines(path: &Path) -> Result<Vec<Vec<DVec3>>, Fail> {
     let text = std::fs::read_to_string(path).map_err(|e| Fail::io(path, &e))?;
+    let mut all = Vec::new();
     let mut out = Vec::new();
     for (i, line) in text.lines().enumerate() {
+        if line.trim().is_empty() && !out.is_empty() {
+            all.push(std::mem::take(&mut out));
+        }
         let line = line.split('#').next().unwrap_or("").trim();
         if line.is_empty() {
             continue;
@@ -160,7 +170,10 @@ fn read_points(path: &Path) -> Result<Vec<DVec3>, Fail> {
             }
         }
     }
-    Ok(out)
+    if !out.is_empty() {
+        all.push(out);
+    }
+    Ok(all)
 }
 
 pub fn run(args: &DistanceArgs, json: bool) -> Outcome {

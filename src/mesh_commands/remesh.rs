@@ -1,4 +1,5 @@
-//! `sculptd remesh`: one closed surface of even triangles out of any mesh.
+//! `sculptd remesh`: one closed surface of even triangles out of any mesh, or a mesh of quads that
+//! follow the shape.
 
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,17 @@ pub struct RemeshArgs {
     /// Keep sharp edges.
     #[arg(long)]
     pub sharp: bool,
+    /// Make about so many quads that follow the shape instead, 6 to 1,000,000. The mesh must be
+    /// manifold; it may be open. OBJ, PLY and OFF keep quads.
+    #[arg(long, value_name = "N", conflicts_with_all = ["side", "sharp"])]
+    pub quads: Option<usize>,
+    /// With `--quads`: keep edges whose faces turn by more than this many degrees.
+    #[arg(long, value_name = "DEGREES", requires = "quads")]
+    pub creases: Option<f64>,
+    /// With `--quads`: strokes that the quads follow, as text, one point of three numbers a line in
+    /// the mesh's unit; an empty line begins another stroke.
+    #[arg(long, value_name = "FILE", requires = "quads")]
+    pub guides: Option<PathBuf>,
 }
 
 /// How fine the field is sampled.
@@ -85,6 +97,9 @@ pub fn finish(
 }
 
 pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
+    if let Some(quads) = args.quads {
+        return super::remesh_quads::run(args, quads, json);
+    }
     let job = Job::default();
     writable_format(&args.out)?;
     let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;

@@ -5,9 +5,10 @@
 //! thread alone: `sculptd_daemon::window_link` says what is taken back, `cli::window_guard` how the
 //! process goes on.
 //!
-//! Read first: [`viewer`], then [`panels`].
+//! Read first: [`viewer`], then [`panels`]; what they say comes from [`language`].
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
+pub mod language;
 pub mod look;
 pub mod panels;
 pub mod viewer;

@@ -4,6 +4,7 @@
 /// A material, lit from the eye's own frame. Colours are linear, 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
+    /// The message of its name.
     pub name: &'static str,
     pub base: [f32; 3],
     /// 0 none to 1.
@@ -25,13 +26,13 @@ const fn material(
 }
 
 pub const MATERIALS: [Material; 7] = [
-    material("clay", [0.52, 0.25, 0.165], 0.22, 40.0, 0.25),
-    material("porcelain", [0.80, 0.80, 0.78], 0.40, 80.0, 0.20),
-    material("wax", [0.60, 0.06, 0.05], 0.45, 50.0, 0.35),
-    material("stone", [0.36, 0.37, 0.38], 0.04, 8.0, 0.10),
-    material("jade", [0.13, 0.45, 0.24], 0.50, 60.0, 0.45),
-    material("bronze", [0.45, 0.25, 0.07], 0.70, 22.0, 0.20),
-    material("graphite", [0.09, 0.095, 0.11], 0.55, 28.0, 0.40),
+    material("material-clay", [0.52, 0.25, 0.165], 0.22, 40.0, 0.25),
+    material("material-porcelain", [0.80, 0.80, 0.78], 0.40, 80.0, 0.20),
+    material("material-wax", [0.60, 0.06, 0.05], 0.45, 50.0, 0.35),
+    material("material-stone", [0.36, 0.37, 0.38], 0.04, 8.0, 0.10),
+    material("material-jade", [0.13, 0.45, 0.24], 0.50, 60.0, 0.45),
+    material("material-bronze", [0.45, 0.25, 0.07], 0.70, 22.0, 0.20),
+    material("material-graphite", [0.09, 0.095, 0.11], 0.55, 28.0, 0.40),
 ];
 
 /// What the clay's own colours give way to.
@@ -88,12 +89,13 @@ impl Map {
         std::array::from_fn(|i| linear(self.colour(i as f32 / (SCALE - 1) as f32, 0.0, 1.0)))
     }
 
+    /// The message of its name.
     pub fn title(self) -> &'static str {
         match self {
-            Map::None => "",
-            Map::Mask => "Mask",
-            Map::Thickness => "Thickness",
-            Map::Distance => "Distance",
+            Map::None => "map-none",
+            Map::Mask => "map-mask",
+            Map::Thickness => "map-thickness",
+            Map::Distance => "map-distance",
         }
     }
 }

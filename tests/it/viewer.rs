@@ -3,6 +3,7 @@
 
 mod beside;
 mod kiosk;
+mod languages;
 mod layout;
 mod learning;
 mod panels;
@@ -11,6 +12,8 @@ mod preferences;
 mod scene;
 mod stall;
 mod versions;
+
+use std::sync::OnceLock;
 
 use sculptd_clay::brush::BrushSettings;
 use sculptd_clay::{Clay, Workers};
@@ -21,6 +24,13 @@ use sculptd_engine::hand::HandSettings;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
+use sculptd_window::language::Translations;
+
+/// The languages of the window; tests speak English, whatever the environment says.
+pub(crate) fn translations() -> &'static Translations {
+    static ALL: OnceLock<Translations> = OnceLock::new();
+    ALL.get_or_init(|| Translations::new(sculptd::settings::WINDOW_TEXTS, None, "en"))
+}
 
 pub(crate) fn world(vertices: usize) -> World {
     let mesh =

@@ -25,6 +25,8 @@ const STILL: f64 = 0.02;
 
 /// One generous bound for whatever a test waits for: the machine may be loaded.
 const BOUND: Duration = Duration::from_secs(120);
+/// For a thing of which some may be lost and are counted.
+const SOON: Duration = Duration::from_secs(20);
 
 /// Real windows run one at a time: they measure and they click.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -67,6 +69,8 @@ fn program(dir: &Path, display: &str) -> Command {
     let mut program = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     program
         .env("DISPLAY", display)
+        // Widgets are found by their English names.
+        .env("LC_ALL", "C")
         .env_remove("WAYLAND_DISPLAY")
         .env("XDG_RUNTIME_DIR", dir)
         .env("XDG_CONFIG_HOME", dir)
@@ -252,14 +256,14 @@ impl Stage {
         }
     }
 
-    /// Whether it comes to be so within two seconds.
+    /// Whether it comes to be so, which is long waited for: a loaded machine is late, not wrong.
     #[allow(clippy::disallowed_methods)] // A test waits for other processes.
     pub fn soon(&mut self, mut so: impl FnMut(&mut Stage) -> bool) -> bool {
         let begun = Instant::now();
         loop {
             match so(self) {
                 true => return true,
-                false if begun.elapsed() > Duration::from_secs(2) => return false,
+                false if begun.elapsed() > SOON => return false,
                 false => pause(20),
             }
         }
@@ -293,21 +297,41 @@ impl Stage {
 
     /// The next picture, once it is another than the last one: what was asked for is on the screen,
     /// and stands still.
-    #[allow(clippy::disallowed_methods)] // A test waits for other processes.
     pub fn seen(&mut self, name: &str) -> RgbaImage {
+        let now = self.changed(name, self.last.as_ref());
+        self.last = Some(now.clone());
+        now
+    }
+
+    /// A picture that differs from `before`, once it stands still.
+    #[allow(clippy::disallowed_methods)] // A test waits for other processes.
+    fn changed(&self, name: &str, before: Option<&RgbaImage>) -> RgbaImage {
         let begun = Instant::now();
         while begun.elapsed() < BOUND {
             let now = self.look(name);
             // Nothing is drawn yet while all is black.
             let drawn = now.pixels().any(|p| p.0[0] > 0);
-            let moved = drawn && self.last.as_ref().is_none_or(|last| differs(last, &now) > STILL);
+            let moved = drawn && before.is_none_or(|before| differs(before, &now) > STILL);
             pause(250);
             if moved && differs(&now, &self.look(name)) < STILL {
-                self.last = Some(now.clone());
                 return now;
             }
         }
         panic!("{name}: nothing new on the screen");
+    }
+
+    /// Opens a field by a key, types into it once it is on the screen, and confirms what is typed
+    /// once that is there too, until the field is gone. On a loaded machine a window is late, and
+    /// letters that come before the field are shortcuts.
+    pub fn answer(&self, key: &str, text: &str) {
+        let before = self.look("before-the-field");
+        self.drive(&["key", key]);
+        let open = self.changed("the-field", Some(&before));
+        self.drive(&["key", "ctrl+a"]);
+        self.drive(&["type", "--delay", "60", text]);
+        let typed = self.changed("the-text", Some(&open));
+        self.drive(&["key", "Return"]);
+        self.changed("after-the-field", Some(&typed));
     }
 }
 

@@ -164,6 +164,7 @@ pub(crate) fn assemble(
         lo: Vec3::ZERO,
         hi: Vec3::ZERO,
         revision: 0,
+        layers: None,
     };
     normals::all(&mut out);
     out.refit(u32::MAX);

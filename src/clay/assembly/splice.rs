@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
 
+use super::super::layers::PageLayers;
 use super::super::page::Page;
 use super::super::snapshot::Snapshot;
 use super::cut::{Corner, Cut, Home, NewVertex, concerned, home_of, touched};
@@ -31,6 +32,8 @@ struct SplicedRegion {
     /// Number in the whole clay; of those that stay.
     ids: Vec<u32>,
     outer: BTreeMap<Home, u32>,
+    /// Where the vertices that stay were in the old pages; as many as there are of them.
+    from: Vec<Home>,
 }
 
 impl SplicedRegion {
@@ -119,6 +122,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
         homes: Homes { page: Vec::new(), local: Vec::new() },
         ids: Vec::new(),
         outer: BTreeMap::new(),
+        from: Vec::new(),
     };
     // Numbers that fall free are given again; the rest is appended.
     let mut free_ids: Vec<u32> = Vec::new();
@@ -133,6 +137,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
                         free_ids.push(id);
                         return u32::MAX;
                     }
+                    region.from.push((p, v as u16));
                     region.push(page.point(v), page.mask(v), page.colour(v), (p, v as u16), id)
                 })
                 .collect(),
@@ -188,6 +193,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
     let mut pages: BTreeMap<u32, Arc<Page>> =
         write(&region, &layout, &numbers)?.into_iter().collect();
     normals(old, &mut pages, &layout, &beside);
+    layers(old, &mut pages, &region, &layout, &inner);
     Some(Remade { pages: pages.into_iter().collect(), next: [next_vertex, next_triangle] })
 }
 
@@ -313,6 +319,28 @@ fn write(
             Some((*p, page))
         })
         .collect()
+}
+
+/// Vertices that stay keep what layers do to them; what is new belongs to the base.
+fn layers(
+    old: &Snapshot,
+    pages: &mut BTreeMap<u32, Arc<Page>>,
+    region: &SplicedRegion,
+    layout: &[(u32, Vec<u32>)],
+    inner: &[u32],
+) {
+    let layered = |p: &u32| old.page(*p).layers().is_some_and(|l| !l.rows().is_empty());
+    if !inner.iter().any(layered) {
+        return;
+    }
+    for (p, own) in layout {
+        let Some(page) = pages.get_mut(p).and_then(Arc::get_mut) else { continue };
+        page.layers = PageLayers::gathered(own.iter().enumerate().map(|(v, &r)| {
+            let from = region.from.get(r as usize);
+            let from = from.and_then(|h| Some((old.page(h.0).layers()?, h.1 as usize)));
+            (page.points[v].truncate(), from)
+        }));
+    }
 }
 
 /// Every copy of a normal is what its home says.

@@ -142,6 +142,7 @@ brushes! {
     "sharpen" Sharpen sharpen::SharpenBrush,
     "surface-smooth" SurfaceSmooth surface_smooth::SurfaceSmoothBrush,
     "boundary" Boundary boundary::BoundaryBrush,
+    "erase-layer" EraseLayer erase_layer::EraseLayerBrush,
 }
 
 // The variants come from a macro, which marks no default.

@@ -199,8 +199,10 @@ impl Clay {
     }
 
     fn replace_page(&mut self, number: u32, mut page: Arc<Page>) {
+        let old = &self.pages[number as usize];
         if let Some(page) = Arc::get_mut(&mut page) {
             page.revision = self.revision;
+            page.keep_layer_stack(old);
         }
         if page.own() == 0 {
             self.empty.push(number);

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::handler::losses;
 use super::host::{Host, locked};
+use super::status_reply::losses;
 use sculptd_control::event::{Event, EventNotice, HistoryState, JournalState, MeshState};
 
 /// Between two looks: what changes in between is one event.

@@ -10,27 +10,30 @@ use serde_json::Value;
 
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
+use super::layers::{self, LayerDone};
 use super::mask_region::mask_region;
+use super::measurement;
 use super::snap::operation;
+use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::{scene, snap};
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
-use crate::window_link::{DisplayVariables, WindowStanding};
+use crate::window_link::DisplayVariables;
 use crate::{Published, boolean_jobs, remesh_job, scene_jobs, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
-use sculptd_clay::live_thickness::LiveMap;
+use sculptd_clay::{LayerEdit, LayerId};
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
 use sculptd_control::event;
+use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
 use sculptd_control::snap::{SnapParams, SnapReply};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
-use sculptd_control::wire::Code;
 use sculptd_control::{Handler, Request, RpcError};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
@@ -53,11 +56,6 @@ const SENT: SentReply = SentReply { sent: true };
 /// As [`Request::read`], and what the method refuses.
 pub fn call(host: &Host, name: &str, params: Value) -> Result<Value, RpcError> {
     method::answer(host, Request::read(name, params)?)
-}
-
-/// The same data in another type of the same JSON form.
-fn convert<T: DeserializeOwned>(value: impl Serialize) -> Result<T, RpcError> {
-    serde_json::to_value(value).and_then(serde_json::from_value).map_err(failed)
 }
 
 /// Lays the named fields over what is in force. An unknown field is refused by its name.
@@ -100,17 +98,6 @@ fn merged_brush(
     Ok((brush.clamped(), None))
 }
 
-/// The pens whose rings are shown, and where: `view` is the view's corner and size on the desktop.
-fn pens(shown: &Published, view: Option<[glam::DVec2; 2]>) -> Vec<status::PenStatus> {
-    let all = shown.pens.iter().flatten();
-    all.map(|(id, pen)| status::PenStatus {
-        device: id.0,
-        view: pen.view.to_array(),
-        pixel: view.map(|[corner, size]| (corner + size * pen.view.as_dvec2()).to_array()),
-    })
-    .collect()
-}
-
 /// A path from outside: absolute, and no link at its end.
 fn safe(path: &Path) -> Result<(), RpcError> {
     if !path.is_absolute() || path.components().any(|c| c == std::path::Component::ParentDir) {
@@ -140,8 +127,10 @@ fn boolean(
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
+    let layers = layers::count(host);
     let joined = work(&place.job).map_err(failed)?;
     Ok(edit::BooleanReply {
+        layers_baked: if joined.local { 0 } else { layers },
         local: joined.local,
         pages_written: joined.pages_written as u64,
         pages_shared: joined.pages_shared as u64,
@@ -164,44 +153,7 @@ impl Handler for Host {
     }
 
     fn status(&self, params: status::StatusParams) -> Result<status::StatusReply, RpcError> {
-        if let Some(v) = params.version {
-            let theirs = Versions { min: v, max: v };
-            Versions::OURS.newest_in_common(theirs).ok_or_else(|| other_version(theirs))?;
-        }
-        let shown = self.published.load_full();
-        let f = &shown.figures;
-        Ok(status::StatusReply {
-            protocol: Versions::OURS.max,
-            versions: Some(Versions::OURS),
-            version: env!("CARGO_PKG_VERSION").into(),
-            tick: shown.tick,
-            heard: f.newest_tick,
-            samples: f.samples,
-            dabs: f.dabs,
-            vertices_moved: f.vertices_moved,
-            overruns: f.overruns,
-            losses: losses(&shown),
-            tick_ms: convert(f.tick_ms)?,
-            vertices: shown.mesh.vertex_count() as u64,
-            triangles: shown.mesh.triangle_count() as u64,
-            undo_steps: shown.undo_steps as u64,
-            redo_steps: shown.redo_steps as u64,
-            brush: convert(shown.brush)?,
-            curve_points: shown.draft.points().len() as u64,
-            journal: self.journal.as_ref().map(|h| status::JournalStatus {
-                written: h.written.load(Relaxed),
-                lost: h.lost.load(Relaxed),
-                fault: h.trouble(),
-            }),
-            pens: pens(&shown, self.window.view_on_desktop()),
-            window: match self.window.standing() {
-                WindowStanding::Headless => status::WindowStatus::Headless,
-                WindowStanding::Opening => status::WindowStatus::Opening,
-                WindowStanding::Open => status::WindowStatus::Open,
-                WindowStanding::Lost => status::WindowStatus::Lost,
-            },
-            session: self.window.session().map(|p| p.display().to_string()),
-        })
+        status_reply::status(self, &params)
     }
 
     fn brush(&self, named: asked::BrushSettings) -> Result<asked::BrushSettings, RpcError> {
@@ -334,6 +286,9 @@ impl Handler for Host {
         let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
         let built = Payload::Clay(Box::new(loaded.mesh));
         self.send(QueuedCommand::with_payload(command, built))?;
+        if let Some(targets) = scene_jobs::layers_of(&loaded.targets) {
+            self.send(Command::Scene(SceneCommand::Layers(targets)))?;
+        }
         Ok(edit::LoadReply { vertices, warnings: loaded.warnings })
     }
 
@@ -415,44 +370,57 @@ impl Handler for Host {
         scene::combine(self, |shown, job| scene_jobs::split(shown, ObjectId(p.id), job))
     }
 
+    fn layers_list(&self, _: NoParams) -> Result<asked_layers::LayersReply, RpcError> {
+        Ok(layers::list(&self.published.load()))
+    }
+
+    fn layers_add(&self, p: asked_layers::LayerAddParams) -> LayerDone {
+        layers::add(self, p)
+    }
+
+    fn layers_remove(&self, p: LayerParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Remove(LayerId(p.layer)))
+    }
+
+    fn layers_rename(&self, p: asked_layers::LayerRenameParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Rename(LayerId(p.layer), p.name))
+    }
+
+    fn layers_move(&self, p: asked_layers::LayerMoveParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Move(LayerId(p.layer), p.to))
+    }
+
+    fn layers_set(&self, p: asked_layers::LayerSetParams) -> LayerDone {
+        layers::set(self, p)
+    }
+
+    fn layers_activate(&self, p: asked_layers::LayerActivateParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Activate(p.layer.map(LayerId)))
+    }
+
+    fn layers_merge(&self, p: LayerParams) -> LayerDone {
+        layers::edit(self, LayerEdit::MergeDown(LayerId(p.layer)))
+    }
+
+    fn layers_duplicate(&self, p: LayerParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Duplicate(LayerId(p.layer)))
+    }
+
+    fn layers_clear(&self, p: LayerParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Clear(LayerId(p.layer)))
+    }
+
+    fn layers_bake(&self, _: NoParams) -> LayerDone {
+        layers::edit(self, LayerEdit::Bake)
+    }
+
     fn hash(&self, _: NoParams) -> Result<edit::HashReply, RpcError> {
         let shown = self.published.load_full();
         Ok(edit::HashReply { tick: shown.tick, hash: format!("{:016x}", shown.hash()) })
     }
 
-    /// Brings the map that the host keeps up to the state of the mesh. The first call measures all.
     fn thickness(&self, params: edit::ThicknessParams) -> Result<edit::ThicknessReply, RpcError> {
-        let state = self.published.load_full();
-        let (mesh, transform, job) = (&state.mesh, state.transform(), Job::default());
-        let rays = params.rays as usize;
-        let mut kept = locked(&self.thickness);
-        // Taken out while it works, so that a panic leaves none rather than half of one.
-        let current = kept.take().filter(|m| m.rays() == rays);
-        let advanced = current.and_then(|mut m| m.advance(mesh).is_ok().then_some(m));
-        let mut map = match advanced {
-            Some(map) => map,
-            None => LiveMap::new(mesh, rays, &job).map_err(failed)?,
-        };
-        let measured = map.stale() as u64;
-        map.work(transform.inverse().point(params.near.into()), usize::MAX, &job)
-            .map_err(failed)?;
-        let values = map.values();
-        // The map is of the clay's own frame; walls are told in the world's unit.
-        let unit = transform.scale as f32;
-        let valid = values.iter().filter(|v| v.is_finite()).map(|v| v * unit);
-        let valid: Vec<f32> = valid.collect();
-        let sum = valid.iter().map(|&v| f64::from(v)).sum::<f64>();
-        let reply = edit::ThicknessReply {
-            revision: map.revision(),
-            vertices: values.len() as u64,
-            measured,
-            valid: valid.len() as u64,
-            min: valid.iter().copied().reduce(f32::min),
-            max: valid.iter().copied().reduce(f32::max),
-            mean: sum / valid.len().max(1) as f64,
-        };
-        *kept = Some(map);
-        Ok(reply)
+        measurement::thickness(self, &params)
     }
 
     fn take_up(&self, params: asked::PathParams) -> Result<edit::TakeUpReply, RpcError> {
@@ -487,7 +455,8 @@ impl Handler for Host {
         let (command, (level, levels)) =
             boolean_jobs::level(&self.published, finer).map_err(failed)?;
         self.send(command)?;
-        Ok(edit::LevelReply { level: level as u64, levels: levels as u64 })
+        let layers_baked = layers::count(self);
+        Ok(edit::LevelReply { level: level as u64, levels: levels as u64, layers_baked })
     }
 
     fn remesh(&self, params: edit::RemeshParams) -> Result<edit::RemeshReply, RpcError> {
@@ -497,8 +466,10 @@ impl Handler for Host {
         let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
         let (command, made) =
             remesh_job::remeshed(&self.published, &wanted, &place.job).map_err(failed)?;
+        let layers_baked = layers::count(self);
         self.send(command)?;
         Ok(edit::RemeshReply {
+            layers_baked,
             voxel: made.voxel,
             vertices: made.vertices as u64,
             triangles: made.triangles as u64,
@@ -572,18 +543,4 @@ impl Handler for Host {
         self.stop.store(true, Relaxed);
         Ok(status::ShutdownReply { stopping: true })
     }
-}
-
-pub(super) fn losses(shown: &Published) -> status::Losses {
-    let l = shown.figures.losses;
-    status::Losses { motion: l.motion, transition: l.transition }
-}
-
-fn other_version(theirs: Versions) -> RpcError {
-    let ours = Versions::OURS;
-    let text = format!(
-        "this daemon speaks versions {} to {}, the client {} to {}",
-        ours.min, ours.max, theirs.min, theirs.max
-    );
-    RpcError::new(Code::Version, text)
 }

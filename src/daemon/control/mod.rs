@@ -15,11 +15,14 @@
 pub mod events;
 pub mod handler;
 pub mod host;
+mod layers;
 pub mod loop_link;
 mod mask_region;
+mod measurement;
 mod scene;
 pub mod server;
 mod snap;
+mod status_reply;
 pub mod stroke;
 
 pub use host::Host;

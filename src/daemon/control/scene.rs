@@ -141,6 +141,7 @@ fn primitive(asked: AskedShape, edge: Option<f64>) -> Result<(Primitive, Clay), 
 
 pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcError> {
     let mut transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
+    let mut layers = None;
     let (source, clay, name, warnings) = match (params.primitive, &params.path, params.held) {
         (None, None, true) => {
             let held = host.published.load().thing.clone();
@@ -160,6 +161,7 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
         (None, Some(path), false) => {
             let loaded =
                 startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)?;
+            layers = scene_jobs::layers_of(&loaded.targets);
             let source = ObjectSource::Mesh(loaded.plain.into());
             (source, loaded.mesh, startup::object_name(path), loaded.warnings)
         }
@@ -171,6 +173,9 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
     let reply = ask(host, QueuedSceneCommand { command, payload })?;
     if params.held {
         host.send(Command::PutDown)?;
+    }
+    if let Some(layers) = layers {
+        ask(host, SceneCommand::Layers(layers))?;
     }
     Ok(ObjectReply { warnings, ..reply })
 }
@@ -206,12 +211,18 @@ pub(super) fn combine(
     let begun = clock.now_us();
     let done = of(&host.published.load_full(), &place.job).map_err(failed)?;
     let objects = done.clays.len() as u64;
+    let shown = host.published.load_full();
+    let layers = |(o, clay): (&sculptd_engine::scene::ObjectView, &sculptd_clay::Snapshot)| {
+        let operand = done.exchange.from.iter().any(|from| from.id == o.id);
+        clay.layers().filter(|_| operand).map_or(0, |s| s.layers.len() as u64)
+    };
+    let layers_baked = shown.scene.each(&shown.mesh).map(layers).sum();
     let vertices = done.clays.iter().map(|c| c.vertex_count() as u64).sum();
     let payload = Some(Payload::Clays(done.clays));
     let command = SceneCommand::Exchange(done.exchange);
     let ObjectReply { id, .. } = ask(host, QueuedSceneCommand { command, payload })?;
     let seconds = (clock.now_us() - begun) as f64 * 1e-6;
-    Ok(CombineReply { id, objects, vertices, seconds })
+    Ok(CombineReply { id, objects, vertices, seconds, layers_baked })
 }
 
 pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, RpcError> {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ObjectId, ObjectTransform, Primitive};
 use crate::payload::PayloadId;
+use sculptd_clay::{LayerEdit, LayerError};
 use sculptd_geometry::TriMesh;
 
 /// Objects of a scene, at most.
@@ -35,6 +36,9 @@ pub enum SceneCommand {
     Exchange(Exchange),
     /// An object of a primitive gets other numbers, as long as nothing has changed its clay.
     Reshape(ObjectId, NewObject),
+    /// Something is done to the layers of the active object, unless it is locked. Edits of an
+    /// intensity that follow each other are one step, see [`LayerEdit::Set`].
+    Layers(LayerEdit),
     /// An object is placed flush on a face of another.
     Snap(Box<FlushPlacing>),
 }
@@ -57,6 +61,7 @@ impl SceneCommand {
                 | SceneCommand::Exchange(_)
                 | SceneCommand::Reshape(..)
                 | SceneCommand::Rename(..)
+                | SceneCommand::Layers(_)
                 | SceneCommand::Snap(_)
         )
     }
@@ -162,6 +167,8 @@ pub enum SceneEvent {
     Merge,
     /// One object became several.
     Split,
+    /// Something was done to the layers of an object.
+    Layers,
     /// An object was placed flush on a face of another.
     Snap,
 }
@@ -196,4 +203,7 @@ pub enum SceneError {
     /// The clay of a primitive was changed, so its numbers mean nothing any more.
     #[error("object {0} is no primitive, or its clay was changed")]
     NotAPrimitive(ObjectId),
+    /// What was asked of the layers cannot be done.
+    #[error(transparent)]
+    Layers(#[from] LayerError),
 }

@@ -93,6 +93,12 @@ impl Object {
         self.settings.visible && !self.settings.locked
     }
 
+    /// Whether strokes reach it and change what is active in it: the base, or a layer that is
+    /// visible and not of an intensity near 0.
+    pub fn takes_strokes(&self) -> bool {
+        self.is_editable() && self.clay.takes_strokes()
+    }
+
     /// Centre of its bounding box when it was put in place, in the world.
     pub fn world_middle(&self) -> Vec3 {
         self.settings.transform.point(self.middle)

@@ -91,7 +91,7 @@ impl World {
     }
 
     fn touch<K: Kernel>(&mut self, reach: &Reach, kernel: &K, left: u64) -> u64 {
-        if !self.scene.active().is_editable() {
+        if !self.scene.active().takes_strokes() {
             return left;
         }
         let clay = &mut self.scene.active_mut().clay;

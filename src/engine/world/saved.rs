@@ -300,6 +300,7 @@ impl World {
     /// Whether nothing is under way: no stroke, nothing that waits, no open step.
     pub fn is_at_rest(&self) -> bool {
         !self.scene.active().clay.is_in_step()
+            && !self.layers.is_edit()
             && !self.report.paused
             && !self.in_hand.is_held()
             && self.pens.iter().all(|s| !s.track.is_open() && s.track.is_idle())

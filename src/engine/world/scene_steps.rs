@@ -11,7 +11,9 @@ use crate::scene::{
 };
 use sculptd_clay::Clay;
 
-/// What a command to the scene came to: the object that it made or was about.
+/// What a command to the scene came to: the object that it made or was about. Of
+/// [`SceneCommand::Layers`] it has the number of the layer that was made or that it was about
+/// instead; `u32::MAX` stands for the base.
 pub type SceneResult = Result<ObjectId, SceneError>;
 
 impl World {
@@ -25,7 +27,7 @@ impl World {
     pub(super) fn apply_scene(&mut self, command: &SceneCommand) {
         let before = self.stance();
         let result = self.scene_command(command);
-        if result.is_ok() {
+        if result.is_ok() && !matches!(command, SceneCommand::Layers(_)) {
             self.scene.touch();
             self.stand(before);
             self.note(HistoryEvent::Scene(event_of(command)));
@@ -34,6 +36,9 @@ impl World {
     }
 
     fn scene_command(&mut self, command: &SceneCommand) -> SceneResult {
+        if let SceneCommand::Layers(edit) = command {
+            return self.edit_layers(edit);
+        }
         // Every stroke ends first: it belongs to what is active now.
         self.lift_all();
         match command {
@@ -114,6 +119,8 @@ impl World {
                 ]));
                 Ok(*id)
             }
+            // Carried out above.
+            SceneCommand::Layers(_) => Ok(self.scene.active().id),
         }
     }
 
@@ -433,5 +440,6 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Reshape(..) => SceneEvent::Reshape,
         SceneCommand::Snap(_) => SceneEvent::Snap,
         SceneCommand::Exchange(exchange) => exchange.event,
+        SceneCommand::Layers(_) => SceneEvent::Layers,
     }
 }

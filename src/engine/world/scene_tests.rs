@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3, Vec2, Vec3};
 
+use super::layer_tests::edit_at_random;
 use super::{World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::{Command, NewClay, OfClay};
@@ -20,26 +21,26 @@ fn clay(plain: &TriMesh) -> Clay {
     Clay::build(plain, &Job::default()).expect("a form")
 }
 
-fn world(workers: usize, undo_bytes: u64) -> World {
+pub(super) fn world(workers: usize, undo_bytes: u64) -> World {
     let options = WorldOptions { dab_budget: 1 << 20, undo_bytes, hands: HandSettings::default() };
     let brush = BrushSettings { radius: 0.3, ..BrushSettings::default() };
     let ball = clay(&shapes::icosphere(1.0, 12));
     World::new(ball, Camera::default(), brush, Workers::new(workers), options)
 }
 
-fn ask(world: &mut World, command: SceneCommand) -> Result<ObjectId, SceneError> {
+pub(super) fn ask(world: &mut World, command: SceneCommand) -> Result<ObjectId, SceneError> {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[Command::Scene(command)]);
     world.scene_results()[0]
 }
 
-fn tell(world: &mut World, command: Command) {
+pub(super) fn tell(world: &mut World, command: Command) {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[command]);
 }
 
 /// A stroke of a pen from one place of the view to another; the vertices that it moved.
-fn stroke(world: &mut World, from: Vec2, to: Vec2) -> u64 {
+pub(super) fn stroke(world: &mut World, from: Vec2, to: Vec2) -> u64 {
     let area_mm = Vec2::new(world.camera().aspect, 1.0) * 100.0;
     let mut moved = 0;
     for i in 0..=6 {
@@ -80,15 +81,15 @@ fn one_of(world: &World) -> ObjectId {
     world.scene().objects()[0].id
 }
 
-struct Dice(u64);
+pub(super) struct Dice(u64);
 
 impl Dice {
-    fn roll(&mut self, most: usize) -> usize {
+    pub(super) fn roll(&mut self, most: usize) -> usize {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (self.0 >> 33) as usize % most
     }
 
-    fn share(&mut self) -> f64 {
+    pub(super) fn share(&mut self) -> f64 {
         self.roll(1 << 20) as f64 / f64::from(1 << 20)
     }
 
@@ -123,7 +124,7 @@ impl Dice {
 fn operate(world: &mut World, dice: &mut Dice) {
     let id = dice.object(world);
     let full = world.scene().objects().len() > 8;
-    match dice.roll(24) {
+    match dice.roll(32) {
         0..=6 => {
             let (from, to) = (dice.view(), dice.view());
             stroke(world, from, to);
@@ -170,6 +171,7 @@ fn operate(world: &mut World, dice: &mut Dice) {
             brush.topology.by = if dice.roll(3) == 0 { Measure::Brush } else { Measure::Off };
             tell(world, Command::Brush(brush));
         }
+        24..=31 => edit_at_random(world, dice),
         _ => {
             let of = world.scene().object(id).expect("there");
             let from = Operand {

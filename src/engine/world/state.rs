@@ -239,6 +239,9 @@ impl World {
         if !self.camera.is_sane() {
             return Err(format!("the camera is not sane: {:?}", self.camera));
         }
+        for object in self.scene.objects().iter().filter(|o| !o.clay.is_in_step()) {
+            object.clay.verify_layers().map_err(|e| format!("object {}: {e}", object.id))?;
+        }
         self.scene.verify_invariants()
     }
 }

@@ -283,7 +283,7 @@ impl StrokeContext<'_> {
     ) {
         self.mesh.begin_step();
         let s = self.brush;
-        let cuts = s.topology.by != Measure::Off && s.kind.cuts();
+        let cuts = s.topology.by != Measure::Off && s.kind.cuts() && self.mesh.layer_count() == 0;
         let found = s.kind.found() && !s.accumulate && !cuts;
         let (centre, normal) = if found { self.as_found(hit) } else { (hit.position, hit.normal) };
         let normal = match at.tilt {
@@ -405,7 +405,8 @@ impl StrokeContext<'_> {
         let path = self.brush.path.method;
         let counts =
             self.brush.saturation > 0.0 || matches!(path, Method::Anchored | Method::DragDot);
-        if counts || !self.brush.kind.cuts() {
+        // Triangles of an object with layers stay: what a layer does is kept by vertex.
+        if counts || !self.brush.kind.cuts() || self.mesh.layer_count() > 0 {
             return;
         }
         for dab in dabs {

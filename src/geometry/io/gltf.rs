@@ -4,17 +4,18 @@
 //!
 //! Triangles (lists, strips, fans) of the default scene, each node's transform applied; coordinates
 //! as they stand, y up and without a unit's change. Corners of one node that are equal in place are
-//! one vertex: files of this format have a vertex for each normal and texture coordinate. Skins,
-//! morph targets and materials are passed over.
+//! one vertex: files of this format have a vertex for each normal and texture coordinate. Morph
+//! targets come beside the mesh, which stands without them. Skins and materials are passed over.
 
 use std::path::{Component, Path, PathBuf};
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec3, Vec3};
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
+use super::morph::MorphTarget;
 use super::problem::{FilePlace, FileProblem, ParseError, excerpt};
 use super::text::refuse;
 use crate::job::Job;
@@ -23,6 +24,9 @@ use crate::{PolyMesh, repair};
 
 /// Corners that instances may add up to: a small file can name one mesh a million times.
 pub(super) const MAX_INSTANCED: usize = 200_000_000;
+
+/// Morph targets of one mesh that are read, at most.
+const MAX_TARGETS: usize = 256;
 
 fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
     FileProblem::new(at, expected.into(), found.into()).into()
@@ -75,6 +79,7 @@ pub(super) fn parse(
     bytes: &[u8],
     name: &Path,
     warnings: &mut Vec<String>,
+    targets: &mut Vec<MorphTarget>,
     job: &Job,
 ) -> Result<PolyMesh, ParseError> {
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
@@ -98,7 +103,13 @@ pub(super) fn parse(
         coloured: false,
         groups: Vec::new(),
         left_out: 0,
+        targets: Vec::new(),
+        extras: serde_json::Value::Null,
     };
+    if root.meshes.iter().flat_map(|m| &m.primitives).any(|p| p.targets.is_some()) {
+        // Names of targets stand where the kept crate does not look.
+        file.extras = serde_json::from_slice(json).unwrap_or_default();
+    }
     for (n, buffer) in root.buffers.iter().enumerate() {
         job.check()?;
         let bytes = match &buffer.uri {
@@ -169,6 +180,7 @@ pub(super) fn parse(
     }
     mesh.groups = (file.groups.windows(2).any(|w| w[0] != w[1])).then_some(file.groups);
     mesh.colours = file.coloured.then_some(file.colours);
+    targets.append(&mut file.targets);
     Ok(mesh)
 }
 
@@ -249,6 +261,9 @@ struct GltfFile<'a> {
     coloured: bool,
     groups: Vec<u32>,
     left_out: usize,
+    targets: Vec<MorphTarget>,
+    /// The file as plain JSON, where it has morph targets.
+    extras: serde_json::Value,
 }
 
 impl GltfFile<'_> {
@@ -263,6 +278,7 @@ impl GltfFile<'_> {
         };
         let (mut points, mut colours, mut corners, mut groups) =
             (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut starts = Vec::new();
         for (p, primitive) in source.primitives.iter().enumerate() {
             job.check()?;
             let what = format!("primitive {p} of mesh {mesh}");
@@ -278,6 +294,7 @@ impl GltfFile<'_> {
                     "more",
                 ));
             }
+            starts.push((p, first as usize));
             groups.resize(
                 groups.len() + triangles.len() / 3,
                 self.groups.last().map_or(0, |g| g + 1) + p as u32,
@@ -299,6 +316,7 @@ impl GltfFile<'_> {
         let (unique, of) = weld_keys(placed.len(), job, |i| placed[i])?;
         let base = self.mesh.positions.len() as u32;
         self.mesh.positions.extend(unique.iter().map(|b| DVec3::from(b.map(f64::from_bits))));
+        self.morphs(mesh, place, &starts, (&of, base))?;
         self.coloured |= colours.iter().any(|&c| c != [255; 4]);
         self.colours.resize(self.mesh.positions.len(), [255; 4]);
         for (v, c) in of.iter().zip(&colours).rev() {
@@ -318,6 +336,65 @@ impl GltfFile<'_> {
         }
         part.faces().for_each(|f| self.mesh.push_face(f));
         self.groups.extend(kept);
+        Ok(())
+    }
+
+    /// The morph targets of an instance. `starts`: its primitives and the first point of each.
+    /// `of`: which vertex each point has become, counted from `base`.
+    fn morphs(
+        &mut self,
+        mesh: usize,
+        place: DMat4,
+        starts: &[(usize, usize)],
+        (of, base): (&[u32], u32),
+    ) -> Result<(), ParseError> {
+        let root = self.root;
+        let source = &root.meshes[mesh];
+        let count = source.primitives.iter().filter_map(|p| p.targets.as_ref()).map(Vec::len).max();
+        let Some(count) = count.filter(|n| *n > 0) else { return Ok(()) };
+        let extras = &self.extras["meshes"][mesh]["extras"];
+        let extras = (extras["targetNames"].clone(), extras["sculptdLayers"].clone());
+        for k in 0..count.min(MAX_TARGETS) {
+            let mut offsets: Vec<(u32, Vec3)> = Vec::new();
+            for &(p, first) in starts {
+                let primitive = &source.primitives[p];
+                let Some(at) = primitive.attributes.get(&Checked::Valid(Semantic::Positions))
+                else {
+                    continue;
+                };
+                let what = format!("morph target {k} of primitive {p} of mesh {mesh}");
+                let own = self.accessor(at.value(), &what)?.count;
+                let target = primitive.targets.as_ref().and_then(|t| t.get(k)?.positions);
+                if let Some(target) = target {
+                    let target = self.accessor(target.value(), &what)?;
+                    if target.parts != 3 || target.count != own || first + own > of.len() {
+                        return Err(bad(
+                            FilePlace::File,
+                            format!("{own} offsets of three coordinates in {what}"),
+                            format!("{} of {}", target.count, target.parts),
+                        ));
+                    }
+                    for i in 0..own {
+                        let by = DVec3::new(target.get(i, 0), target.get(i, 1), target.get(i, 2));
+                        let by = place.transform_vector3(by).as_vec3();
+                        if by.is_finite() && by != Vec3::ZERO {
+                            offsets.push((base + of[first + i], by));
+                        }
+                    }
+                }
+            }
+            offsets.sort_by_key(|o| o.0);
+            offsets.dedup_by_key(|o| o.0);
+            let weight = source.weights.as_ref().and_then(|w| w.get(k).copied()).unwrap_or(0.0);
+            let own = &extras.1[k];
+            let name = extras.0[k].as_str();
+            self.targets.push(MorphTarget {
+                name: name.map_or_else(|| format!("target {}", k + 1), str::to_owned),
+                weight: own["intensity"].as_f64().map_or(weight, |w| w as f32),
+                visible: own["visible"].as_bool().unwrap_or(true),
+                offsets,
+            });
+        }
         Ok(())
     }
 

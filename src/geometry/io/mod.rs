@@ -10,6 +10,7 @@ pub mod beside;
 mod format;
 mod gltf;
 pub mod height_picture;
+pub mod morph;
 mod obj;
 mod off;
 mod ply;
@@ -26,6 +27,7 @@ use std::path::Path;
 
 pub use beside::write_beside;
 pub use format::MeshFormat;
+pub use morph::{MorphTarget, MorphedMesh};
 pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
 pub use regular::read_regular;
 pub use write::{encode, left_out, writable_format, write_mesh};
@@ -47,6 +49,8 @@ pub struct LoadedMesh {
     pub format: MeshFormat,
     /// What was left out or guessed, one sentence each.
     pub warnings: Vec<String>,
+    /// Morph targets of the mesh, which stands without them; glTF only.
+    pub targets: Vec<MorphTarget>,
 }
 
 /// Reads the mesh at `path`, a regular file of at most [`MAX_FILE`] bytes. Every vertex is finite
@@ -83,6 +87,7 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
         return Err(FileProblem::new(FilePlace::Byte(0), "a mesh", "an empty file").into());
     }
     let mut warnings = Vec::new();
+    let mut targets = Vec::new();
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let is = |e: &str| extension == e;
     let (mesh, format) = if bytes.starts_with(b"ply")
@@ -96,9 +101,9 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
                 FileProblem::new(FilePlace::Byte(0), "\"glTF\"", problem::excerpt(bytes)).into()
             );
         }
-        (gltf::parse(bytes, name, &mut warnings, job)?, MeshFormat::Glb)
+        (gltf::parse(bytes, name, &mut warnings, &mut targets, job)?, MeshFormat::Glb)
     } else if text.trim_ascii_start().starts_with(b"{") || is("gltf") {
-        (gltf::parse(text, name, &mut warnings, job)?, MeshFormat::Gltf)
+        (gltf::parse(text, name, &mut warnings, &mut targets, job)?, MeshFormat::Gltf)
     } else if bytes.starts_with(b"PK\x03\x04") || is("3mf") {
         (threemf::parse(bytes, &mut warnings, job)?, MeshFormat::ThreeMf)
     } else if off::header(text).is_some() || is("off") {
@@ -121,7 +126,7 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
         .into());
     };
     job.progress(1.0);
-    Ok(LoadedMesh { mesh, format, warnings })
+    Ok(LoadedMesh { mesh, format, warnings, targets })
 }
 
 fn extension(name: &Path) -> String {

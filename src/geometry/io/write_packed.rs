@@ -6,6 +6,7 @@ use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
+use super::{MorphTarget, MorphedMesh};
 use crate::PolyMesh;
 
 /// A mesh on its way to a glTF file.
@@ -14,6 +15,8 @@ pub(super) struct GltfMesh<'a> {
     pub mesh: &'a PolyMesh,
     /// The name of its node.
     pub name: Option<&'a str>,
+    /// Its base and its morph targets, in the place of its positions.
+    pub morphed: Option<&'a MorphedMesh>,
     /// Shift, turn and scale of its node; `None`: it stands where it is.
     pub place: Option<(DVec3, DQuat, f64)>,
 }
@@ -21,7 +24,7 @@ pub(super) struct GltfMesh<'a> {
 impl<'a> GltfMesh<'a> {
     /// Without a name and a place.
     pub fn bare(mesh: &'a PolyMesh) -> GltfMesh<'a> {
-        GltfMesh { mesh, name: None, place: None }
+        GltfMesh { mesh, name: None, morphed: None, place: None }
     }
 }
 
@@ -38,6 +41,7 @@ struct GltfPart<'a> {
     points: Vec<glam::Vec3>,
     triangles: Vec<[u32; 3]>,
     colours: Option<&'a [[u8; 4]]>,
+    targets: &'a [MorphTarget],
 }
 
 fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
@@ -47,7 +51,10 @@ fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
     // No accessor may be empty: an empty solid has no node.
     for one in meshes.iter().filter(|m| !m.mesh.positions.is_empty()) {
         let (triangles, _) = one.mesh.triangles();
-        let points: Vec<glam::Vec3> = one.mesh.positions.iter().map(|p| p.as_vec3()).collect();
+        let morphed = one.morphed.filter(|m| m.base.len() == one.mesh.positions.len());
+        let places = morphed.map_or(&one.mesh.positions, |m| &m.base);
+        let targets = morphed.map_or(&[][..], |m| &m.targets);
+        let points: Vec<glam::Vec3> = places.iter().map(|p| p.as_vec3()).collect();
         let none = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
         let (lo, hi) = points.iter().fold(none, |(lo, hi), &p| (lo.min(p), hi.max(p)));
         let mut view = |bytes: usize, target: u32| {
@@ -77,6 +84,22 @@ fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
                 "count": points.len(), "type": "VEC4",
             }));
         }
+        let mut morphs = Vec::with_capacity(targets.len());
+        for target in targets {
+            let view = view(points.len() * 12, 34962);
+            morphs.push(json!({"POSITION": accessors.len()}));
+            let zero = (glam::Vec3::ZERO, glam::Vec3::ZERO);
+            let mut bounds = target.offsets.iter().map(|o| (o.1, o.1));
+            // Where every vertex has an offset, 0 is not among them.
+            let first =
+                bounds.next().filter(|_| target.offsets.len() == points.len()).unwrap_or(zero);
+            let offsets = target.offsets.iter().map(|o| o.1);
+            let (lo, hi) = offsets.fold(first, |(lo, hi), o| (lo.min(o), hi.max(o)));
+            accessors.push(json!({
+                "bufferView": view, "componentType": 5126, "count": points.len(), "type": "VEC3",
+                "min": lo.to_array(), "max": hi.to_array(),
+            }));
+        }
         let mut node = json!({"mesh": listed.len()});
         if let Some(name) = one.name {
             node["name"] = name.into();
@@ -87,11 +110,22 @@ fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
             node["scale"] = json!([scale, scale, scale]);
         }
         nodes.push(node);
-        listed.push(json!({
-            "primitives": [{"attributes": attributes, "indices": first + 1, "mode": 4}],
-        }));
+        let mut primitive = json!({"attributes": attributes, "indices": first + 1, "mode": 4});
+        let mut mesh = json!({});
+        if !targets.is_empty() {
+            primitive["targets"] = morphs.into();
+            mesh["weights"] = targets.iter().map(MorphTarget::applied).collect();
+            let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
+            let own: Vec<Value> = targets
+                .iter()
+                .map(|t| json!({"intensity": t.weight, "visible": t.visible}))
+                .collect();
+            mesh["extras"] = json!({"targetNames": names, "sculptdLayers": own});
+        }
+        mesh["primitives"] = json!([primitive]);
+        listed.push(mesh);
         let colours = one.mesh.colours.as_deref();
-        parts.push(GltfPart { points, triangles, colours });
+        parts.push(GltfPart { points, triangles, colours, targets });
     }
     let asset = json!({"version": "2.0", "generator": "sculptd"});
     let json = if parts.is_empty() {
@@ -128,6 +162,13 @@ impl GltfPart<'_> {
                 (l * 255.0).round() as u8
             };
             out.write_all(&[linear(c[0]), linear(c[1]), linear(c[2]), c[3]])?;
+        }
+        for target in self.targets {
+            let mut offsets = target.offsets.iter().peekable();
+            for v in 0..self.points.len() as u32 {
+                let by = offsets.next_if(|o| o.0 == v).map_or(glam::Vec3::ZERO, |o| o.1);
+                out.write_all(bytemuck::bytes_of(&by.to_array().map(|v| v.to_bits().to_le())))?;
+            }
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 
 use super::write::{encode, writable_format};
 use super::write_packed::{self, GltfMesh};
-use super::{WriteError, write_beside};
+use super::{MorphedMesh, WriteError, write_beside};
 use crate::PolyMesh;
 
 /// A mesh with a name and a place.
@@ -23,6 +23,8 @@ pub struct SceneMesh {
     pub turn: DQuat,
     /// World units for a unit of the mesh, > 0.
     pub scale: f64,
+    /// The mesh as the sum of a base and morph targets, which glTF keeps; as many vertices.
+    pub morphed: Option<MorphedMesh>,
 }
 
 impl SceneMesh {
@@ -30,6 +32,7 @@ impl SceneMesh {
     pub fn enlarge(&mut self, factor: f64) {
         if self.stands_still() {
             self.mesh.positions.iter_mut().for_each(|p| *p *= factor);
+            self.morphed.iter_mut().for_each(|m| m.enlarge(factor));
         } else {
             self.shift *= factor;
             self.scale *= factor;
@@ -57,6 +60,7 @@ pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<(), WriteError> 
                 .map(|m| GltfMesh {
                     mesh: &m.mesh,
                     name: Some(&m.name),
+                    morphed: m.morphed.as_ref(),
                     place: (!m.stands_still()).then_some((m.shift, m.turn, m.scale)),
                 })
                 .collect();
@@ -108,9 +112,11 @@ pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::MorphTarget;
     use crate::io::parse;
     use crate::job::Job;
     use crate::shapes;
+    use glam::Vec3;
 
     fn scene() -> Vec<SceneMesh> {
         let box_of = |size: f64| shapes::cuboid(DVec3::ZERO, DVec3::splat(size));
@@ -122,6 +128,7 @@ mod tests {
                 shift: DVec3::ZERO,
                 turn: DQuat::IDENTITY,
                 scale: 1.0,
+                morphed: None,
             },
             SceneMesh {
                 name: "pot".into(),
@@ -129,8 +136,47 @@ mod tests {
                 shift: DVec3::new(10.0, 2.0, -3.0),
                 turn,
                 scale: 0.5,
+                morphed: None,
             },
         ]
+    }
+
+    #[test]
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    fn morph_targets_come_back_from_gltf_with_names_weights_and_offsets() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let mut all = scene();
+        let targets = vec![
+            MorphTarget {
+                name: "wrinkles".into(),
+                weight: -1.25,
+                visible: true,
+                offsets: vec![(1, Vec3::X), (6, Vec3::new(0.0, 0.5, -0.25))],
+            },
+            MorphTarget {
+                name: "scar".into(),
+                weight: 0.5,
+                visible: false,
+                offsets: vec![(0, Vec3::Y)],
+            },
+        ];
+        let base = all[0].mesh.positions.clone();
+        all[0].mesh.positions[1] += DVec3::X;
+        all[0].morphed = Some(MorphedMesh { base: base.clone(), targets: targets.clone() });
+        for ending in ["glb", "gltf"] {
+            let path = dir.path().join(format!("layers.{ending}"));
+            write_scene(&path, &all[..1]).expect("written");
+            let bytes = std::fs::read(&path).expect("there");
+            let read = parse(&bytes, &path, &Job::default()).expect("readable");
+            assert_eq!(read.mesh.positions, base);
+            assert_eq!(read.targets, targets);
+            if ending == "gltf" {
+                let json: serde_json::Value = serde_json::from_slice(&bytes).expect("JSON");
+                let mesh = &json["meshes"][0];
+                assert_eq!(mesh["weights"], serde_json::json!([-1.25, 0.0]));
+                assert_eq!(mesh["extras"]["targetNames"][1], "scar");
+            }
+        }
     }
 
     #[test]

@@ -2,9 +2,12 @@
 
 use egui::{Pos2, Sense, Stroke, vec2};
 
+use super::rows;
 use super::state::action::brush_title;
 use super::state::{Action, UiRequest, View};
 use super::theme;
+use crate::language::tr;
+use crate::language::{text_of, text_or};
 use sculptd_clay::brush::{
     Alpha, BrushKind, BrushSettings, Falloff, Measure, Method, OwnBrush, StampBy,
 };
@@ -27,65 +30,65 @@ const FIRST: [BrushKind; 12] = [
 ];
 
 const METHODS: [(Method, &str); 7] = [
-    (Method::Space, "Evenly spaced"),
-    (Method::Dots, "Dots"),
-    (Method::Airbrush, "Airbrush"),
-    (Method::Anchored, "Anchored"),
-    (Method::DragDot, "Dragged dot"),
-    (Method::Line, "Line"),
-    (Method::Curve, "Curve by points"),
+    (Method::Space, "method-space"),
+    (Method::Dots, "method-dots"),
+    (Method::Airbrush, "method-airbrush"),
+    (Method::Anchored, "method-anchored"),
+    (Method::DragDot, "method-drag-dot"),
+    (Method::Line, "method-line"),
+    (Method::Curve, "method-curve"),
 ];
 
 const STAMPS: [(StampBy, &str); 4] = [
-    (StampBy::Off, "None"),
-    (StampBy::Dab, "Under each dab"),
-    (StampBy::View, "Along the view"),
-    (StampBy::Stencil, "Stencil"),
+    (StampBy::Off, "stamp-off"),
+    (StampBy::Dab, "stamp-dab"),
+    (StampBy::View, "stamp-view"),
+    (StampBy::Stencil, "stamp-stencil"),
 ];
 
 const FALLOFFS: [(Falloff, &str); 8] = [
-    (Falloff::Gaussian, "Gaussian"),
-    (Falloff::Smooth, "Smooth"),
-    (Falloff::Sphere, "Sphere"),
-    (Falloff::Root, "Root"),
-    (Falloff::Sharp, "Sharp"),
-    (Falloff::Linear, "Linear"),
-    (Falloff::Constant, "Constant"),
-    (Falloff::Custom, "Custom"),
+    (Falloff::Gaussian, "falloff-gaussian"),
+    (Falloff::Smooth, "falloff-smooth"),
+    (Falloff::Sphere, "falloff-sphere"),
+    (Falloff::Root, "falloff-root"),
+    (Falloff::Sharp, "falloff-sharp"),
+    (Falloff::Linear, "falloff-linear"),
+    (Falloff::Constant, "falloff-constant"),
+    (Falloff::Custom, "falloff-custom"),
 ];
 
 const MEASURES: [(Measure, &str); 4] = [
-    (Measure::Off, "Off"),
-    (Measure::Brush, "Share of the brush"),
-    (Measure::Work, "Share of the object"),
-    (Measure::View, "Share of the view"),
+    (Measure::Off, "topology-off"),
+    (Measure::Brush, "topology-brush"),
+    (Measure::Work, "topology-object"),
+    (Measure::View, "topology-view"),
 ];
 
 const ALPHAS: [(Alpha, &str); 9] = [
-    (Alpha::Studs, "Studs"),
-    (Alpha::Scales, "Scales"),
-    (Alpha::Rope, "Rope"),
-    (Alpha::Stitches, "Stitches"),
-    (Alpha::Waves, "Waves"),
-    (Alpha::Bricks, "Bricks"),
-    (Alpha::Stone, "Stone"),
-    (Alpha::Cracks, "Cracks"),
-    (Alpha::Picture, "Loaded picture"),
+    (Alpha::Studs, "alpha-studs"),
+    (Alpha::Scales, "alpha-scales"),
+    (Alpha::Rope, "alpha-rope"),
+    (Alpha::Stitches, "alpha-stitches"),
+    (Alpha::Waves, "alpha-waves"),
+    (Alpha::Bricks, "alpha-bricks"),
+    (Alpha::Stone, "alpha-stone"),
+    (Alpha::Cracks, "alpha-cracks"),
+    (Alpha::Picture, "alpha-picture"),
 ];
 
-/// One of several, in a list that unfolds.
+/// One of several, in a list that unfolds; `title` and the names are messages.
 fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, all: &[(T, &str)]) {
-    let now = all.iter().find(|(v, _)| v == value).map_or("", |(_, name)| name);
-    egui::ComboBox::from_label(title).selected_text(now).show_ui(ui, |ui| {
+    let now = all.iter().find(|(v, _)| v == value).map_or_else(String::new, |(_, name)| tr!(name));
+    rows::list(ui, &tr!(title), now, |ui| {
         for (v, name) in all {
-            ui.selectable_value(value, *v, *name);
+            ui.selectable_value(value, *v, tr!(name));
         }
     });
 }
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let mut brush: BrushSettings = view.state.brush;
-    ui.strong("Brush");
+    ui.strong(tr!("brush-heading"));
     let first = |k: &&BrushKind| FIRST.contains(k);
     let mut palette = |ui: &mut egui::Ui, kinds: &mut dyn Iterator<Item = BrushKind>| {
         ui.horizontal_wrapped(|ui| {
@@ -93,7 +96,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
             for kind in kinds {
                 let chosen = brush.key() == (kind, 0);
                 let response = picture(ui, kind, chosen);
-                if response.on_hover_text(view.presets.get(kind).about()).clicked() && !chosen {
+                let about = view.presets.get(kind).about();
+                let about = text_of(&format!("kind-{}.about", kind.name()), about);
+                if response.on_hover_text(about).clicked() && !chosen {
                     brush = view.presets.recalled(&brush, &view.state.kept_brushes, kind);
                 }
             }
@@ -101,37 +106,47 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     };
     palette(ui, &mut FIRST.into_iter());
     let chosen_below = !FIRST.contains(&view.state.brush.kind);
-    let more = egui::CollapsingHeader::new("More brushes").default_open(false);
+    let more = folded("brush-more");
     more.show(ui, |ui| palette(ui, &mut BrushKind::ALL.iter().filter(|k| !first(k)).copied()));
     own_brushes(ui, view, &mut brush, out);
     if chosen_below {
-        ui.label(format!("Brush: {}", brush_title(view.state.brush.kind)));
+        ui.label(tr!("brush-now", name = brush_title(view.state.brush.kind)));
     }
-    let keys = |a: Action, b: Action| format!("{} and {}", view.keys.text(a), view.keys.text(b));
-    let radius = egui::Slider::new(&mut brush.radius, 0.005..=1.0).logarithmic(true).text("Radius");
-    ui.add(radius).on_hover_text(format!(
-        "Share of the object's size ({}, or {} and drag)",
-        keys(Action::Smaller, Action::Larger),
-        view.keys.text(Action::DragRadius)
+    let keys = |a: Action, b: Action| {
+        tr!("both-keys", first = view.keys.text(a), second = view.keys.text(b))
+    };
+    let radius = egui::Slider::new(&mut brush.radius, 0.005..=1.0).logarithmic(true);
+    let (both, drag) = (keys(Action::Smaller, Action::Larger), view.keys.text(Action::DragRadius));
+    rows::slider(ui, radius, &tr!("brush-radius")).on_hover_text(tr!(
+        "brush-radius.tip",
+        keys = both,
+        drag = drag
     ));
-    let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0).text("Strength");
-    ui.add(strength).on_hover_text(format!(
-        "How much one dab does ({}, or {} and drag)",
-        keys(Action::Weaker, Action::Stronger),
-        view.keys.text(Action::DragStrength)
+    let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0);
+    let both = keys(Action::Weaker, Action::Stronger);
+    let drag = view.keys.text(Action::DragStrength);
+    rows::slider(ui, strength, &tr!("brush-strength")).on_hover_text(tr!(
+        "brush-strength.tip",
+        keys = both,
+        drag = drag
     ));
-    ui.checkbox(&mut brush.negative, "Carve")
-        .on_hover_text(format!("{}; hold Ctrl for one stroke", view.tip(Action::Carve)));
-    egui::CollapsingHeader::new("Stroke").default_open(false).show(ui, |ui| path(ui, &mut brush));
-    egui::CollapsingHeader::new("More settings").default_open(false).show(ui, |ui| {
-        egui::CollapsingHeader::new("Shape of a dab").show(ui, |ui| dab(ui, &mut brush));
-        egui::CollapsingHeader::new("Alpha and stamp").show(ui, |ui| stamp(ui, &mut brush));
-        egui::CollapsingHeader::new("Automatic masks").show(ui, |ui| automasks(ui, &mut brush));
-        egui::CollapsingHeader::new("Dynamic topology").show(ui, |ui| topology(ui, &mut brush));
+    ui.checkbox(&mut brush.negative, tr!("brush-carve"))
+        .on_hover_text(tr!("brush-carve.tip", action = view.tip(Action::Carve)));
+    folded("brush-stroke").show(ui, |ui| path(ui, &mut brush));
+    folded("brush-settings").show(ui, |ui| {
+        folded("brush-dab").show(ui, |ui| dab(ui, &mut brush));
+        folded("brush-stamp").show(ui, |ui| stamp(ui, &mut brush));
+        folded("brush-automasks").show(ui, |ui| automasks(ui, &mut brush));
+        folded("brush-topology").show(ui, |ui| topology(ui, &mut brush));
     });
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
+}
+
+/// A part that is folded at first, by the message of its title.
+fn folded(title: &'static str) -> egui::CollapsingHeader {
+    egui::CollapsingHeader::new(tr!(title)).id_salt(title).default_open(false)
 }
 
 /// A person's own brushes: choosing one takes its picture of heights along.
@@ -145,7 +160,7 @@ fn own_brushes(
     if own.is_empty() {
         return;
     }
-    ui.label("Your own");
+    ui.label(tr!("brush-own"));
     ui.horizontal_wrapped(|ui| {
         for one in own.iter() {
             let chosen = view.state.brush.key() == one.settings.key();
@@ -162,172 +177,122 @@ fn own_brushes(
 
 fn own_hint(own: &OwnBrush) -> String {
     let kind = brush_title(own.settings.kind);
-    let what = if own.about.is_empty() { kind } else { format!("{kind}: {}", own.about) };
-    format!("{what} (once more: as it was saved)")
+    let what = match own.about.is_empty() {
+        true => kind,
+        false => tr!("brush-own-about", kind = kind, about = own.about.as_str()),
+    };
+    tr!("brush-own.tip", what = what)
 }
 
-/// A slider with what it means.
+/// A slider by the message of its name, whose attribute `tip` says what it means.
 fn slider(
     ui: &mut egui::Ui,
     value: &mut f32,
     range: std::ops::RangeInclusive<f32>,
     name: &str,
-    about: &str,
-) {
-    ui.add(egui::Slider::new(value, range).text(name)).on_hover_text(about);
+) -> egui::Response {
+    let tip = tr!(&format!("{name}.tip"));
+    rows::slider(ui, egui::Slider::new(value, range), &tr!(name)).on_hover_text(tip)
+}
+
+/// A check box in the same way.
+fn check(ui: &mut egui::Ui, value: &mut bool, name: &str) -> egui::Response {
+    let tip = tr!(&format!("{name}.tip"));
+    ui.checkbox(value, tr!(name)).on_hover_text(tip)
 }
 
 fn path(ui: &mut egui::Ui, brush: &mut BrushSettings) {
     let path = &mut brush.path;
-    slider(
-        ui,
-        &mut brush.spacing,
-        0.02..=1.0,
-        "Spacing",
-        "Distance between dabs as a share of the radius",
-    );
-    slider(
-        ui,
-        &mut path.rope,
-        0.0..=0.5,
-        "Stabilizer",
-        "The brush follows the pen at this distance: a share of the view's height",
-    );
-    slider(
-        ui,
-        &mut brush.steady,
-        0.0..=1.0,
-        "Steadiness",
-        "Length of the string by which the brush follows the pen, in radii",
-    );
-    let average = egui::Slider::new(&mut path.average, 0..=64).text("Averaged reports");
-    ui.add(average).on_hover_text("The brush goes to the mean of so many reports of the pen");
-    slider(
-        ui,
-        &mut path.jitter,
-        0.0..=2.0,
-        "Jitter",
-        "How far dabs are scattered about the path, in radii",
-    );
+    slider(ui, &mut brush.spacing, 0.02..=1.0, "stroke-spacing");
+    slider(ui, &mut path.rope, 0.0..=0.5, "stroke-stabilizer");
+    slider(ui, &mut brush.steady, 0.0..=1.0, "stroke-steadiness");
+    let average = egui::Slider::new(&mut path.average, 0..=64);
+    rows::slider(ui, average, &tr!("stroke-average")).on_hover_text(tr!("stroke-average.tip"));
+    slider(ui, &mut path.jitter, 0.0..=2.0, "stroke-jitter");
     if path.jitter > 0.0 {
-        ui.add(egui::DragValue::new(&mut path.seed).prefix("Seed of the jitter: "));
+        let seed = tr!("stroke-seed") + " ";
+        ui.add(egui::DragValue::new(&mut path.seed).prefix(seed));
     }
-    choice(ui, "Method", &mut path.method, &METHODS);
-    ui.checkbox(&mut path.continuous, "Go on while the pen rests");
+    choice(ui, "stroke-method", &mut path.method, &METHODS);
+    ui.checkbox(&mut path.continuous, tr!("stroke-continuous"));
     if path.continuous || path.method == Method::Airbrush {
         let ticks = egui::Slider::new(&mut path.every_ticks, 1.0..=1000.0).logarithmic(true);
-        ui.add(ticks.text("Ticks between dabs at rest"));
+        rows::slider(ui, ticks, &tr!("stroke-ticks"));
     }
-    ui.checkbox(&mut path.compensate, "Same strength at any spacing")
-        .on_hover_text("Strength counts over the way of the pen; off: each dab has all of it");
-    ui.checkbox(&mut brush.accumulate, "Accumulate")
-        .on_hover_text("A stroke builds upon what it has raised itself");
-    slider(
-        ui,
-        &mut brush.saturation,
-        0.0..=20.0,
-        "Limit of a stroke",
-        "How far a stroke may move a point, in heights of one full dab; 0: no limit",
-    );
+    check(ui, &mut path.compensate, "stroke-compensate");
+    check(ui, &mut brush.accumulate, "stroke-accumulate");
+    slider(ui, &mut brush.saturation, 0.0..=20.0, "stroke-limit");
 }
 
 fn dab(ui: &mut egui::Ui, brush: &mut BrushSettings) {
-    choice(ui, "Falloff", &mut brush.falloff, &FALLOFFS);
+    choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
     if brush.falloff == Falloff::Custom {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for (i, value) in brush.curve.iter_mut().enumerate() {
                 let slider = egui::Slider::new(value, 0.0..=1.0).vertical().show_value(false);
-                ui.add(slider).on_hover_text(format!("At {i} eighths of the radius"));
+                ui.add(slider).on_hover_text(tr!("dab-curve-tip", eighths = i));
             }
         });
     }
-    slider(
-        ui,
-        &mut brush.hardness,
-        0.0..=0.95,
-        "Hardness",
-        "Share of the radius within which the brush works in full",
-    );
-    slider(
-        ui,
-        &mut brush.auto_smooth,
-        0.0..=1.0,
-        "Smoothing",
-        "Each dab is smoothed at this strength",
-    );
-    slider(
-        ui,
-        &mut brush.normal_radius,
-        0.05..=2.0,
-        "Averaging",
-        "Share of the radius over which the plane of the surface is averaged",
-    );
-    slider(
-        ui,
-        &mut brush.plane_trim,
-        0.0..=2.0,
-        "Plane trim",
-        "What is further from the plane stays, in radii; 0: nothing",
-    );
-    slider(ui, &mut brush.tilt, 0.0..=1.0, "Tilt", "How much a dab leans as the pen does");
+    slider(ui, &mut brush.hardness, 0.0..=0.95, "dab-hardness");
+    slider(ui, &mut brush.auto_smooth, 0.0..=1.0, "dab-smoothing");
+    slider(ui, &mut brush.normal_radius, 0.05..=2.0, "dab-averaging");
+    slider(ui, &mut brush.plane_trim, 0.0..=2.0, "dab-plane-trim");
+    slider(ui, &mut brush.tilt, 0.0..=1.0, "dab-tilt");
+    let kind = brush.kind.name();
     for (value, extra) in brush.extra.iter_mut().zip(brush.kind.own_numbers()) {
-        slider(ui, value, extra.min..=extra.max, extra.name, extra.about);
+        let id = format!("number-{}", extra.name);
+        let (of_kind, of_all) = (format!("{id}.{kind}"), format!("{id}.about"));
+        let about = text_of(&of_kind, &text_of(&of_all, extra.about));
+        let number = egui::Slider::new(value, extra.min..=extra.max);
+        rows::slider(ui, number, &text_or(&id, extra.name)).on_hover_text(about);
     }
     ui.horizontal(|ui| {
         ui.color_edit_button_srgba_unmultiplied(&mut brush.colour);
-        ui.label("Colour");
+        ui.label(tr!("dab-colour"));
     });
 }
 
 fn stamp(ui: &mut egui::Ui, brush: &mut BrushSettings) {
-    choice(ui, "Alpha", &mut brush.alpha, &ALPHAS);
+    choice(ui, "stamp-alpha", &mut brush.alpha, &ALPHAS);
     let stamp = &mut brush.stamp;
-    choice(ui, "Stamp", &mut stamp.by, &STAMPS);
+    choice(ui, "stamp-stamp", &mut stamp.by, &STAMPS);
     if stamp.by == StampBy::Off {
         return;
     }
-    ui.add(egui::Slider::new(&mut stamp.size, 0.05..=10.0).logarithmic(true).text("Stamp size"));
-    ui.add(egui::Slider::new(&mut stamp.turn_degrees, -180.0..=180.0).text("Stamp angle"));
-    ui.checkbox(&mut stamp.repeat, "Repeat the stamp");
+    let size = egui::Slider::new(&mut stamp.size, 0.05..=10.0).logarithmic(true);
+    rows::slider(ui, size, &tr!("stamp-size"));
+    let angle = egui::Slider::new(&mut stamp.turn_degrees, -180.0..=180.0);
+    rows::slider(ui, angle, &tr!("stamp-angle"));
+    ui.checkbox(&mut stamp.repeat, tr!("stamp-repeat"));
     if stamp.by == StampBy::Stencil {
-        for (value, name) in stamp.at.iter_mut().zip(["Stencil right", "Stencil up"]) {
-            slider(ui, value, -4.0..=4.0, name, "From the middle of the view, in its heights");
+        for (value, name) in stamp.at.iter_mut().zip(["stamp-right", "stamp-up"]) {
+            rows::slider(ui, egui::Slider::new(value, -4.0..=4.0), &tr!(name))
+                .on_hover_text(tr!("stamp-at-tip"));
         }
     }
 }
 
 fn automasks(ui: &mut egui::Ui, brush: &mut BrushSettings) {
     let auto = &mut brush.auto;
-    ui.checkbox(&mut auto.front_faces, "Front faces only");
-    ui.checkbox(&mut auto.topology, "Only connected parts");
-    ui.checkbox(&mut auto.boundary, "Borders stay")
-        .on_hover_text("The border of an open surface does not move");
-    slider(
-        ui,
-        &mut auto.normal_degrees,
-        0.0..=180.0,
-        "Normal limit",
-        "Only what turns from the dab's normal by at most so many degrees; 0: everything",
-    );
-    slider(
-        ui,
-        &mut auto.cavity,
-        -1.0..=1.0,
-        "Cavity",
-        "Above 0 only hollows are touched, below 0 only ridges",
-    );
+    ui.checkbox(&mut auto.front_faces, tr!("automask-front"));
+    ui.checkbox(&mut auto.topology, tr!("automask-topology"));
+    check(ui, &mut auto.boundary, "automask-boundary");
+    slider(ui, &mut auto.normal_degrees, 0.0..=180.0, "automask-normal");
+    slider(ui, &mut auto.cavity, -1.0..=1.0, "automask-cavity");
 }
 
 fn topology(ui: &mut egui::Ui, brush: &mut BrushSettings) {
     let topology = &mut brush.topology;
-    choice(ui, "Length of edges", &mut topology.by, &MEASURES);
+    choice(ui, "topology-by", &mut topology.by, &MEASURES);
     if topology.by == Measure::Off {
         return;
     }
-    ui.add(egui::Slider::new(&mut topology.edge, 0.002..=1.0).logarithmic(true).text("Length"));
-    ui.checkbox(&mut topology.split, "Split longer edges");
-    ui.checkbox(&mut topology.collapse, "Collapse shorter edges");
+    let length = egui::Slider::new(&mut topology.edge, 0.002..=1.0).logarithmic(true);
+    rows::slider(ui, length, &tr!("topology-length"));
+    ui.checkbox(&mut topology.split, tr!("topology-split"));
+    ui.checkbox(&mut topology.collapse, tr!("topology-collapse"));
 }
 
 /// The profile that a brush leaves on flat clay, `d` from -1 to 1 across it: drawn, not computed.
@@ -381,6 +346,10 @@ fn picture(ui: &mut egui::Ui, kind: BrushKind, chosen: bool) -> egui::Response {
     ui.painter().add(egui::Shape::line(line, Stroke::new(1.8, ink)));
     let font = egui::FontId::proportional(11.0);
     let at = rect.center_bottom() - vec2(0.0, 2.0);
+    // A long name is written smaller: the button keeps its size.
+    let wide = ui.painter().layout_no_wrap(name.clone(), font.clone(), text).size().x;
+    let share = ((rect.width() - 4.0) / wide.max(1.0)).min(1.0);
+    let font = egui::FontId::proportional(font.size * share);
     ui.painter().text(at, egui::Align2::CENTER_BOTTOM, name, font, text);
     response
 }

@@ -2,17 +2,19 @@
 
 use std::path::PathBuf;
 
+use super::rows;
 use super::state::{FileChooser, FilePurpose, UiRequest, UiState};
 use super::theme;
+use crate::language::tr;
 
-/// Folders that are offered beside the list: name and place.
+/// Folders that are offered beside the list: the message of the name, and the place.
 fn places() -> Vec<(&'static str, PathBuf)> {
     let Some(dirs) = directories::UserDirs::new() else { return Vec::new() };
-    let mut all = vec![("Home", dirs.home_dir().to_owned())];
+    let mut all = vec![("chooser-home", dirs.home_dir().to_owned())];
     let more = [
-        ("Documents", dirs.document_dir()),
-        ("Downloads", dirs.download_dir()),
-        ("Desktop", dirs.desktop_dir()),
+        ("chooser-documents", dirs.document_dir()),
+        ("chooser-downloads", dirs.download_dir()),
+        ("chooser-desktop", dirs.desktop_dir()),
     ];
     all.extend(more.into_iter().filter_map(|(name, path)| Some((name, path?.to_owned()))));
     all.retain(|(_, path)| path.is_dir());
@@ -22,9 +24,9 @@ fn places() -> Vec<(&'static str, PathBuf)> {
 /// A size for people.
 fn size(bytes: u64) -> String {
     match bytes {
-        0..1024 => format!("{bytes} B"),
-        1024..1_048_576 => format!("{} kB", bytes / 1024),
-        _ => format!("{:.1} MB", bytes as f64 / 1_048_576.0),
+        0..1024 => tr!("size-bytes", value = bytes),
+        1024..1_048_576 => tr!("size-kilobytes", value = bytes / 1024),
+        _ => tr!("size-megabytes", value = format!("{:.1}", bytes as f64 / 1_048_576.0)),
     }
 }
 
@@ -39,8 +41,8 @@ enum ChooserStep {
 pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: egui::Rect, out: &mut Vec<UiRequest>) {
     let Some(chooser) = &mut ui_state.chooser else { return };
     let title = match chooser.purpose {
-        FilePurpose::Open => "Open a mesh",
-        FilePurpose::Export => "Export the sculpture",
+        FilePurpose::Open => tr!("chooser-open"),
+        FilePurpose::Export => tr!("chooser-export"),
     };
     let mut step = ChooserStep::Stay;
     let area = egui::Area::new(egui::Id::unique("chooser"))
@@ -77,15 +79,15 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: egui::Rect, out: &m
 
 fn inside(ui: &mut egui::Ui, chooser: &mut FileChooser, height: f32) -> ChooserStep {
     let mut step = ChooserStep::Stay;
-    ui.horizontal_wrapped(|ui| {
+    rows::flow(ui, |ui| {
         let up = chooser.folder.parent().map(PathBuf::from);
-        if ui.add_enabled(up.is_some(), egui::Button::new("Up")).clicked()
+        if ui.add_enabled(up.is_some(), egui::Button::new(tr!("chooser-up"))).clicked()
             && let Some(up) = up
         {
             step = ChooserStep::GoTo(up);
         }
         for (name, path) in places() {
-            if ui.button(name).clicked() {
+            if ui.button(tr!(name)).clicked() {
                 step = ChooserStep::GoTo(path);
             }
         }
@@ -93,10 +95,10 @@ fn inside(ui: &mut egui::Ui, chooser: &mut FileChooser, height: f32) -> ChooserS
     ui.colored_label(theme::quiet(ui), chooser.folder.display().to_string());
     let scroll = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
     scroll.auto_shrink([false, false]).show(ui, |ui| match &chooser.listing {
-        None => drop(ui.colored_label(theme::quiet(ui), "reading...")),
+        None => drop(ui.colored_label(theme::quiet(ui), tr!("chooser-reading"))),
         Some(Err(why)) => drop(ui.colored_label(theme::alarm(ui), why)),
         Some(Ok(entries)) if entries.is_empty() => {
-            ui.colored_label(theme::quiet(ui), "no folders and no mesh files here");
+            ui.colored_label(theme::quiet(ui), tr!("chooser-empty"));
         }
         Some(Ok(entries)) => {
             for entry in entries {
@@ -118,7 +120,7 @@ fn inside(ui: &mut egui::Ui, chooser: &mut FileChooser, height: f32) -> ChooserS
         }
     });
     ui.horizontal(|ui| {
-        let label = ui.label("Name");
+        let label = ui.label(tr!("chooser-name"));
         let edit = egui::TextEdit::singleline(&mut chooser.name).desired_width(f32::INFINITY);
         let typed = ui.add(edit).labelled_by(label.id);
         if !std::mem::replace(&mut chooser.begun, true) {
@@ -136,15 +138,15 @@ fn inside(ui: &mut egui::Ui, chooser: &mut FileChooser, height: f32) -> ChooserS
     ui.horizontal(|ui| {
         let file = chooser.file();
         let verb = match chooser.purpose {
-            FilePurpose::Open => "Open",
-            FilePurpose::Export => "Export",
+            FilePurpose::Open => tr!("open"),
+            FilePurpose::Export => tr!("export"),
         };
         if ui.add_enabled(file.is_some(), egui::Button::new(verb)).clicked()
             && let Some(path) = file
         {
             step = ChooserStep::Choose(path);
         }
-        if ui.button("Cancel").clicked() {
+        if ui.button(tr!("cancel")).clicked() {
             step = ChooserStep::Close;
         }
     });

@@ -57,10 +57,9 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<UiRequ
         let (mut camera, mut turned) = (view.camera, false);
         for ((_, letter, action, colour), depth, at) in sides {
             let ball = Rect::from_center_size(at, vec2(BALL, BALL) * 2.0);
-            let response =
-                ui.interact(ball, ui.scope_id().with(&action.entry().name), Sense::click());
+            let response = ui.interact(ball, ui.scope_id().with(action), Sense::click());
             response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, action.entry().name.as_ref())
+                egui::WidgetInfo::labeled(egui::Role::Button, true, action.title())
             });
             let fade = 0.55 + 0.45 * (depth * 0.5 + 0.5);
             // Letters keep their ground; the far balls fade.

@@ -5,8 +5,10 @@
 use egui::{Color32, Key, Pos2, Rect, Stroke};
 use glam::Vec2;
 
+use super::rows;
 use super::state::{UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use sculptd_clay::brush::{Grip, Method};
 use sculptd_engine::command::Command;
 use sculptd_engine::stroke::CurveAction;
@@ -33,10 +35,7 @@ pub fn ui(
         ui_state.handle = None;
         if lays {
             bar(ctx, free, |ui| {
-                ui.colored_label(
-                    theme::quiet(ui),
-                    "Draw, or set points: they can be changed before the brush follows.",
-                );
+                ui.colored_label(theme::quiet(ui), tr!("curve-note"));
             });
         }
         return;
@@ -75,22 +74,16 @@ pub fn ui(
         });
     }
     bar(ctx, free, |ui| {
-        ui.label(match draft.points().len() {
-            1 => "1 point".to_owned(),
-            n => format!("{n} points"),
-        });
-        if ui
-            .button("Draw the curve")
-            .on_hover_text("The brush follows it, as one step (Enter)")
-            .clicked()
-        {
+        ui.label(tr!("curve-points", count = draft.points().len()));
+        if ui.button(tr!("curve-draw")).on_hover_text(tr!("curve-draw.tip")).clicked() {
             act = Some(CurveAction::Apply);
         }
-        let gone = ui.add_enabled(ui_state.handle.is_some(), egui::Button::new("Remove the point"));
-        if gone.on_hover_text("Delete, or the right button upon it").clicked() {
+        let button = egui::Button::new(tr!("curve-remove"));
+        let gone = ui.add_enabled(ui_state.handle.is_some(), button);
+        if gone.on_hover_text(tr!("curve-remove.tip")).clicked() {
             act = ui_state.handle.map(CurveAction::Delete);
         }
-        if ui.button("Discard").on_hover_text("Nothing is drawn (Esc)").clicked() {
+        if ui.button(tr!("curve-discard")).on_hover_text(tr!("curve-discard.tip")).clicked() {
             act = Some(CurveAction::Cancel);
         }
     });
@@ -107,6 +100,7 @@ fn bar(ctx: &egui::Context, free: Rect, what: impl FnOnce(&mut egui::Ui)) {
     let area =
         egui::Area::new(egui::Id::unique("curve")).pivot(egui::Align2::CENTER_TOP).fixed_pos(at);
     area.order(egui::Order::Middle).show(ctx, |ui| {
-        egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal(what));
+        ui.set_max_width((free.width() - 24.0).max(120.0));
+        egui::Frame::popup(ui.style()).show(ui, |ui| rows::flow(ui, what));
     });
 }

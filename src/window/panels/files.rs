@@ -2,30 +2,32 @@
 
 use std::path::PathBuf;
 
+use super::rows;
 use super::state::{Action, UNITS, UiRequest, UiState, View};
 use super::{start, theme};
+use crate::language::tr;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     let field = |ui: &mut egui::Ui, text: &mut String, name: &str| {
-        let label = ui.label(name);
+        let label = ui.label(tr!(name));
         ui.add(egui::TextEdit::singleline(text).desired_width(190.0)).labelled_by(label.id)
     };
-    ui.strong("Open");
-    ui.colored_label(quiet, "Drop a mesh on the window, or:");
-    let typed = field(ui, &mut ui_state.files.open, "File to open");
+    ui.strong(tr!("files-open"));
+    ui.colored_label(quiet, tr!("files-open.note"));
+    let typed = field(ui, &mut ui_state.files.open, "files-open-name");
     let enter = typed.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-    ui.horizontal(|ui| {
+    rows::flow(ui, |ui| {
         let named = !ui_state.files.open.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new("Open")).clicked() || (enter && named) {
+        if ui.add_enabled(named, egui::Button::new(tr!("open"))).clicked() || (enter && named) {
             out.push(UiRequest::OpenMesh(PathBuf::from(ui_state.files.open.trim())));
         }
-        if ui.button("Browse...").on_hover_text(view.tip(Action::OpenMesh)).clicked() {
+        if ui.button(tr!("files-browse")).on_hover_text(view.tip(Action::OpenMesh)).clicked() {
             out.push(UiRequest::Do(Action::OpenMesh));
         }
     });
     if !ui_state.prefs.recent.is_empty() {
-        ui.menu_button("Recent", |ui| {
+        ui.menu_button(tr!("files-recent"), |ui| {
             for path in &ui_state.prefs.recent {
                 let name =
                     path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
@@ -37,7 +39,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         });
     }
     if !view.recent.is_empty() {
-        ui.menu_button("Earlier sculptures", |ui| {
+        ui.menu_button(tr!("files-earlier"), |ui| {
             for path in view.recent {
                 let button = ui.button(start::title(path));
                 if button.on_hover_text(path.display().to_string()).clicked() {
@@ -48,29 +50,28 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         });
     }
     ui.add_space(8.0);
-    ui.strong("Export");
+    ui.strong(tr!("files-export"));
     let files = &mut ui_state.files;
-    field(ui, &mut files.export, "File to write");
-    ui.horizontal(|ui| {
-        let label = ui.label("Scale");
+    field(ui, &mut files.export, "files-export-name");
+    rows::flow(ui, |ui| {
+        let label = ui.label(tr!("files-scale"));
         ui.add(egui::DragValue::new(&mut files.scale).range(1e-6..=1e6).speed(0.01))
             .labelled_by(label.id);
-        egui::ComboBox::from_label("Unit").selected_text(files.factor().1).width(60.0).show_ui(
-            ui,
-            |ui| {
-                for (i, (name, _)) in UNITS.iter().enumerate() {
-                    ui.selectable_value(&mut files.unit, i, *name);
-                }
-            },
-        );
+        let unit = egui::ComboBox::from_label(tr!("files-unit")).width(60.0);
+        unit.selected_text(tr!(files.factor().1)).show_ui(ui, |ui| {
+            for (i, (name, _)) in UNITS.iter().enumerate() {
+                ui.selectable_value(&mut files.unit, i, tr!(name));
+            }
+        });
     });
     let (lo, hi) = view.state.mesh.bounds();
     let (factor, unit) = files.factor();
     let size = (hi - lo).max(glam::Vec3::ZERO).as_dvec3() * factor;
-    ui.colored_label(quiet, format!("{:.3} x {:.3} x {:.3} {unit}", size.x, size.y, size.z));
-    ui.horizontal(|ui| {
+    let [x, y, z] = size.to_array().map(|n| format!("{n:.3}"));
+    ui.colored_label(quiet, tr!("scene-size", x = x, y = y, z = z, unit = tr!(unit)));
+    rows::flow(ui, |ui| {
         let named = !files.export.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new("Export")).clicked() {
+        if ui.add_enabled(named, egui::Button::new(tr!("export"))).clicked() {
             let path = in_documents(PathBuf::from(files.export.trim()));
             if path.exists() {
                 files.replace = Some(path);
@@ -78,21 +79,21 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
                 out.push(UiRequest::Export(path));
             }
         }
-        if ui.button("Save as...").on_hover_text(view.tip(Action::Export)).clicked() {
+        if ui.button(tr!("files-save-as")).on_hover_text(view.tip(Action::Export)).clicked() {
             out.push(UiRequest::Do(Action::Export));
         }
     });
     ui.colored_label(quiet, "stl, obj, ply, off, glb, 3mf");
     ui.add_space(8.0);
-    ui.strong("Pictures");
-    if ui.button("Screenshot").on_hover_text(view.tip(Action::Screenshot)).clicked() {
+    ui.strong(tr!("files-pictures"));
+    if ui.button(tr!("files-screenshot")).on_hover_text(view.tip(Action::Screenshot)).clicked() {
         out.push(UiRequest::Do(Action::Screenshot));
     }
-    ui.horizontal(|ui| {
-        if ui.button("Turntable").on_hover_text(view.tip(Action::Turntable)).clicked() {
+    rows::flow(ui, |ui| {
+        if ui.button(tr!("files-turntable")).on_hover_text(view.tip(Action::Turntable)).clicked() {
             out.push(UiRequest::Do(Action::Turntable));
         }
-        let label = ui.label("frames");
+        let label = ui.label(tr!("files-frames"));
         ui.add(egui::DragValue::new(&mut ui_state.files.frames).range(4..=360))
             .labelled_by(label.id);
     });
@@ -120,13 +121,15 @@ pub fn replace(
     area.show(ctx, |ui| {
         egui::Frame::window(ui.style()).show(ui, |ui| {
             ui.set_max_width((free.width() - 40.0).clamp(120.0, 420.0));
-            ui.label(format!("{} exists. Replace it?", path.display()));
+            ui.label(tr!("files-replace.question", path = path.display().to_string()));
             ui.horizontal(|ui| {
-                if ui.button("Replace").clicked() {
+                if ui.button(tr!("files-replace")).clicked() {
                     out.push(UiRequest::Export(path.clone()));
                     ui_state.files.replace = None;
                 }
-                if ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+                if ui.button(tr!("cancel")).clicked()
+                    || ui.input(|i| i.key_pressed(egui::Key::Escape))
+                {
                     ui_state.files.replace = None;
                 }
             });

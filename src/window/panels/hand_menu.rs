@@ -5,6 +5,7 @@ use egui::{Color32, FontId, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use super::state::View;
+use crate::language::tr;
 use sculptd_daemon::Published;
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::hand::menu::{Menu, RADIUS_MM, ball_mm};
@@ -34,6 +35,22 @@ pub fn menu_balls(state: &Published) -> Vec<MenuBall> {
     Menu::choices(state.thing.is_some() || state.picking).iter().enumerate().map(one).collect()
 }
 
+/// What an item is called.
+pub fn title(item: MenuItem) -> String {
+    tr!(match item {
+        MenuItem::Add => "menu-add",
+        MenuItem::Carve => "menu-carve",
+        MenuItem::Keep => "menu-keep",
+        MenuItem::PutAway => "menu-put-away",
+        MenuItem::Ball => "menu-ball",
+        MenuItem::Box => "menu-box",
+        MenuItem::Cylinder => "menu-cylinder",
+        MenuItem::Undo => "menu-undo",
+        MenuItem::Redo => "menu-redo",
+        MenuItem::PickUp => "menu-pick-up",
+    })
+}
+
 pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
     let seen = |p: Vec3| view.camera.project(p).map(|v| free.lerp_inside(vec2(v.x, v.y)));
     let (right, up) = view.camera.axes();
@@ -50,7 +67,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
         if !free.y_range().contains(at.y) {
             continue;
         }
-        let word = pos2(at.x, at.y + reach + 10.0);
+        let below = pos2(at.x, at.y + reach + 10.0);
+        let word = title(ball.choice);
         let id = egui::Id::unique(("ball", ball.choice.label()));
         let area = egui::Area::new(id).fixed_pos(at).interactable(false).constrain(false);
         area.show(ctx, |ui| {
@@ -61,16 +79,15 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             };
             let painter = ui.painter().clone().with_clip_rect(free);
             let font = FontId::proportional(13.0);
-            let size =
-                painter.layout_no_wrap(ball.choice.label().to_owned(), font.clone(), text).size();
+            let size = painter.layout_no_wrap(word.clone(), font.clone(), text).size();
             // Wholly in view where the item is at the side.
             let room = free.shrink2(size * 0.5 + vec2(8.0, 4.0));
             if !room.is_positive() {
                 return;
             }
-            let rect = Rect::from_center_size(room.clamp(word), size);
+            let rect = Rect::from_center_size(room.clamp(below), size);
             painter.rect_filled(rect.expand2(vec2(6.0, 2.0)), 6.0, ground);
-            let label = egui::RichText::new(ball.choice.label()).font(font).color(text);
+            let label = egui::RichText::new(word).font(font).color(text);
             ui.put(rect, egui::Label::new(label).selectable(false).extend());
             if let Some(ring) = ball.ring.filter(|_| free.contains(at)) {
                 let corner = |k: usize| {

@@ -2,49 +2,39 @@
 
 use super::state::{Action, Tab, UiState, View};
 use super::theme;
+use crate::language::tr;
 
-/// Titles, and what a person does beside what comes of it.
-const SECTIONS: [(&str, &[(&str, &str)]); 4] = [
+/// Titles, and what a person does: its message, and beside it the attribute `does` of the same.
+const SECTIONS: [(&str, &[&str]); 4] = [
     (
-        "Pen or mouse",
+        "help-pen",
         &[
-            ("Press and drag on the clay", "Sculpt"),
-            ("The same with Ctrl or Alt", "Carve instead of raise, for one stroke"),
-            ("The same with Shift", "Smooth, for one stroke"),
-            ("Drag beside the clay, or with the right button", "Turn the view"),
-            ("Middle button, or right button with Shift", "Slide the view"),
-            ("Wheel", "Come nearer to what is under the pointer"),
-            ("Hold Space", "Menu around the pointer"),
+            "help-pen-press",
+            "help-pen-carve",
+            "help-pen-smooth",
+            "help-pen-turn",
+            "help-pen-slide",
+            "help-pen-zoom",
+            "help-pen-menu",
         ],
     ),
     (
-        "Fingers on a screen",
-        &[
-            ("One finger on the clay", "Sculpt"),
-            ("Two fingers", "Turn the view; pinched they zoom"),
-            ("Three fingers", "Slide the view (page More exchanges the two)"),
-            ("Tap with three, with four", "Undo, redo"),
-        ],
+        "help-fingers",
+        &["help-fingers-one", "help-fingers-two", "help-fingers-three", "help-fingers-tap"],
     ),
     (
-        "Bare hands over a tracker",
+        "help-hands",
         &[
-            ("Index finger stretched", "The fingertip pushes the clay"),
-            ("Thumb and index finger closed", "Hold clay, carry it, let it go"),
-            ("Fingers stretched and together", "The palm presses and smooths"),
-            ("Fingers stretched and apart", "Turn the view; with two hands zoom"),
-            ("Fist", "Slide the view"),
-            ("Pinch with both hands", "Hold the sculpture: turn, move, scale it"),
-            ("A fingertip rests in a ball at the left", "Choose from the menu of the hands"),
+            "help-hands-index",
+            "help-hands-pinch",
+            "help-hands-flat",
+            "help-hands-open",
+            "help-hands-fist",
+            "help-hands-both",
+            "help-hands-menu",
         ],
     ),
-    (
-        "Work is kept",
-        &[
-            ("Close the window at any time", "The session goes on where it was"),
-            ("Page Files", "Open, export, earlier sculptures"),
-        ],
-    ),
+    ("help-work", &["help-work-close", "help-work-files"]),
 ];
 
 /// The window, while it is open.
@@ -59,7 +49,8 @@ pub fn ui(
     }
     let (mut open, mut chosen) = (true, None);
     let size = (free.size() - egui::vec2(40.0, 80.0)).max(egui::vec2(180.0, 160.0));
-    egui::Window::new("Help")
+    egui::Window::new(tr!("help-heading"))
+        .id(egui::Id::unique("help"))
         .open(&mut open)
         .collapsible(false)
         .constrain_to(free)
@@ -70,7 +61,7 @@ pub fn ui(
             egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     for action in [Action::Lesson, Action::Search, Action::Keys] {
-                        if ui.button(action.entry().name.as_ref()).clicked() {
+                        if ui.button(action.title()).clicked() {
                             chosen = Some(action);
                         }
                     }
@@ -89,24 +80,24 @@ pub fn ui(
 fn sections(ui: &mut egui::Ui) {
     for (title, rows) in SECTIONS {
         ui.add_space(8.0);
-        ui.strong(title);
-        for (done, comes) in rows {
-            line(ui, done, comes);
+        ui.strong(tr!(title));
+        for row in rows {
+            line(ui, &tr!(row), &tr!(&format!("{row}.does")));
         }
     }
     ui.add_space(8.0);
-    ui.strong("Pages at the right");
-    for (_, name, about) in Tab::ALL {
-        line(ui, name, about);
+    ui.strong(tr!("help-pages"));
+    for (tab, ..) in Tab::ALL {
+        line(ui, &tab.title(), &tab.about());
     }
 }
 
 fn actions(ui: &mut egui::Ui, view: &View<'_>) {
     ui.add_space(8.0);
-    ui.strong("Keys");
+    ui.strong(tr!("help-keys"));
     for binding in view.keys.bindings() {
         if let Some(keys) = binding.keys {
-            line(ui, &keys.to_string(), &binding.action.entry().name);
+            line(ui, &keys.shown(), &binding.action.title());
         }
     }
 }

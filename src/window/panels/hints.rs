@@ -11,6 +11,7 @@ use sculptd_clay::brush::BrushKind;
 
 use super::state::{Action, Hint, HintsFollowed, UiState, View};
 use super::theme;
+use crate::language::tr;
 
 /// So long the hand shows one hint, seconds.
 const SHOWN_S: f64 = 4.0;
@@ -27,8 +28,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: Re
     let next = ui_state.prefs.hints.hint();
     let demo = view.demo_runs && !ui_state.prefs.hints.touched;
     let text = match next {
-        _ if demo => "The demo is running. Touch the clay at any time".to_owned(),
-        Some((hint, at, all)) => format!("{} ({at} of {all})", told(hint, view)),
+        _ if demo => tr!("lesson-demo"),
+        Some((hint, at, all)) => tr!("lesson-line", hint = told(hint, view), at = at, all = all),
         None => return,
     };
     if !ui_state.hidden {
@@ -63,14 +64,14 @@ fn follow(view: &View<'_>, hints: &mut HintsFollowed) {
 
 fn told(hint: Hint, view: &View<'_>) -> String {
     match hint {
-        Hint::Sculpt => "Press and drag on the clay".into(),
-        Hint::Turn => "Drag beside the clay to turn it, scroll to zoom".into(),
-        Hint::Smooth => "Hold Shift and stroke over what you made: it becomes smooth".into(),
-        Hint::Carve => "Hold Ctrl and stroke: it carves instead of raising".into(),
-        Hint::Undo => format!("{} takes the last stroke back", view.keys.text(Action::Undo)),
+        Hint::Sculpt => tr!("lesson-sculpt"),
+        Hint::Turn => tr!("lesson-turn"),
+        Hint::Smooth => tr!("lesson-smooth"),
+        Hint::Carve => tr!("lesson-carve"),
+        Hint::Undo => tr!("lesson-undo", keys = view.keys.text(Action::Undo)),
         Hint::Mirror => match view.keys.of(Action::MirrorX) {
-            Some(keys) => format!("{keys}, or Mirror x at the left, and a stroke: both sides"),
-            None => "Choose x under Mirror at the left, and make a stroke: both sides".into(),
+            Some(keys) => tr!("lesson-mirror", keys = keys.shown()),
+            None => tr!("lesson-mirror.no-keys"),
         },
     }
 }
@@ -99,8 +100,8 @@ fn show(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, hint: Hint
     let pressed = way > 0.0 && way < 1.0;
     let at = |x: f32, y: f32| free.center() + vec2(x, y) * size;
     let keys = match hint {
-        Hint::Smooth => "Shift".into(),
-        Hint::Carve => "Ctrl".into(),
+        Hint::Smooth => tr!("key-shift"),
+        Hint::Carve => tr!("key-ctrl"),
         Hint::Undo => view.keys.text(Action::Undo),
         _ => String::new(),
     };

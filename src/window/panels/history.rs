@@ -2,8 +2,10 @@
 
 use egui::{Sense, Stroke, vec2};
 
+use super::rows;
 use super::state::{Action, StepPicture, UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use crate::panels::history_tree;
 use sculptd_engine::command::Command;
 
@@ -16,13 +18,13 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     // A session's file holds steps that memory no longer holds.
     let (first, last) = ui_state.versions.ends();
     let (back, ahead) = (view.state.undo_steps, view.state.redo_steps);
-    ui.strong("History");
-    ui.horizontal(|ui| {
+    ui.strong(tr!("history-heading"));
+    rows::flow(ui, |ui| {
         let undo = ui
-            .add_enabled(back > 0 || first, egui::Button::new("Undo"))
+            .add_enabled(back > 0 || first, egui::Button::new(tr!("undo")))
             .on_hover_text(view.tip(Action::Undo));
         let redo = ui
-            .add_enabled(ahead > 0 || last, egui::Button::new("Redo"))
+            .add_enabled(ahead > 0 || last, egui::Button::new(tr!("redo")))
             .on_hover_text(view.tip(Action::Redo));
         if undo.clicked() {
             out.push(UiRequest::World(Command::Undo));
@@ -31,9 +33,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             out.push(UiRequest::World(Command::Redo));
         }
         let text = match ui_state.versions.rows.len() {
-            0 => format!("{back} of {}", back + ahead),
-            1 => "1 version".to_owned(),
-            n => format!("{n} versions"),
+            0 => tr!("history-steps", at = back, all = back + ahead),
+            n => tr!("history-versions", count = n),
         };
         ui.colored_label(theme::quiet(ui), text);
     });
@@ -45,8 +46,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         return;
     }
     let mut at = back;
-    let slider = egui::Slider::new(&mut at, 0..=back + ahead).show_value(false).text("Step");
-    ui.add(slider).on_hover_text("Drag to go through the steps");
+    let slider = egui::Slider::new(&mut at, 0..=back + ahead).show_value(false);
+    rows::slider(ui, slider, &tr!("history-step")).on_hover_text(tr!("history-step.tip"));
     if let Some(step) = pictures(ui, ui_state, back, back + ahead) {
         at = step;
     }
@@ -67,7 +68,7 @@ fn pictures(ui: &mut egui::Ui, ui_state: &UiState, back: usize, all: usize) -> O
         ui.horizontal(|ui| {
             for thumb in row {
                 let (rect, response) = ui.allocate_exact_size(vec2(64.0, 40.0), Sense::click());
-                let name = format!("After step {}", thumb.step);
+                let name = tr!("history-after", step = thumb.step);
                 let here = thumb.step == back;
                 response.widget_info(|| {
                     egui::WidgetInfo::selected(egui::Role::Button, true, here, &name)

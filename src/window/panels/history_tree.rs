@@ -3,8 +3,10 @@
 
 use egui::{Color32, Pos2, Rect, Sense, Stroke, pos2, vec2};
 
+use super::rows;
 use super::state::{HistoryVersions, UiRequest};
 use super::theme;
+use crate::language::tr;
 
 /// Points: a row, its picture, the step from lane to lane, the tree at most.
 const ROW: f32 = 40.0;
@@ -82,8 +84,9 @@ fn slider(ui: &mut egui::Ui, versions: &HistoryVersions, here: usize) -> Option<
         return None;
     }
     let mut at = now;
-    let slider = egui::Slider::new(&mut at, 0..=most).show_value(false).text("Version");
-    let response = ui.add(slider).on_hover_text("Drag to go through the versions of this line");
+    let slider = egui::Slider::new(&mut at, 0..=most).show_value(false);
+    let response = rows::slider(ui, slider, &tr!("history-version"));
+    let response = response.on_hover_text(tr!("history-version.tip"));
     (response.changed() && at != now).then(|| versions.rows[versions.line[at]].node)
 }
 
@@ -120,8 +123,8 @@ fn row(
     let response =
         ui.interact(rect, ui.scope_id().with(("version", r.node)), Sense::click_and_drag());
     let time = clock(r.tick, versions.rate_hz);
-    let branch = if r.lane > 0 { ", on a branch" } else { "" };
-    let name = format!("Version {}, at {time}{branch}", r.node);
+    let id = if r.lane > 0 { "history-row-branch" } else { "history-row" };
+    let name = tr!(id, node = r.node.to_string(), time = time.as_str());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, r.here, &name));
     let accent = theme::accent(ui);
     if response.hovered() || response.has_focus() {
@@ -147,7 +150,7 @@ fn row(
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = pos2(picture.right() + 8.0, rect.center().y);
     let shown = match r.operation {
-        Some(what) => format!("{time}  {what}"),
+        Some(what) => format!("{time}  {}", tr!(what)),
         None => time,
     };
     let ink = if r.here { ui.visuals().strong_text_color() } else { theme::quiet(ui) };

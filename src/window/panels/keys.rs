@@ -1,9 +1,11 @@
 //! The keys: which action a press is, and the window in which a person changes them.
 
+use super::rows;
 use super::state::action;
 use super::state::key_map::{KeyMap, KeySet, Press};
 use super::state::{Action, KeyCombination, UiState, View};
 use super::theme;
+use crate::language::tr;
 
 /// Actions whose keys went down this frame, while nobody types. While the window of the keys
 /// listens, a press is the answer to it and no action.
@@ -40,7 +42,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: eg
     }
     let mut open = true;
     let size = (free.size() - egui::vec2(40.0, 80.0)).max(egui::vec2(180.0, 160.0));
-    egui::Window::new("Keys")
+    egui::Window::new(tr!("keys-heading"))
+        .id(egui::Id::unique("keys"))
         .open(&mut open)
         .collapsible(false)
         .constrain_to(free)
@@ -56,27 +59,27 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: eg
 
 fn content(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState) {
     let now = &mut ui_state.prefs.keys;
-    ui.horizontal_wrapped(|ui| {
+    rows::flow(ui, |ui| {
         let name = KeySet::ALL.iter().find(|s| s.0 == now.set).map_or("", |s| s.1);
-        egui::ComboBox::from_label("Set").selected_text(name).show_ui(ui, |ui| {
+        egui::ComboBox::from_label(tr!("keys-set")).selected_text(name).show_ui(ui, |ui| {
             for (set, name) in KeySet::ALL {
                 ui.selectable_value(&mut now.set, set, name);
             }
         });
         let changed = !now.own.is_empty();
-        let all = ui.add_enabled(changed, egui::Button::new("As in the set"));
-        if all.on_hover_text("Forgets every key that you have changed").clicked() {
+        let all = ui.add_enabled(changed, egui::Button::new(tr!("keys-as-in-set")));
+        if all.on_hover_text(tr!("keys-as-in-set.tip")).clicked() {
             now.own.clear();
         }
     });
     ui.horizontal(|ui| {
-        let label = ui.label("Find");
+        let label = ui.label(tr!("keys-find"));
         ui.text_edit_singleline(&mut ui_state.keys.filter).labelled_by(label.id);
     });
     let clashes = view.keys.bindings().iter().filter(|b| view.keys.conflicts(b).next().is_some());
     match clashes.count() {
-        0 => ui.colored_label(theme::quiet(ui), "Click on the keys of an action to change them."),
-        n => ui.colored_label(theme::alarm(ui), format!("{n} actions share keys with another one")),
+        0 => ui.colored_label(theme::quiet(ui), tr!("keys-note")),
+        n => ui.colored_label(theme::alarm(ui), tr!("keys-shared", count = n)),
     };
     for wrong in &view.keys.wrong {
         ui.colored_label(theme::alarm(ui), wrong);
@@ -94,24 +97,22 @@ fn content(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState) {
 /// One action: its name, its keys, and who else has them.
 fn row(ui: &mut egui::Ui, keys: &KeyMap, action: Action, ui_state: &mut UiState) {
     let Some(binding) = keys.bindings().iter().find(|b| b.action == action) else { return };
-    let others: Vec<&str> = keys.conflicts(binding).map(|a| a.entry().name.as_ref()).collect();
-    let name = action.entry().name.as_ref();
+    let others: Vec<String> = keys.conflicts(binding).map(Action::title).collect();
+    let name = action.title();
     ui.horizontal(|ui| {
         let wrong = theme::alarm(ui);
-        let text = egui::RichText::new(name);
+        let text = egui::RichText::new(&name);
         ui.add(egui::Label::new(if others.is_empty() { text } else { text.color(wrong) }));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let listens = ui_state.keys.listening == Some(action);
             let text = match (listens, binding.keys) {
-                (true, _) => "Press keys...".to_owned(),
-                (false, Some(keys)) => keys.to_string(),
-                (false, None) => "none".to_owned(),
+                (true, _) => tr!("keys-press"),
+                (false, Some(keys)) => keys.shown(),
+                (false, None) => tr!("none"),
             };
             let button = egui::Button::new(text).selected(listens).min_size([96.0, 20.0].into());
-            let button = ui.add(button).on_hover_text(
-                "Click, then press the new keys. Escape leaves them, Delete takes them away",
-            );
-            let label = format!("Keys of {name}");
+            let button = ui.add(button).on_hover_text(tr!("keys-of.tip"));
+            let label = tr!("keys-of", action = name.as_str());
             button.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, label.as_str())
             });
@@ -120,14 +121,14 @@ fn row(ui: &mut egui::Ui, keys: &KeyMap, action: Action, ui_state: &mut UiState)
                 // The press that answers is no text.
                 ui.memory_mut(|m| m.stop_text_input());
             }
-            if binding.own && ui.small_button("Reset").clicked() {
+            if binding.own && ui.small_button(tr!("reset")).clicked() {
                 ui_state.prefs.keys.own.remove(&action.id());
             }
         });
     });
     if !others.is_empty() {
-        let done = if binding.own { "this one is done" } else { "a chosen one goes before" };
-        let text = format!("also: {} ({done})", others.join(", "));
+        let id = if binding.own { "keys-also.own" } else { "keys-also" };
+        let text = tr!(id, actions = others.join(", "));
         ui.colored_label(theme::alarm(ui), text);
     }
 }

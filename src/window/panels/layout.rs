@@ -3,9 +3,10 @@
 use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, chooser, cube, curve_stroke, devices, files, hand_menu, help, hints, history,
-    keys, legend, look, masks, measure, messages, modal, outliner, preferences, pressure_curve,
-    radial, remesh, scene, search, start, symmetry, tablet_keys, theme, timing, trim,
+    analysis, brush, chooser, cube, curve_stroke, devices, files, fonts, hand_menu, help, hints,
+    history, keys, layers, legend, look, masks, measure, messages, modal, outliner, preferences,
+    pressure_curve, radial, remesh, rows, scene, search, start, symmetry, tablet_keys, theme,
+    timing, trim,
 };
 
 /// Width of either panel, points.
@@ -23,6 +24,7 @@ pub fn all(
     out: &mut Vec<UiRequest>,
 ) -> egui::Rect {
     let ctx = ui.ctx().clone();
+    fonts::speak(&ctx, view.translations, ui_state);
     let wanted = (ui_state.prefs.light, (ui_state.prefs.scale * 100.0).round() as u32);
     if ui_state.applied != Some(wanted) {
         theme::apply(&ctx, ui_state.prefs.light);
@@ -103,15 +105,13 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
 }
 
 fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
-    egui::Grid::new("tabs").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
-        for (i, (tab, name, tip)) in Tab::ALL.into_iter().enumerate() {
-            let button =
-                egui::Button::selectable(ui_state.tab == tab, name).min_size([47.0, 22.0].into());
-            if ui.add(button).on_hover_text(tip).clicked() {
+    rows::flow(ui, |ui| {
+        ui.spacing_mut().item_spacing = [4.0, 4.0].into();
+        for (tab, ..) in Tab::ALL {
+            let button = egui::Button::selectable(ui_state.tab == tab, tab.title());
+            let button = ui.add(button.min_size([47.0, 22.0].into()));
+            if button.on_hover_text(tab.about()).clicked() {
                 ui_state.tab = tab;
-            }
-            if i % 4 == 3 {
-                ui.end_row();
             }
         }
     });
@@ -120,6 +120,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
         Tab::Look => look::ui(ui, ui_state, out, view),
         Tab::Scene => {
             outliner::ui(ui, view, ui_state, out);
+            layers::ui(ui, view, ui_state, out);
             scene::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::levels(ui, view, ui_state, out);

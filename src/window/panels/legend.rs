@@ -4,6 +4,7 @@ use egui::{Rect, pos2, vec2};
 
 use super::measure;
 use super::state::UiState;
+use crate::language::tr;
 use crate::look::Map;
 
 pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
@@ -16,16 +17,16 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
         Map::Distance => ui_state.sizes.distances.is_some(),
         Map::None | Map::Mask => true,
     };
-    let ((low, high), unit) = match map {
-        Map::Mask => ((0.0, 1.0), ""),
-        _ => (ui_state.look.scale, " mm"),
+    let (low, high) = match map {
+        Map::Mask => (0.0, 1.0),
+        _ => ui_state.look.scale,
     };
     let area = egui::Area::new(egui::Id::unique("legend"))
         .fixed_pos(free.left_top() + vec2(12.0, 12.0))
         .interactable(false);
     area.show(ctx, |ui| {
         egui::Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {
-            ui.strong(map.title());
+            ui.strong(tr!(map.title()));
             let (rect, _) = ui.allocate_exact_size(vec2(92.0, 120.0), egui::Sense::hover());
             let bar = Rect::from_min_size(rect.min + vec2(0.0, 6.0), vec2(16.0, 108.0));
             measure::bar(ui.painter(), bar, |x| map.colour(x, 0.0, 1.0));
@@ -33,16 +34,23 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
             let colour = ui.visuals().text_color();
             if !known {
                 let at = pos2(bar.right() + 6.0, bar.center().y);
-                ui.painter().text(at, egui::Align2::LEFT_CENTER, "measuring", font, colour);
+                ui.painter().text(
+                    at,
+                    egui::Align2::LEFT_CENTER,
+                    tr!("legend-measuring"),
+                    font,
+                    colour,
+                );
                 return;
             }
             for i in 0..=2 {
                 let x = i as f32 / 2.0;
                 let value = low + (high - low) * x;
                 let text = match map {
-                    Map::Distance if i == 1 => format!("0{unit}"),
-                    Map::Distance => format!("{value:+.3}{unit}"),
-                    _ => format!("{value:.2}{unit}"),
+                    Map::Distance if i == 1 => tr!("length-mm", value = "0"),
+                    Map::Distance => tr!("length-mm", value = format!("{value:+.3}")),
+                    Map::Mask => format!("{value:.2}"),
+                    _ => tr!("length-mm", value = format!("{value:.2}")),
                 };
                 let at = pos2(bar.right() + 6.0, bar.bottom() - x * bar.height());
                 ui.painter().text(at, egui::Align2::LEFT_CENTER, text, font.clone(), colour);

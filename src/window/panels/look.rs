@@ -1,11 +1,13 @@
 //! How the clay is shown.
 
+use super::rows;
 use super::state::{Action, UiRequest, UiState, View};
+use crate::language::tr;
 use crate::look::{MATERIALS, Map};
 
 pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, view: &View<'_>) {
     let look = &mut ui_state.look;
-    ui.strong("Material");
+    ui.strong(tr!("look-material"));
     ui.horizontal_wrapped(|ui| {
         for (i, m) in MATERIALS.iter().enumerate() {
             let [r, g, b] = m.base.map(|c| (c.powf(1.0 / 2.2) * 255.0) as u8);
@@ -16,7 +18,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
                     egui::Role::RadioButton,
                     true,
                     look.material == i,
-                    m.name,
+                    tr!(m.name),
                 )
             });
             let colour = egui::Color32::from_rgb(r, g, b);
@@ -30,48 +32,48 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
                 let stroke = egui::Stroke::new(2.0, ui.visuals().text_color());
                 ui.painter().circle_stroke(rect.center(), 12.0, stroke);
             }
-            if response.on_hover_text(m.name).clicked() {
+            if response.on_hover_text(tr!(m.name)).clicked() {
                 look.material = i;
             }
         }
     });
     ui.add_space(4.0);
-    ui.checkbox(&mut look.flat, "Facets").on_hover_text(view.tip(Action::Facets));
-    ui.add(egui::Slider::new(&mut look.cavity, 0.0..=2.0).text("Cavity"))
-        .on_hover_text("Hollows darker, ridges lighter");
-    ui.add(egui::Slider::new(&mut look.shade, 0.0..=2.0).text("Occlusion"))
-        .on_hover_text(view.tip(Action::Ssao) + ": ambient occlusion in screen space");
-    ui.checkbox(&mut look.wireframe, "Wireframe").on_hover_text(view.tip(Action::Wireframe));
-    ui.checkbox(&mut look.grid, "Grid").on_hover_text(view.tip(Action::Grid));
-    ui.checkbox(&mut ui_state.prefs.smooth_edges, "Smooth edges")
-        .on_hover_text("Four samples a pixel; costs time where no graphics card draws");
+    ui.checkbox(&mut look.flat, tr!("look-facets")).on_hover_text(view.tip(Action::Facets));
+    rows::slider(ui, egui::Slider::new(&mut look.cavity, 0.0..=2.0), &tr!("look-cavity"))
+        .on_hover_text(tr!("look-cavity.tip"));
+    rows::slider(ui, egui::Slider::new(&mut look.shade, 0.0..=2.0), &tr!("look-occlusion"))
+        .on_hover_text(tr!("look-occlusion.tip", action = view.tip(Action::Ssao)));
+    ui.checkbox(&mut look.wireframe, tr!("look-wireframe"))
+        .on_hover_text(view.tip(Action::Wireframe));
+    ui.checkbox(&mut look.grid, tr!("look-grid")).on_hover_text(view.tip(Action::Grid));
+    ui.checkbox(&mut ui_state.prefs.smooth_edges, tr!("look-smooth-edges"))
+        .on_hover_text(tr!("look-smooth-edges.tip"));
     ui.add_space(8.0);
-    ui.strong("Map");
-    ui.horizontal_wrapped(|ui| {
-        for (map, name, tip) in [
-            (Map::None, "None", "The clay itself".to_owned()),
-            (Map::Mask, "Mask", view.tip(Action::Mask)),
-            (Map::Thickness, "Thickness", view.tip(Action::Thickness)),
-            (Map::Distance, "Distance", view.tip(Action::Distance)),
+    ui.strong(tr!("look-map"));
+    rows::flow(ui, |ui| {
+        for (map, tip) in [
+            (Map::None, tr!("map-none.tip")),
+            (Map::Mask, view.tip(Action::Mask)),
+            (Map::Thickness, view.tip(Action::Thickness)),
+            (Map::Distance, view.tip(Action::Distance)),
         ] {
-            ui.selectable_value(&mut ui_state.look.map, map, name).on_hover_text(tip);
+            ui.selectable_value(&mut ui_state.look.map, map, tr!(map.title())).on_hover_text(tip);
         }
     });
     ui.add_space(8.0);
-    ui.strong("Camera");
+    ui.strong(tr!("look-camera"));
     let mut camera = view.camera;
-    ui.checkbox(&mut camera.orthographic, "Orthographic")
+    ui.checkbox(&mut camera.orthographic, tr!("look-orthographic"))
         .on_hover_text(view.tip(Action::Perspective));
     let mut degrees = camera.fov_y.to_degrees();
-    ui.add_enabled(
-        !camera.orthographic,
-        egui::Slider::new(&mut degrees, 10.0..=100.0).text("Angle"),
-    )
-    .on_hover_text("Field of view, degrees");
+    ui.add_enabled_ui(!camera.orthographic, |ui| {
+        rows::slider(ui, egui::Slider::new(&mut degrees, 10.0..=100.0), &tr!("look-angle"))
+            .on_hover_text(tr!("look-angle.tip"));
+    });
     if (degrees - camera.fov_y.to_degrees()).abs() > 0.01 {
         camera.fov_y = degrees.to_radians();
     }
-    if ui.button("Frame the sculpture").on_hover_text(view.tip(Action::Frame)).clicked() {
+    if ui.button(Action::Frame.title()).on_hover_text(view.tip(Action::Frame)).clicked() {
         super::act::act(Action::Frame, &ui.ctx().clone(), view, ui_state, out);
     }
     if camera != view.camera {

@@ -3,8 +3,10 @@
 use egui::{Color32, Mesh, Stroke, pos2, vec2};
 use glam::{DVec2, DVec3};
 
+use super::rows;
 use super::state::{Action, DistanceTarget, Measured, SizesPage, UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use crate::look::Map;
 use sculptd_geometry::projection::PlaneRegion;
 
@@ -21,9 +23,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
 
 fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &SizesPage) {
     let quiet = theme::quiet(ui);
-    ui.strong("Measures");
+    ui.strong(tr!("measure-heading"));
     let Some(m) = &sizes.found else {
-        ui.colored_label(quiet, "Measured when nothing changes.");
+        ui.colored_label(quiet, tr!("measure-waits"));
         return;
     };
     let row = |ui: &mut egui::Ui, name: &str, value: String| {
@@ -32,17 +34,19 @@ fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &SizesPage) {
         ui.end_row();
     };
     egui::Grid::new("measures").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-        row(ui, "volume", format!("{} mm³", short(m.volume)));
-        row(ui, "area", format!("{} mm²", short(m.area)));
+        row(ui, &tr!("measure-volume"), tr!("volume-mm3", value = short(m.volume)));
+        row(ui, &tr!("measure-area"), tr!("area-mm2", value = short(m.area)));
         for (axis, size) in ["x", "y", "z"].into_iter().zip(m.dimensions) {
-            row(ui, &format!("size {axis}"), format!("{} mm", short(size)));
+            let name = tr!("measure-size", axis = axis);
+            row(ui, &name, tr!("length-mm", value = short(size)));
         }
         for (axis, area) in ["x", "y", "z"].into_iter().zip(m.projected) {
-            row(ui, &format!("shadow {axis}"), format!("{} mm²", short(area)));
+            let name = tr!("measure-shadow", axis = axis);
+            row(ui, &name, tr!("area-mm2", value = short(area)));
         }
     });
     if m.revision != view.state.mesh.revision() {
-        ui.colored_label(quiet, "Of an earlier state; measured again when nothing changes.");
+        ui.colored_label(quiet, tr!("measure-stale"));
     }
 }
 
@@ -54,42 +58,47 @@ fn short(x: f64) -> String {
 
 fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut SizesPage, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
-    ui.strong("Shadow");
-    ui.horizontal(|ui| {
+    ui.strong(tr!("shadow-heading"));
+    rows::flow(ui, |ui| {
         for (name, direction) in [("x", DVec3::NEG_X), ("y", DVec3::NEG_Y), ("z", DVec3::NEG_Z)] {
             let button = egui::Button::selectable(sizes.direction == direction, name);
-            let button = ui.add(button).on_hover_text(format!("Looked along {name}"));
+            let button = ui.add(button).on_hover_text(tr!("shadow-along.tip", axis = name));
             button.widget_info(|| {
                 egui::WidgetInfo::selected(
                     egui::Role::RadioButton,
                     true,
                     sizes.direction == direction,
-                    format!("shadow along {name}"),
+                    tr!("shadow-along", axis = name),
                 )
             });
             if button.clicked() {
                 sizes.direction = direction;
             }
         }
-        if ui.button("From here").on_hover_text("Looked along as the camera does").clicked() {
+        if ui.button(tr!("shadow-here")).on_hover_text(tr!("shadow-here.tip")).clicked() {
             sizes.direction = -view.camera.backward().as_dvec3();
         }
     });
     let Some(m) = &sizes.found else { return };
-    ui.monospace(format!("{} mm²", short(m.shadow)));
+    ui.monospace(tr!("area-mm2", value = short(m.shadow)));
     let (lo, hi) = picture(ui, m);
     let size = (hi - lo).max(DVec2::ZERO);
     let holes: usize = m.outline.iter().map(|p| p.holes.len()).sum();
-    ui.colored_label(quiet, format!("{} x {} mm, {holes} holes", short(size.x), short(size.y)));
+    let (x, y) = (short(size.x), short(size.y));
+    ui.colored_label(quiet, tr!("shadow-size", x = x, y = y, holes = holes));
     ui.horizontal(|ui| {
         let text = egui::TextEdit::singleline(&mut sizes.file).desired_width(126.0);
-        let field = ui.add(text).on_hover_text("The drawing's file");
+        let field = ui.add(text).on_hover_text(tr!("shadow-file.tip"));
         field.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Drawing to write")
+            egui::WidgetInfo::labeled(egui::Role::TextInput, true, tr!("shadow-file"))
         });
         let named = !sizes.file.trim().is_empty();
-        let tip = "The outline as a drawing to scale, millimetres";
-        if ui.add_enabled(named, egui::Button::new("SVG")).on_hover_text(tip).clicked() {
+        let tip = tr!("shadow-write.tip");
+        if ui
+            .add_enabled(named, egui::Button::new(tr!("shadow-write")))
+            .on_hover_text(tip)
+            .clicked()
+        {
             out.push(UiRequest::Outline(sizes.file.trim().into()));
         }
     });
@@ -98,9 +107,8 @@ fn shadow(ui: &mut egui::Ui, view: &View<'_>, sizes: &mut SizesPage, out: &mut V
 /// The outline, and the box around it.
 fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
     let (rect, response) = ui.allocate_exact_size(vec2(196.0, 120.0), egui::Sense::hover());
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Image, true, "Outline of the shadow")
-    });
+    response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, tr!("shadow-outline")));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
     let points = m.outline.iter().flat_map(|p| &p.outer);
@@ -129,44 +137,44 @@ fn picture(ui: &mut egui::Ui, m: &Measured) -> (DVec2, DVec2) {
 
 fn distance(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
-    ui.strong("Distance");
+    ui.strong(tr!("distance-heading"));
     let mut on = ui_state.look.map == Map::Distance;
-    if ui.checkbox(&mut on, "Live distance map").on_hover_text(view.tip(Action::Distance)).changed()
+    if ui
+        .checkbox(&mut on, tr!("distance-live"))
+        .on_hover_text(view.tip(Action::Distance))
+        .changed()
     {
         super::act::act(Action::Distance, &ui.ctx().clone(), view, ui_state, out);
     }
     let sizes = &mut ui_state.sizes;
     let held = view.state.thing.is_some();
-    ui.horizontal(|ui| {
-        ui.radio_value(&mut sizes.against, DistanceTarget::Before, "to before")
-            .on_hover_text("To the object as it was opened");
+    rows::flow(ui, |ui| {
+        ui.radio_value(&mut sizes.against, DistanceTarget::Before, tr!("distance-before"))
+            .on_hover_text(tr!("distance-before.tip"));
         ui.add_enabled_ui(held, |ui| {
-            ui.radio_value(&mut sizes.against, DistanceTarget::HeldObject, "to the held object")
+            let held = DistanceTarget::HeldObject;
+            ui.radio_value(&mut sizes.against, held, tr!("distance-held"))
         });
     });
     if !held && sizes.against == DistanceTarget::HeldObject {
         sizes.against = DistanceTarget::Before;
     }
-    if ui
-        .button("Compare with now")
-        .on_hover_text("Distances are measured to the object as it is now")
-        .clicked()
-    {
+    if ui.button(tr!("distance-now")).on_hover_text(tr!("distance-now.tip")).clicked() {
         out.push(UiRequest::Reference);
     }
     let Some(d) = sizes.distances.filter(|_| on) else {
-        ui.colored_label(quiet, "Blue lies within, red outside.");
+        ui.colored_label(quiet, tr!("distance-note"));
         return;
     };
     egui::Grid::new("distances").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
         let share = d.known.0 as f64 / d.known.1.max(1) as f64 * 100.0;
         for (name, value) in [
-            ("deepest", format!("{:+.4} mm", d.min)),
-            ("highest", format!("{:+.4} mm", d.max)),
-            ("rms", format!("{:.4} mm", d.rms)),
-            ("known", format!("{share:.0} %")),
+            ("distance-deepest", tr!("length-mm", value = format!("{:+.4}", d.min))),
+            ("distance-highest", tr!("length-mm", value = format!("{:+.4}", d.max))),
+            ("distance-rms", tr!("length-mm", value = format!("{:.4}", d.rms))),
+            ("distance-known", tr!("percent", value = format!("{share:.0}"))),
         ] {
-            ui.colored_label(quiet, name);
+            ui.colored_label(quiet, tr!(name));
             ui.monospace(value);
             ui.end_row();
         }

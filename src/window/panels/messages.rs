@@ -7,14 +7,15 @@ use egui::vec2;
 
 use super::state::UiState;
 use super::theme;
+use crate::language::tr;
 
 /// Seconds that a message stays over the clay; a failure stays longer.
 const STAYS: [f64; 2] = [5.0, 12.0];
 
 pub fn ui(ui: &mut egui::Ui, ui_state: &UiState) {
-    ui.strong("Messages");
+    ui.strong(tr!("messages-heading"));
     if ui_state.messages.is_empty() {
-        ui.colored_label(theme::quiet(ui), "none");
+        ui.colored_label(theme::quiet(ui), tr!("none"));
     }
     for m in ui_state.messages.iter().rev().take(12) {
         if m.wrong {
@@ -36,8 +37,8 @@ pub fn loading(ctx: &egui::Context, ui_state: &UiState, free: egui::Rect) {
         let width = (free.width() - 60.0).clamp(120.0, 360.0);
         ui.set_max_width(width);
         egui::Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.label(format!("Loading {name}"));
-            let percent = format!("{:.0} %", done * 100.0);
+            ui.label(tr!("messages-loading", name = name.as_str()));
+            let percent = tr!("percent", value = format!("{:.0}", done * 100.0));
             ui.add(egui::ProgressBar::new(*done).desired_width(width - 20.0).text(percent));
         });
     });

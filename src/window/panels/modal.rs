@@ -4,6 +4,7 @@
 use egui::{Key, PointerButton};
 
 use super::state::{Modal, ModalSetting, UiRequest, UiState, View};
+use crate::language::tr;
 use sculptd_engine::command::Command;
 
 /// The pointer's way, points, that doubles the radius or moves the strength from 0 to 1.
@@ -42,8 +43,8 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, out: &mu
         out.push(UiRequest::World(Command::Brush(brush)));
     }
     let text = match modal.what {
-        ModalSetting::Radius => format!("Radius {:.3}", brush.radius),
-        ModalSetting::Strength => format!("Strength {:.2}", brush.strength),
+        ModalSetting::Radius => tr!("modal-radius", value = format!("{:.3}", brush.radius)),
+        ModalSetting::Strength => tr!("modal-strength", value = format!("{:.2}", brush.strength)),
     };
     let area = egui::Area::new(egui::Id::unique("modal"))
         .fixed_pos(modal.from + egui::vec2(0.0, 46.0))
@@ -51,7 +52,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, out: &mu
         .interactable(false);
     area.show(ctx, |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
-            ui.label(format!("{text}: click to keep, Esc to leave as it was"));
+            ui.label(text);
         });
     });
 }

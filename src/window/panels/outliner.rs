@@ -7,31 +7,34 @@ use std::cell::Cell;
 
 use glam::{DQuat, DVec3, EulerRot};
 
+use super::rows;
 use super::state::{Outliner, Pairing, SnapPicks, UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::{ObjectTransform, ObjectView, Primitive, PrimitiveShape, SceneCommand};
 use sculptd_geometry::boolean::Operation;
 
-/// A name, and the primitive of a size.
+/// The message of a name, and the primitive of a size.
 type SizedPrimitive = (&'static str, fn(f64) -> PrimitiveShape);
 
 /// Primitives at the size of a scene: lengths are multiples of the active object's bounding radius.
 const PRIMITIVES: [SizedPrimitive; 7] = [
-    ("Box", |r| PrimitiveShape::Box([r; 3])),
-    ("Ball", |r| PrimitiveShape::Ball(r * 0.5)),
-    ("Cylinder", |r| PrimitiveShape::Cylinder([r * 0.5, r])),
-    ("Cone", |r| PrimitiveShape::Cone([r * 0.5, r])),
-    ("Torus", |r| PrimitiveShape::Torus([r * 0.5, r * 0.2])),
-    ("Tube", |r| PrimitiveShape::Tube([r * 0.5, r * 0.35, r])),
-    ("Plane", |r| PrimitiveShape::Plane([r; 2])),
+    ("shape-box", |r| PrimitiveShape::Box([r; 3])),
+    ("shape-ball", |r| PrimitiveShape::Ball(r * 0.5)),
+    ("shape-cylinder", |r| PrimitiveShape::Cylinder([r * 0.5, r])),
+    ("shape-cone", |r| PrimitiveShape::Cone([r * 0.5, r])),
+    ("shape-torus", |r| PrimitiveShape::Torus([r * 0.5, r * 0.2])),
+    ("shape-tube", |r| PrimitiveShape::Tube([r * 0.5, r * 0.35, r])),
+    ("shape-plane", |r| PrimitiveShape::Plane([r; 2])),
 ];
 
-const PAIRINGS: [(Operation, &str, &str); 4] = [
-    (Operation::Union, "Union", "The active object and this one become one"),
-    (Operation::Intersection, "Intersection", "Only what lies in both stays"),
-    (Operation::Difference, "Difference", "This object is cut out of the active one"),
-    (Operation::ReverseDifference, "Reverse difference", "The active one is cut out of this one"),
+/// Each with the message of its name.
+const PAIRINGS: [(Operation, &str); 4] = [
+    (Operation::Union, "operation-union"),
+    (Operation::Intersection, "operation-intersection"),
+    (Operation::Difference, "operation-difference"),
+    (Operation::ReverseDifference, "operation-reverse-difference"),
 ];
 
 fn ask(out: &mut Vec<UiRequest>, command: SceneCommand) {
@@ -41,10 +44,10 @@ fn ask(out: &mut Vec<UiRequest>, command: SceneCommand) {
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let scene = &view.state.scene;
     ui.horizontal(|ui| {
-        ui.strong("Objects");
-        ui.menu_button("Add object", |ui| {
+        ui.strong(tr!("objects-heading"));
+        ui.menu_button(tr!("objects-add"), |ui| {
             for (name, shape) in PRIMITIVES {
-                if ui.button(name).clicked() {
+                if ui.button(tr!(name)).clicked() {
                     let shape = shape(f64::from(view.state.extent.max(1e-6)));
                     let edge = shape.usual_edge();
                     out.push(UiRequest::AddPrimitive(Primitive { shape, edge }));
@@ -59,40 +62,39 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     }
     let Some(active) = scene.active() else { return };
     let id = active.id;
-    ui.horizontal(|ui| {
-        if ui.button("Duplicate").clicked() {
+    rows::flow(ui, |ui| {
+        if ui.button(tr!("objects-duplicate")).clicked() {
             ask(out, SceneCommand::Duplicate(id));
         }
-        if ui.button("Rename").clicked() {
+        if ui.button(tr!("objects-rename")).clicked() {
             ui_state.outliner.renaming = Some((id, active.settings.name.clone()));
         }
         let more = scene.objects.len() > 1 && !active.settings.locked;
-        if more && ui.button("Remove").clicked() {
+        if more && ui.button(tr!("objects-remove")).clicked() {
             ask(out, SceneCommand::Remove(id));
         }
     });
-    ui.horizontal(|ui| {
-        let gizmo = ui.selectable_label(ui_state.outliner.gizmo, "Gizmo");
-        if gizmo.on_hover_text("Move, turn and scale it by the pointer; Ctrl: in steps").clicked() {
+    rows::flow(ui, |ui| {
+        let gizmo = ui.selectable_label(ui_state.outliner.gizmo, tr!("objects-gizmo"));
+        if gizmo.on_hover_text(tr!("objects-gizmo.tip")).clicked() {
             ui_state.outliner.gizmo = !ui_state.outliner.gizmo;
         }
         let picking = ui_state.outliner.snapping;
         let label = match picking {
-            None => "Snap face to face",
-            Some(SnapPicks { moved: None }) => "Press on the face to move",
-            Some(_) => "Press on the face to lay it on",
+            None => "objects-snap",
+            Some(SnapPicks { moved: None }) => "objects-snap-first",
+            Some(_) => "objects-snap-second",
         };
         let button = ui.add_enabled(
             scene.objects.len() > 1,
-            egui::Button::selectable(picking.is_some(), label),
+            egui::Button::selectable(picking.is_some(), tr!(label)),
         );
-        if button.on_hover_text("Lays a flat face of one object flush on one of another").clicked()
-        {
+        if button.on_hover_text(tr!("objects-snap.tip")).clicked() {
             ui_state.outliner.snapping = picking.is_none().then(SnapPicks::default);
         }
     });
     if active.settings.locked {
-        ui.colored_label(theme::quiet(ui), "Locked: no stroke, no move, no removal");
+        ui.colored_label(theme::quiet(ui), tr!("objects-locked"));
     } else {
         place(ui, active, view.state.extent, &mut ui_state.outliner, out);
         let untouched = view.state.mesh.revision() == 0;
@@ -113,12 +115,13 @@ fn row(
 ) {
     let (id, settings) = (object.id, &object.settings);
     ui.horizontal(|ui| {
-        let eye = ui.selectable_label(settings.visible, "eye").on_hover_text("Drawn");
+        let eye = ui.selectable_label(settings.visible, tr!("objects-eye"));
+        let eye = eye.on_hover_text(tr!("objects-eye.tip"));
         if eye.clicked() {
             ask(out, SceneCommand::Show(id, !settings.visible));
         }
-        let lock = ui.selectable_label(settings.locked, "lock");
-        if lock.on_hover_text("Protected from strokes, moves and removal").clicked() {
+        let lock = ui.selectable_label(settings.locked, tr!("objects-lock"));
+        if lock.on_hover_text(tr!("objects-lock.tip")).clicked() {
             ask(out, SceneCommand::Lock(id, !settings.locked));
         }
         if let Some((renamed, text)) = outliner.renaming.as_mut().filter(|r| r.0 == id) {
@@ -140,9 +143,9 @@ fn row(
         }
         if !active {
             name.context_menu(|ui| {
-                for (operation, label, tip) in PAIRINGS {
-                    let button = ui.add_enabled(!busy, egui::Button::new(label));
-                    if button.on_hover_text(tip).clicked() {
+                for (operation, name) in PAIRINGS {
+                    let button = ui.add_enabled(!busy, egui::Button::new(tr!(name)));
+                    if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
                         let pairing = Pairing { operation, with: id };
                         out.push(UiRequest::BooleanWith(pairing));
                         ui.close();
@@ -178,7 +181,7 @@ fn place(
         done.set(done.get() || response.drag_stopped() || response.lost_focus());
     };
     let step = f64::from(extent) * 0.01;
-    ui.horizontal(|ui| {
+    rows::flow(ui, |ui| {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             drag(ui, &mut shown.shift[axis], step, name);
         }
@@ -186,18 +189,19 @@ fn place(
     let (yaw, pitch, roll) = shown.turn.to_euler(EulerRot::YXZ);
     let mut degrees = [yaw, pitch, roll].map(f64::to_degrees);
     let turned = degrees;
-    ui.horizontal(|ui| {
-        for (angle, name) in degrees.iter_mut().zip(["yaw", "pitch", "roll"]) {
-            drag(ui, angle, 1.0, name);
+    rows::flow(ui, |ui| {
+        for (angle, name) in degrees.iter_mut().zip(["scene-yaw", "scene-pitch", "scene-roll"]) {
+            drag(ui, angle, 1.0, &tr!(name));
         }
     });
     if degrees != turned {
         let [yaw, pitch, roll] = degrees.map(f64::to_radians);
         shown.turn = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, roll).normalize();
     }
-    ui.horizontal(|ui| {
-        drag(ui, &mut shown.scale, 0.01, "scale");
-        if ui.button("Reset place").on_hover_text("Back to where it was made").clicked() {
+    rows::flow(ui, |ui| {
+        drag(ui, &mut shown.scale, 0.01, &tr!("scene-scale"));
+        let reset = ui.button(tr!("objects-reset-place"));
+        if reset.on_hover_text(tr!("objects-reset-place.tip")).clicked() {
             shown = ObjectTransform { shift: DVec3::ZERO, ..ObjectTransform::NONE };
             done.set(true);
         }
@@ -214,6 +218,19 @@ fn place(
     }
 }
 
+/// What a shape is called.
+fn shape_title(shape: &PrimitiveShape) -> String {
+    tr!(match shape {
+        PrimitiveShape::Box(_) => "shape-box",
+        PrimitiveShape::Ball(_) => "shape-ball",
+        PrimitiveShape::Cylinder(_) => "shape-cylinder",
+        PrimitiveShape::Cone(_) => "shape-cone",
+        PrimitiveShape::Torus(_) => "shape-torus",
+        PrimitiveShape::Tube(_) => "shape-tube",
+        PrimitiveShape::Plane(_) => "shape-plane",
+    })
+}
+
 /// The numbers that the active object was made of.
 fn numbers(
     ui: &mut egui::Ui,
@@ -225,8 +242,8 @@ fn numbers(
     let mut shown = outliner.primitive.filter(|p| p.0 == object.id).map_or(now, |p| p.1);
     let before = shown;
     let mut done = false;
-    ui.horizontal(|ui| {
-        ui.colored_label(theme::quiet(ui), now.shape.name());
+    rows::flow(ui, |ui| {
+        ui.colored_label(theme::quiet(ui), shape_title(&now.shape));
         let all: &mut [f64] = match &mut shown.shape {
             PrimitiveShape::Box(n) | PrimitiveShape::Tube(n) => n,
             PrimitiveShape::Ball(n) => std::slice::from_mut(n),

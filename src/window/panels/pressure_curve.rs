@@ -3,17 +3,21 @@
 
 use egui::{Pos2, Rect, Sense, Stroke, pos2, vec2};
 
+use super::rows;
 use super::state::{PenTrace, UiRequest, View};
 use super::theme;
+use crate::language::tr;
 use sculptd_engine::command::Command;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &PenTrace, out: &mut Vec<UiRequest>) {
     let mut brush = view.state.brush;
-    egui::CollapsingHeader::new("Pressure").default_open(false).show(ui, |ui| {
+    let title = egui::CollapsingHeader::new(tr!("pressure-heading")).id_salt("pressure-heading");
+    title.default_open(false).show(ui, |ui| {
         let curve = &mut brush.pressure_strength;
         let (rect, response) = ui.allocate_exact_size(vec2(196.0, 92.0), Sense::click_and_drag());
-        response
-            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Pressure curve"));
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Canvas, true, tr!("pressure-curve"))
+        });
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);
         let at = |p: f32, f: f32| place(rect, p, f);
@@ -41,11 +45,13 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, trace: &PenTrace, out: &mut Vec<Ui
                 curve.gamma = (share.ln() / x.ln()).clamp(0.1, 10.0);
             }
         }
-        response.on_hover_text("Drag the left end for the lightest touch, the middle for the bend");
-        ui.add(egui::Slider::new(&mut curve.at_zero, 0.0..=1.0).text("Lightest"));
-        ui.add(egui::Slider::new(&mut curve.gamma, 0.1..=10.0).logarithmic(true).text("Bend"));
-        ui.add(egui::Slider::new(&mut brush.pressure_radius.at_zero, 0.0..=1.0).text("Radius"))
-            .on_hover_text("Share of the radius at the lightest touch");
+        response.on_hover_text(tr!("pressure-curve.tip"));
+        let lightest = egui::Slider::new(&mut curve.at_zero, 0.0..=1.0);
+        rows::slider(ui, lightest, &tr!("pressure-lightest"));
+        let bend = egui::Slider::new(&mut curve.gamma, 0.1..=10.0).logarithmic(true);
+        rows::slider(ui, bend, &tr!("pressure-bend"));
+        let radius = egui::Slider::new(&mut brush.pressure_radius.at_zero, 0.0..=1.0);
+        rows::slider(ui, radius, &tr!("pressure-radius")).on_hover_text(tr!("pressure-radius.tip"));
     });
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));

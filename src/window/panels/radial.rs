@@ -3,17 +3,18 @@
 use egui::{Align2, FontId, Key, Pos2, Stroke, vec2};
 
 use super::state::{Action, UiState};
+use crate::language::tr;
 
-/// Clockwise from the top.
+/// Clockwise from the top, each with the message of its name.
 const RING: [(Action, &str); 8] = [
-    (Action::Undo, "Undo"),
-    (Action::Redo, "Redo"),
-    (Action::DragRadius, "Radius"),
-    (Action::MirrorX, "Mirror x"),
-    (Action::Thickness, "Thickness"),
-    (Action::Frame, "Frame"),
-    (Action::DragStrength, "Strength"),
-    (Action::Carve, "Carve"),
+    (Action::Undo, "undo"),
+    (Action::Redo, "redo"),
+    (Action::DragRadius, "radial-radius"),
+    (Action::MirrorX, "radial-mirror"),
+    (Action::Thickness, "radial-thickness"),
+    (Action::Frame, "radial-frame"),
+    (Action::DragStrength, "radial-strength"),
+    (Action::Carve, "radial-carve"),
 ];
 const INNER: f32 = 26.0;
 const OUTER: f32 = 92.0;
@@ -65,7 +66,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState) -> Option<Action> {
             let on = chosen == Some(i);
             let colour = if on { visuals.selection.stroke.color } else { visuals.text_color() };
             let font = FontId::proportional(13.0);
-            let galley = painter.layout_no_wrap((*name).to_owned(), font, colour);
+            let galley = painter.layout_no_wrap(tr!(name), font, colour);
             let rect = Align2::CENTER_CENTER.anchor_size(place, galley.size());
             if on {
                 painter.rect_filled(rect.expand(6.0), 6.0, visuals.selection.bg_fill);

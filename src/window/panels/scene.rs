@@ -4,51 +4,48 @@ use std::sync::Arc;
 
 use glam::{DVec3, EulerRot, Quat};
 
+use super::rows;
 use super::state::{TrialStatus, UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_geometry::{PolyMesh, shapes};
 
 type Solid = (&'static str, fn() -> PolyMesh);
 
-/// Shapes that can be taken up without a file.
+/// Shapes that can be taken up without a file, each with the message of its name.
 const SOLIDS: [Solid; 3] = [
-    ("Ball", || shapes::uv_sphere(1.0, 24, 48)),
-    ("Box", || shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE)),
-    ("Cylinder", || shapes::cylinder(1.0, 2.0, 48)),
+    ("shape-ball", || shapes::uv_sphere(1.0, 24, 48)),
+    ("shape-box", || shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE)),
+    ("shape-cylinder", || shapes::cylinder(1.0, 2.0, 48)),
 ];
 
-const JOINS: [(MenuItem, &str, &str); 3] = [
-    (MenuItem::Add, "Add", "The two become one"),
-    (MenuItem::Carve, "Cut", "What is held is cut out of the object"),
-    (MenuItem::Keep, "Keep", "Only what lies in both stays"),
-];
+/// Each with the message of its name.
+const JOINS: [(MenuItem, &str); 3] =
+    [(MenuItem::Add, "scene-add"), (MenuItem::Carve, "scene-cut"), (MenuItem::Keep, "scene-keep")];
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let busy = ui_state.joining;
     let quiet = theme::quiet(ui);
     let s = view.state;
-    ui.strong("Object");
+    ui.strong(tr!("scene-object"));
     let (lo, hi) = s.transform().bounds(s.mesh.bounds());
     let size = (hi - lo).max(glam::Vec3::ZERO);
-    ui.colored_label(quiet, format!("{} triangles", s.mesh.triangle_count()));
-    ui.colored_label(quiet, format!("{:.2} x {:.2} x {:.2} mm", size.x, size.y, size.z));
+    ui.colored_label(quiet, tr!("triangles", count = s.mesh.triangle_count()));
+    let [x, y, z] = size.to_array().map(|n| format!("{n:.2}"));
+    ui.colored_label(quiet, tr!("scene-size", x = x, y = y, z = z, unit = tr!("unit-mm")));
     ui.add_space(8.0);
-    ui.strong("Held object");
-    ui.horizontal(|ui| {
+    ui.strong(tr!("scene-held"));
+    rows::flow(ui, |ui| {
         for (name, make) in SOLIDS {
-            if ui
-                .button(name)
-                .on_hover_text("Appears beside the object, to be moved into it")
-                .clicked()
-            {
+            if ui.button(tr!(name)).on_hover_text(tr!("scene-held.tip")).clicked() {
                 out.push(UiRequest::World(Command::TakeUp(Arc::new(make().triangulate().0))));
             }
         }
     });
     let Some(thing) = &s.thing else {
-        ui.colored_label(quiet, "Take up a shape, move it into place, then add, cut or keep.");
+        ui.colored_label(quiet, tr!("scene-held-note"));
         return;
     };
     let mut place = thing.place;
@@ -59,10 +56,14 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     }
     let (mut yaw, mut pitch, mut roll) = place.turn.to_euler(EulerRot::YXZ);
     let before = (yaw, pitch, roll);
-    for (angle, name) in [(&mut yaw, "yaw"), (&mut pitch, "pitch"), (&mut roll, "roll")] {
-        let most = if name == "pitch" { 89.0 } else { 180.0 };
+    for (angle, name, most) in [
+        (&mut yaw, "scene-yaw", 180.0),
+        (&mut pitch, "scene-pitch", 89.0),
+        (&mut roll, "scene-roll", 180.0),
+    ] {
         let mut degrees = angle.to_degrees();
-        if ui.add(egui::Slider::new(&mut degrees, -most..=most).text(name)).changed() {
+        let slider = egui::Slider::new(&mut degrees, -most..=most);
+        if rows::slider(ui, slider, &tr!(name)).changed() {
             *angle = degrees.to_radians();
         }
     }
@@ -70,65 +71,63 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         place.turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
     }
     let sizes = s.extent * 0.02..=s.extent * 3.0;
-    ui.add(egui::Slider::new(&mut place.scale, sizes).logarithmic(true).text("size"));
+    let scale = egui::Slider::new(&mut place.scale, sizes).logarithmic(true);
+    rows::slider(ui, scale, &tr!("scene-held-size"));
     if place != thing.place {
         out.push(UiRequest::World(Command::Place(place)));
     }
     ui.add_space(4.0);
     preview(ui, ui_state, out);
     ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        for (choice, name, tip) in JOINS {
-            if ui.add_enabled(!busy, egui::Button::new(name)).on_hover_text(tip).clicked() {
+    rows::flow(ui, |ui| {
+        for (choice, name) in JOINS {
+            let button = ui.add_enabled(!busy, egui::Button::new(tr!(name)));
+            if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
                 out.push(UiRequest::Join(choice));
             }
         }
     });
-    ui.horizontal(|ui| {
-        if ui.button("Put down").on_hover_text("It becomes an object where it is").clicked() {
+    rows::flow(ui, |ui| {
+        let down = ui.button(tr!("scene-put-down"));
+        if down.on_hover_text(tr!("scene-put-down.tip")).clicked() {
             out.push(UiRequest::AddHeld);
         }
-        if ui.button("Put away").clicked() {
+        if ui.button(tr!("scene-put-away")).clicked() {
             out.push(UiRequest::World(Command::PutDown));
         }
     });
     if busy {
-        ui.colored_label(quiet, "computing in the background: go on sculpting");
+        ui.colored_label(quiet, tr!("scene-busy"));
     }
 }
 
 fn preview(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let busy = ui_state.joining;
     let trial = &mut ui_state.trial;
-    let title = trial.choice.map_or("off", |c| JOINS.iter().find(|j| j.0 == c).map_or("", |j| j.1));
-    egui::ComboBox::from_label("Preview").selected_text(title).width(110.0).show_ui(ui, |ui| {
-        ui.selectable_value(&mut trial.choice, None, "off");
-        for (choice, name, tip) in JOINS {
-            ui.selectable_value(&mut trial.choice, Some(choice), name).on_hover_text(tip);
+    let title = JOINS.iter().find(|j| trial.choice == Some(j.0)).map_or("off", |j| j.1);
+    rows::list(ui, &tr!("scene-preview"), tr!(title), |ui| {
+        ui.selectable_value(&mut trial.choice, None, tr!("off"));
+        for (choice, name) in JOINS {
+            ui.selectable_value(&mut trial.choice, Some(choice), tr!(name))
+                .on_hover_text(tr!(&format!("{name}.tip")));
         }
     });
     let Some(choice) = trial.choice else { return };
     let (text, wrong) = match &trial.said {
-        TrialStatus::Nothing | TrialStatus::UnderWay => ("computing ...".to_owned(), false),
-        TrialStatus::Shown(n) => (format!("{n} triangles of the held object"), false),
+        TrialStatus::Nothing | TrialStatus::UnderWay => (tr!("scene-computing"), false),
+        TrialStatus::Shown(n) => (tr!("scene-shown", count = *n), false),
         TrialStatus::Wrong(why) => (why.clone(), true),
     };
     let colour = if wrong { theme::alarm(ui) } else { theme::quiet(ui) };
     ui.colored_label(colour, text);
-    ui.horizontal(|ui| {
-        if ui
-            .add_enabled(!busy, egui::Button::new("Apply"))
-            .on_hover_text("Do what is shown")
-            .clicked()
-        {
+    rows::flow(ui, |ui| {
+        let apply = ui.add_enabled(!busy, egui::Button::new(tr!("scene-apply")));
+        if apply.on_hover_text(tr!("scene-apply.tip")).clicked() {
             out.push(UiRequest::Join(choice));
             trial.choice = None;
         }
-        if ui
-            .button("Dismiss")
-            .on_hover_text("The object stays as it is; the held one too")
-            .clicked()
-        {
+        let dismiss = ui.button(tr!("scene-dismiss"));
+        if dismiss.on_hover_text(tr!("scene-dismiss.tip")).clicked() {
             trial.choice = None;
         }
     });

@@ -5,6 +5,7 @@ use egui::Key;
 use super::state::action;
 use super::state::{Action, UiState, View};
 use super::theme;
+use crate::language::tr;
 
 /// Shown at a time.
 const MOST: usize = 9;
@@ -24,7 +25,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> Optio
     area.show(ctx, |ui| {
         egui::Frame::window(ui.style()).show(ui, |ui| {
             ui.set_width(320.0f32.min(screen.width() - 40.0));
-            let label = ui.label("Search actions");
+            let label = ui.label(tr!("search-heading"));
             let edit = egui::TextEdit::singleline(&mut search.text).desired_width(f32::INFINITY);
             let response = ui.add(edit).labelled_by(label.id);
             let ready = search.begun;
@@ -44,7 +45,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> Optio
             for (i, entry) in found.iter().take(MOST).enumerate() {
                 let keys = view.keys.text(entry.action);
                 ui.horizontal(|ui| {
-                    if ui.selectable_label(i == search.at, entry.name.as_ref()).clicked() {
+                    if ui.selectable_label(i == search.at, entry.action.title()).clicked() {
                         chosen = Some(entry.action);
                     }
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -53,7 +54,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> Optio
                 });
             }
             if found.is_empty() {
-                ui.colored_label(theme::quiet(ui), "nothing is called that");
+                ui.colored_label(theme::quiet(ui), tr!("search-nothing"));
             }
         });
     });

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::state::{UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 
 /// Sessions offered.
 const OFFERED: usize = 4;
@@ -15,7 +16,8 @@ pub fn title(path: &Path) -> String {
     let mut parts = stem.splitn(3, '_');
     match (parts.next(), parts.next(), parts.next()) {
         (Some(date), Some(time), Some(object)) if time.len() == 4 && time.is_ascii() => {
-            format!("{object}, {date} {}:{}", &time[..2], &time[2..])
+            let time = format!("{}:{}", &time[..2], &time[2..]);
+            tr!("start-session", object = object, date = date, time = time)
         }
         _ => stem,
     }
@@ -37,15 +39,15 @@ pub fn ui(
         .pivot(egui::Align2::LEFT_BOTTOM);
     area.show(ctx, |ui| {
         egui::Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.strong("Go on with");
+            ui.strong(tr!("start-heading"));
             for path in view.recent.iter().take(OFFERED) {
                 let button = ui.button(title(path)).on_hover_text(path.display().to_string());
                 if button.clicked() {
                     out.push(UiRequest::OpenSession(path.clone()));
                 }
             }
-            ui.colored_label(theme::quiet(ui), "This new sculpture is saved as you work.");
-            if ui.button("Stay here").clicked() {
+            ui.colored_label(theme::quiet(ui), tr!("start-note"));
+            if ui.button(tr!("start-stay")).clicked() {
                 ui_state.start_answered = true;
             }
         });
@@ -55,9 +57,11 @@ pub fn ui(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language;
 
     #[test]
     fn a_session_is_told_by_its_object_and_date() {
+        language::set_current(language::tests::of_config("").english());
         let path = Path::new("/a/2026-11-22_0308_my_head.sculpt");
         assert_eq!(title(path), "my_head, 2026-11-22 03:08");
         assert_eq!(title(Path::new("/a/mine.sculpt")), "mine");

@@ -3,8 +3,10 @@
 
 use egui::{Color32, Key, Pos2, Rect, Sense, Stroke, vec2};
 
+use super::rows;
 use super::state::{Trim, TrimShape, UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use sculptd_daemon::trim::Part;
 
 /// Points below which a drag was a slip of the hand.
@@ -12,19 +14,11 @@ const SLIP: f32 = 4.0;
 
 /// The buttons.
 pub fn buttons(ui: &mut egui::Ui, ui_state: &mut UiState) {
-    ui.strong("Trim");
-    ui.horizontal(|ui| {
+    ui.strong(tr!("trim-heading"));
+    rows::flow(ui, |ui| {
         for (shape, name, tip) in [
-            (
-                TrimShape::Box,
-                "Box",
-                "Drag a box over the view: what lies in it is cut off, all the way through",
-            ),
-            (
-                TrimShape::Line,
-                "Line",
-                "Drag a line over the view: what lies to its left is cut off",
-            ),
+            (TrimShape::Box, tr!("trim-box"), tr!("trim-box.tip")),
+            (TrimShape::Line, tr!("trim-line"), tr!("trim-line.tip")),
         ] {
             let on = ui_state.trim.is_some_and(|t| t.shape == shape);
             if ui
@@ -37,7 +31,7 @@ pub fn buttons(ui: &mut egui::Ui, ui_state: &mut UiState) {
         }
     });
     if ui_state.trim.is_some() {
-        ui.colored_label(theme::quiet(ui), "Drag over the view; Esc cancels.");
+        ui.colored_label(theme::quiet(ui), tr!("trim-note"));
     }
 }
 
@@ -70,7 +64,9 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
         egui::Area::new(egui::Id::unique("trim")).fixed_pos(free.min).order(egui::Order::Middle);
     area.show(ctx, |ui| {
         let (_, response) = ui.allocate_exact_size(free.size(), Sense::drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Trim"));
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Canvas, true, tr!("trim-heading"))
+        });
         if response.drag_started() {
             trim.from = ctx.input(|i| i.pointer.press_origin());
         }
@@ -111,20 +107,18 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
 
 /// The levels of detail: coarser to shape, finer for detail.
 pub fn levels(ui: &mut egui::Ui, view: &View<'_>, ui_state: &UiState, out: &mut Vec<UiRequest>) {
-    ui.strong("Levels");
+    ui.strong(tr!("levels-heading"));
     let (at, of) = view.state.mesh.levels().map_or((0, 1), |l| l.at());
     let n = view.state.mesh.triangle_count();
-    ui.colored_label(theme::quiet(ui), format!("level {} of {of}, {n} triangles", at + 1));
-    ui.horizontal(|ui| {
-        let coarser = ui.add_enabled(at > 0 && !ui_state.joining, egui::Button::new("Coarser"));
-        if coarser
-            .on_hover_text("TrimShape the whole; the detail of finer levels goes along")
-            .clicked()
-        {
+    ui.colored_label(theme::quiet(ui), tr!("levels-at", at = at + 1, all = of, count = n));
+    rows::flow(ui, |ui| {
+        let button = egui::Button::new(tr!("levels-coarser"));
+        let coarser = ui.add_enabled(at > 0 && !ui_state.joining, button);
+        if coarser.on_hover_text(tr!("levels-coarser.tip")).clicked() {
             out.push(UiRequest::Level(false));
         }
-        let finer = ui.add_enabled(!ui_state.joining, egui::Button::new("Finer"));
-        let tip = if at + 1 < of { "Back to the finer level" } else { "Four triangles for each" };
+        let finer = ui.add_enabled(!ui_state.joining, egui::Button::new(tr!("levels-finer")));
+        let tip = if at + 1 < of { tr!("levels-finer.back") } else { tr!("levels-finer.tip") };
         if finer.on_hover_text(tip).clicked() {
             out.push(UiRequest::Level(true));
         }

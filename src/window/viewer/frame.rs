@@ -282,6 +282,7 @@ impl WindowState {
         }
         let view = View {
             state,
+            translations: &wiring.translations,
             keys: &self.key_map,
             presets: &wiring.presets,
             camera: self.camera,

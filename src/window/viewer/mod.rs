@@ -37,6 +37,7 @@ mod step_picture_jobs;
 mod step_pictures;
 mod tablet_map;
 mod tablets;
+mod task_texts;
 pub mod tasks;
 pub mod timelapse;
 mod turntable;

@@ -41,6 +41,9 @@ impl WindowState {
         let now = wiring.clock.now_us();
         self.follow_tablets(&state, wiring);
         let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
+        if let Some(count) = self.ui_state.layers.baked(&state) {
+            self.ui_state.say(format!("Layers baked into the new surface: {count}"), false);
+        }
         changed |= self.drawn_demo != (now < wiring.demo_until_us);
         changed |= self.asked_camera.is_some()
             || self.camera_animation.is_some()

@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::language::tr;
 use crate::panels::state::{Preferences, UiState};
 use sculptd_geometry::io::write_beside;
 
@@ -13,9 +14,35 @@ pub struct PreferencesFile {
     path: Option<PathBuf>,
     kept: Preferences,
     /// What is wrong with the file, until it was told.
-    wrong: Option<String>,
+    wrong: Option<PreferencesFault>,
     /// The last write failed, and that was told.
     failing: bool,
+}
+
+/// Why a file of preferences was not read.
+#[derive(Debug)]
+enum PreferencesFault {
+    /// It holds something else; and the file that it was set aside as, or why it could not be.
+    Unreadable(String, Result<PathBuf, String>),
+    Unread(String),
+}
+
+impl PreferencesFault {
+    fn told(self, path: &Path) -> String {
+        let path = path.display().to_string();
+        match self {
+            PreferencesFault::Unreadable(error, Ok(aside)) => {
+                let aside = aside.display().to_string();
+                tr!("task-preferences-unreadable", path = path, error = error, aside = aside)
+            }
+            PreferencesFault::Unreadable(error, Err(why)) => {
+                tr!("task-preferences-stuck", path = path, error = error, why = why)
+            }
+            PreferencesFault::Unread(error) => {
+                tr!("task-preferences-unread", path = path, error = error)
+            }
+        }
+    }
 }
 
 impl PreferencesFile {
@@ -33,16 +60,14 @@ impl PreferencesFile {
         let prefs = match std::fs::read_to_string(path) {
             Ok(text) => Preferences::read(&text).unwrap_or_else(|e| {
                 let aside = path.with_extension("toml.unreadable");
-                let kept = match std::fs::rename(path, &aside) {
-                    Ok(()) => format!("it is kept as {}", aside.display()),
-                    Err(e) => format!("it cannot be set aside: {e}"),
-                };
-                wrong = Some(format!("{}: {e}; {kept}", path.display()));
+                let kept = std::fs::rename(path, &aside).map(|()| aside);
+                let kept = kept.map_err(|e| e.to_string());
+                wrong = Some(PreferencesFault::Unreadable(e, kept));
                 Preferences::default()
             }),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Preferences::default(),
             Err(e) => {
-                wrong = Some(format!("{}: the preferences cannot be read: {e}", path.display()));
+                wrong = Some(PreferencesFault::Unread(e.to_string()));
                 Preferences::default()
             }
         };
@@ -61,8 +86,8 @@ impl PreferencesFile {
     /// Writes what changed. What went wrong is returned, to be shown: once, and again after a write
     /// that went well; what was not kept is tried again at the next call.
     pub fn keep(&mut self, ui_state: &UiState) -> Option<String> {
-        if let Some(wrong) = self.wrong.take() {
-            return Some(wrong);
+        if let Some((wrong, path)) = self.wrong.take().zip(self.path.as_deref()) {
+            return Some(wrong.told(path));
         }
         let mut now = ui_state.prefs.clone();
         now.look = ui_state.look;
@@ -84,7 +109,8 @@ impl PreferencesFile {
             }
             Err(e) => {
                 let told = std::mem::replace(&mut self.failing, true);
-                let text = format!("{}: the preferences are not kept: {e}", path.display());
+                let (path, error) = (path.display().to_string(), e.to_string());
+                let text = tr!("task-preferences-not-kept", path = path, error = error);
                 (!told).then_some(text)
             }
         }

@@ -43,7 +43,7 @@ impl WindowState {
             {
                 self.ui_state.outliner.snapping = None;
                 let faces = both.map(|(id, at)| PickedFace { id, at });
-                self.tasks.snap(faces, wiring.published.clone(), wiring.commands.clone());
+                self.tasks.snap(faces, wiring.published.load_full(), wiring.commands.clone());
             }
             return true;
         }

@@ -9,6 +9,7 @@ use super::renderer::{Beside, Scene};
 use super::state::WindowState;
 use super::tasks::free_name;
 use super::turntable::Turntable;
+use crate::language::tr;
 use sculptd_daemon::Published;
 use sculptd_engine::camera::Camera;
 
@@ -28,7 +29,10 @@ impl WindowState {
                 let frames = self.ui_state.files.frames.max(1);
                 self.turning = Some(Turntable { folder, frames, next: 0, from: self.camera });
             }
-            Err(e) => self.ui_state.say(format!("{}: {e}", folder.display()), true),
+            Err(e) => {
+                let path = folder.display().to_string();
+                self.ui_state.say(tr!("task-failed", path = path, error = e.to_string()), true);
+            }
         }
     }
 
@@ -46,7 +50,8 @@ impl WindowState {
         let path = t.folder.join(format!("frame-{:03}.png", t.next));
         t.next += 1;
         if t.next == t.frames {
-            let said = format!("Saved {} frames to {}", t.frames, t.folder.display());
+            let folder = t.folder.display().to_string();
+            let said = tr!("task-frames", frames = t.frames, folder = folder);
             self.turning = None;
             self.ui_state.say(said, false);
         }

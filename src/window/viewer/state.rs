@@ -26,6 +26,7 @@ use super::tasks::Tasks;
 use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;
 use super::wiring::Wiring;
+use crate::language::{set_current, tr};
 use crate::panels::hand_menu::MenuBall;
 use crate::panels::state::{FrameFigures, KeyMap, UiState};
 use sculptd_clay::Snapshot;
@@ -181,6 +182,11 @@ impl WindowState {
             // Nothing of yesterday's visitors.
             Some(_) => PreferencesFile::nothing(),
         };
+        set_current(wiring.translations.choose(&ui_state.prefs.language));
+        for (path, error) in &wiring.translations.wrong {
+            let path = path.display().to_string();
+            ui_state.say(tr!("language-unreadable", path = path, error = error.as_str()), true);
+        }
         ui_state.walls.presets.clone_from(&wiring.thickness_presets);
         let samples = gpu.samples(ui_state.prefs.smooth_edges);
         let renderer = Renderer::new(&gpu, config.format, samples);

@@ -14,7 +14,10 @@ use super::folder_listing::list_folder;
 use super::latest_wins::{LatestWins, Request};
 use super::pages::MapValues;
 use super::preview::{self, Preview};
+use super::task_texts::{failed, operation_title, saved};
 use super::wiring::Wiring;
+use crate::language::{current, set_current, tr};
+use crate::panels::hand_menu;
 use crate::panels::state::Pairing;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary, ThinSpot,
@@ -25,7 +28,7 @@ use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
-use sculptd_daemon::snap_jobs::{PickedFace, face_to_face};
+use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{Published, boolean_jobs, polygons, remesh_job, scene_jobs, startup};
@@ -34,7 +37,7 @@ use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::{HeldObject, MenuItem};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
-    FaceAlignment, NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
+    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
 };
 use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_scene};
 use sculptd_geometry::job::Job;
@@ -128,8 +131,14 @@ impl Default for Tasks {
     }
 }
 
+/// Runs something on a thread that speaks the language of this one.
 fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
-    let _ = std::thread::Builder::new().name(name.into()).spawn(what);
+    let language = current();
+    let run = move || {
+        set_current(&language);
+        what();
+    };
+    let _ = std::thread::Builder::new().name(name.into()).spawn(run);
 }
 
 /// A dialog that is gone sooner was never seen: no person dismisses one so quickly.
@@ -161,7 +170,8 @@ impl Tasks {
             };
             let said = match read_and_build(&path, &load, &shown, &say, &tell) {
                 Ok(loaded) => {
-                    let mut text = format!("{name}: {} vertices", loaded.mesh.vertex_count());
+                    let count = loaded.mesh.vertex_count();
+                    let mut text = tr!("task-loaded", name = name.as_str(), count = count);
                     for warning in loaded.warnings.iter().take(3) {
                         text.push_str("; ");
                         text.push_str(warning);
@@ -176,7 +186,7 @@ impl Tasks {
                             let _ = say.send(TaskReport::Used(path));
                             TaskReport::Message(text, false)
                         }
-                        Err(_) => TaskReport::Message("the loop has ended".into(), true),
+                        Err(_) => TaskReport::Message(tr!("task-loop-ended"), true),
                     }
                 }
                 Err(e) => TaskReport::Message(e.to_string(), true),
@@ -193,7 +203,8 @@ impl Tasks {
         Some((load.name.clone(), (done * 50.0).floor() / 50.0))
     }
 
-    /// Writes the visible objects, each coordinate times `scale`.
+    /// Writes the visible objects, each coordinate times `scale`; `unit` is the message of the
+    /// unit's name.
     pub fn export(&self, path: PathBuf, state: &Published, scale: f64, unit: &'static str) {
         let (scene, mesh) = (state.scene.clone(), state.mesh.clone());
         let (lo, hi) = state.world_bounds();
@@ -208,13 +219,9 @@ impl Tasks {
                 });
             let said = match written {
                 Ok(_) => {
-                    let text = format!(
-                        "Saved {}: {:.4} x {:.4} x {:.4} {unit}",
-                        path.display(),
-                        size.x,
-                        size.y,
-                        size.z
-                    );
+                    let [x, y, z] = size.to_array().map(|n| format!("{n:.4}"));
+                    let (name, unit) = (path.display().to_string(), tr!(unit));
+                    let text = tr!("task-exported", path = name, x = x, y = y, z = z, unit = unit);
                     let _ = say.send(TaskReport::Used(path));
                     TaskReport::Message(text, false)
                 }
@@ -283,7 +290,8 @@ impl Tasks {
                     let command = Command::Scene(SceneCommand::Exchange(done.exchange));
                     let built = Payload::Clays(done.clays);
                     let sent = commands.send(QueuedCommand::with_payload(command, built));
-                    (format!("{:?}: done", pairing.operation), sent.is_err())
+                    let operation = operation_title(pairing.operation);
+                    (tr!("task-done", operation = operation), sent.is_err())
                 }
                 Err(e) => (e.to_string(), true),
             };
@@ -293,22 +301,11 @@ impl Tasks {
     }
 
     /// Lays a face of one object flush on a face of another.
-    pub fn snap(
-        &self,
-        [moved, target]: [PickedFace; 2],
-        shown: Arc<ArcSwap<Published>>,
-        commands: CommandSender,
-    ) {
+    pub fn snap(&self, faces: [PickedFace; 2], state: Arc<Published>, commands: CommandSender) {
         let say = self.say.clone();
         thread("sculptd-boolean", move || {
-            let align = FaceAlignment::Nearest;
-            let placed = face_to_face(&shown.load_full(), moved, target, align, 0.0);
-            let (text, wrong) = match placed {
-                Ok(placed) => {
-                    let command = SceneCommand::Snap(Box::new(placed.placing));
-                    let sent = commands.send(Command::Scene(command));
-                    ("The faces lie on each other".into(), sent.is_err())
-                }
+            let (text, wrong) = match snap_jobs::command(&state, faces) {
+                Ok(command) => (tr!("task-snapped"), commands.send(command).is_err()),
                 Err(e) => (e.to_string(), true),
             };
             let _ = say.send(TaskReport::Message(text, wrong));
@@ -322,7 +319,7 @@ impl Tasks {
         thread("sculptd-boolean", move || {
             let (text, wrong) =
                 match boolean_jobs::at_rest(&shown, choice, &Job::default(), &commands) {
-                    Ok(_) => (format!("{}: done", choice.label()), false),
+                    Ok(_) => (tr!("task-done", operation = hand_menu::title(choice)), false),
                     Err(e) => (e.to_string(), true),
                 };
             let _ = say.send(TaskReport::Message(text, wrong));
@@ -354,7 +351,7 @@ impl Tasks {
     /// Cuts off what is seen in a part of the view.
     pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-trim", commands, move || {
-            Ok((trim::at_rest(&shown, &part)?, "Trimmed".into()))
+            Ok((trim::at_rest(&shown, &part)?, tr!("task-trimmed")))
         });
     }
 
@@ -362,7 +359,7 @@ impl Tasks {
     pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         self.change("sculptd-level", commands, move || {
             let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
-            Ok((vec![command], format!("Level {} of {of}", at + 1)))
+            Ok((vec![command], tr!("task-level", at = at + 1, all = of)))
         });
     }
 
@@ -371,12 +368,10 @@ impl Tasks {
         self.change("sculptd-remesh", commands, move || {
             let (command, made) = remesh_job::remeshed(&shown, &wanted, &Job::default())?;
             let [before, now] = made.volume;
-            let text = format!(
-                "Remeshed: {} triangles, voxels of {:.4}, volume {:+.2} %",
-                made.triangles,
-                made.voxel,
-                (now / before - 1.0) * 100.0
-            );
+            let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
+            let voxel = format!("{:.4}", made.voxel);
+            let count = made.triangles;
+            let text = tr!("task-remeshed", count = count, voxel = voxel, change = change);
             Ok((vec![command], text))
         });
     }
@@ -386,8 +381,8 @@ impl Tasks {
         let (say, drawing) = (self.say.clone(), projection::svg(outline));
         thread("sculptd-outline", move || {
             let (text, wrong) = match write_beside(&path, |out| out.write_all(drawing.as_bytes())) {
-                Ok(()) => (format!("Saved {}", path.display()), false),
-                Err(e) => (format!("{}: {e}", path.display()), true),
+                Ok(()) => (saved(&path), false),
+                Err(e) => (failed(&path, &e), true),
             };
             let _ = say.send(TaskReport::Message(text, wrong));
         });
@@ -407,7 +402,8 @@ impl Tasks {
         let (say, open) = (self.say.clone(), self.dialog.clone());
         thread("sculptd-dialog", move || {
             let begun_us = clock.now_us();
-            let dialog = rfd::AsyncFileDialog::new().add_filter("Meshes", &MESH_ENDINGS);
+            let dialog =
+                rfd::AsyncFileDialog::new().add_filter(tr!("chooser-meshes"), &MESH_ENDINGS);
             let chosen = match purpose {
                 _ if no_desktop() => None,
                 FilePurpose::Open => pollster::block_on(dialog.pick_file()),
@@ -464,12 +460,8 @@ impl Tasks {
             let said = super::picture::write_png(&path, &picture);
             match said {
                 Ok(()) if quiet => {}
-                Ok(()) => {
-                    drop(say.send(TaskReport::Message(format!("Saved {}", path.display()), false)))
-                }
-                Err(e) => {
-                    drop(say.send(TaskReport::Message(format!("{}: {e}", path.display()), true)))
-                }
+                Ok(()) => drop(say.send(TaskReport::Message(saved(&path), false))),
+                Err(e) => drop(say.send(TaskReport::Message(failed(&path, &e), true))),
             }
         });
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
+use crate::language::Translations;
 use arc_swap::ArcSwap;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
@@ -24,6 +25,8 @@ pub struct Wiring {
     /// The pointer's own way into the channel.
     pub pointer: Sender,
     pub pointer_id: DeviceId,
+    /// The languages of the window.
+    pub translations: Translations,
     /// What each brush begins with.
     pub presets: Presets,
     /// Limits of wall thickness by process and material, for the panel of walls.

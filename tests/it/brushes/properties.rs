@@ -153,8 +153,8 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
         let before = studio.world.hash();
         studio.stroke(&[(a, 0.0), (b, 0.0)]);
         assert_eq!(studio.world.hash(), before, "{kind}");
-        // There is neither a mask to blur nor a border to move.
-        if matches!(kind, BrushKind::MaskBlur | BrushKind::Boundary) {
+        // There is neither a mask to blur nor a border to move nor a layer to erase.
+        if matches!(kind, BrushKind::MaskBlur | BrushKind::Boundary | BrushKind::EraseLayer) {
             continue;
         }
         studio.stroke(&[(a, 1.0), (b, 1.0)]);

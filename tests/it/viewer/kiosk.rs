@@ -31,6 +31,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
     let show = move |ui: &mut egui::Ui, s: &mut State| {
         let view = sculptd_window::panels::View {
             state: &s.published,
+            translations: super::translations(),
             keys: &Default::default(),
             presets: sculptd::presets(),
             camera: s.published.camera,

@@ -15,7 +15,7 @@ use sculptd_window::panels::{PANEL, Tab, View, all};
 use super::panels::{State, show, state};
 
 const SCREENS: [(f32, f32); 3] = [(1280.0, 720.0), (1920.0, 1080.0), (3840.0, 2160.0)];
-const TABS: [Tab; 8] = [
+pub(super) const TABS: [Tab; 8] = [
     Tab::Look,
     Tab::Scene,
     Tab::Walls,
@@ -102,6 +102,12 @@ fn texts(shapes: &[ClippedShape], clay: Color32) -> Vec<Text> {
     out
 }
 
+/// The texts of a screen that are cut at a side or lie on another one.
+pub(super) fn misplaced(h: &Harness<'_, State>) -> Vec<String> {
+    let clay = Color32::from_rgb(150, 100, 80);
+    look_at(h, clay, true).0.into_iter().filter(|wrong| !wrong.contains(":1, ")).collect()
+}
+
 /// What is wrong on one screen, and the least contrast.
 fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<String>, f32) {
     let all = texts(&h.output().shapes, clay);
@@ -139,7 +145,7 @@ fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<Str
 }
 
 /// A page with everything that it can show.
-fn fill(s: &mut State, tab: Tab) {
+pub(super) fn fill(s: &mut State, tab: Tab) {
     let mut world = super::world(2_000);
     match tab {
         Tab::Scene => {
@@ -262,6 +268,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
         |ui: &mut egui::Ui, (s, free): &mut (State, Rect)| {
             let view = View {
                 state: &s.published,
+                translations: super::translations(),
                 keys: &Default::default(),
                 presets: sculptd::presets(),
                 camera: s.published.camera,

@@ -14,7 +14,7 @@ use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::look::Map;
 use sculptd_window::panels::state::{
-    Action, DistanceSummary, FrameFigures, KeyMap, Measured, StepPicture, TabletKeys,
+    Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
     ThicknessSummary, ThinSpot, TrialStatus, Trim, TrimShape,
 };
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
@@ -28,11 +28,16 @@ pub(super) struct State {
     pub tablet: Option<TabletKeys>,
 }
 
+/// The preferences of a person who has chosen English.
+fn english() -> Preferences {
+    Preferences { language: "en".into(), ..Default::default() }
+}
+
 pub(super) fn state(tab: Tab) -> State {
     let mut world = super::world(2_000);
     State {
         published: super::published(&mut world),
-        ui_state: UiState { tab, ..Default::default() },
+        ui_state: UiState { tab, prefs: english(), ..Default::default() },
         asked: Vec::new(),
         devices: Vec::new(),
         demo_runs: false,
@@ -44,6 +49,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
     let keys = KeyMap::new(&s.ui_state.prefs.keys);
     let view = View {
         state: &s.published,
+        translations: super::translations(),
         keys: &keys,
         presets: sculptd::presets(),
         camera: s.published.camera,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use sculptd_window::language::set_current;
 use sculptd_window::panels::state::Preferences;
 use sculptd_window::viewer::preferences_file::PreferencesFile;
 
@@ -21,6 +22,7 @@ fn preferences_day() {
         println!("skipped: it is run with a disk that fails");
         return;
     };
+    set_current(super::translations().english());
     let (mut kept, mut state) = PreferencesFile::load_from(&file(&folder));
     for n in 1..=3 {
         state.prefs.scale = 1.0 + n as f32 * 0.125;
@@ -88,6 +90,7 @@ fn preferences_that_cannot_be_read_are_set_aside_and_told() {
     let path = dir.path().join("viewer.toml");
     #[allow(clippy::disallowed_methods)] // A test's input.
     std::fs::write(&path, "light = true\nscale = ???").expect("written");
+    set_current(super::translations().english());
     let (mut kept, mut state) = PreferencesFile::load_from(&path);
     let told = kept.keep(&state).expect("told");
     assert!(told.contains("line 2") && told.contains("toml.unreadable"), "{told}");

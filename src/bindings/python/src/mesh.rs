@@ -241,7 +241,7 @@ impl Mesh {
 #[pyo3(signature = (path, progress=None))]
 fn read(py: Python<'_>, path: PathBuf, progress: Progress) -> PyResult<Mesh> {
     let path: &Path = &path;
-    let LoadedMesh { mesh, format, warnings } =
+    let LoadedMesh { mesh, format, warnings, .. } =
         watched(py, &progress, |job| read_mesh(path, job))?.map_err(|e| errors::read(py, &e))?;
     Ok(Mesh { poly: Arc::new(mesh), format: Some(format.name()), warnings })
 }

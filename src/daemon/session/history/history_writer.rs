@@ -12,7 +12,7 @@ use crate::session::VERSION;
 use crate::session::history::retention::{Freed, HighestNumbers, Pin, bound};
 use crate::session::history::thumbnail;
 use sculptd_clay::{Page, Snapshot};
-use sculptd_engine::scene::{ObjectId, ObjectSettings, SceneView};
+use sculptd_engine::scene::{ObjectId, ObjectSettings, SceneEvent, SceneView};
 use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, SideData};
 
 /// Bytes of one transaction: the journal's own rows wait for no longer than that takes.
@@ -353,6 +353,7 @@ impl HistoryWriter {
         let parent = Some(self.tree.cursor);
         let deed = match (moment.deed, &changes) {
             (HistoryEvent::Scene(event), None) => HistoryEvent::Scene(event),
+            (HistoryEvent::Scene(SceneEvent::Layers), _) => moment.deed,
             (HistoryEvent::Scene(event), Some(c)) if c.is_empty() => HistoryEvent::Scene(event),
             (_, None) => HistoryEvent::Replace,
             (_, Some(_)) => HistoryEvent::Step,

@@ -8,6 +8,7 @@ use egui::Key;
 
 use super::key::KeyCombination;
 use super::tab::Tab;
+use crate::language::{text_or, tr};
 use sculptd_clay::brush::{BrushKind, BrushSettings};
 use sculptd_engine::command::Command;
 
@@ -68,7 +69,7 @@ pub enum Action {
     Lesson,
 }
 
-/// What an action is called, its keys, and words that find it.
+/// What an action is called in English, its keys, and words that find it.
 #[derive(Debug, Clone)]
 pub struct ActionEntry {
     pub action: Action,
@@ -113,20 +114,26 @@ fn also_of(kind: BrushKind) -> &'static str {
         BrushKind::Paint => "colour color",
         BrushKind::Mask => "protect freeze",
         BrushKind::Texture => "alpha picture stamp",
+        BrushKind::EraseLayer => "remove back morph",
         BrushKind::Density | BrushKind::Simplify => "topology triangles detail",
         _ => "",
     }
 }
 
-/// What a button says: `clay-strips` becomes `Clay strips`.
+/// What a button says, in the language of this thread.
 pub fn brush_title(kind: BrushKind) -> String {
+    text_or(&format!("kind-{}", kind.name()), &english_title(kind))
+}
+
+/// `clay-strips` becomes `Clay strips`.
+fn english_title(kind: BrushKind) -> String {
     let name = kind.name().replace('-', " ");
     let mut letters = name.chars();
     letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
 fn brush(kind: BrushKind) -> ActionEntry {
-    let name = format!("{} brush", brush_title(kind));
+    let name = format!("{} brush", english_title(kind));
     ActionEntry {
         action: Action::Brush(kind),
         name: name.into(),
@@ -215,11 +222,20 @@ impl Action {
         all.iter().find(|e| e.action == self).unwrap_or(&all[0])
     }
 
+    /// What it is called, in the language of this thread.
+    pub fn title(self) -> String {
+        match self {
+            Action::Brush(kind) => tr!("action-brush", brush = brush_title(kind)),
+            Action::Page(tab) => tr!("action-page", page = tab.title()),
+            _ => text_or(&format!("action-{}", self.id()), &self.entry().name),
+        }
+    }
+
     /// The name in the file of preferences: `mirror-x`, `brush-clay-strips`, `page-look`.
     pub fn id(self) -> String {
         match self {
             Action::Brush(kind) => format!("brush-{}", kind.name()),
-            Action::Page(tab) => format!("page-{}", kebab(&format!("{tab:?}"))),
+            Action::Page(tab) => tab.id().to_owned(),
             _ => kebab(&format!("{self:?}")),
         }
     }
@@ -254,18 +270,19 @@ pub fn on_brush(action: Action, mut brush: BrushSettings) -> Option<Command> {
 }
 
 /// Actions that hold every word of a search, best first: a name that begins with it, then names,
-/// then other words.
+/// then other words. A name is found in the language of this thread and in English.
 pub fn search(text: &str) -> Vec<&'static ActionEntry> {
     let text = text.to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
     let mut found: Vec<(u8, &ActionEntry)> = all()
         .iter()
         .filter_map(|e| {
-            let name = e.name.to_lowercase();
-            let holds = |w: &&str| name.contains(*w) || e.also.contains(*w);
-            let rank = if name.starts_with(text.trim()) {
+            let names = [e.action.title().to_lowercase(), e.name.to_lowercase()];
+            let in_name = |w: &str| names.iter().any(|name| name.contains(w));
+            let holds = |w: &&str| in_name(w) || e.also.contains(*w);
+            let rank = if names.iter().any(|name| name.starts_with(text.trim())) {
                 0
-            } else if words.iter().all(|w| name.contains(w)) {
+            } else if words.iter().all(|w| in_name(w)) {
                 1
             } else {
                 2
@@ -280,6 +297,7 @@ pub fn search(text: &str) -> Vec<&'static ActionEntry> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language;
 
     #[test]
     fn every_action_stands_once_and_has_a_name_of_its_own_in_files() {
@@ -296,7 +314,22 @@ mod tests {
     }
 
     #[test]
+    fn a_search_finds_the_words_of_the_language_and_the_english_ones() {
+        let languages = language::tests::of_config("it_IT");
+        language::set_current(languages.choose(""));
+        for text in ["spessore", "thick", "analysis"] {
+            let found = search(text);
+            assert!(found.iter().any(|e| e.action == Action::Thickness), "{text}");
+        }
+        assert_eq!(search("annulla")[0].action, Action::Undo);
+        assert_eq!(search("undo")[0].action, Action::Undo);
+        assert_eq!(Action::Brush(BrushKind::Smooth).entry().name, "Smooth brush");
+        assert_ne!(Action::Brush(BrushKind::Smooth).title(), "Smooth brush");
+    }
+
+    #[test]
     fn a_search_finds_by_name_and_by_other_words() {
+        language::set_current(language::tests::of_config("").english());
         assert_eq!(search("thick")[0].action, Action::Thickness);
         assert_eq!(search("stl")[0].action, Action::Export);
         assert_eq!(search("clay")[0].action, Action::Brush(BrushKind::Clay));

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-/// What a number in a file stands for: the object itself is in millimetres.
-pub const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("cm", 0.1), ("m", 0.001), ("inch", 1.0 / 25.4)];
+/// What a number in a file stands for, by the message of its name: the object itself is in
+/// millimetres.
+pub const UNITS: [(&str, f64); 4] =
+    [("unit-mm", 1.0), ("unit-cm", 0.1), ("unit-m", 0.001), ("unit-inch", 1.0 / 25.4)];
 
 #[derive(Debug)]
 pub struct FilesPage {
@@ -33,7 +35,7 @@ impl Default for FilesPage {
 }
 
 impl FilesPage {
-    /// What coordinates are multiplied by, and the unit's name.
+    /// What coordinates are multiplied by, and the message of the unit's name.
     pub fn factor(&self) -> (f64, &'static str) {
         let (name, factor) = UNITS[self.unit.min(UNITS.len() - 1)];
         (self.scale * factor, name)

@@ -34,28 +34,29 @@ pub struct VersionRow {
     /// 0: the line of the present version, with what redo leads to.
     pub lane: usize,
     pub tick: u64,
-    /// What was done, where it was more than a stroke.
+    /// The message of what was done, where it was more than a stroke.
     pub operation: Option<&'static str>,
     pub here: bool,
 }
 
 fn operation(event: HistoryEvent) -> Option<&'static str> {
     match event {
-        HistoryEvent::Replace => Some("replaced"),
+        HistoryEvent::Replace => Some("history-replaced"),
         HistoryEvent::Scene(event) => Some(match event {
-            SceneEvent::Add => "added",
-            SceneEvent::Remove => "removed",
-            SceneEvent::Duplicate => "duplicated",
-            SceneEvent::Rename => "renamed",
-            SceneEvent::Transform => "moved",
-            SceneEvent::Activate => "activated",
-            SceneEvent::Show => "shown or hidden",
-            SceneEvent::Lock => "locked or unlocked",
-            SceneEvent::Reshape => "reshaped",
-            SceneEvent::Boolean => "Boolean",
-            SceneEvent::Merge => "merged",
-            SceneEvent::Split => "split",
-            SceneEvent::Snap => "snapped",
+            SceneEvent::Add => "history-added",
+            SceneEvent::Remove => "history-removed",
+            SceneEvent::Duplicate => "history-duplicated",
+            SceneEvent::Rename => "history-renamed",
+            SceneEvent::Transform => "history-moved",
+            SceneEvent::Activate => "history-activated",
+            SceneEvent::Show => "history-shown",
+            SceneEvent::Lock => "history-locked",
+            SceneEvent::Reshape => "history-reshaped",
+            SceneEvent::Boolean => "history-boolean",
+            SceneEvent::Merge => "history-merged",
+            SceneEvent::Split => "history-split",
+            SceneEvent::Layers => "history-layers",
+            SceneEvent::Snap => "history-snapped",
         }),
         _ => None,
     }

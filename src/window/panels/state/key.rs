@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::language::tr;
 use egui::Key;
 
 /// A key with the modifiers that are held with it.
@@ -31,6 +32,13 @@ impl KeyCombination {
         KeyCombination { alt: true, ..self }
     }
 
+    /// As panels show it, in the language of this thread: `Ctrl+Shift+Z`.
+    pub fn shown(&self) -> String {
+        let held = [(self.ctrl, "key-ctrl"), (self.alt, "key-alt"), (self.shift, "key-shift")];
+        let held = held.into_iter().filter(|(held, _)| *held).map(|(_, name)| tr!(name) + "+");
+        held.collect::<String>() + self.key.symbol_or_name()
+    }
+
     /// Whether these modifiers are held, for a key that is known to be the right one. A plus sign
     /// lies on the shifted half of its key on many keyboards.
     fn is_held(&self, modifiers: egui::Modifiers) -> bool {
@@ -47,7 +55,7 @@ impl KeyCombination {
     }
 }
 
-/// As panels show it: `Ctrl+Shift+Z`.
+/// As files hold it: `Ctrl+Shift+Z`.
 impl fmt::Display for KeyCombination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (held, name) in [(self.ctrl, "Ctrl+"), (self.alt, "Alt+"), (self.shift, "Shift+")] {

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::action::{self, Action};
 use super::key::KeyCombination;
+use crate::language::tr;
 
 /// Keys to begin with.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -157,13 +158,16 @@ impl KeyMap {
         }
         for (id, text) in &settings.own {
             let Some(binding) = map.bindings.iter_mut().find(|b| b.action.id() == *id) else {
-                map.wrong.push(format!("keys.own: no action is called \"{id}\""));
+                map.wrong.push(tr!("keys-unknown-action", id = id.as_str()));
                 continue;
             };
             match (text.is_empty(), text.parse()) {
                 (true, _) => (binding.keys, binding.own) = (None, true),
                 (_, Ok(keys)) => (binding.keys, binding.own) = (Some(keys), true),
-                (_, Err(e)) => map.wrong.push(format!("keys.own.{id}: {e}")),
+                (_, Err(_)) => {
+                    let (id, keys) = (id.as_str(), text.as_str());
+                    map.wrong.push(tr!("keys-unreadable", id = id, keys = keys));
+                }
             }
         }
         map
@@ -185,7 +189,7 @@ impl KeyMap {
 
     /// The keys of an action as text, which is empty where it has none.
     pub fn text(&self, action: Action) -> String {
-        self.of(action).map_or(String::new(), |k| k.to_string())
+        self.of(action).map_or(String::new(), |k| k.shown())
     }
 
     /// The other actions with the keys of this one.
@@ -239,6 +243,7 @@ impl Press {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language;
 
     fn press(key: Key, modifiers: egui::Modifiers) -> Press {
         Press { key, physical: None, modifiers }
@@ -289,6 +294,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_read_is_told_and_changes_nothing() {
+        language::set_current(language::tests::of_config("").english());
         let own = [("undo", "Hyper+Z"), ("fly", "F")].map(|(a, b)| (a.to_owned(), b.to_owned()));
         let map = KeyMap::new(&KeySettings { own: own.into(), ..Default::default() });
         assert_eq!(map.of(Action::Undo), KeyMap::default().of(Action::Undo));

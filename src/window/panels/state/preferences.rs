@@ -78,6 +78,8 @@ const RECENT: usize = 8;
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct Preferences {
+    /// The code of the language (`it`); empty: that of the system.
+    pub language: String,
     /// Of the panels, times what the screen asks for.
     pub scale: f32,
     pub light: bool,
@@ -97,6 +99,7 @@ pub struct Preferences {
 impl Default for Preferences {
     fn default() -> Self {
         Preferences {
+            language: String::new(),
             scale: 1.0,
             light: false,
             smooth_edges: false,

@@ -1,5 +1,7 @@
 //! The pages of the right panel.
 
+use crate::language::tr;
+
 /// Which page of the right panel is open.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
@@ -17,7 +19,7 @@ pub enum Tab {
 }
 
 impl Tab {
-    /// Every page with its name and what it is about.
+    /// Every page with its English name and what it is about.
     pub const ALL: [(Tab, &str, &str); 8] = [
         (Tab::Look, "Look", "How the clay is shown"),
         (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
@@ -28,4 +30,28 @@ impl Tab {
         (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
         (Tab::More, "More", "Preferences and messages"),
     ];
+
+    /// The name in files and messages: `page-look`.
+    pub fn id(self) -> &'static str {
+        match self {
+            Tab::Look => "page-look",
+            Tab::Scene => "page-scene",
+            Tab::Walls => "page-walls",
+            Tab::Measure => "page-measure",
+            Tab::Files => "page-files",
+            Tab::Devices => "page-devices",
+            Tab::Loop => "page-loop",
+            Tab::More => "page-more",
+        }
+    }
+
+    /// What its button says.
+    pub fn title(self) -> String {
+        tr!(self.id())
+    }
+
+    /// What it is about.
+    pub fn about(self) -> String {
+        tr!(&format!("{}.about", self.id()))
+    }
 }

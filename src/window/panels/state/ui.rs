@@ -5,6 +5,7 @@ use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
 use super::keys::KeysPage;
 use super::kiosk::KioskPad;
+use super::layers::LayerPanel;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal, Trim};
 use super::outliner::Outliner;
@@ -49,6 +50,8 @@ pub struct UiState {
     pub trial: BooleanTrial,
     /// What was begun in the outliner.
     pub outliner: Outliner,
+    /// What was begun in the panel of layers.
+    pub layers: LayerPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     pub trim: Option<Trim>,
@@ -61,8 +64,19 @@ pub struct UiState {
     pub versions: HistoryVersions,
     /// The screen of an installation.
     pub pad: KioskPad,
+    /// The language that is shown.
+    pub shown_language: ShownLanguage,
     /// A theme and scale that are in force, so that they are set once.
     pub applied: Option<(bool, u32)>,
+}
+
+/// The language that is shown.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ShownLanguage {
+    /// The code of the one that was last chosen.
+    pub(in crate::panels) chosen: Option<String>,
+    /// The computer has no font for it, and English stands in.
+    pub fontless: bool,
 }
 
 /// The hand that shows a hint over the clay.

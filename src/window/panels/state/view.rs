@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::action::Action;
 use super::key_map::KeyMap;
 use super::tablet_keys::TabletKeys;
+use crate::language::{Translations, tr};
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentLatency;
 use sculptd_engine::camera::Camera;
@@ -13,6 +14,8 @@ use sculptd_engine::camera::Camera;
 #[derive(Debug)]
 pub struct View<'a> {
     pub state: &'a Published,
+    /// The languages that can be chosen.
+    pub translations: &'a Translations,
     /// The keys that are in force.
     pub keys: &'a KeyMap,
     /// What each brush begins with.
@@ -41,8 +44,11 @@ pub struct View<'a> {
 impl View<'_> {
     /// The name of an action, and its keys in brackets: for a tooltip.
     pub fn tip(&self, action: Action) -> String {
-        let name = &action.entry().name;
-        self.keys.of(action).map_or(name.to_string(), |k| format!("{name} ({k})"))
+        let name = action.title();
+        match self.keys.of(action) {
+            Some(keys) => tr!("name-with-keys", name = name, keys = keys.shown()),
+            None => name,
+        }
     }
 }
 

@@ -1,0 +1,215 @@
+//! Fewer irregular vertices: operations on the quads that bring the number of faces around the
+//! vertices nearer to four (two on a border), where the shape allows.
+
+use super::pairing::squareness;
+use super::quad_surface::QuadSurface;
+use super::surface::GONE;
+use crate::job::{Cancelled, Job};
+
+/// The square of what vertex `v` has too many or too few with `faces` around it.
+fn excess(s: &QuadSurface, v: u32, faces: usize) -> i64 {
+    if s.pinned[v as usize] {
+        return 0;
+    }
+    let wanted = if s.border[v as usize] { 2 } else { 4 };
+    let by = faces as i64 - wanted;
+    by * by
+}
+
+/// One pass of every operation; how many were done.
+pub(super) fn pass(s: &mut QuadSurface, job: &Job) -> Result<usize, Cancelled> {
+    let mut done = 0;
+    for v in 0..s.positions.len() as u32 {
+        done += usize::from(s.remove_doublet(v));
+    }
+    for f in 0..s.faces.len() as u32 {
+        if f % 1024 == 0 {
+            job.check()?;
+        }
+        if s.alive(f as usize) {
+            done += usize::from(close_best(s, f) || turn_best(s, f));
+        }
+    }
+    Ok(done)
+}
+
+/// Closes the quad where that makes its surroundings more regular.
+fn close_best(s: &mut QuadSurface, f: u32) -> bool {
+    let face = s.faces[f as usize];
+    if face[3] == GONE {
+        return false;
+    }
+    for k in 0..4 {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| face[(k + i) % 4]);
+        let n = |v: u32| s.around[v as usize].len();
+        let before =
+            excess(s, a, n(a)) + excess(s, b, n(b)) + excess(s, c, n(c)) + excess(s, d, n(d));
+        if n(b) == 0 || n(d) == 0 {
+            continue;
+        }
+        let merged = n(a) + n(c) - 2;
+        let after = excess(s, a, merged) + excess(s, b, n(b) - 1) + excess(s, d, n(d) - 1);
+        // A quad less is only worth it where two vertices become regular.
+        if after + 1 >= before || !s.can_close(f, k) {
+            continue;
+        }
+        let fixed = !s.lines[a as usize].is_empty();
+        let to = if fixed {
+            s.positions[a as usize]
+        } else {
+            s.positions[a as usize].midpoint(s.positions[c as usize])
+        };
+        if closes_upright(s, f, a, c, to) {
+            s.close(f, k);
+            s.positions[a as usize] = to;
+            return true;
+        }
+    }
+    false
+}
+
+/// Whether no face around turns over when `a` and `c` meet at `to`.
+fn closes_upright(s: &QuadSurface, f: u32, a: u32, c: u32, to: glam::DVec3) -> bool {
+    let up = (s.vertex_normal(a) + s.vertex_normal(c)).normalize_or_zero();
+    s.around[a as usize].iter().chain(&s.around[c as usize]).filter(|&&g| g != f).all(|&g| {
+        let place = |v: u32| if v == a || v == c { to } else { s.positions[v as usize] };
+        let face = s.faces[g as usize];
+        if face[3] == GONE {
+            let p = [face[0], face[1], face[2]].map(place);
+            (p[1] - p[0]).cross(p[2] - p[0]).dot(up) > 0.0
+        } else {
+            squareness(face.map(place), up) > 0.0
+        }
+    })
+}
+
+/// Turns an edge of the quad where that makes its surroundings more regular.
+fn turn_best(s: &mut QuadSurface, f: u32) -> bool {
+    for k in 0..4 {
+        let Some((g, six)) = s.hexagon(f, k) else { continue };
+        if g < f {
+            continue;
+        }
+        let n = |v: u32| s.around[v as usize].len();
+        for cut in [1, 2] {
+            let (out, into) = ([six[0], six[3]], [six[cut], six[cut + 3]]);
+            let least = |v: u32| if s.lines[v as usize].is_empty() { 4 } else { 2 };
+            if out.iter().any(|&v| n(v) < least(v)) || s.joined(into[0], into[1]) {
+                continue;
+            }
+            let before: i64 = out.iter().chain(&into).map(|&v| excess(s, v, n(v))).sum();
+            let after: i64 = out.iter().map(|&v| excess(s, v, n(v) - 1)).sum::<i64>()
+                + into.iter().map(|&v| excess(s, v, n(v) + 1)).sum::<i64>();
+            if after >= before {
+                continue;
+            }
+            let up = (s.normal(f) + s.normal(g)).normalize_or_zero();
+            let upright = QuadSurface::cut(six, cut)
+                .iter()
+                .all(|q| squareness(q.map(|v| s.positions[v as usize]), up) > 0.02);
+            if upright {
+                s.turn(f, g, six, cut);
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// Quads of less than this are looked at by [`mend_folded`]: an angle of 10 or 170 degrees.
+const FOLDED: f64 = 0.015;
+
+/// Repairs quads that are reflex or folded: they are closed, or an edge of theirs is turned, where
+/// the least square of the faces around becomes squarer. How many were.
+pub(super) fn mend_folded(s: &mut QuadSurface) -> usize {
+    let mut done = 0;
+    for f in 0..s.faces.len() as u32 {
+        if !s.alive(f as usize) || shape(s, f) >= FOLDED {
+            continue;
+        }
+        done += usize::from(close_folded(s, f) || turn_folded(s, f));
+    }
+    done
+}
+
+/// The squareness of quad `f`; 1 for a triangle.
+fn shape(s: &QuadSurface, f: u32) -> f64 {
+    let face = s.faces[f as usize];
+    if face[3] == GONE {
+        return 1.0;
+    }
+    let up: glam::DVec3 =
+        face.iter().map(|&v| s.vertex_normal(v)).sum::<glam::DVec3>().normalize_or_zero();
+    squareness(face.map(|v| s.positions[v as usize]), up)
+}
+
+fn close_folded(s: &mut QuadSurface, f: u32) -> bool {
+    let face = s.faces[f as usize];
+    let at = |k: usize| s.positions[face[k % 4] as usize];
+    // The shorter diagonal first.
+    let first = usize::from(at(1).distance_squared(at(3)) < at(0).distance_squared(at(2)));
+    for k in [first, first + 2, first + 1, (first + 3) % 4] {
+        let (a, c) = (face[k], face[(k + 2) % 4]);
+        if !s.can_close(f, k) {
+            continue;
+        }
+        let to = if s.lines[a as usize].is_empty() {
+            s.positions[a as usize].midpoint(s.positions[c as usize])
+        } else {
+            s.positions[a as usize]
+        };
+        if closes_upright(s, f, a, c, to) {
+            s.close(f, k);
+            s.positions[a as usize] = to;
+            return true;
+        }
+    }
+    false
+}
+
+fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
+    let mut best: Option<(f64, u32, [u32; 6], usize)> = None;
+    for k in 0..4 {
+        let Some((g, six)) = s.hexagon(f, k) else { continue };
+        let now = shape(s, f).min(shape(s, g));
+        let few = |v: u32| {
+            s.around[v as usize].len() < if s.lines[v as usize].is_empty() { 4 } else { 2 }
+        };
+        if few(six[0]) || few(six[3]) {
+            continue;
+        }
+        let up = (s.normal(f) + s.normal(g)).normalize_or_zero();
+        for cut in [1, 2] {
+            if s.joined(six[cut], six[cut + 3]) {
+                continue;
+            }
+            let least = QuadSurface::cut(six, cut)
+                .iter()
+                .map(|q| squareness(q.map(|v| s.positions[v as usize]), up))
+                .fold(1.0, f64::min);
+            if least > now + 0.01 && best.is_none_or(|b| least > b.0) {
+                best = Some((least, g, six, cut));
+            }
+        }
+    }
+    let Some((_, g, six, cut)) = best else { return false };
+    s.turn(f, g, six, cut);
+    true
+}
+
+/// Cuts the quads that are reflex or folded into triangles; how many.
+pub(super) fn cut_folded(s: &mut QuadSurface) -> usize {
+    let mut cut = 0;
+    for f in 0..s.faces.len() as u32 {
+        let face = s.faces[f as usize];
+        if !s.alive(f as usize) || face[3] == GONE {
+            continue;
+        }
+        let up = s.normal(f).normalize_or_zero();
+        if squareness(face.map(|v| s.positions[v as usize]), up) < 0.0 {
+            s.cut_quad(f);
+            cut += 1;
+        }
+    }
+    cut
+}

@@ -1,0 +1,190 @@
+//! From a mesh file to a manifold surface in a frame of its own: the middle of the box at the
+//! origin, the wanted side of a quad as the unit.
+
+use glam::DVec3;
+
+use super::surface::EditSurface;
+use super::{QuadError, QuadSettings};
+use crate::edges::EdgeTable;
+use crate::job::Job;
+use crate::portable::PortableMath;
+use crate::{PolyMesh, TriMesh, repair};
+
+/// The surface to be remeshed, its frame and its lines.
+pub(super) struct QuadInput {
+    pub surface: EditSurface,
+    /// A point `p` of the frame is `p * unit + centre` in the file.
+    pub centre: DVec3,
+    pub unit: f64,
+    /// The triangles of the input, for projection.
+    pub mesh: TriMesh,
+    /// The border's and the creases' segments, as triangles without area.
+    pub line_mesh: TriMesh,
+    /// What was changed to make a manifold of the input.
+    pub warnings: Vec<String>,
+}
+
+/// Lines that turn by more than this cosine end at the turn: 50 degrees.
+const TURN: f64 = 0.642_787_609_686_539_3;
+
+pub(super) fn prepare(
+    mesh: &PolyMesh,
+    settings: &QuadSettings,
+    job: &Job,
+) -> Result<QuadInput, QuadError> {
+    if mesh.positions.iter().any(|p| !p.is_finite()) {
+        return Err(QuadError::NotFinite);
+    }
+    let mut clean = mesh.clone();
+    (clean.colours, clean.groups) = (None, None);
+    let mut warnings = Vec::new();
+    repair::weld(&mut clean, 0.0);
+    repair::remove_degenerate(&mut clean);
+    let (mut triangles, _) = clean.triangles();
+    triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+    let mut clean = triangles_of(clean.positions, &triangles);
+    repair::drop_unused(&mut clean);
+    job.check()?;
+    let (bad, turned) = edge_faults(&clean);
+    if bad > 0 {
+        return Err(QuadError::NonManifold(bad));
+    }
+    if turned > 0 {
+        let flipped = repair::orient(&mut clean);
+        warnings.push(format!("{flipped} faces were turned to agree with their neighbours"));
+        let (_, left) = edge_faults(&clean);
+        if left > 0 {
+            return Err(QuadError::OneSided(left));
+        }
+    }
+    let (lo, hi) = clean
+        .positions
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let centre = lo / 2.0 + hi / 2.0;
+    let size = (hi / 2.0 - lo / 2.0).max_element();
+    if clean.face_count() == 0 || !(size > 0.0) || !(size < f64::MAX) {
+        return Err(QuadError::Empty);
+    }
+    // Into a box of half side 1 first: areas of tiny and huge meshes do not fit.
+    let mut positions: Vec<DVec3> = clean.positions.iter().map(|&p| (p - centre) / size).collect();
+    let mut triangles: Vec<[u32; 3]> = clean.faces().map(|f| [f[0], f[1], f[2]]).collect();
+    let split = split_fans(&mut positions, &mut triangles);
+    if split > 0 {
+        warnings.push(format!("{split} vertices where the surface only touches itself were split"));
+    }
+    let area: f64 = triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|v| positions[v as usize]);
+            (b - a).cross(c - a).length() / 2.0
+        })
+        .sum();
+    let side = (area / settings.quads as f64).sqrt();
+    if !(side > 1e-6) {
+        return Err(QuadError::Empty);
+    }
+    positions.iter_mut().for_each(|p| *p /= side);
+    let mesh = TriMesh {
+        positions: positions.iter().map(|p| p.as_vec3()).collect(),
+        triangles: triangles.clone(),
+        colours: None,
+    };
+    let mut surface = EditSurface::new(positions, triangles);
+    find_lines(&mut surface, settings.creases);
+    let line_mesh = line_mesh(&surface);
+    Ok(QuadInput { surface, centre, unit: size * side, mesh, line_mesh, warnings })
+}
+
+fn triangles_of(positions: Vec<DVec3>, triangles: &[[u32; 3]]) -> PolyMesh {
+    PolyMesh {
+        positions,
+        face_starts: (0..=triangles.len() as u32).map(|i| i * 3).collect(),
+        corners: triangles.iter().flatten().copied().collect(),
+        colours: None,
+        groups: None,
+    }
+}
+
+/// Edges of more than two faces, and edges that two faces pass in the same direction.
+fn edge_faults(mesh: &PolyMesh) -> (usize, usize) {
+    let edges = EdgeTable::of(mesh);
+    let (mut bad, mut turned) = (0, 0);
+    for halves in edges.each() {
+        let first = |i: usize| mesh.corners[halves[i].corner as usize];
+        match halves.len() {
+            1 => {}
+            2 => turned += usize::from(first(0) == first(1)),
+            _ => bad += 1,
+        }
+    }
+    (bad, turned)
+}
+
+/// Gives each fan of triangles at a vertex a vertex of its own; returns how many were added.
+fn split_fans(positions: &mut Vec<DVec3>, triangles: &mut [[u32; 3]]) -> usize {
+    let before = positions.len();
+    let mut around = vec![Vec::new(); before];
+    for (t, tri) in triangles.iter().enumerate() {
+        tri.iter().for_each(|&v| around[v as usize].push(t as u32));
+    }
+    for (v, own) in around.iter().enumerate() {
+        let v = v as u32;
+        let mut left = own.clone();
+        let mut first = true;
+        while let Some(start) = left.pop() {
+            let mut fan = vec![start];
+            let mut at = 0;
+            while at < fan.len() {
+                let here = triangles[fan[at] as usize];
+                left.retain(|&t| {
+                    let meets = triangles[t as usize].iter().any(|w| *w != v && here.contains(w));
+                    if meets {
+                        fan.push(t);
+                    }
+                    !meets
+                });
+                at += 1;
+            }
+            if !first {
+                let copy = positions.len() as u32;
+                positions.push(positions[v as usize]);
+                for &t in &fan {
+                    triangles[t as usize].iter_mut().filter(|w| **w == v).for_each(|w| *w = copy);
+                }
+            }
+            first = false;
+        }
+    }
+    positions.len() - before
+}
+
+/// Marks the border, and the edges whose faces turn by more than `creases` degrees.
+fn find_lines(surface: &mut EditSurface, creases: Option<f64>) {
+    let limit = creases.map(|degrees| degrees.clamp(0.0, 180.0).to_radians().portable_cos());
+    for (a, b) in surface.edges() {
+        let [s, t] = surface.sides(a, b);
+        let line = t == super::surface::GONE
+            || limit.is_some_and(|limit| {
+                let m = surface.normal(s).normalize_or_zero();
+                let n = surface.normal(t).normalize_or_zero();
+                m != DVec3::ZERO && n != DVec3::ZERO && m.dot(n) < limit
+            });
+        if line {
+            surface.add_line(a, b);
+        }
+    }
+    surface.pin_corners(TURN);
+}
+
+fn line_mesh(surface: &EditSurface) -> TriMesh {
+    let mut out = TriMesh {
+        positions: surface.positions.iter().map(|p| p.as_vec3()).collect(),
+        ..TriMesh::default()
+    };
+    for (a, near) in surface.lines.iter().enumerate() {
+        let a = a as u32;
+        out.triangles.extend(near.iter().filter(|&&b| b > a).map(|&b| [a, b, b]));
+    }
+    out
+}

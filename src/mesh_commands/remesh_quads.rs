@@ -1,0 +1,115 @@
+//! `sculptd remesh --quads`: a mesh of quads that follow the shape.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::distance::{read_polylines, timed, warn};
+use super::info::interrupted;
+use super::remesh::RemeshArgs;
+use super::{Fail, Outcome, answer};
+use sculptd_geometry::io::{left_out, read_mesh, writable_format, write_mesh};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::quads::{QuadError, QuadFigures, QuadSettings, figures, quad_remesh};
+use sculptd_geometry::{check, repair};
+
+/// The facts of the file that was written, as it is read again.
+#[derive(Debug, Serialize)]
+struct QuadsMade {
+    file: PathBuf,
+    vertices: usize,
+    faces: usize,
+    components: usize,
+    closed: bool,
+    manifold: bool,
+    genus: Option<i64>,
+    self_intersections: Option<usize>,
+    #[serde(flatten)]
+    figures: QuadFigures,
+    seconds: f64,
+    warnings: Vec<String>,
+}
+
+impl From<QuadError> for Fail {
+    fn from(e: QuadError) -> Self {
+        match e {
+            QuadError::Count(_) => Fail::Usage(format!("--quads: {e}")),
+            _ => Fail::Input(e.to_string()),
+        }
+    }
+}
+
+/// A mesh file, its triangles joined at equal corners where the format tells them apart.
+fn read(path: &Path, job: &Job) -> Result<(sculptd_geometry::PolyMesh, Vec<String>), Fail> {
+    let loaded = read_mesh(path, job)?;
+    let mut mesh = loaded.mesh;
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")) {
+        repair::weld(&mut mesh, 0.0);
+    }
+    Ok((mesh, loaded.warnings))
+}
+
+pub(super) fn run(args: &RemeshArgs, quads: usize, json: bool) -> Outcome {
+    let job = Job::default();
+    let format = writable_format(&args.out)?;
+    if args.creases.is_some_and(|c| !(0.0..=180.0).contains(&c)) {
+        return Err(Fail::Usage("--creases: expected an angle of 0 to 180 degrees".into()));
+    }
+    let guides: Vec<Vec<DVec3>> =
+        args.guides.as_deref().map(read_polylines).transpose()?.unwrap_or_default();
+    let (mesh, mut warnings) = read(&args.mesh, &job)?;
+    let settings = QuadSettings { quads, creases: args.creases, guides };
+    let (made, seconds) = timed(|| quad_remesh(&mesh, &settings, &job));
+    let made = made.map_err(|e| match Fail::from(e) {
+        Fail::Input(text) => Fail::Input(format!("{}: {text}", args.mesh.display())),
+        other => other,
+    })?;
+    warnings.extend(made.warnings);
+    warnings.extend(left_out(format, &made.mesh));
+    write_mesh(&args.out, &made.mesh)?;
+    let (written, _) = read(&args.out, &job)?;
+    let report = check::report(&written, true, &job).map_err(interrupted)?;
+    let figures = figures(&written, &mesh, &job).map_err(interrupted)?;
+    warn(&args.mesh, &warnings);
+    let facts = QuadsMade {
+        file: args.out.clone(),
+        vertices: report.vertices,
+        faces: report.faces,
+        components: report.components,
+        closed: report.closed,
+        manifold: report.manifold,
+        genus: report.genus,
+        self_intersections: report.self_intersections,
+        figures,
+        seconds,
+        warnings,
+    };
+    answer(json, &facts, |w| {
+        let f = &facts.figures;
+        writeln!(
+            w,
+            "{}: {} vertices, {} quads, {} triangles, {} other polygons",
+            facts.file.display(),
+            facts.vertices,
+            f.quads,
+            f.triangles,
+            f.other
+        )?;
+        writeln!(
+            w,
+            "angles {:.1} to {:.1} degrees, {:.1} from 90 in the mean; {:.1} % of the vertices \
+             regular",
+            f.least_angle,
+            f.greatest_angle,
+            f.mean_deviation,
+            f.regular * 100.0
+        )?;
+        writeln!(
+            w,
+            "off the old surface by {:.4} at most, the old one off it by {:.4}; {:.3} s",
+            f.hausdorff[0], f.hausdorff[1], facts.seconds
+        )
+    });
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! The layers of the active object, the highest on top: which one strokes change, which are seen
+//! and how strongly, and what can be done to the active one.
+//!
+//! While an intensity is dragged, each value is sent as it comes, so that the surface follows; all
+//! of them are one step of undo.
+
+use super::state::{LayerPanel, UiRequest, UiState, View};
+use super::theme;
+use sculptd_clay::brush::Measure;
+use sculptd_clay::layers::{Layer, MAX_INTENSITY, MAX_LAYERS};
+use sculptd_clay::{LayerEdit, LayerStack};
+use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneCommand;
+
+fn ask(out: &mut Vec<UiRequest>, edit: LayerEdit) {
+    out.push(UiRequest::World(Command::Scene(SceneCommand::Layers(edit))));
+}
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let none = LayerStack::default();
+    let stack = view.state.mesh.layers().map_or(&none, |s| s);
+    let locked = view.state.scene.active().is_some_and(|o| o.settings.locked);
+    ui.horizontal(|ui| {
+        ui.strong("Layers");
+        let room = !locked && stack.layers.len() < MAX_LAYERS;
+        let add = ui.add_enabled(room, egui::Button::new("Add layer"));
+        if add.on_hover_text("Strokes go to the new layer").clicked() {
+            ask(out, LayerEdit::Add(format!("layer {}", stack.next + 1)));
+        }
+    });
+    if stack.layers.is_empty() {
+        ui.separator();
+        return;
+    }
+    ui.add_enabled_ui(!locked, |ui| {
+        for layer in stack.layers.iter().rev() {
+            row(ui, layer, stack, &mut ui_state.layers, out);
+        }
+        let base = egui::Button::selectable(stack.active.is_none(), "base");
+        if ui.add(base).on_hover_text("Strokes lie below all layers").clicked() {
+            ask(out, LayerEdit::Activate(None));
+        }
+        match stack.active() {
+            Some(active) => buttons(ui, active, stack, &mut ui_state.layers, out),
+            None => bake(ui, out),
+        }
+    });
+    if !stack.takes_strokes() {
+        let text = "The active layer is hidden or its intensity is 0: strokes would not be seen";
+        ui.colored_label(theme::quiet(ui), text);
+    }
+    if view.state.brush.topology.by != Measure::Off {
+        let text = "Dynamic topology rests while the object has layers; bake them to use it";
+        ui.colored_label(theme::quiet(ui), text);
+    }
+    ui.separator();
+}
+
+fn row(
+    ui: &mut egui::Ui,
+    layer: &Layer,
+    stack: &LayerStack,
+    panel: &mut LayerPanel,
+    out: &mut Vec<UiRequest>,
+) {
+    let id = layer.id;
+    ui.horizontal(|ui| {
+        let eye = ui.selectable_label(layer.visible, "eye").on_hover_text("Seen");
+        if eye.clicked() {
+            let visible = Some(!layer.visible);
+            ask(out, LayerEdit::Set { id, intensity: None, visible, live: false });
+        }
+        if let Some((renamed, text)) = panel.renaming.as_mut().filter(|r| r.0 == id) {
+            let field = ui.text_edit_singleline(text);
+            if field.lost_focus() {
+                ask(out, LayerEdit::Rename(*renamed, text.clone()));
+                panel.renaming = None;
+            } else {
+                field.request_focus();
+            }
+            return;
+        }
+        let active = stack.active == Some(id);
+        let name = ui.add(egui::Button::selectable(active, &layer.name).truncate());
+        if name.double_clicked() {
+            panel.renaming = Some((id, layer.name.clone()));
+        } else if name.clicked() && !active {
+            ask(out, LayerEdit::Activate(Some(id)));
+        }
+    });
+    let mut shown = panel.dragged.filter(|d| d.0 == id).map_or(layer.intensity, |d| d.1);
+    let slider = egui::Slider::new(&mut shown, -MAX_INTENSITY..=MAX_INTENSITY).fixed_decimals(2);
+    let slider = ui.push_id(id.0, |ui| ui.add(slider)).inner;
+    let set = |live| LayerEdit::Set { id, intensity: Some(shown), visible: None, live };
+    if slider.drag_stopped() {
+        panel.dragged = None;
+        ask(out, set(false));
+    } else if slider.changed() {
+        let live = slider.dragged();
+        panel.dragged = live.then_some((id, shown));
+        ask(out, set(live));
+    }
+}
+
+fn buttons(
+    ui: &mut egui::Ui,
+    active: &Layer,
+    stack: &LayerStack,
+    panel: &mut LayerPanel,
+    out: &mut Vec<UiRequest>,
+) {
+    let id = active.id;
+    let Some(place) = stack.index_of(id) else { return };
+    let below = place.checked_sub(1).map(|below| &stack.layers[below]);
+    ui.horizontal_wrapped(|ui| {
+        let mut button = |ui: &mut egui::Ui, can: bool, name: &str, tip: &str, edit| {
+            if ui.add_enabled(can, egui::Button::new(name)).on_hover_text(tip).clicked() {
+                ask(out, edit);
+            }
+        };
+        let highest = place + 1 == stack.layers.len();
+        let to = |place: usize| LayerEdit::Move(id, place as u32);
+        button(ui, !highest, "Up", "Above the next layer", to(place + 1));
+        button(ui, place > 0, "Down", "Below the next layer", to(place.saturating_sub(1)));
+        let seen = active.visible && below.is_none_or(|l| l.visible);
+        let tip = "Adds it to the layer below, or to the base. Both must be seen";
+        button(ui, seen, "Merge down", tip, LayerEdit::MergeDown(id));
+        let room = stack.layers.len() < MAX_LAYERS;
+        let tip = "A hidden twin above it";
+        button(ui, room, "Duplicate layer", tip, LayerEdit::Duplicate(id));
+        button(ui, true, "Clear layer", "Takes away what it does", LayerEdit::Clear(id));
+        button(ui, true, "Remove layer", "Removes it with what it does", LayerEdit::Remove(id));
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Rename layer").clicked() {
+            panel.renaming = Some((id, active.name.clone()));
+        }
+        bake(ui, out);
+    });
+}
+
+fn bake(ui: &mut egui::Ui, out: &mut Vec<UiRequest>) {
+    let button = ui.button("Bake layers");
+    if button.on_hover_text("The surface as it is becomes the base").clicked() {
+        ask(out, LayerEdit::Bake);
+    }
+}

@@ -1,0 +1,50 @@
+//! Rows of a panel that hold in every language: a label that does not fit beside its widget stands
+//! above it.
+
+use egui::{ComboBox, Response, Slider, TextStyle, Ui, WidgetText};
+
+/// Points beside the bar of a slider: its number and the gaps.
+const NUMBER: f32 = 62.0;
+/// Width of a list that unfolds, points.
+const LIST: f32 = 100.0;
+
+fn width(ui: &Ui, text: &str) -> f32 {
+    let font = TextStyle::Body.resolve(ui.style());
+    let colour = ui.visuals().text_color();
+    ui.painter().layout_no_wrap(text.to_owned(), font, colour).size().x
+}
+
+/// A slider with its name.
+pub fn slider(ui: &mut Ui, slider: Slider<'_>, name: &str) -> Response {
+    let bar = ui.spacing().slider_width + NUMBER;
+    if bar + width(ui, name) <= ui.available_width() {
+        return ui.add(slider.text(name));
+    }
+    let label = ui.label(name);
+    ui.add(slider).labelled_by(label.id)
+}
+
+/// A list that unfolds, with its name. `now` is what is chosen.
+pub fn list(
+    ui: &mut Ui,
+    name: &str,
+    now: impl Into<WidgetText>,
+    all: impl FnOnce(&mut Ui),
+) -> Response {
+    let gap = ui.spacing().item_spacing.x;
+    if LIST + gap + width(ui, name) <= ui.available_width() {
+        let list = ComboBox::from_label(name).selected_text(now).width(LIST).truncate();
+        return list.show_ui(ui, all).response;
+    }
+    let label = ui.label(name);
+    let list = ComboBox::from_id_salt(name).selected_text(now).width(ui.available_width() - 8.0);
+    list.truncate().show_ui(ui, all).response.labelled_by(label.id)
+}
+
+/// Widgets in a row that goes on in the next line, each whole.
+pub fn flow(ui: &mut Ui, what: impl FnOnce(&mut Ui)) {
+    ui.horizontal_wrapped(|ui| {
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        what(ui);
+    });
+}
