@@ -324,6 +324,7 @@ history-boolean = Boolean
 history-merged = merged
 history-split = split
 history-layers = επίπεδα
+history-snapped = προσαρμόστηκε
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-gizmo = Gizmo
+    .tip = Μετακινεί, στρέφει και κλιμακώνει το αντικείμενο με τον δείκτη· με Ctrl σε βήματα
+objects-snap = Έδρα με έδρα
+    .tip = Ακουμπά μια επίπεδη έδρα ενός αντικειμένου σε έδρα άλλου
+objects-snap-first = Πατήστε την έδρα που θα μετακινηθεί
+objects-snap-second = Πατήστε την έδρα όπου θα ακουμπήσει
 objects-eye = eye
     .tip = Drawn
 objects-lock = lock
@@ -447,6 +454,7 @@ menu-box = box
 menu-cylinder = cylinder
 menu-undo = undo
 menu-redo = redo
+menu-pick-up = πιάσε
 
 ## Page: walls
 
@@ -846,6 +854,7 @@ task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
+task-snapped = Οι έδρες εφάπτονται
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %

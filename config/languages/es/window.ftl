@@ -324,6 +324,7 @@ history-boolean = Boolean
 history-merged = merged
 history-split = split
 history-layers = capas
+history-snapped = pegado
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-gizmo = Gizmo
+    .tip = Mueve, gira y escala el objeto con el puntero; con Ctrl, por pasos
+objects-snap = Pegar cara con cara
+    .tip = Pone una cara plana de un objeto a ras con la de otro
+objects-snap-first = Pulse la cara que se mueve
+objects-snap-second = Pulse la cara a la que se pega
 objects-eye = eye
     .tip = Drawn
 objects-lock = lock
@@ -447,6 +454,7 @@ menu-box = box
 menu-cylinder = cylinder
 menu-undo = undo
 menu-redo = redo
+menu-pick-up = coger
 
 ## Page: walls
 
@@ -846,6 +854,7 @@ task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
+task-snapped = Las caras están a ras
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %

@@ -324,6 +324,7 @@ history-boolean = Boolean
 history-merged = merged
 history-split = split
 history-layers = calques
+history-snapped = plaqué
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-gizmo = Gizmo
+    .tip = Déplace, tourne et redimensionne l’objet au pointeur ; par pas avec Ctrl
+objects-snap = Plaquer face contre face
+    .tip = Plaque une face plane d’un objet contre celle d’un autre
+objects-snap-first = Appuyez sur la face à déplacer
+objects-snap-second = Appuyez sur la face où la plaquer
 objects-eye = eye
     .tip = Drawn
 objects-lock = lock
@@ -447,6 +454,7 @@ menu-box = box
 menu-cylinder = cylinder
 menu-undo = undo
 menu-redo = redo
+menu-pick-up = prendre
 
 ## Page: walls
 
@@ -846,6 +854,7 @@ task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
+task-snapped = Les faces sont l’une contre l’autre
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %

@@ -324,6 +324,7 @@ history-boolean = Boolean
 history-merged = merged
 history-split = split
 history-layers = レイヤー
+history-snapped = 面合わせ
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-gizmo = ギズモ
+    .tip = ポインターで移動・回転・拡大縮小します。Ctrl で刻み
+objects-snap = 面と面を合わせる
+    .tip = オブジェクトの平らな面を別のオブジェクトの面にぴったり合わせます
+objects-snap-first = 動かす面を押す
+objects-snap-second = 合わせる先の面を押す
 objects-eye = eye
     .tip = Drawn
 objects-lock = lock
@@ -447,6 +454,7 @@ menu-box = box
 menu-cylinder = cylinder
 menu-undo = undo
 menu-redo = redo
+menu-pick-up = つかむ
 
 ## Page: walls
 
@@ -846,6 +854,7 @@ task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
+task-snapped = 面が合いました
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %

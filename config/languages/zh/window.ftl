@@ -324,6 +324,7 @@ history-boolean = Boolean
 history-merged = merged
 history-split = split
 history-layers = 图层
+history-snapped = 已贴合
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-gizmo = 操纵器
+    .tip = 用指针移动、旋转和缩放对象；按住 Ctrl 按步进
+objects-snap = 面对面贴合
+    .tip = 把一个对象的平面贴到另一个对象的平面上
+objects-snap-first = 按下要移动的面
+objects-snap-second = 按下要贴合到的面
 objects-eye = eye
     .tip = Drawn
 objects-lock = lock
@@ -447,6 +454,7 @@ menu-box = box
 menu-cylinder = cylinder
 menu-undo = undo
 menu-redo = redo
+menu-pick-up = 拿起
 
 ## Page: walls
 
@@ -846,6 +854,7 @@ task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
+task-snapped = 两个面已贴合
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %
