@@ -5,8 +5,8 @@
 //!
 //! Read first: [`method`] (every method, in one table), then [`client`] (how to call one), then
 //! the types: [`status`], [`brush`], [`view`], [`edit`], [`scene`], [`layers`], [`snap`],
-//! [`event`]. [`wire`] has the lines, the limits and the errors, [`range`](mod@range) the range of each
-//! number. The same for other languages is [`SCHEMA`].
+//! [`event`]. [`wire`] has the lines, the limits and the errors, [`range`](mod@range) the range of
+//! each number. The same for other languages is [`SCHEMA`].
 //!
 //! ```
 //! use sculptd_control::Request;

@@ -11,9 +11,11 @@ use sculptd_devices::sim::{HandKey, HandScript, Performer, TrackerConfig};
 use sculptd_devices::{Clock, queue};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::menu::ball_mm;
-use sculptd_engine::hand::{Menu, MenuItem};
-use sculptd_engine::scene::{NewObject, ObjectId, ObjectSource, ObjectTransform, SceneCommand};
-use sculptd_engine::world::World;
+use sculptd_engine::hand::{HandSettings, Menu, MenuItem};
+use sculptd_engine::scene::{
+    NewObject, Object, ObjectId, ObjectSource, ObjectTransform, SceneCommand,
+};
+use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, shapes};
@@ -334,4 +336,32 @@ fn a_goblet_is_stacked_of_its_pieces_and_hollowed() {
     assert!((so_far / sum - 1.0).abs() < 1e-5, "{so_far} of {sum}: a piece is not flush");
     join(&mut world, &mut parts, ids[2], DVec3::new(0.0, 81.0, 0.0), MenuItem::Carve);
     finish(&world, "goblet", &parts, None);
+}
+
+#[test]
+fn what_a_hand_puts_down_can_be_taken_back_and_outlives_a_checkpoint() {
+    let part = at(block(10.0, 10.0, 10.0), DVec3::new(60.0, 0.0, 0.0));
+    let (mut world, ids) = bench(&[("body", block(40.0, 40.0, 40.0)), ("part", part)]);
+    let (start, steps) = (world.hash(), world.undo_steps());
+    // 2 mm above the top: it is laid on it. Carrying is one step, and laying down another.
+    place(&mut world, ids[0], DVec3::new(0.0, 27.0, 0.0));
+    let object = world.scene().object(ids[0]).expect("there");
+    let height = object.settings.transform.apply(DVec3::new(60.0, -5.0, 0.0)).y;
+    assert!((height - 20.0).abs() < 1e-9, "{height}");
+    assert_eq!(world.undo_steps(), steps + 2);
+    let saved = world.save().expect("at rest");
+    let clay = |o: &Object| o.clay.duplicate(o.clay.object_id());
+    let clays = world.scene().objects().iter().map(clay).collect();
+    let hands = HandSettings::default();
+    let options = WorldOptions { dab_budget: 1 << 20, undo_bytes: 1 << 28, hands };
+    let again = World::restore(clays, saved, sculptd_clay::Workers::new(1), options);
+    let again = again.expect("a state");
+    assert_eq!((again.is_picking(), again.object_in_hand()), (true, Some(ids[0])));
+    assert_eq!(again.hash(), world.hash());
+    for k in [1, 2] {
+        let tick = world.tick() + 1;
+        world.step(tick, &[], &[Command::Undo]);
+        assert_eq!(world.undo_steps(), steps + 2 - k);
+    }
+    assert_eq!(world.hash(), start);
 }
