@@ -65,6 +65,9 @@
 //!   control socket as types, their JSON schema, a client.
 //! * `sculptd-daemon` (`src/daemon`) knows all of the above: the tick loop, simulated time,
 //!   sessions, control socket, kiosk, metrics.
+//! * `sculptd-network` (`src/network`) knows the daemon and what is below it: one sculpture shared
+//!   by several daemons. The protocol is a state machine without clock, IO and threads; Zenoh
+//!   carries its datagrams (feature `network`, not in the default set).
 //! * `sculptd-window` (`src/window`) knows all but the command line: panels (egui) and viewer
 //!   (wgpu): they see snapshots and send commands.
 //! * `sculptd-mesh-commands` (`src/mesh_commands`) knows geometry, and the clock of the devices:
@@ -128,6 +131,12 @@
 //! * `sculptd-survivor`, made by `cli::window_guard`: goes on in the place of the main thread where
 //!   the window system has ended that. Waits for: such a loss.
 //! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
+//! * `sculptd-shared`, made by `network::live`: the station of a shared sculpture: takes datagrams
+//!   and the own input, orders or follows. Waits for: the network, the tick thread, time.
+//! * `sculptd-replica`, made by `network::live`: hashes, checkpoints, and worlds made of them, for
+//!   that station. Waits for: the station.
+//! * `sculptd-notes`, made by `cli::shared`: says on standard error what happens to a shared
+//!   sculpture. Waits for: the station.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
 //! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, made by

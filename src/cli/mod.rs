@@ -30,6 +30,8 @@ pub mod render;
 pub mod replay;
 pub mod run;
 pub mod session;
+#[cfg(feature = "network")]
+pub mod shared;
 mod thickness_presets;
 #[cfg(unix)]
 pub mod window;

@@ -83,6 +83,9 @@ pub struct RunArgs {
     #[cfg(unix)]
     #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = sculptd_daemon::metrics::address)]
     pub metrics: Option<std::net::SocketAddr>,
+    #[cfg(feature = "network")]
+    #[command(flatten)]
+    pub shared: super::shared::SharedArgs,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -123,7 +126,11 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     }
     // Recordings that are played without a window and without visitors are stepped, so that they
     // give the same bits every time.
-    let on_the_wall_clock = window || args.play_device.is_empty() || args.kiosk;
+    #[cfg(feature = "network")]
+    let (is_shared, joins) = (args.shared.is_on(), args.shared.join.is_some());
+    #[cfg(not(feature = "network"))]
+    let (is_shared, joins) = (false, false);
+    let on_the_wall_clock = window || args.play_device.is_empty() || args.kiosk || is_shared;
     #[cfg(unix)]
     if args.metrics.is_some() && !on_the_wall_clock {
         let text = "--metrics needs a run on the wall's clock, and a recording that is played \
@@ -140,7 +147,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
     // In a window a session is always on.
-    let own = (window && args.session.is_none() && kiosk.is_none() && players.is_empty())
+    let own = (window && args.session.is_none() && kiosk.is_none() && players.is_empty() && !joins)
         .then(|| library::begin(args.mesh.first().map(PathBuf::as_path)))
         .flatten();
     let session = args.session.as_ref().or(own.as_ref());
@@ -152,7 +159,19 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         }
         meshes => (meshes, None),
     };
-    let begun = begin(&meshes, session.map(PathBuf::as_path), &config)?;
+    #[cfg(not(feature = "network"))]
+    let (begun, shared) = (begin(&meshes, session.map(PathBuf::as_path), &config)?, None);
+    #[cfg(feature = "network")]
+    let (begun, shared) = if args.shared.join.is_some() {
+        let alone = |config: &Config| begin(&[], None, config);
+        let (begun, shared) = args.shared.join(&mut config, alone)?;
+        (begun, Some(shared))
+    } else {
+        let begun = begin(&meshes, session.map(PathBuf::as_path), &config)?;
+        let hosts = args.shared.host.is_some();
+        let shared = hosts.then(|| args.shared.host(&begun, &config)).transpose()?;
+        (begun, shared)
+    };
     let objects = begun.world.scene().objects();
     let found: usize = objects.iter().map(|o| o.clay.triangle_count()).sum();
     if let Some(kiosk) = kiosk.as_ref().filter(|k| found > k.max_triangles) {
@@ -179,6 +198,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             #[cfg(unix)]
             metrics: args.metrics,
             window: WindowLink::new(session.map(PathBuf::as_path)),
+            shared,
         };
         let shown = Shown {
             window,

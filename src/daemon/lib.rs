@@ -35,6 +35,7 @@ pub mod scene_jobs;
 #[cfg(unix)]
 pub mod service;
 pub mod session;
+pub mod shared_input;
 pub mod simulated_loop;
 pub mod snap_jobs;
 pub mod startup;

@@ -4,6 +4,7 @@
 //! Law kept here: the tick thread never waits for anybody. It takes what the channel holds, steps,
 //! publishes, sleeps.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::JoinHandle;
@@ -19,10 +20,11 @@ use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
+use crate::shared_input::{NextTick, SharedInput};
 use crate::tablet_actions::TabletActions;
 use crate::tick::{Journal, in_order_of_time, published_figures};
 use crate::tick_statistics::{TickStatistics, thread_cpu_ns};
-use sculptd_clay::Grafted;
+use sculptd_clay::{GarbageSink, Grafted, PageSupply};
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
@@ -81,17 +83,34 @@ impl Live {
     /// # Errors
     /// Where a thread cannot be started.
     pub fn start_with(
+        world: World,
+        receiver: Receiver,
+        clock: Clock,
+        config: LoopConfig,
+        drain: (usize, Option<TabletActions>),
+        journal: Option<Box<dyn Journal>>,
+    ) -> Result<Self, LiveError> {
+        Live::start_shared(world, receiver, clock, config, drain, journal, None)
+    }
+
+    /// As [`Live::start_with`]; with `shared`, the world steps what that gives, and nothing else.
+    ///
+    /// # Errors
+    /// Where a thread cannot be started.
+    pub fn start_shared(
         mut world: World,
         receiver: Receiver,
         clock: Clock,
         config: LoopConfig,
         (drain_per_tick, actions): (usize, Option<TabletActions>),
         journal: Option<Box<dyn Journal>>,
+        shared: Option<Box<dyn SharedInput>>,
     ) -> Result<Self, LiveError> {
         let (commands, inbox) = command_queue(COMMANDS);
         let garbage = GarbageThread::start().map_err(LiveError::Start)?;
         world.set_garbage_sink(garbage.sink());
-        world.set_page_supply(PageThread::start().map_err(LiveError::Start)?.supply());
+        let pages = PageThread::start().map_err(LiveError::Start)?.supply();
+        world.set_page_supply(pages.clone());
         let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
         let published = publisher.reader();
         let stop = Arc::new(AtomicBool::new(false));
@@ -108,6 +127,8 @@ impl Live {
             actions,
             journal,
             garbage,
+            pages,
+            shared,
             trail,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
             joiner: BooleanJobs::start(published.clone(), commands.clone()).ok(),
@@ -143,7 +164,30 @@ struct Ticking {
     journal: Option<Box<dyn Journal>>,
     joiner: Option<BooleanJobs>,
     garbage: GarbageThread,
+    pages: PageSupply,
+    shared: Option<Box<dyn SharedInput>>,
     trail: PenTrailSender,
+}
+
+/// Where the results of a command go.
+type ResultSenders = (Option<cc::Sender<Option<Grafted>>>, Option<cc::Sender<SceneResult>>);
+
+/// What the loop keeps from tick to tick.
+struct TickBuffers {
+    samples: Vec<Sample>,
+    commands: Vec<Command>,
+    /// Where the result of each cut of this tick goes, in the order of the commands.
+    results: Vec<Option<cc::Sender<Option<Grafted>>>>,
+    scene_results: Vec<Option<cc::Sender<SceneResult>>>,
+    /// Of a shared sculpture: where those of the own commands go that are on their way.
+    waiting: VecDeque<ResultSenders>,
+    /// What hands asked workers for, to be told once the state that it is about is published.
+    asked: Vec<HandRequest>,
+    figures: TickStatistics,
+    /// How long the last step took, ns.
+    stepped: u64,
+    /// The newest sample's time, its tick, and how long it took to the snapshot, ms.
+    newest: (u64, u64, f64),
 }
 
 impl Ticking {
@@ -153,78 +197,153 @@ impl Ticking {
         let garbage = self.garbage.sink();
         let mut pacer = Pacer::new(self.rate_hz, self.clock.now_us());
         let sleeper = spin_sleep::SpinSleeper::default();
-        let mut figures = TickStatistics::default();
-        let mut samples: Vec<Sample> = Vec::with_capacity(self.drain_per_tick);
-        let mut commands: Vec<Command> = Vec::with_capacity(COMMANDS_PER_TICK);
-        // Where the result of each cut of this tick goes, in the order of the commands.
-        let mut results: Vec<Option<cc::Sender<Option<Grafted>>>> =
-            Vec::with_capacity(COMMANDS_PER_TICK);
-        let mut scene_results: Vec<Option<cc::Sender<SceneResult>>> =
-            Vec::with_capacity(COMMANDS_PER_TICK);
+        let mut now = TickBuffers {
+            samples: Vec::with_capacity(self.drain_per_tick),
+            commands: Vec::with_capacity(COMMANDS_PER_TICK),
+            results: Vec::with_capacity(COMMANDS_PER_TICK),
+            scene_results: Vec::with_capacity(COMMANDS_PER_TICK),
+            asked: Vec::new(),
+            waiting: VecDeque::new(),
+            figures: TickStatistics::default(),
+            stepped: 0,
+            newest: (0, 0, 0.0),
+        };
         let mut tick = self.world.tick();
-        let mut newest = (0, 0, 0.0);
         let mut last = LAST_TICKS;
         while !self.stop.load(Relaxed) || (last > 0 && self.receiver.waiting() > 0) {
             if self.stop.load(Relaxed) {
                 last -= 1;
             }
             pacer.wait(&self.clock, &sleeper);
-            tick += 1;
-            samples.clear();
-            self.receiver.drain(self.drain_per_tick, &mut samples);
-            in_order_of_time(&mut samples);
-            self.trail.send(&samples);
+            now.samples.clear();
+            self.receiver.drain(self.drain_per_tick, &mut now.samples);
+            in_order_of_time(&mut now.samples);
+            self.trail.send(&now.samples);
             for mut queued in self.inbox.try_iter().take(COMMANDS_PER_TICK) {
+                if let Some(shared) = &mut self.shared {
+                    if !shared.refuses(&queued) {
+                        now.waiting.push_back((queued.result.take(), queued.scene_result.take()));
+                        // Every replica builds what the command needs.
+                        queued.payload.take().into_iter().for_each(|p| garbage.discard_owned(p));
+                        now.commands.push(queued.command);
+                    }
+                    continue;
+                }
                 let (result, scene_result) = (queued.result.take(), queued.scene_result.take());
                 let command = queued.deliver(&mut self.world);
-                if command.is_cut() {
-                    results.push(result);
-                }
-                if matches!(command, Command::Scene(_)) {
-                    scene_results.push(scene_result);
-                }
-                commands.push(command);
+                now.expect(&command, (result, scene_result));
+                now.commands.push(command);
             }
             if let Some(actions) = &mut self.actions {
-                actions.take(&mut samples, &self.world, &mut commands);
+                actions.take(&mut now.samples, &self.world, &mut now.commands);
             }
-            let (begun, begun_cpu) = (self.clock.now_ns(), thread_cpu_ns());
-            let report = *self.world.step(tick, &samples, &commands);
-            if let Some(journal) = self.journal.as_deref_mut() {
-                journal.tick(tick, &samples, &commands, &self.world);
-            }
-            for (result, made) in results.drain(..).zip(self.world.cut_results()) {
-                if let Some(result) = result {
-                    let _ = result.try_send(*made);
+            match self.shared.take() {
+                None => {
+                    tick += 1;
+                    self.step(tick, &mut now, &garbage, true);
+                }
+                Some(mut shared) => {
+                    self.step_shared(shared.as_mut(), &mut now, &garbage);
+                    self.shared = Some(shared);
                 }
             }
-            for (result, done) in scene_results.drain(..).zip(self.world.scene_results()) {
-                if let Some(result) = result {
-                    let _ = result.try_send(*done);
-                }
-            }
-            discard_commands(&mut commands, &garbage);
-            let stepped = self.clock.now_ns() - begun;
-            figures.tick(&report, stepped, thread_cpu_ns() - begun_cpu);
-            let mut shown = published_figures(&figures, &self.receiver, stepped);
+            let mut shown = published_figures(&now.figures, &self.receiver, now.stepped);
             shown.garbage_overflows = self.garbage.overflowed();
-            if let Some(sample) = samples.last() {
-                let took_us = self.clock.now_us().saturating_sub(sample.t_us);
-                newest = (sample.t_us, tick, took_us as f64 / 1e3);
-            }
-            (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = newest;
+            (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = now.newest;
             self.publisher.publish(Published::of(&mut self.world, shown), &garbage);
             // After the state that they are about is to be seen.
-            let put_down = report.put_down.map(HandRequest::LayDown);
-            for request in report.join.map(HandRequest::Join).into_iter().chain(put_down) {
+            for request in now.asked.drain(..) {
                 if !self.joiner.as_ref().is_some_and(|j| j.ask(request)) {
                     tracing::warn!("{request:?}: another join is under way");
                 }
             }
             pacer.done(self.clock.now_us());
-            figures.overruns = pacer.overruns;
+            now.figures.overruns = pacer.overruns;
         }
-        Ended { world: self.world, figures, receiver: self.receiver }
+        Ended { world: self.world, figures: now.figures, receiver: self.receiver }
+    }
+
+    /// One tick with the input in `now`. `asks`: what the step asks for is started.
+    fn step(&mut self, tick: u64, now: &mut TickBuffers, garbage: &GarbageSink, asks: bool) {
+        let (begun, begun_cpu) = (self.clock.now_ns(), thread_cpu_ns());
+        let report = *self.world.step(tick, &now.samples, &now.commands);
+        if let Some(journal) = self.journal.as_deref_mut() {
+            journal.tick(tick, &now.samples, &now.commands, &self.world);
+        }
+        if asks {
+            now.asked.extend(report.join.map(HandRequest::Join));
+            now.asked.extend(report.put_down.map(HandRequest::LayDown));
+        }
+        for (result, made) in now.results.drain(..).zip(self.world.cut_results()) {
+            if let Some(result) = result {
+                let _ = result.try_send(*made);
+            }
+        }
+        for (result, done) in now.scene_results.drain(..).zip(self.world.scene_results()) {
+            if let Some(result) = result {
+                let _ = result.try_send(*done);
+            }
+        }
+        discard_commands(&mut now.commands, garbage);
+        now.stepped = self.clock.now_ns() - begun;
+        now.figures.tick(&report, now.stepped, thread_cpu_ns() - begun_cpu);
+        if let Some(sample) = now.samples.last() {
+            let took_us = self.clock.now_us().saturating_sub(sample.t_us);
+            now.newest = (sample.t_us, tick, took_us as f64 / 1e3);
+        }
+    }
+
+    /// The own input goes out, and the ticks that have come are stepped: as many as fit into three
+    /// periods of the loop, so that a replica that is behind catches up.
+    fn step_shared(
+        &mut self,
+        shared: &mut dyn SharedInput,
+        now: &mut TickBuffers,
+        garbage: &GarbageSink,
+    ) {
+        // Commands of the tablets' keys have nobody who waits for a result.
+        let told = now.commands.len().min(now.waiting.len());
+        (told..now.commands.len()).for_each(|_| now.waiting.push_back((None, None)));
+        shared.submit(&mut now.samples, &mut now.commands);
+        let until = self.clock.now_us() + 3_000_000 / u64::from(self.rate_hz.max(1));
+        loop {
+            match shared.next(&self.world) {
+                NextTick::Wait => break,
+                NextTick::World(mut world) => {
+                    world.set_garbage_sink(garbage.clone());
+                    world.set_page_supply(self.pages.clone());
+                    world.warm();
+                    now.waiting.clear();
+                    garbage.discard_owned(std::mem::replace(&mut self.world, *world));
+                }
+                NextTick::Step(next) => {
+                    let mut own = next.own.iter().peekable();
+                    for (i, command) in next.commands.iter().enumerate() {
+                        let is_own = own.next_if(|o| **o == i).is_some();
+                        let to = if is_own { now.waiting.pop_front() } else { None };
+                        now.expect(command, to.unwrap_or_default());
+                    }
+                    (now.samples, now.commands) = (next.samples, next.commands);
+                    self.step(next.tick, now, garbage, shared.hosts());
+                    shared.after_step(&mut self.world);
+                }
+            }
+            if self.clock.now_us() >= until {
+                break;
+            }
+        }
+    }
+}
+
+impl TickBuffers {
+    /// The results of a command of this tick go there.
+    fn expect(&mut self, command: &Command, (result, scene_result): ResultSenders) {
+        if command.is_cut() {
+            self.results.push(result);
+        }
+        if command.is_scene() {
+            self.scene_results.push(scene_result);
+        }
     }
 }
 

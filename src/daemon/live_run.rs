@@ -19,6 +19,7 @@ use crate::live::{Live, LiveError};
 use crate::session::Health;
 use crate::session::history::Handle;
 use crate::session::writer::WriterThread;
+use crate::shared_input::SharedInput;
 use crate::simulated_loop::{Feed, summary};
 use crate::startup::{Area, Begun, RecordingFeed};
 use crate::tablet_actions::TabletActions;
@@ -62,6 +63,8 @@ pub struct LiveOptions {
     pub metrics: Option<std::net::SocketAddr>,
     /// How the window stands; without a session no window can follow a lost one.
     pub window: WindowLink,
+    /// The sculpture is shared with others.
+    pub shared: Option<Box<dyn SharedInput>>,
 }
 
 /// Why a live run could not be put together.
@@ -163,8 +166,9 @@ impl LiveRun {
         let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone())
             .with_controls(options.controls.clone());
         let drain = (config.channel.drain_per_tick, Some(actions));
+        let (rate, shared) = (config.r#loop, options.shared.take());
         let live =
-            Live::start_with(begun.world, receiver, clock.clone(), config.r#loop, drain, journal)?;
+            Live::start_shared(begun.world, receiver, clock.clone(), rate, drain, journal, shared)?;
         if let Some(history) = &history {
             history.connect(live.commands.clone());
         }

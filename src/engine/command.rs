@@ -76,6 +76,18 @@ pub enum Command {
     JumpScene(Box<SceneJump>),
     /// Sets the mask of what is seen in a region of the view: one step of undo.
     MaskRegion(MaskRegion),
+    /// Another command, of one of several people at one world: the view and the brush that it sets
+    /// or needs are that person's.
+    OfPerson(Box<OfPerson>),
+}
+
+/// A command, and whose it is.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct OfPerson {
+    /// The person's number; 0 is the one whom every world has.
+    pub person: u8,
+    /// What is asked; no [`Command::OfPerson`] itself.
+    pub command: Command,
 }
 
 /// A command that was computed for a clay, and that clay.
@@ -140,6 +152,7 @@ impl Command {
             | Command::OfClay(_)
             | Command::JumpScene(_) => true,
             Command::Scene(scene) => scene.owns_memory(),
+            Command::OfPerson(of) => of.command.owns_memory(),
             Command::Brush(_)
             | Command::Camera(_)
             | Command::Undo
@@ -161,6 +174,7 @@ impl Command {
         match self {
             Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
             Command::Begin(beginning) => Some(&mut beginning.clay),
+            Command::OfPerson(of) => of.command.new_clay_mut(),
             Command::OfClay(of) => match &mut of.command {
                 Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
                 _ => None,
@@ -174,6 +188,16 @@ impl Command {
         match self {
             Command::Cut(_) => true,
             Command::OfClay(of) => matches!(of.command, Command::Cut(_)),
+            Command::OfPerson(of) => of.command.is_cut(),
+            _ => false,
+        }
+    }
+
+    /// Whether its result stands among [`crate::world::World::scene_results`].
+    pub fn is_scene(&self) -> bool {
+        match self {
+            Command::Scene(_) => true,
+            Command::OfPerson(of) => of.command.is_scene(),
             _ => false,
         }
     }

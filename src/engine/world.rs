@@ -12,6 +12,7 @@ mod held;
 mod in_hand;
 mod layers;
 mod local_camera;
+mod people;
 mod saved;
 mod scene_steps;
 mod state;
@@ -23,6 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use self::in_hand::ObjectsInHand;
 use self::local_camera::LocalCamera;
+use self::people::People;
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SavedScene, SideData};
 pub use self::scene_steps::SceneResult;
 use self::stroke_context::{Stroke, StrokeContext};
@@ -138,6 +140,8 @@ pub struct World {
     lineages: u32,
     /// What was done in this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
+    /// The settings of those who share the world; nobody in a world of one person.
+    people: People,
 }
 
 impl World {
@@ -191,6 +195,7 @@ impl World {
             scene_results: Vec::with_capacity(PayloadStore::CAPACITY),
             lineages: 0,
             moments: None,
+            people: People::default(),
         };
         world.lay_hands();
         world.frame();
@@ -205,13 +210,16 @@ impl World {
         self.cuts.clear();
         self.scene_results.clear();
         self.let_entries_go();
+        self.act_as_hands();
         for command in commands {
             self.apply_command(command);
         }
         for sample in samples {
             self.apply_sample(sample);
         }
+        self.act_as_hands();
         self.sculpt();
+        self.act_as_shown();
         self.payloads.clear(&self.garbage);
         &self.report
     }
@@ -233,12 +241,12 @@ impl World {
             // A curve that a pen has laid is newer than the last step.
             Command::Undo if self.put_away() => {}
             Command::CurveStroke(act) => match act {
-                CurveAction::Apply => self.pens.iter_mut().for_each(|s| s.track.apply()),
+                CurveAction::Apply => self.own_pens().for_each(|s| s.track.apply()),
                 CurveAction::Cancel => {
                     self.put_away();
                 }
                 CurveAction::Delete(handle) => {
-                    let _ = self.pens.iter_mut().any(|s| s.track.delete(*handle));
+                    let _ = self.own_pens().any(|s| s.track.delete(*handle));
                 }
             },
             Command::Camera(camera) => {
@@ -289,6 +297,7 @@ impl World {
                     self.scene.active_mut().clay.set_object_id(self.lineages);
                     self.moments = old.moments.take();
                     self.desktop = old.desktop;
+                    self.people = std::mem::take(&mut old.people);
                     self.tick = old.tick;
                     self.report = old.report;
                     std::mem::swap(&mut self.payloads, &mut old.payloads);
@@ -321,19 +330,26 @@ impl World {
             Command::Jump(jump) => self.jump(jump),
             Command::Scene(scene) => self.apply_scene(scene),
             Command::OfClay(of) => self.apply_of_clay(of),
+            Command::OfPerson(of) => self.apply_of_person(of),
             Command::JumpScene(jump) => self.jump_scene(jump),
             Command::Reopened => {
                 self.lift_all();
                 // It was of a window that is gone: who opens the session says its own.
-                self.desktop = DesktopLayout::default();
+                self.forget_desktops();
                 self.forget_steps();
             }
         }
     }
 
+    /// The pens of the person whose command is applied.
+    fn own_pens(&mut self) -> impl Iterator<Item = &mut PenSlot> {
+        let people = &self.people;
+        self.pens.iter_mut().filter(move |s| people.is_current(s.device))
+    }
+
     /// Discards the curves that pens have laid. False: there were none.
     fn put_away(&mut self) -> bool {
-        self.pens.iter_mut().fold(false, |any, s| s.track.cancel() | any)
+        self.own_pens().fold(false, |any, s| s.track.cancel() | any)
     }
 
     /// The clay of a new object: the payload where there is one, else built here.
@@ -400,6 +416,9 @@ impl World {
                             self.pens.len() - 1
                         })
                     });
+                if !self.people.is_nobody() {
+                    self.act_as(self.people.of_device(sample.device));
+                }
                 match index {
                     Some(i) => {
                         let on = (&self.desktop, self.desktop.place(sample.device));
@@ -410,6 +429,8 @@ impl World {
                 }
             }
             Body::Hands(hands) => {
+                self.hands_of(sample.device);
+                self.act_as_hands();
                 self.hands.follow(self.camera.target, self.camera.yaw);
                 let before = self.hands.settings.reach;
                 self.hands.take(sample.device, sample.t_us, hands);
@@ -447,12 +468,11 @@ impl World {
     /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
     /// visited. Returns what is left of it.
     fn advance_strokes(&mut self, budget: u64) -> u64 {
-        let goes_on = self.goes_on_by_time();
-        let every = self.brush.path.every_ticks as u32;
         let object = self.scene.active_mut();
+        let transform = object.settings.transform;
         let mut clay = StrokeContext {
             editable: object.takes_strokes(),
-            camera: LocalCamera::new(&self.camera, &object.settings.transform),
+            camera: LocalCamera::new(&self.camera, &transform),
             middle: object.middle,
             extent: object.extent,
             mesh: &mut object.clay,
@@ -469,6 +489,13 @@ impl World {
                 self.strokes = self.strokes.wrapping_add(1);
                 seat.stroke.begin(self.strokes);
             }
+            // Each with the view and the brush of the person whose pen it is.
+            let other = self.people.other(self.people.of_device(seat.device));
+            clay.brush = other.map_or(&self.brush, |o| &o.brush);
+            let camera = other.map_or(&self.camera, |o| &o.camera);
+            clay.camera = LocalCamera::new(camera, &transform);
+            let goes_on = goes_on_by_time(clay.brush);
+            let every = clay.brush.path.every_ticks as u32;
             clay.stroke = seat.stroke;
             clay.stroke.rested += 1;
             while let Some(walked) = seat.track.walk_one(clay.camera.aspect(), &mut clay) {
@@ -497,19 +524,21 @@ impl World {
         self.report.paused |= self.hands.has_waiting();
         left
     }
+}
 
-    /// Whether dabs go on while a pen rests.
-    fn goes_on_by_time(&self) -> bool {
-        let path = &self.brush.path;
-        let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);
-        self.brush.kind.grip() == Grip::Surface
-            && spaced
-            && (path.continuous || path.method == Method::Airbrush)
-    }
+/// Whether dabs go on while a pen rests.
+fn goes_on_by_time(brush: &BrushSettings) -> bool {
+    let path = &brush.path;
+    let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);
+    brush.kind.grip() == Grip::Surface
+        && spaced
+        && (path.continuous || path.method == Method::Airbrush)
 }
 
 #[cfg(test)]
 mod layer_tests;
+#[cfg(test)]
+mod people_tests;
 #[cfg(test)]
 mod scene_tests;
 #[cfg(test)]

@@ -22,7 +22,7 @@ pub mod measure;
 pub mod offset;
 pub mod project;
 pub mod remesh;
-mod remesh_quads;
+pub mod remesh_quads;
 pub mod subdivide;
 pub mod thickness;
 

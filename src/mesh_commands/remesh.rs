@@ -7,6 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::distance::{Ready, solid, timed, warn};
+use super::remesh_quads::{QuadArgs, remesh_quads};
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::io::{writable_format, write_mesh};
@@ -25,17 +26,8 @@ pub struct RemeshArgs {
     /// Keep sharp edges.
     #[arg(long)]
     pub sharp: bool,
-    /// Make about so many quads that follow the shape instead, 6 to 1,000,000. The mesh must be
-    /// manifold; it may be open. OBJ, PLY and OFF keep quads.
-    #[arg(long, value_name = "N", conflicts_with_all = ["side", "sharp"])]
-    pub quads: Option<usize>,
-    /// With `--quads`: keep edges whose faces turn by more than this many degrees.
-    #[arg(long, value_name = "DEGREES", requires = "quads")]
-    pub creases: Option<f64>,
-    /// With `--quads`: strokes that the quads follow, as text, one point of three numbers a line in
-    /// the mesh's unit; an empty line begins another stroke.
-    #[arg(long, value_name = "FILE", requires = "quads")]
-    pub guides: Option<PathBuf>,
+    #[command(flatten)]
+    pub quads: QuadArgs,
 }
 
 /// How fine the field is sampled.
@@ -97,8 +89,8 @@ pub fn finish(
 }
 
 pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
-    if let Some(quads) = args.quads {
-        return super::remesh_quads::run(args, quads, json);
+    if let Some(quads) = args.quads.quads {
+        return remesh_quads(&args.mesh, &args.out, quads, &args.quads, json);
     }
     let job = Job::default();
     writable_format(&args.out)?;

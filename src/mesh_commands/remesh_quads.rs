@@ -7,12 +7,27 @@ use serde::Serialize;
 
 use super::distance::{read_polylines, timed, warn};
 use super::info::interrupted;
-use super::remesh::RemeshArgs;
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::io::{left_out, read_mesh, writable_format, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::quads::{QuadError, QuadFigures, QuadSettings, figures, quad_remesh};
+use sculptd_geometry::quads::{QuadError, QuadMetrics, QuadSettings, metrics, quad_remesh};
 use sculptd_geometry::{check, repair};
+
+/// A mesh of quads instead of triangles.
+#[derive(Debug, clap::Args)]
+pub struct QuadArgs {
+    /// Make about so many quads that follow the shape instead, 6 to 1,000,000. The mesh must be
+    /// manifold; it may be open. OBJ, PLY and OFF keep quads.
+    #[arg(long, value_name = "N", conflicts_with_all = ["side", "sharp"])]
+    pub quads: Option<usize>,
+    /// With `--quads`: keep edges whose faces turn by more than this many degrees.
+    #[arg(long, value_name = "DEGREES", requires = "quads")]
+    pub creases: Option<f64>,
+    /// With `--quads`: strokes that the quads follow, as text, one point of three numbers a line in
+    /// the mesh's unit; an empty line begins another stroke.
+    #[arg(long, value_name = "FILE", requires = "quads")]
+    pub guides: Option<PathBuf>,
+}
 
 /// The facts of the file that was written, as it is read again.
 #[derive(Debug, Serialize)]
@@ -26,7 +41,7 @@ struct QuadsMade {
     genus: Option<i64>,
     self_intersections: Option<usize>,
     #[serde(flatten)]
-    figures: QuadFigures,
+    metrics: QuadMetrics,
     seconds: f64,
     warnings: Vec<String>,
 }
@@ -50,30 +65,37 @@ fn read(path: &Path, job: &Job) -> Result<(sculptd_geometry::PolyMesh, Vec<Strin
     Ok((mesh, loaded.warnings))
 }
 
-pub(super) fn run(args: &RemeshArgs, quads: usize, json: bool) -> Outcome {
+/// Remeshes file `mesh` to about so many quads in file `out`, and prints what that one holds.
+pub(super) fn remesh_quads(
+    mesh_file: &Path,
+    out: &Path,
+    quads: usize,
+    args: &QuadArgs,
+    json: bool,
+) -> Outcome {
     let job = Job::default();
-    let format = writable_format(&args.out)?;
+    let format = writable_format(out)?;
     if args.creases.is_some_and(|c| !(0.0..=180.0).contains(&c)) {
         return Err(Fail::Usage("--creases: expected an angle of 0 to 180 degrees".into()));
     }
     let guides: Vec<Vec<DVec3>> =
         args.guides.as_deref().map(read_polylines).transpose()?.unwrap_or_default();
-    let (mesh, mut warnings) = read(&args.mesh, &job)?;
+    let (mesh, mut warnings) = read(mesh_file, &job)?;
     let settings = QuadSettings { quads, creases: args.creases, guides };
     let (made, seconds) = timed(|| quad_remesh(&mesh, &settings, &job));
     let made = made.map_err(|e| match Fail::from(e) {
-        Fail::Input(text) => Fail::Input(format!("{}: {text}", args.mesh.display())),
+        Fail::Input(text) => Fail::Input(format!("{}: {text}", mesh_file.display())),
         other => other,
     })?;
     warnings.extend(made.warnings);
     warnings.extend(left_out(format, &made.mesh));
-    write_mesh(&args.out, &made.mesh)?;
-    let (written, _) = read(&args.out, &job)?;
+    write_mesh(out, &made.mesh)?;
+    let (written, _) = read(out, &job)?;
     let report = check::report(&written, true, &job).map_err(interrupted)?;
-    let figures = figures(&written, &mesh, &job).map_err(interrupted)?;
-    warn(&args.mesh, &warnings);
+    let metrics = metrics(&written, &mesh, &job).map_err(interrupted)?;
+    warn(mesh_file, &warnings);
     let facts = QuadsMade {
-        file: args.out.clone(),
+        file: out.into(),
         vertices: report.vertices,
         faces: report.faces,
         components: report.components,
@@ -81,12 +103,12 @@ pub(super) fn run(args: &RemeshArgs, quads: usize, json: bool) -> Outcome {
         manifold: report.manifold,
         genus: report.genus,
         self_intersections: report.self_intersections,
-        figures,
+        metrics,
         seconds,
         warnings,
     };
     answer(json, &facts, |w| {
-        let f = &facts.figures;
+        let f = &facts.metrics;
         writeln!(
             w,
             "{}: {} vertices, {} quads, {} triangles, {} other polygons",

@@ -1,5 +1,7 @@
 //! The scene by the control protocol of a running loop: objects, Booleans, files, replay.
 
+mod layers;
+
 use std::path::Path;
 
 use serde_json::{Value, json};

@@ -4,6 +4,7 @@
 mod beside;
 mod kiosk;
 mod languages;
+mod layers;
 mod layout;
 mod learning;
 mod panels;

@@ -9,13 +9,14 @@ mod words;
 use std::path::{Path, PathBuf};
 
 /// The crates of the workspace, and where their sources lie.
-const CRATES: [(&str, &str); 9] = [
+const CRATES: [(&str, &str); 10] = [
     ("sculptd-geometry", "src/geometry"),
     ("sculptd-devices", "devices/src"),
     ("sculptd-control", "src/control"),
     ("sculptd-clay", "src/clay"),
     ("sculptd-engine", "src/engine"),
     ("sculptd-daemon", "src/daemon"),
+    ("sculptd-network", "src/network"),
     ("sculptd-window", "src/window"),
     ("sculptd-mesh-commands", "src/mesh_commands"),
     ("sculptd", "src"),

@@ -120,6 +120,8 @@ kind-surface-smooth = Fläche glätten
     .about = Ebnet die Fläche und erhält ihr Volumen (Taubin 1995).
 kind-boundary = Rand
     .about = Der Rand einer offenen Fläche folgt dem Stift, und die Fläche dahinter mit ihm.
+kind-erase-layer = Ebene radieren
+    .about = Nimmt weg, was die aktive Ebene bewirkt; die Fläche kehrt zu dem zurück, was darunter liegt.
 
 ## Numbers of single brushes
 
@@ -418,6 +420,32 @@ operation-difference = Differenz
     .tip = Dieses Objekt wird aus dem aktiven geschnitten
 operation-reverse-difference = Umgekehrte Differenz
     .tip = Das aktive wird aus diesem geschnitten
+
+layers-heading = Ebenen
+layers-add = Ebene hinzufügen
+    .tip = Striche gehen auf die neue Ebene
+layers-name = Ebene { $number }
+layers-base = Basis
+    .tip = Striche liegen unter allen Ebenen
+layers-unseen = Die aktive Ebene ist verborgen oder ihre Intensität 0: Striche wären nicht zu sehen
+layers-topology = Die dynamische Topologie ruht, solange das Objekt Ebenen hat; dafür müssen sie eingerechnet werden
+layers-eye = Auge
+    .tip = Sichtbar
+layers-up = Höher
+    .tip = Über die nächste Ebene
+layers-down = Tiefer
+    .tip = Unter die nächste Ebene
+layers-merge = Nach unten vereinen
+    .tip = Fügt sie der Ebene darunter oder der Basis hinzu. Beide müssen sichtbar sein
+layers-duplicate = Ebene duplizieren
+    .tip = Ein verborgener Zwilling darüber
+layers-clear = Ebene leeren
+    .tip = Nimmt weg, was sie bewirkt
+layers-remove = Ebene entfernen
+    .tip = Entfernt sie mit dem, was sie bewirkt
+layers-rename = Ebene umbenennen
+layers-bake = Ebenen einrechnen
+    .tip = Die Fläche, wie sie ist, wird zur Basis
 
 levels-heading = Stufen
 levels-at = Stufe { $at } von { $all }, { $count } Dreiecke
@@ -856,6 +884,7 @@ task-snapped = Die Flächen liegen aneinander
 task-trimmed = Zugeschnitten
 task-level = Stufe { $at } von { $all }
 task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $change } %
+task-layers-baked = In die neue Fläche eingerechnete Ebenen: { $count }
 task-preferences-unreadable = { $path }: { $error }; sie liegt jetzt als { $aside }
 task-preferences-stuck = { $path }: { $error }; sie lässt sich nicht beiseitelegen: { $why }
 task-preferences-unread = { $path }: die Einstellungen lassen sich nicht lesen: { $error }

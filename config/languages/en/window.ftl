@@ -122,6 +122,8 @@ kind-surface-smooth = Surface smooth
     .about = Evens the surface and keeps its volume (Taubin 1995).
 kind-boundary = Boundary
     .about = The border of an open surface follows the pen, and the surface behind it.
+kind-erase-layer = Erase layer
+    .about = Takes away what the active layer does; the surface goes back to what is below it.
 
 ## Numbers of single brushes
 
@@ -420,6 +422,32 @@ operation-difference = Difference
     .tip = This object is cut out of the active one
 operation-reverse-difference = Reverse difference
     .tip = The active one is cut out of this one
+
+layers-heading = Layers
+layers-add = Add layer
+    .tip = Strokes go to the new layer
+layers-name = layer { $number }
+layers-base = base
+    .tip = Strokes lie below all layers
+layers-unseen = The active layer is hidden or its intensity is 0: strokes would not be seen
+layers-topology = Dynamic topology rests while the object has layers; bake them to use it
+layers-eye = eye
+    .tip = Seen
+layers-up = Up
+    .tip = Above the next layer
+layers-down = Down
+    .tip = Below the next layer
+layers-merge = Merge down
+    .tip = Adds it to the layer below, or to the base. Both must be seen
+layers-duplicate = Duplicate layer
+    .tip = A hidden twin above it
+layers-clear = Clear layer
+    .tip = Takes away what it does
+layers-remove = Remove layer
+    .tip = Removes it with what it does
+layers-rename = Rename layer
+layers-bake = Bake layers
+    .tip = The surface as it is becomes the base
 
 levels-heading = Levels
 levels-at = level { $at } of { $all }, { $count } triangles
@@ -858,6 +886,7 @@ task-snapped = The faces lie on each other
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %
+task-layers-baked = Layers baked into the new surface: { $count }
 task-preferences-unreadable = { $path }: { $error }; it is kept as { $aside }
 task-preferences-stuck = { $path }: { $error }; it cannot be set aside: { $why }
 task-preferences-unread = { $path }: the preferences cannot be read: { $error }

@@ -120,6 +120,8 @@ kind-surface-smooth = Liscia superficie
     .about = Uniforma la superficie e ne conserva il volume (Taubin 1995).
 kind-boundary = Bordo
     .about = Il bordo di una superficie aperta segue la penna, e con esso la superficie dietro.
+kind-erase-layer = Cancella livello
+    .about = Toglie ciò che fa il livello attivo; la superficie torna a ciò che sta sotto.
 
 ## Numbers of single brushes
 
@@ -418,6 +420,32 @@ operation-difference = Differenza
     .tip = Questo oggetto viene tagliato da quello attivo
 operation-reverse-difference = Differenza inversa
     .tip = Quello attivo viene tagliato da questo
+
+layers-heading = Livelli di scultura
+layers-add = Aggiungi livello
+    .tip = I tratti vanno sul nuovo livello
+layers-name = livello { $number }
+layers-base = base
+    .tip = I tratti restano sotto tutti i livelli
+layers-unseen = Il livello attivo è nascosto o la sua intensità è 0: i tratti non si vedrebbero
+layers-topology = La topologia dinamica riposa finché l'oggetto ha livelli; consolidali per usarla
+layers-eye = vedi
+    .tip = Visibile
+layers-up = Su
+    .tip = Sopra il livello successivo
+layers-down = Giù
+    .tip = Sotto il livello successivo
+layers-merge = Unisci in basso
+    .tip = Lo aggiunge al livello sottostante, o alla base. Entrambi devono essere visibili
+layers-duplicate = Duplica livello
+    .tip = Un gemello nascosto sopra di esso
+layers-clear = Svuota livello
+    .tip = Toglie ciò che fa
+layers-remove = Rimuovi livello
+    .tip = Lo rimuove con ciò che fa
+layers-rename = Rinomina livello
+layers-bake = Consolida livelli
+    .tip = La superficie com'è diventa la base
 
 levels-heading = Livelli
 levels-at = livello { $at } di { $all }, { $count } triangoli
@@ -856,6 +884,7 @@ task-snapped = Le facce combaciano
 task-trimmed = Tagliato
 task-level = Livello { $at } di { $all }
 task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $change } %
+task-layers-baked = Livelli consolidati nella nuova superficie: { $count }
 task-preferences-unreadable = { $path }: { $error }; è conservato come { $aside }
 task-preferences-stuck = { $path }: { $error }; non si può mettere da parte: { $why }
 task-preferences-unread = { $path }: le preferenze non si possono leggere: { $error }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::in_hand::{ObjectsInHand, SavedHolding};
+use super::people::People;
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::Jump;
@@ -142,17 +143,20 @@ impl SavedScene {
     }
 
     /// What stands behind the rest of a state; `None` where nothing does.
-    fn read(bytes: &[u8]) -> Result<(Option<SavedScene>, SavedHolding), BadState> {
+    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People, SavedHolding)>, BadState> {
         if bytes.is_empty() {
-            return Ok((None, SavedHolding::default()));
+            return Ok(None);
         }
         let (scene, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
-        // What hands carry stands behind the list, where they carry something.
+        if rest.is_empty() {
+            return Ok(Some((scene, People::default(), SavedHolding::default())));
+        }
+        let (people, rest) = postcard::take_from_bytes(rest).map_err(|_| BadState)?;
         let holding = match rest {
             [] => SavedHolding::default(),
             rest => postcard::from_bytes(rest).map_err(|_| BadState)?,
         };
-        Ok((Some(scene), holding))
+        Ok(Some((scene, people, holding)))
     }
 
     fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
@@ -174,7 +178,7 @@ impl Saved {
     pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
         let (_, rest): (Core, _) =
             take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
-        Ok(SavedScene::read(rest)?.0)
+        Ok(SavedScene::read(rest)?.map(|(scene, ..)| scene))
     }
 }
 
@@ -327,9 +331,13 @@ impl World {
             kept_brushes: &self.kept_brushes,
         };
         let mut core = postcard::to_stdvec(&core).ok()?;
-        let holding = self.in_hand.saved();
-        if !self.scene.is_plain() || holding.picking {
+        let (alone, holding) = (self.people.is_nobody(), self.in_hand.saved());
+        if !self.scene.is_plain() || !alone || holding.picking {
             core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
+        }
+        if !alone || holding.picking {
+            // Behind the list of objects; a world of one person has nothing there.
+            core = postcard::to_extend(&self.people, core).ok()?;
         }
         if holding.picking {
             core = postcard::to_extend(&holding, core).ok()?;
@@ -363,7 +371,10 @@ impl World {
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        let (list, holding) = SavedScene::read(rest)?;
+        let (list, people, holding) = match SavedScene::read(rest)? {
+            Some((list, people, holding)) => (Some(list), people, holding),
+            None => Default::default(),
+        };
         let mut clays = clays.into_iter();
         let mut scene = match list {
             None => {
@@ -391,6 +402,7 @@ impl World {
         world.lineages = core.lineages;
         world.desktop = core.desktop;
         world.kept_brushes = Arc::new(core.kept_brushes);
+        world.people = people;
         Ok(world)
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{StepReport, World};
+use super::{StepReport, World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::{Command, Jump, SceneJump};
 use crate::hand::{HandTools, HeldObject, Pose, Volume};
@@ -30,6 +30,11 @@ impl World {
     /// that steps this world.
     pub fn warm(&self) {
         self.workers.warm();
+    }
+
+    /// What is fixed for the life of this world.
+    pub fn options(&self) -> &WorldOptions {
+        &self.options
     }
 
     /// The tick of the last step.
@@ -136,17 +141,20 @@ impl World {
 
     /// Where each pen is, over the view, while in range.
     pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
-        self.pens.iter().filter_map(|s| s.track.seen.map(|at| (s.device, at)))
+        let shown = self.pens.iter().filter(|s| self.is_shown(s.device));
+        shown.filter_map(|s| s.track.seen.map(|at| (s.device, at)))
     }
 
     /// Where on its own tablet each pen is while in range: shares of the tablet's area.
     pub fn tablets(&self) -> impl Iterator<Item = (DeviceId, glam::Vec2)> + '_ {
-        self.pens.iter().filter_map(|s| s.track.on_tablet.map(|at| (s.device, at)))
+        let shown = self.pens.iter().filter(|s| self.is_shown(s.device));
+        shown.filter_map(|s| s.track.on_tablet.map(|at| (s.device, at)))
     }
 
     /// The curve that a pen has laid and not drawn yet; of several, the first pen's.
     pub fn curve_stroke(&self) -> Option<&CurveStroke> {
-        self.pens.iter().map(|s| s.track.curve_stroke()).find(|d| !d.is_empty())
+        let shown = self.pens.iter().filter(|s| self.is_shown(s.device));
+        shown.map(|s| s.track.curve_stroke()).find(|d| !d.is_empty())
     }
 
     /// What the hands hold, and where.

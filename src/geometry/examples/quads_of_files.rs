@@ -4,12 +4,13 @@
 //!
 //! The first number is how many quads, the second the angle of creases in degrees (0: none). With
 //! `QUADS_OUT=DIR` the meshes are written there.
+#![allow(clippy::print_stdout)] // An example tells what it did.
 
 use std::path::{Path, PathBuf};
 
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::quads::{QuadSettings, figures, quad_remesh};
+use sculptd_geometry::quads::{QuadSettings, metrics, quad_remesh};
 use sculptd_geometry::{check, repair};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 continue;
             }
         };
-        let f = figures(&made, &mesh, &job)?;
+        let f = metrics(&made, &mesh, &job)?;
         let r = check::report(&made, true, &job)?;
         let size = (r.bounds.max - r.bounds.min).length();
         println!(

@@ -2,6 +2,7 @@
 //! vertices is left (Jakob et al., "Instant Field-Aligned Meshes", 2015, section 3.3).
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::surface::EditSurface;
 
@@ -21,6 +22,9 @@ pub(super) struct FieldLevel {
     pub along: Vec<DVec3>,
     /// Whether the lattice has to pass through the vertex: across `along`, or both ways.
     pub hold: Vec<FieldHold>,
+    /// The vertices by colour: no two of a colour are neighbours, so that they can be updated at
+    /// the same time.
+    pub colours: Vec<Vec<u32>>,
 }
 
 /// What a vertex asks of the position field.
@@ -71,6 +75,41 @@ impl FieldLevel {
             level.hold.push(hold);
         }
         level
+    }
+
+    /// Computes `new(vertex)` colour by colour, in parallel within one, and puts it into `values`.
+    pub fn update<T: Copy + Send + Sync>(
+        &self,
+        values: &mut [T],
+        new: impl Fn(usize, &[T]) -> T + Sync,
+    ) {
+        for colour in &self.colours {
+            let made: Vec<T> =
+                colour.par_iter().with_min_len(256).map(|&v| new(v as usize, values)).collect();
+            for (&v, made) in colour.iter().zip(made) {
+                values[v as usize] = made;
+            }
+        }
+    }
+
+    /// Gives each vertex the first colour that no neighbour has.
+    fn paint(&mut self) {
+        let n = self.positions.len();
+        let mut own = vec![u8::MAX; n];
+        for v in 0..n {
+            let mut taken = 0u128;
+            for &(w, _) in self.links(v) {
+                if own[w as usize] < 127 {
+                    taken |= 1 << own[w as usize];
+                }
+            }
+            own[v] = taken.trailing_ones().min(127) as u8;
+            let colour = own[v] as usize;
+            while self.colours.len() <= colour {
+                self.colours.push(Vec::new());
+            }
+            self.colours[colour].push(v as u32);
+        }
     }
 
     /// Merges pairs of neighbours that face alike, and notes in `self` which went where.
@@ -140,7 +179,8 @@ impl FieldLevel {
 }
 
 /// The finest level first.
-pub(super) fn levels(finest: FieldLevel) -> Vec<FieldLevel> {
+pub(super) fn levels(mut finest: FieldLevel) -> Vec<FieldLevel> {
+    finest.paint();
     let mut all = vec![finest];
     loop {
         let last = all.len() - 1;
@@ -148,11 +188,12 @@ pub(super) fn levels(finest: FieldLevel) -> Vec<FieldLevel> {
         if n <= COARSEST {
             return all;
         }
-        let next = all[last].coarser();
+        let mut next = all[last].coarser();
         if next.positions.len() == n {
             all[last].parent.clear();
             return all;
         }
+        next.paint();
         all.push(next);
     }
 }

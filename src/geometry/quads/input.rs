@@ -4,10 +4,9 @@
 use glam::DVec3;
 
 use super::surface::EditSurface;
-use super::{QuadError, QuadSettings};
+use super::{QuadError, QuadSettings, creases};
 use crate::edges::EdgeTable;
 use crate::job::Job;
-use crate::portable::PortableMath;
 use crate::{PolyMesh, TriMesh, repair};
 
 /// The surface to be remeshed, its frame and its lines.
@@ -23,9 +22,6 @@ pub(super) struct QuadInput {
     /// What was changed to make a manifold of the input.
     pub warnings: Vec<String>,
 }
-
-/// Lines that turn by more than this cosine end at the turn: 50 degrees.
-const TURN: f64 = 0.642_787_609_686_539_3;
 
 pub(super) fn prepare(
     mesh: &PolyMesh,
@@ -91,7 +87,7 @@ pub(super) fn prepare(
         colours: None,
     };
     let mut surface = EditSurface::new(positions, triangles);
-    find_lines(&mut surface, settings.creases);
+    creases::find_lines(&mut surface, settings.creases);
     let line_mesh = line_mesh(&surface);
     Ok(QuadInput { surface, centre, unit: size * side, mesh, line_mesh, warnings })
 }
@@ -157,24 +153,6 @@ fn split_fans(positions: &mut Vec<DVec3>, triangles: &mut [[u32; 3]]) -> usize {
         }
     }
     positions.len() - before
-}
-
-/// Marks the border, and the edges whose faces turn by more than `creases` degrees.
-fn find_lines(surface: &mut EditSurface, creases: Option<f64>) {
-    let limit = creases.map(|degrees| degrees.clamp(0.0, 180.0).to_radians().portable_cos());
-    for (a, b) in surface.edges() {
-        let [s, t] = surface.sides(a, b);
-        let line = t == super::surface::GONE
-            || limit.is_some_and(|limit| {
-                let m = surface.normal(s).normalize_or_zero();
-                let n = surface.normal(t).normalize_or_zero();
-                m != DVec3::ZERO && n != DVec3::ZERO && m.dot(n) < limit
-            });
-        if line {
-            surface.add_line(a, b);
-        }
-    }
-    surface.pin_corners(TURN);
 }
 
 fn line_mesh(surface: &EditSurface) -> TriMesh {

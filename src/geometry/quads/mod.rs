@@ -11,8 +11,8 @@
 //!    than the greedy extraction of the paper this keeps a closed manifold closed and manifold,
 //!    with the same genus, whatever the fields say.
 //! 5. [`pairing`]: triangles are joined to quads by a maximum matching.
-//! 6. [`cleanup`], [`smooth`]: irregular vertices are removed, quads are made square, vertices lie
-//!    on the input surface.
+//! 6. [`cleanup`], [`smooth`], [`reach`]: irregular vertices are removed, quads are made square,
+//!    vertices lie on the input surface and on its tips.
 //!
 //! Guaranteed: closed input gives a closed manifold of the same genus; creases and borders are
 //! chains of edges of the result and their corners stay; the same bits with any number of threads.
@@ -20,16 +20,18 @@
 //! and freedom from self-intersections where the surface is thinner than a quad.
 
 mod cleanup;
+mod creases;
 mod even;
-mod figures;
 mod guides;
 mod hierarchy;
 mod input;
 mod lattice;
+mod metrics;
 mod orientation;
 mod pairing;
 mod position;
 mod quad_surface;
+mod reach;
 mod smooth;
 mod surface;
 mod target;
@@ -38,10 +40,10 @@ mod tests;
 
 use glam::DVec3;
 
-pub use figures::{QuadFigures, figures};
+pub use metrics::{QuadMetrics, metrics};
 
-use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
+use crate::{PolyMesh, TriMesh};
 use hierarchy::FieldLevel;
 use input::QuadInput;
 use quad_surface::{QuadSurface, corners};
@@ -129,7 +131,7 @@ pub fn quad_remesh(
     let mut step = 1.0;
     let mut best: Option<(f64, QuadSurface)> = None;
     for round in 0..SIZES {
-        let made = at_step(&fine, &levels, &field, &target, step, job)?;
+        let made = at_step(&fine, &levels, &field, &target, &input.mesh, step, job)?;
         let found = made.faces.iter().filter(|f| f[0] != surface::GONE).count();
         let ratio = found as f64 / settings.quads as f64;
         let off = (ratio - 1.0).abs();
@@ -153,6 +155,7 @@ fn at_step(
     levels: &[FieldLevel],
     field: &[DVec3],
     target: &ProjectionTarget,
+    input: &TriMesh,
     step: f64,
     job: &Job,
 ) -> Result<QuadSurface, Cancelled> {
@@ -175,6 +178,10 @@ fn at_step(
     if cleanup::cut_folded(&mut quads) > 0 {
         smooth::smooth(&mut quads, target, step, 4, job)?;
     }
+    // What was pulled out stays while the others follow.
+    let pulled = reach::reach_out(&mut quads, input, step, job)?;
+    pulled.iter().for_each(|&v| quads.pinned[v as usize] = true);
+    smooth::smooth(&mut quads, target, step, 3, job)?;
     Ok(quads)
 }
 

@@ -10,7 +10,7 @@ use super::hierarchy::FieldLevel;
 use crate::job::{Cancelled, Job};
 
 /// Gauss-Seidel rounds a level.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 6;
 
 /// Of the directions of two crosses, the pair that differs least: (of the first, of the second).
 pub(super) fn closest_pair(q: DVec3, n: DVec3, r: DVec3, m: DVec3) -> (DVec3, DVec3) {
@@ -57,9 +57,9 @@ pub(super) fn orientations(levels: &[FieldLevel], job: &Job) -> Result<Vec<DVec3
 }
 
 fn smooth(level: &FieldLevel, field: &mut [DVec3]) {
-    for v in 0..field.len() {
+    level.update(field, |v, field| {
         if level.along[v] != DVec3::ZERO {
-            continue;
+            return field[v];
         }
         let n = level.normals[v];
         let (mut sum, mut weights) = (field[v], 0.0);
@@ -69,6 +69,6 @@ fn smooth(level: &FieldLevel, field: &mut [DVec3]) {
             sum = (mean - n * n.dot(mean)).try_normalize().unwrap_or(sum);
             weights += weight;
         }
-        field[v] = sum;
-    }
+        sum
+    });
 }

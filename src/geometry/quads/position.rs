@@ -10,7 +10,7 @@ use super::hierarchy::{FieldHold, FieldLevel};
 use crate::job::{Cancelled, Job};
 
 /// Gauss-Seidel rounds a level.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 6;
 
 /// The lattice of one vertex.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +43,12 @@ impl LatticeFrame {
     }
 }
 
+/// The greatest whole number that is not above `x`, whose size is that of a mesh in quads.
+fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    whole - f64::from(u8::from(whole > x))
+}
+
 /// A point near both tangent planes and both vertices.
 fn middle(a: &LatticeFrame, b: &LatticeFrame) -> DVec3 {
     let (p, n, q, m) = (a.at, a.normal, b.at, b.normal);
@@ -60,8 +66,8 @@ pub(super) fn closest_points(
     step: f64,
 ) -> ([f64; 2], [f64; 2]) {
     let m = middle(a, b);
-    let i = a.coordinates(m, step).map(f64::floor);
-    let j = b.coordinates(m, step).map(f64::floor);
+    let i = a.coordinates(m, step).map(floor);
+    let j = b.coordinates(m, step).map(floor);
     let corner = |f: &LatticeFrame, base: [f64; 2], k: usize| {
         let index = [base[0] + (k & 1) as f64, base[1] + (k >> 1) as f64];
         (f.place(index, step), index)
@@ -141,11 +147,11 @@ pub(super) fn positions(
 }
 
 fn smooth(level: &FieldLevel, frames: &mut [LatticeFrame], step: f64) {
-    for v in 0..frames.len() {
+    level.update(frames, |v, frames| {
         let mut own = frames[v];
         if level.hold[v] == FieldHold::Point {
-            frames[v].origin = own.at;
-            continue;
+            own.origin = own.at;
+            return own;
         }
         let mut weights = 0.0;
         for &(w, weight) in level.links(v) {
@@ -162,6 +168,6 @@ fn smooth(level: &FieldLevel, frames: &mut [LatticeFrame], step: f64) {
             own.origin += d - own.along * own.along.dot(d);
         }
         own.origin = own.rounded(step);
-        frames[v].origin = own.origin;
-    }
+        own
+    });
 }

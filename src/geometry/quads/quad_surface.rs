@@ -204,7 +204,7 @@ impl QuadSurface {
         self.put_face(g, two);
     }
 
-    /// Cuts quad `f` along its shorter diagonal that leaves both triangles upright, if there is one.
+    /// Cuts quad `f` along the diagonal that leaves both triangles the most upright.
     pub fn cut_quad(&mut self, f: u32) {
         let face = self.faces[f as usize];
         let p = face.map(|v| self.positions[v as usize]);

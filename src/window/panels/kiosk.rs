@@ -6,7 +6,8 @@ use std::sync::atomic::Ordering::Relaxed;
 use egui::{Align2, Area, Button, Id, RichText, vec2};
 
 use super::state::{KioskPad, UiRequest, UiState, View};
-use super::theme;
+use super::{fonts, theme};
+use crate::language::ENGLISH;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::Screen;
 use sculptd_daemon::kiosk::{Language, Stage};
@@ -31,6 +32,12 @@ pub fn ui(
         theme::apply(&ctx, ui_state.prefs.light);
         ui_state.applied = Some((ui_state.prefs.light, 100));
     }
+    // The menu of the hands speaks the language of the screen, where the window has it.
+    let chosen = screen.words.get(ui_state.pad.language).or(screen.words.first());
+    let all = view.translations.all();
+    let spoken = chosen.and_then(|words| all.iter().find(|t| t.names().0 == words.name));
+    ui_state.prefs.language = spoken.map_or(ENGLISH, |t| t.code()).to_owned();
+    fonts::speak(&ctx, view.translations, ui_state);
     let Some(now) = screen.desk.view.lock().ok().and_then(|v| *v) else { return };
     let pad = &mut ui_state.pad;
     if pad.visits != now.visits {

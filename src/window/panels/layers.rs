@@ -4,8 +4,10 @@
 //! While an intensity is dragged, each value is sent as it comes, so that the surface follows; all
 //! of them are one step of undo.
 
+use super::rows;
 use super::state::{LayerPanel, UiRequest, UiState, View};
 use super::theme;
+use crate::language::tr;
 use sculptd_clay::brush::Measure;
 use sculptd_clay::layers::{Layer, MAX_INTENSITY, MAX_LAYERS};
 use sculptd_clay::{LayerEdit, LayerStack};
@@ -20,12 +22,12 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let none = LayerStack::default();
     let stack = view.state.mesh.layers().map_or(&none, |s| s);
     let locked = view.state.scene.active().is_some_and(|o| o.settings.locked);
-    ui.horizontal(|ui| {
-        ui.strong("Layers");
+    rows::flow(ui, |ui| {
+        ui.strong(tr!("layers-heading"));
         let room = !locked && stack.layers.len() < MAX_LAYERS;
-        let add = ui.add_enabled(room, egui::Button::new("Add layer"));
-        if add.on_hover_text("Strokes go to the new layer").clicked() {
-            ask(out, LayerEdit::Add(format!("layer {}", stack.next + 1)));
+        let add = ui.add_enabled(room, egui::Button::new(tr!("layers-add")));
+        if add.on_hover_text(tr!("layers-add.tip")).clicked() {
+            ask(out, LayerEdit::Add(tr!("layers-name", number = stack.next + 1)));
         }
     });
     if stack.layers.is_empty() {
@@ -36,8 +38,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         for layer in stack.layers.iter().rev() {
             row(ui, layer, stack, &mut ui_state.layers, out);
         }
-        let base = egui::Button::selectable(stack.active.is_none(), "base");
-        if ui.add(base).on_hover_text("Strokes lie below all layers").clicked() {
+        let base = egui::Button::selectable(stack.active.is_none(), tr!("layers-base"));
+        if ui.add(base).on_hover_text(tr!("layers-base.tip")).clicked() {
             ask(out, LayerEdit::Activate(None));
         }
         match stack.active() {
@@ -46,12 +48,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         }
     });
     if !stack.takes_strokes() {
-        let text = "The active layer is hidden or its intensity is 0: strokes would not be seen";
-        ui.colored_label(theme::quiet(ui), text);
+        ui.colored_label(theme::quiet(ui), tr!("layers-unseen"));
     }
     if view.state.brush.topology.by != Measure::Off {
-        let text = "Dynamic topology rests while the object has layers; bake them to use it";
-        ui.colored_label(theme::quiet(ui), text);
+        ui.colored_label(theme::quiet(ui), tr!("layers-topology"));
     }
     ui.separator();
 }
@@ -64,8 +64,9 @@ fn row(
     out: &mut Vec<UiRequest>,
 ) {
     let id = layer.id;
-    ui.horizontal(|ui| {
-        let eye = ui.selectable_label(layer.visible, "eye").on_hover_text("Seen");
+    let named = ui.horizontal(|ui| {
+        let eye = ui.selectable_label(layer.visible, tr!("layers-eye"));
+        let eye = eye.on_hover_text(tr!("layers-eye.tip"));
         if eye.clicked() {
             let visible = Some(!layer.visible);
             ask(out, LayerEdit::Set { id, intensity: None, visible, live: false });
@@ -78,7 +79,7 @@ fn row(
             } else {
                 field.request_focus();
             }
-            return;
+            return None;
         }
         let active = stack.active == Some(id);
         let name = ui.add(egui::Button::selectable(active, &layer.name).truncate());
@@ -87,10 +88,14 @@ fn row(
         } else if name.clicked() && !active {
             ask(out, LayerEdit::Activate(Some(id)));
         }
+        Some(name.id)
     });
     let mut shown = panel.dragged.filter(|d| d.0 == id).map_or(layer.intensity, |d| d.1);
     let slider = egui::Slider::new(&mut shown, -MAX_INTENSITY..=MAX_INTENSITY).fixed_decimals(2);
-    let slider = ui.push_id(id.0, |ui| ui.add(slider)).inner;
+    let mut slider = ui.push_id(id.0, |ui| ui.add(slider)).inner;
+    if let Some(name) = named.inner {
+        slider = slider.labelled_by(name);
+    }
     let set = |live| LayerEdit::Set { id, intensity: Some(shown), visible: None, live };
     if slider.drag_stopped() {
         panel.dragged = None;
@@ -112,27 +117,27 @@ fn buttons(
     let id = active.id;
     let Some(place) = stack.index_of(id) else { return };
     let below = place.checked_sub(1).map(|below| &stack.layers[below]);
-    ui.horizontal_wrapped(|ui| {
-        let mut button = |ui: &mut egui::Ui, can: bool, name: &str, tip: &str, edit| {
-            if ui.add_enabled(can, egui::Button::new(name)).on_hover_text(tip).clicked() {
+    rows::flow(ui, |ui| {
+        // By the message of its name, whose attribute `tip` says what it does.
+        let mut button = |ui: &mut egui::Ui, can: bool, name: &str, edit| {
+            let button = ui.add_enabled(can, egui::Button::new(tr!(name)));
+            if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
                 ask(out, edit);
             }
         };
         let highest = place + 1 == stack.layers.len();
         let to = |place: usize| LayerEdit::Move(id, place as u32);
-        button(ui, !highest, "Up", "Above the next layer", to(place + 1));
-        button(ui, place > 0, "Down", "Below the next layer", to(place.saturating_sub(1)));
+        button(ui, !highest, "layers-up", to(place + 1));
+        button(ui, place > 0, "layers-down", to(place.saturating_sub(1)));
         let seen = active.visible && below.is_none_or(|l| l.visible);
-        let tip = "Adds it to the layer below, or to the base. Both must be seen";
-        button(ui, seen, "Merge down", tip, LayerEdit::MergeDown(id));
+        button(ui, seen, "layers-merge", LayerEdit::MergeDown(id));
         let room = stack.layers.len() < MAX_LAYERS;
-        let tip = "A hidden twin above it";
-        button(ui, room, "Duplicate layer", tip, LayerEdit::Duplicate(id));
-        button(ui, true, "Clear layer", "Takes away what it does", LayerEdit::Clear(id));
-        button(ui, true, "Remove layer", "Removes it with what it does", LayerEdit::Remove(id));
+        button(ui, room, "layers-duplicate", LayerEdit::Duplicate(id));
+        button(ui, true, "layers-clear", LayerEdit::Clear(id));
+        button(ui, true, "layers-remove", LayerEdit::Remove(id));
     });
-    ui.horizontal(|ui| {
-        if ui.button("Rename layer").clicked() {
+    rows::flow(ui, |ui| {
+        if ui.button(tr!("layers-rename")).clicked() {
             panel.renaming = Some((id, active.name.clone()));
         }
         bake(ui, out);
@@ -140,8 +145,8 @@ fn buttons(
 }
 
 fn bake(ui: &mut egui::Ui, out: &mut Vec<UiRequest>) {
-    let button = ui.button("Bake layers");
-    if button.on_hover_text("The surface as it is becomes the base").clicked() {
+    let button = ui.button(tr!("layers-bake"));
+    if button.on_hover_text(tr!("layers-bake.tip")).clicked() {
         ask(out, LayerEdit::Bake);
     }
 }

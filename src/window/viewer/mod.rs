@@ -39,6 +39,7 @@ mod tablet_map;
 mod tablets;
 mod task_texts;
 pub mod tasks;
+mod thickness_task;
 pub mod timelapse;
 mod turntable;
 mod version_pictures;

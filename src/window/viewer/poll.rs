@@ -4,6 +4,7 @@
 use super::state::WindowState;
 use super::tasks::TaskReport;
 use super::wiring::Wiring;
+use crate::language::tr;
 use crate::look::Map;
 use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
 use sculptd_daemon::Published;
@@ -42,7 +43,7 @@ impl WindowState {
         self.follow_tablets(&state, wiring);
         let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
         if let Some(count) = self.ui_state.layers.baked(&state) {
-            self.ui_state.say(format!("Layers baked into the new surface: {count}"), false);
+            self.ui_state.say(tr!("task-layers-baked", count = count), false);
         }
         changed |= self.drawn_demo != (now < wiring.demo_until_us);
         changed |= self.asked_camera.is_some()

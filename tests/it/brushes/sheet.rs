@@ -4,8 +4,10 @@
 use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
+use sculptd_clay::LayerEdit;
 use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings, Falloff, Grip};
 use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::picture::{Camera, Picture, draw};
 
@@ -77,6 +79,16 @@ fn cell(kind: BrushKind) -> Picture {
         studio.stroke(&stroke());
         studio.tell(Command::Brush(BrushSettings { radius: 0.3, strength: 1.0, ..brush }));
         for _ in 0..6 {
+            studio.stroke(&stroke()[15..]);
+        }
+    } else if kind == BrushKind::EraseLayer {
+        // Half of a stroke on a layer is erased.
+        let add = SceneCommand::Layers(LayerEdit::Add("layer".into()));
+        studio.tell(Command::Scene(add));
+        studio.tell(Command::Brush(sculptd::presets().of(BrushKind::Draw)));
+        studio.stroke(&stroke());
+        studio.tell(Command::Brush(BrushSettings { radius: 0.2, strength: 1.0, ..brush }));
+        for _ in 0..2 {
             studio.stroke(&stroke()[15..]);
         }
     } else if kind.grip() == Grip::Surface {

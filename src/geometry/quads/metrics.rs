@@ -12,7 +12,7 @@ use crate::{CentredMesh, TriMesh};
 
 /// The figures of a quad mesh, and of how far it is from the surface that it was made of.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct QuadFigures {
+pub struct QuadMetrics {
     /// Faces of four corners.
     pub quads: usize,
     /// Faces of three corners.
@@ -33,8 +33,8 @@ pub struct QuadFigures {
 }
 
 /// The figures of `made`, which was made of `from`.
-pub fn figures(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadFigures, Cancelled> {
-    let mut out = QuadFigures {
+pub fn metrics(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadMetrics, Cancelled> {
+    let mut out = QuadMetrics {
         quads: 0,
         triangles: 0,
         other: 0,

@@ -1,0 +1,174 @@
+//! `sculptd run --host NAME` and `--join NAME`: one sculpture, several daemons (feature `network`).
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::Fail;
+use sculptd_daemon::config::Config;
+use sculptd_daemon::shared_input::SharedInput;
+use sculptd_daemon::startup::Begun;
+use sculptd_devices::Clock;
+use sculptd_network::keyring::{Entropy, Invitation, Keyring};
+use sculptd_network::live::{Shared, SharedError, SharedSettings, Told};
+use sculptd_network::random::system_entropy;
+use sculptd_network::station::{Identity, Station};
+use sculptd_network::wire::frame::Role;
+use sculptd_network::zenoh_link::{Endpoints, ZenohLink, sculpture_name};
+
+/// A first world comes by then, or nobody hosts.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct SharedArgs {
+    /// Share this sculpture under a name: others join with an invitation from the folder --keys.
+    #[arg(long, value_name = "NAME", value_parser = sculpture_name,
+        conflicts_with_all = ["join", "kiosk"])]
+    pub host: Option<String>,
+    /// Join the sculpture of this name, with the invitation --key.
+    #[arg(long, value_name = "NAME", value_parser = sculpture_name, requires = "key",
+        conflicts_with_all = ["mesh", "session", "kiosk"])]
+    pub join: Option<String>,
+    /// The folder of a host's invitations, a file each; one for each role is made where there is
+    /// none. Without it, `invitations/NAME` in the user's data folder.
+    #[arg(long, value_name = "FOLDER", requires = "host")]
+    pub keys: Option<PathBuf>,
+    /// The invitation to join with: a file that the host's person gave.
+    #[arg(long, value_name = "FILE", requires = "join")]
+    pub key: Option<PathBuf>,
+    /// As what to join: a sculptor; a viewer, who does nothing; a device, whose samples go to the
+    /// others, and which shows nothing of theirs.
+    #[arg(long, value_enum, value_name = "ROLE", default_value_t, requires = "join")]
+    pub role: JoinRole,
+    /// What the others call you; without it, the name of your account.
+    #[arg(long = "as", value_name = "NAME")]
+    pub person: Option<String>,
+    /// Where to listen for others, as tcp/0.0.0.0:7447. May be repeated; without it, any port.
+    #[arg(long, value_name = "ENDPOINT")]
+    pub listen: Vec<String>,
+    /// Whom to connect to, as tcp/studio.local:7447. May be repeated; without it, others are looked
+    /// for on the local network.
+    #[arg(long, value_name = "ENDPOINT")]
+    pub connect: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum JoinRole {
+    #[default]
+    Sculptor,
+    Viewer,
+    Device,
+}
+
+impl SharedArgs {
+    /// Whether anything is shared.
+    pub fn is_on(&self) -> bool {
+        self.host.is_some() || self.join.is_some()
+    }
+
+    fn link(&self, name: &str) -> Result<ZenohLink, Fail> {
+        let multicast = self.connect.is_empty();
+        let (listen, connect) = (self.listen.clone(), self.connect.clone());
+        let endpoints = Endpoints { listen, connect, multicast };
+        ZenohLink::open(name, &endpoints).map_err(|e| Fail::Usage(format!("the network: {e}")))
+    }
+
+    fn identity(&self, role: Role, invitation: Invitation, entropy: Entropy) -> Identity {
+        let account = ["USER", "LOGNAME", "USERNAME"].iter().find_map(|k| std::env::var(k).ok());
+        let name = self.person.clone().or(account).unwrap_or_else(|| "somebody".into());
+        Identity { name, role, invitation, entropy }
+    }
+
+    /// Hosts the world that a run has begun.
+    pub fn host(&self, begun: &Begun, config: &Config) -> Result<Box<dyn SharedInput>, Fail> {
+        let name = self.host.as_deref().unwrap_or_default();
+        let folder = self.keys.clone().unwrap_or_else(|| data_folder("invitations").join(name));
+        let mut entropy = system_entropy();
+        let (keyring, made) =
+            Keyring::of_folder(&folder, &mut entropy).map_err(|e| Fail::Config(e.to_string()))?;
+        let own = keyring.0.iter().find(|i| i.role == Role::Sculptor).cloned();
+        let own = own.ok_or_else(|| {
+            let text = format!("{}: no invitation is for a sculptor", folder.display());
+            Fail::Config(text)
+        })?;
+        if made {
+            eprintln!("sculptd: invitations were made in {}", folder.display());
+        }
+        eprintln!(
+            "sculptd: '{name}' is shared; others join with: sculptd run --join {name} --key {}",
+            folder.join("sculptor.key").display()
+        );
+        let clock = Clock::monotonic();
+        let (rate, tick) = (config.r#loop.rate_hz, begun.world.tick());
+        let identity = self.identity(Role::Sculptor, own, entropy);
+        let station = Station::host(identity, keyring, rate, tick, clock.now_us());
+        let shared =
+            Shared::start(station, Box::new(self.link(name)?), clock, settings(config, name));
+        let shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
+        tell(&shared)?;
+        Ok(Box::new(shared.link))
+    }
+
+    /// Joins, and waits for the world of the others; the host's rate becomes that of the own loop.
+    /// `alone` begins the world of a device, which is shown nothing.
+    pub fn join(
+        &self,
+        config: &mut Config,
+        alone: impl FnOnce(&Config) -> Result<Begun, Fail>,
+    ) -> Result<(Begun, Box<dyn SharedInput>), Fail> {
+        let name = self.join.as_deref().unwrap_or_default();
+        let key = self.key.as_deref().unwrap_or(Path::new(""));
+        let invitation = Invitation::read(key).map_err(|e| Fail::Config(e.to_string()))?;
+        let role = match self.role {
+            JoinRole::Sculptor => Role::Sculptor,
+            JoinRole::Viewer => Role::Viewer,
+            JoinRole::Device => Role::Device,
+        };
+        let clock = Clock::monotonic();
+        let identity = self.identity(role, invitation, system_entropy());
+        let station = Station::join(identity, clock.now_us());
+        let shared =
+            Shared::start(station, Box::new(self.link(name)?), clock, settings(config, name));
+        let mut shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
+        eprintln!("sculptd: joining '{name}'");
+        let entered = shared.enter(name, role != Role::Device, PATIENCE);
+        let (world, rate) = entered.map_err(|e| match e {
+            SharedError::Refused(_) => Fail::Permission(e.to_string()),
+            e => Fail::Check(e.to_string()),
+        })?;
+        if (30..=1000).contains(&rate) {
+            config.r#loop.rate_hz = rate;
+        }
+        let world = match world {
+            Some(world) => *world,
+            // It stands still.
+            None => alone(config)?.world,
+        };
+        tell(&shared)?;
+        Ok((Begun { world, journal: None, warnings: Vec::new() }, Box::new(shared.link)))
+    }
+}
+
+fn settings(config: &Config, name: &str) -> SharedSettings {
+    let workers = config.r#loop.worker_count();
+    SharedSettings { workers, dumps: data_folder("differences").join(name) }
+}
+
+fn data_folder(what: &str) -> PathBuf {
+    let own = directories::ProjectDirs::from("", "", "sculptd");
+    own.map_or_else(std::env::temp_dir, |d| d.data_dir().to_path_buf()).join(what)
+}
+
+/// Says on standard error what happens to the shared sculpture.
+fn tell(shared: &Shared) -> Result<(), Fail> {
+    let told = shared.told.clone();
+    let print = move || {
+        for told in told {
+            match told {
+                Told::Note(text) => eprintln!("sculptd: {text}"),
+                Told::Refused(why) => eprintln!("sculptd: the host lets you in no more: {why}"),
+            }
+        }
+    };
+    let thread = std::thread::Builder::new().name("sculptd-notes".into()).spawn(print);
+    thread.map(drop).map_err(|e| Fail::Check(format!("no thread: {e}")))
+}

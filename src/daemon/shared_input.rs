@@ -1,0 +1,45 @@
+//! The loop's door to a shared sculpture: the own input goes out, the ordered input of all comes
+//! back, and the world steps nothing else. Who implements it orders the input over a network.
+
+use crate::command_queue::QueuedCommand;
+use sculptd_devices::Sample;
+use sculptd_engine::command::Command;
+use sculptd_engine::world::World;
+
+/// The ordered input of one tick.
+#[derive(Debug, Clone, Default)]
+pub struct SharedTick {
+    /// The tick.
+    pub tick: u64,
+    /// In the order in which they are stepped.
+    pub samples: Vec<Sample>,
+    /// In the order in which they are stepped.
+    pub commands: Vec<Command>,
+    /// The places of the own commands among them, in order.
+    pub own: Vec<usize>,
+}
+
+/// What the loop does next.
+#[derive(Debug)]
+pub enum NextTick {
+    /// Nothing more has come.
+    Wait,
+    /// A tick is stepped.
+    Step(SharedTick),
+    /// Another world takes the place of this one: the replica has joined anew.
+    World(Box<World>),
+}
+
+/// A sculpture that several daemons share. Called by the tick thread; nothing of it waits.
+pub trait SharedInput: Send + std::fmt::Debug {
+    /// Whether a command of this daemon cannot be shared; it is told, and goes no further.
+    fn refuses(&mut self, command: &QueuedCommand) -> bool;
+    /// The own input of one tick; both lists are taken.
+    fn submit(&mut self, samples: &mut Vec<Sample>, commands: &mut Vec<Command>);
+    /// What is next.
+    fn next(&mut self, world: &World) -> NextTick;
+    /// The tick of [`NextTick::Step`] was stepped.
+    fn after_step(&mut self, world: &mut World);
+    /// Whether this daemon orders the input. It alone starts what a step asks for once.
+    fn hosts(&self) -> bool;
+}

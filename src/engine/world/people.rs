@@ -1,0 +1,139 @@
+//! Several people at one world: each has a view and a brush of their own.
+//!
+//! A world of one person knows nobody else, and costs and does what it did. A command of a person
+//! comes as [`Command::OfPerson`], and a device of a person has the person's number in the upper
+//! byte of its id. Whoever is new begins with what the world began with. One undo runs over the
+//! steps of all, and the hands are followed in the view of the person whose tracker spoke last.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::World;
+use crate::camera::Camera;
+use crate::command::{Command, OfPerson};
+use crate::desktop_layout::DesktopLayout;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_devices::DeviceId;
+
+/// What one person has set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct PersonSettings {
+    person: u8,
+    pub(super) brush: BrushSettings,
+    kept_brushes: Arc<Vec<BrushSettings>>,
+    pub(super) camera: Camera,
+    desktop: DesktopLayout,
+}
+
+/// All people but the one whose settings are the world's own fields.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
+pub(super) struct People {
+    others: Vec<PersonSettings>,
+    /// Whose settings are the world's own fields.
+    current: u8,
+    /// Whose tracker spoke last.
+    hands: u8,
+    /// Whom the world is shown to; no part of what is stepped.
+    #[serde(skip)]
+    shown: u8,
+}
+
+impl People {
+    /// Nobody but the one person that every world has.
+    pub(super) fn is_nobody(&self) -> bool {
+        self.others.is_empty()
+    }
+
+    /// Whose device it is. In a world of one person, that person's.
+    pub(super) fn of_device(&self, device: DeviceId) -> u8 {
+        if self.is_nobody() { self.current } else { (device.0 >> 8) as u8 }
+    }
+
+    /// Whether it is a device of the person whose input is applied.
+    pub(super) fn is_current(&self, device: DeviceId) -> bool {
+        self.of_device(device) == self.current
+    }
+
+    /// The settings of another person than the current one; `None`: of the current one.
+    pub(super) fn other(&self, person: u8) -> Option<&PersonSettings> {
+        self.others.iter().find(|o| o.person == person)
+    }
+}
+
+impl World {
+    /// Whom the world is shown to: [`World::camera`], [`World::brush`] and the pens are that
+    /// person's. What is stepped does not depend on it.
+    pub fn show_to(&mut self, person: u8) {
+        self.people.shown = person;
+        if person != 0 || !self.people.is_nobody() {
+            self.act_as(person);
+        }
+    }
+
+    /// Whether a device is of the person that the world is shown to.
+    pub(super) fn is_shown(&self, device: DeviceId) -> bool {
+        self.people.is_nobody() || self.people.of_device(device) == self.people.shown
+    }
+
+    /// A command of a person.
+    pub(super) fn apply_of_person(&mut self, of: &OfPerson) {
+        if !matches!(of.command, Command::OfPerson(_)) {
+            self.act_as(of.person);
+            self.apply_command(&of.command);
+        }
+    }
+
+    /// Before the samples and strokes of a step: what follows is nobody's in particular.
+    pub(super) fn act_as_hands(&mut self) {
+        if !self.people.is_nobody() {
+            self.act_as(self.people.hands);
+        }
+    }
+
+    /// The tracker of this device spoke.
+    pub(super) fn hands_of(&mut self, device: DeviceId) {
+        self.people.hands = self.people.of_device(device);
+    }
+
+    /// After a step: what is shown is the own person's.
+    pub(super) fn act_as_shown(&mut self) {
+        if !self.people.is_nobody() {
+            self.act_as(self.people.shown);
+        }
+    }
+
+    /// The desktops of all are unknown again.
+    pub(super) fn forget_desktops(&mut self) {
+        self.desktop = DesktopLayout::default();
+        self.people.others.iter_mut().for_each(|o| o.desktop = DesktopLayout::default());
+    }
+
+    /// The settings of a person become the world's own fields, for what is applied next.
+    pub(super) fn act_as(&mut self, person: u8) {
+        if self.people.current == person {
+            return;
+        }
+        let now = PersonSettings {
+            person: self.people.current,
+            brush: self.brush,
+            kept_brushes: self.kept_brushes.clone(),
+            camera: self.camera,
+            desktop: self.desktop,
+        };
+        let others = &mut self.people.others;
+        let next = match others.iter().position(|o| o.person == person) {
+            Some(at) => std::mem::replace(&mut others[at], now),
+            None => {
+                others.push(now);
+                // As the world began: it is the same in every replica.
+                let first = others.iter().find(|o| o.person == 0).cloned();
+                let first = first.unwrap_or_else(|| others[0].clone());
+                PersonSettings { person, ..first }
+            }
+        };
+        self.people.current = person;
+        (self.brush, self.kept_brushes) = (next.brush, next.kept_brushes);
+        (self.camera, self.desktop) = (next.camera, next.desktop);
+    }
+}

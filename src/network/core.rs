@@ -1,0 +1,219 @@
+//! What a station is in every phase: its log, its own batches, and what waits to be sent and told.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use crate::keyring::Entropy;
+use crate::outbox::Outbox;
+use crate::replica_log::ReplicaLog;
+use crate::wire::frame::{Frame, PersonId, Role};
+use crate::wire::message::{Address, AmongHeirs, FromHost, FromMember, Greeting, Nonce};
+
+/// Microseconds between two messages to one receiver while something happens.
+pub const SEND_US: u64 = 50_000;
+/// The same while nothing does.
+pub const IDLE_US: u64 = 250_000;
+/// After so long without a word from the host it is gone.
+pub const LOST_US: u64 = 1_000_000;
+
+/// Whom a datagram is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum To {
+    /// Whoever hosts.
+    Host,
+    /// All who may take over.
+    Heirs,
+    /// One process.
+    Peer(Address),
+}
+
+/// What a station tells whoever runs it.
+#[derive(Debug, Clone)]
+pub enum Event {
+    /// The next frame to be stepped.
+    Frame(Arc<Frame>),
+    /// The world is made anew from a checkpoint; frames from the one after `index` follow.
+    Restore {
+        /// The frame of the checkpoint.
+        index: u64,
+        /// As [`crate::checkpoint::Captured::to_bytes`] made them.
+        checkpoint: Arc<Vec<u8>>,
+    },
+    /// The station's person has this number, and the loop this rate.
+    Entered {
+        /// The number.
+        person: PersonId,
+        /// Ticks a second.
+        rate_hz: u32,
+    },
+    /// This station hosts from now on, or no longer.
+    Hosting(bool),
+    /// The own world differs from the host's after a frame; a checkpoint will follow.
+    Differs {
+        /// The frame.
+        index: u64,
+        /// The own hash and the host's.
+        hashes: (u64, u64),
+    },
+    /// For the log, and for a person.
+    Note(String),
+    /// The host lets this station in no more; nothing follows.
+    Refused(String),
+}
+
+/// The parts that all phases share.
+pub struct Core {
+    /// The own name on the network.
+    pub address: Address,
+    /// As the person wants to be called.
+    pub name: String,
+    /// What the person is.
+    pub role: Role,
+    /// The own number; 0 before the first entry.
+    pub person: PersonId,
+    /// Ticks a second.
+    pub rate_hz: u32,
+    /// The ordered input.
+    pub log: ReplicaLog,
+    /// The own input.
+    pub outbox: Outbox,
+    /// What is to be sent, in order.
+    pub outgoing: VecDeque<(To, Vec<u8>)>,
+    /// What is to be told, in order.
+    pub events: VecDeque<Event>,
+    /// Random bytes.
+    pub entropy: Entropy,
+}
+
+impl std::fmt::Debug for Core {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Core").field("name", &self.name).field("log", &self.log.reached()).finish()
+    }
+}
+
+/// Seals messages among those who may take over, under a key of its own, so that no two messages of
+/// the group share a nonce.
+#[derive(Debug)]
+pub struct HeirsSeal {
+    stream: u64,
+    seal: crate::seal::Seal,
+}
+
+impl HeirsSeal {
+    /// A seal with a key that is drawn for it.
+    pub fn new(group: &crate::seal::Secret, core: &mut Core) -> HeirsSeal {
+        let mut stream = [0; 8];
+        (core.entropy)(&mut stream);
+        let stream = u64::from_le_bytes(stream);
+        HeirsSeal { stream, seal: group.heirs_seal(stream) }
+    }
+}
+
+/// The first byte of a datagram; the sender's address follows it.
+pub const GREETING: u8 = 0;
+/// See [`GREETING`].
+pub const UP: u8 = 1;
+/// See [`GREETING`].
+pub const DOWN: u8 = 2;
+/// See [`GREETING`].
+pub const HEIRS: u8 = 3;
+
+impl Core {
+    /// Tells something to the log.
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.events.push_back(Event::Note(text.into()));
+    }
+
+    /// A number that is used once.
+    pub fn nonce(&mut self) -> Nonce {
+        let mut nonce = [0; 16];
+        (self.entropy)(&mut nonce);
+        nonce
+    }
+
+    /// Sends bytes with their head.
+    pub fn send(&mut self, to: To, kind: u8, bytes: &[u8]) {
+        let mut out = Vec::with_capacity(bytes.len() + 9);
+        out.push(kind);
+        out.extend(self.address.to_le_bytes());
+        out.extend(bytes);
+        self.outgoing.push_back((to, out));
+    }
+
+    /// Sends in the clear.
+    pub fn greet(&mut self, to: To, greeting: &Greeting) {
+        self.send(to, GREETING, &greeting.to_bytes());
+    }
+
+    /// Sends to the host.
+    pub fn up(&mut self, host: Address, seal: &mut crate::seal::Seal, message: &FromMember) {
+        let sealed = seal.seal(&message.to_bytes());
+        self.send(To::Peer(host), UP, &sealed);
+    }
+
+    /// Sends to a member.
+    pub fn down(&mut self, member: Address, seal: &mut crate::seal::Seal, message: &FromHost) {
+        let sealed = seal.seal(&message.to_bytes());
+        self.send(To::Peer(member), DOWN, &sealed);
+    }
+
+    /// Sends to all who may take over.
+    pub fn among_heirs(&mut self, heirs: &mut HeirsSeal, message: AmongHeirs) {
+        let mut bytes = heirs.stream.to_le_bytes().to_vec();
+        bytes.extend(heirs.seal.seal(&message.to_bytes()));
+        self.send(To::Heirs, HEIRS, &bytes);
+    }
+
+    /// Appends a frame to the log and hands it over to be stepped.
+    pub fn append(&mut self, frame: Arc<Frame>) -> bool {
+        let next = self.log.append(&frame);
+        if next {
+            self.events.push_back(Event::Frame(frame));
+        }
+        next
+    }
+}
+
+/// The clock as messages carry it.
+pub fn ms(now_us: u64) -> u32 {
+    (now_us / 1000) as u32
+}
+
+/// Follows the other side's clock, and how long a message and its answer take.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RoundTrip {
+    theirs_ms: u32,
+    at_us: u64,
+    smooth_us: f64,
+}
+
+impl RoundTrip {
+    /// Takes the clocks of a message.
+    pub fn take(&mut self, sent_ms: u32, echo_ms: u32, now_us: u64) {
+        if self.at_us == 0 || sent_ms.wrapping_sub(self.theirs_ms) < 1 << 31 {
+            (self.theirs_ms, self.at_us) = (sent_ms, now_us);
+        }
+        let took = ms(now_us).wrapping_sub(echo_ms);
+        if echo_ms != 0 && took < 10_000 {
+            let took = f64::from(took) * 1e3;
+            self.smooth_us = match self.smooth_us {
+                s if s > 0.0 => s * 0.9 + took * 0.1,
+                _ => took,
+            };
+        }
+    }
+
+    /// The other side's clock as it is now: comes back to it as an echo. 0: never heard.
+    pub fn echo_ms(&self, now_us: u64) -> u32 {
+        match self.at_us {
+            0 => 0,
+            at => self.theirs_ms.wrapping_add(ms(now_us.saturating_sub(at))),
+        }
+    }
+
+    /// What was sent longer ago and is not confirmed is sent again.
+    pub fn patience_us(&self) -> u64 {
+        // Both sides send at intervals: a confirmation waits for the next message.
+        (self.smooth_us * 1.5) as u64 + 2 * SEND_US + 60_000
+    }
+}

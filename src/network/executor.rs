@@ -1,0 +1,150 @@
+//! Steps a world by frames. Every replica does nothing else: same frames, same bits.
+
+use std::sync::Arc;
+
+use crate::checkpoint::Captured;
+use crate::wire::frame::{Frame, Mark, PersonId};
+use sculptd_clay::Snapshot;
+use sculptd_devices::{DeviceId, Sample};
+use sculptd_engine::command::{Command, OfPerson};
+use sculptd_engine::scene::SceneView;
+use sculptd_engine::world::World;
+
+/// Ticks without input that are stepped while a stroke goes on by itself: a minute at 120 a second.
+const MOST_EMPTY: u64 = 7_200;
+
+/// The number under which the world knows a device of a person.
+pub fn world_device(person: PersonId, device: DeviceId) -> DeviceId {
+    DeviceId(u16::from(person) << 8 | device.0 & 0xff)
+}
+
+/// A world's state to be hashed by another thread.
+#[derive(Debug, Clone)]
+pub struct HashView {
+    /// The frame that it is after.
+    pub index: u64,
+    /// The tick of that frame.
+    pub tick: u64,
+    /// All objects.
+    pub scene: Arc<SceneView>,
+    /// The active object's clay.
+    pub active: Snapshot,
+}
+
+impl HashView {
+    /// One number for positions, masks, colours, triangles and transforms of all objects.
+    pub fn hash(&self) -> u64 {
+        self.scene.hash(&self.active)
+    }
+}
+
+/// The input of one tick.
+#[derive(Debug, Clone, Default)]
+pub struct TickInput {
+    /// The tick.
+    pub tick: u64,
+    /// In the order in which they are stepped.
+    pub samples: Vec<Sample>,
+    /// In the order in which they are stepped.
+    pub commands: Vec<Command>,
+    /// How many of the commands are the own person's, and where: their results are waited for.
+    pub own: Vec<usize>,
+}
+
+/// What a frame asks for after its tick.
+#[derive(Debug, Default)]
+pub struct Asked {
+    /// To be hashed.
+    pub hash: Option<HashView>,
+    /// To be made a checkpoint of.
+    pub captured: Option<Captured>,
+}
+
+/// Which tick comes next.
+#[derive(Debug)]
+pub struct Executor {
+    rate_hz: u32,
+    person: PersonId,
+    busy: bool,
+}
+
+impl Executor {
+    /// For the replica of one person.
+    pub fn new(rate_hz: u32, person: PersonId) -> Executor {
+        Executor { rate_hz, person, busy: false }
+    }
+
+    /// The replica's person has this number from now on.
+    pub fn set_person(&mut self, person: PersonId, rate_hz: u32) {
+        (self.person, self.rate_hz) = (person, rate_hz);
+    }
+
+    /// The ticks without input before the one of a frame: those that are to be stepped. While
+    /// nothing goes on by itself they change nothing, and none is.
+    pub fn empty_ticks(&self, world: &World, frame: &Frame) -> std::ops::Range<u64> {
+        let first = world.tick() + 1;
+        match self.busy {
+            true => first..frame.tick.min(first + MOST_EMPTY),
+            false => first..first,
+        }
+    }
+
+    /// The input of a frame's own tick.
+    pub fn input(&self, frame: &Frame, world: &World) -> TickInput {
+        // A frame of the same tick as the one before it comes after it.
+        let tick = frame.tick.max(world.tick());
+        let mut input = TickInput { tick, ..TickInput::default() };
+        let t_us = (frame.tick as u128 * 1_000_000 / u128::from(self.rate_hz.max(1))) as u64;
+        for batch in &frame.batches {
+            for sample in &batch.samples {
+                let device = world_device(batch.person, sample.device);
+                input.samples.push(Sample { device, t_us, ..*sample });
+            }
+            for command in &batch.commands {
+                if batch.person == self.person {
+                    input.own.push(input.commands.len());
+                }
+                let mut command = command.clone();
+                if let Command::DesktopLayout(desktop) = &mut command {
+                    for (device, _) in desktop.tablets.iter_mut().flatten() {
+                        *device = world_device(batch.person, *device);
+                    }
+                }
+                let of = OfPerson { person: batch.person, command };
+                input.commands.push(Command::OfPerson(Box::new(of)));
+            }
+        }
+        if frame.mark == Mark::Checkpoint {
+            input.commands.push(Command::Reopened);
+        }
+        input
+    }
+
+    /// What follows a tick that was stepped; `frame`: where it was a frame's own.
+    pub fn after_step(&mut self, world: &mut World, frame: Option<&Frame>) -> Asked {
+        world.show_to(self.person);
+        let report = *world.report();
+        self.busy = report.paused || report.resting || !world.is_at_rest();
+        let Some(frame) = frame else { return Asked::default() };
+        let (index, tick) = (frame.index, frame.tick);
+        let hash = (frame.mark == Mark::Compare).then(|| HashView {
+            index,
+            tick,
+            scene: world.scene_view(),
+            active: world.snapshot(),
+        });
+        let captured = if frame.mark == Mark::Checkpoint { Captured::of(world) } else { None };
+        Asked { hash, captured }
+    }
+
+    /// All of a frame at once.
+    pub fn execute(&mut self, world: &mut World, frame: &Frame) -> Asked {
+        for tick in self.empty_ticks(world, frame) {
+            world.step(tick, &[], &[]);
+            self.after_step(world, None);
+        }
+        let input = self.input(frame, world);
+        world.step(input.tick, &input.samples, &input.commands);
+        self.after_step(world, Some(frame))
+    }
+}

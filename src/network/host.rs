@@ -1,0 +1,597 @@
+//! The host: lets people in, orders input into frames, sends them, compares hashes.
+//!
+//! Laws kept here:
+//! * Nobody without a key gets further than a greeting, and only so many a second are answered.
+//! * A batch is acknowledged when it is in a frame that a replica has too.
+//! * What a member may send is bounded in bytes a second, in batches that wait, and by its role;
+//!   what goes beyond is dropped, counted and told.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use crate::comparison::HashComparison;
+use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::host_limits::{
+    ALONE_US, BUSY_US, BYTES, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE,
+    REST_US,
+};
+use crate::host_members::{BatchQueue, Greeted, JoinedMember, PER_MESSAGE, bounded};
+use crate::keyring::Keyring;
+use crate::rate_limit::RateLimit;
+use crate::seal::Secret;
+use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
+use crate::wire::message::{
+    Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, Nonce, Offer, Reached, Term,
+    VERSION,
+};
+
+/// The host's state.
+#[derive(Debug)]
+pub struct Host {
+    /// This turn.
+    pub term: Term,
+    keyring: Keyring,
+    group: Secret,
+    heirs: HeirsSeal,
+    greeted: BTreeMap<Address, Greeted>,
+    members: BTreeMap<Address, JoinedMember>,
+    waiting: BTreeMap<PersonId, BatchQueue>,
+    arrivals: Vec<Arrival>,
+    strangers: RateLimit,
+    /// The last batch of each person in each frame that is not acknowledged.
+    unacknowledged: VecDeque<(u64, PersonId, u64)>,
+    acknowledged: BTreeMap<PersonId, u64>,
+    /// The tick that was due at this time.
+    epoch: (u64, u64),
+    last_input_us: u64,
+    last_frame_us: u64,
+    compare_us: u64,
+    input_since_compare: bool,
+    comparison: HashComparison,
+    /// Somebody waits for a checkpoint since.
+    wanted_us: Option<u64>,
+    /// The frame of the checkpoint that is being made.
+    making: Option<u64>,
+    checkpoint: Option<(u64, Arc<Vec<u8>>, Vec<(Arrival, u64)>)>,
+    at_rest: bool,
+    alone_since_us: Option<u64>,
+    present_us: u64,
+    /// Datagrams that nobody with a key can have sent.
+    pub forged: u64,
+}
+
+impl Host {
+    /// A host whose log is that of `core`, in a new turn.
+    pub fn new(core: &mut Core, keyring: Keyring, group: Secret, term: Term, now_us: u64) -> Host {
+        core.log.begin_turn(term);
+        let first = term.number == 1;
+        let mut host = Host {
+            term,
+            heirs: HeirsSeal::new(&group, core),
+            keyring,
+            group,
+            greeted: BTreeMap::new(),
+            members: BTreeMap::new(),
+            waiting: BTreeMap::new(),
+            arrivals: Vec::new(),
+            strangers: RateLimit::new(GREETINGS.0, GREETINGS.1, now_us),
+            unacknowledged: VecDeque::new(),
+            acknowledged: BTreeMap::new(),
+            epoch: (core.log.tick(), now_us),
+            last_input_us: now_us,
+            last_frame_us: now_us,
+            compare_us: now_us,
+            input_since_compare: true,
+            comparison: HashComparison::default(),
+            wanted_us: None,
+            making: None,
+            checkpoint: None,
+            at_rest: true,
+            // The first host has nobody to wait for.
+            alone_since_us: first.then_some(0),
+            present_us: 0,
+            forged: 0,
+        };
+        // What is in the log and was not acknowledged by the host before is by this one.
+        for (person, applied) in core.log.people() {
+            host.waiting.entry(person.person).or_default().received = applied;
+            host.unacknowledged.push_back((core.log.last(), person.person, applied));
+        }
+        if first {
+            let (name, role) = (core.name.clone(), core.role);
+            core.person = 1;
+            host.arrivals.push(Arrival { person: 1, name, role });
+        }
+        core.outbox.begin_after(core.log.applied(core.person));
+        core.events.push_back(Event::Entered { person: core.person, rate_hz: core.rate_hz });
+        core.events.push_back(Event::Hosting(true));
+        host
+    }
+
+    /// What a successor needs.
+    pub fn succession(&self) -> (Keyring, Secret) {
+        (self.keyring.clone(), self.group.clone())
+    }
+
+    /// People here, this one not counted.
+    pub fn members(&self) -> usize {
+        self.members.len()
+    }
+
+    /// Takes a greeting.
+    pub fn greeting(&mut self, core: &mut Core, from: Address, greeting: &Greeting, now_us: u64) {
+        let Greeting::Hello { version, nonce, key } = *greeting else { return };
+        if !self.strangers.take(1.0, now_us) {
+            return;
+        }
+        let refuse = |core: &mut Core, reason: String| {
+            core.note(format!("{from:016x} was not let in: {reason}"));
+            core.greet(To::Peer(from), &Greeting::Refused { to: nonce, reason });
+        };
+        if version != VERSION {
+            let reason = format!("the host speaks version {VERSION}, and this is {version}");
+            return refuse(core, reason);
+        }
+        let Some(invitation) = self.keyring.find(&key).cloned() else {
+            return refuse(core, "the key is not one of this sculpture".into());
+        };
+        self.greeted.retain(|_, g| now_us < g.at_us + GONE_US);
+        if self.greeted.len() >= MAX_MEMBERS {
+            return refuse(core, "too many greet at once".into());
+        }
+        let own: Nonce = core.nonce();
+        let (up, down) = invitation.secret.seals(&nonce, &own);
+        let proof = invitation.secret.proof(&nonce, &own, &self.term);
+        self.greeted.insert(from, Greeted { up, down, invitation, at_us: now_us });
+        let term = self.term;
+        core.greet(To::Peer(from), &Greeting::Challenge { to: nonce, nonce: own, term, proof });
+    }
+
+    /// Takes a sealed message.
+    pub fn receive(&mut self, core: &mut Core, from: Address, sealed: &[u8], now_us: u64) {
+        if let Some(greeted) = self.greeted.get(&from)
+            && let Some(plain) = greeted.up.open(sealed)
+        {
+            let message = FromMember::from_bytes(&plain);
+            if let (Ok(FromMember::Join { name, role, reached }), Some(greeted)) =
+                (message, self.greeted.remove(&from))
+            {
+                self.join(core, from, greeted, (name, role), reached, now_us);
+            }
+            return;
+        }
+        let Some(member) = self.members.get_mut(&from) else {
+            self.forged += 1;
+            return;
+        };
+        let Some(plain) = member.up.open(sealed) else {
+            self.forged += 1;
+            return;
+        };
+        if !member.limit.take(plain.len() as f64, now_us) {
+            return self.violation(core, from, "sends more than is allowed", now_us);
+        }
+        match FromMember::from_bytes(&plain) {
+            Ok(message) => self.message(core, from, message, now_us),
+            Err(e) => self.violation(core, from, &e.to_string(), now_us),
+        }
+    }
+
+    fn violation(&mut self, core: &mut Core, from: Address, what: &str, now_us: u64) {
+        let Some(member) = self.members.get_mut(&from) else { return };
+        member.violations += 1;
+        if now_us >= member.told_us + 1_000_000 || member.told_us == 0 {
+            member.told_us = now_us;
+            let (name, count) = (&member.name, member.violations);
+            core.note(format!("'{name}': {what}; dropped ({count} times by now)"));
+        }
+        if member.violations >= PATIENCE {
+            self.dismiss(core, from, what);
+        }
+    }
+
+    /// Sends a member away.
+    fn dismiss(&mut self, core: &mut Core, from: Address, why: &str) {
+        if let Some(mut member) = self.members.remove(&from) {
+            core.note(format!("'{}' is sent away: {why}", member.name));
+            core.down(from, &mut member.down, &FromHost::Refused(why.into()));
+        }
+    }
+
+    fn join(
+        &mut self,
+        core: &mut Core,
+        from: Address,
+        mut greeted: Greeted,
+        (name, role): (String, Role),
+        reached: Option<Reached>,
+        now_us: u64,
+    ) {
+        self.members.remove(&from);
+        let number = self.arrivals.iter().find(|a| a.name == name).map(|a| a.person);
+        let number = number.or_else(|| {
+            let next = core.log.number(&name)?;
+            let taken = |n: PersonId| self.arrivals.iter().any(|a| a.person == n);
+            (next..=254).find(|n| !taken(*n) && (*n == next || core.log.person(*n).is_none()))
+        });
+        let clean = !name.trim().is_empty() && !name.chars().any(char::is_control);
+        let there = |m: &JoinedMember| m.name == name && now_us < m.heard_us + LOST_US * 2;
+        let refused = match (greeted.invitation.allows(&name, role), number) {
+            (Err(why), _) => Some(why),
+            _ if !clean => Some("a name is text without control characters".into()),
+            _ if name == core.name || self.members.values().any(there) => {
+                Some(format!("'{name}' is here already"))
+            }
+            _ if self.members.len() >= MAX_MEMBERS => {
+                Some(format!("{MAX_MEMBERS} people are here, and no more are let in"))
+            }
+            (_, None) => Some("as many people have come as can be told apart".into()),
+            _ => None,
+        };
+        if let Some(why) = refused {
+            core.note(format!("'{name}' ({}) was not let in: {why}", role.name()));
+            return core.down(from, &mut greeted.down, &FromHost::Refused(why));
+        }
+        let person = number.unwrap_or_default();
+        self.members.retain(|_, m| m.name != name);
+        core.note(format!("'{name}' joins as {}", role.name()));
+        let arrival = Arrival { person, name: name.clone(), role };
+        if core.log.person(person) != Some(&arrival) && !self.arrivals.contains(&arrival) {
+            self.arrivals.push(arrival);
+        }
+        let resumes = role == Role::Device || reached.is_some_and(|r| core.log.continues(r));
+        let member = JoinedMember {
+            person,
+            name,
+            role,
+            up: greeted.up,
+            down: greeted.down,
+            heard_us: now_us,
+            waits: !resumes,
+            have: resumes.then(|| reached.map_or(core.log.last(), |r| r.1)),
+            sent: reached.map_or(core.log.last(), |r| r.1),
+            progress_us: now_us,
+            next_us: now_us,
+            trip: RoundTrip::default(),
+            limit: RateLimit::new(BYTES.0, BYTES.1, now_us),
+            violations: 0,
+            told_us: 0,
+        };
+        self.members.insert(from, member);
+        if resumes {
+            let people = core.log.people();
+            self.enter(core, from, None, people);
+        } else if let Some((index, bytes, people)) = self.checkpoint.clone()
+            && core.log.from(index + 1, 1).is_some()
+            && core.log.last() < index + 600
+        {
+            self.enter(core, from, Some((index, bytes.len() as u64)), people);
+        } else {
+            self.wanted_us.get_or_insert(now_us);
+        }
+    }
+
+    /// Tells a member how it is let in.
+    fn enter(
+        &mut self,
+        core: &mut Core,
+        to: Address,
+        offer: Option<(u64, u64)>,
+        people: Vec<(Arrival, u64)>,
+    ) {
+        let succession = (self.group.0.to_vec(), self.keyring.to_bytes());
+        let Some(member) = self.members.get_mut(&to) else { return };
+        member.waits = false;
+        if let Some((index, _)) = offer {
+            member.sent = index;
+        }
+        let chunks = |size: u64| size.div_ceil(CHUNK as u64) as u32;
+        let waiting = self.waiting.get(&member.person);
+        let entry = Entry {
+            person: member.person,
+            term: self.term,
+            rate_hz: core.rate_hz,
+            applied: waiting.map_or_else(|| core.log.applied(member.person), |w| w.received),
+            offer: offer.map(|(index, size)| Offer { index, size, chunks: chunks(size) }),
+            people,
+            turns: core.log.turns().to_vec(),
+            succession: (member.role == Role::Sculptor).then_some(succession),
+        };
+        core.down(to, &mut member.down, &FromHost::Entry(Box::new(entry)));
+    }
+
+    fn message(&mut self, core: &mut Core, from: Address, message: FromMember, now_us: u64) {
+        let Some(member) = self.members.get_mut(&from) else { return };
+        member.heard_us = now_us;
+        match message {
+            FromMember::Up { have, after_gap, sent_ms, echo_ms, batches } => {
+                member.trip.take(sent_ms, echo_ms, now_us);
+                if have > core.log.last() {
+                    return self.violation(core, from, "has frames that never were", now_us);
+                }
+                if member.role != Role::Device && member.have.is_none_or(|h| have > h) {
+                    let offered = self.checkpoint.as_ref().is_some_and(|c| have >= c.0);
+                    if member.have.is_some() || offered {
+                        (member.have, member.progress_us) = (Some(have), now_us);
+                        member.sent = member.sent.max(have);
+                    }
+                }
+                if after_gap > have + 1 && member.have == Some(have) {
+                    let frames = core.log.from(have + 1, (after_gap - have - 1) as usize);
+                    if now_us >= member.progress_us + member.trip.patience_us() / 2 {
+                        member.progress_us = now_us;
+                        let frames = bounded(frames.unwrap_or_default());
+                        self.send_frames(core, from, frames, now_us);
+                    }
+                }
+                self.take_batches(core, from, batches, now_us);
+            }
+            FromMember::Want { index, first, count } => {
+                let Some((_, bytes, _)) = self.checkpoint.as_ref().filter(|c| c.0 == index) else {
+                    return self.dismiss(core, from, "the checkpoint is gone: join again");
+                };
+                let chunks = bytes.chunks(CHUNK).enumerate().skip(first as usize);
+                for (k, part) in chunks.take(count.min(MAX_WANTED) as usize) {
+                    let number = k as u32;
+                    let chunk = FromHost::Chunk { index, number, bytes: part.to_vec() };
+                    core.down(from, &mut member.down, &chunk);
+                }
+            }
+            FromMember::Hash { index, hash } => {
+                if let Some(own) = self.comparison.take(index, from, hash) {
+                    self.differs(core, index, from, own);
+                }
+            }
+            FromMember::Leave => {
+                let name = member.name.clone();
+                self.members.remove(&from);
+                core.note(format!("'{name}' leaves"));
+            }
+            FromMember::Join { .. } => self.violation(core, from, "joins twice", now_us),
+        }
+    }
+
+    fn take_batches(&mut self, core: &mut Core, from: Address, batches: Vec<Batch>, now_us: u64) {
+        let Some(member) = self.members.get(&from) else { return };
+        if !batches.is_empty() && member.role == Role::Viewer {
+            return self.violation(core, from, "is a viewer, and sends input", now_us);
+        }
+        let person = member.person;
+        let waiting = self.waiting.entry(person).or_default();
+        let mut fault = None;
+        for mut batch in batches {
+            if let Some(what) = crate::policy::refused(&batch) {
+                fault = Some(what);
+                // The number is used up: what follows is not held back.
+                batch.commands.clear();
+                batch.samples.clear();
+            }
+            batch.person = person;
+            let (number, early) = (batch.number, waiting.early.len() + waiting.ready.len());
+            if number > waiting.received && number <= waiting.received + MAX_WAITING as u64 {
+                if early >= MAX_WAITING {
+                    fault = Some("sends more batches than there are ticks");
+                    break;
+                }
+                waiting.early.insert(number, batch);
+            }
+        }
+        while let Some(batch) = waiting.early.remove(&(waiting.received + 1)) {
+            waiting.received += 1;
+            waiting.ready.push_back(batch);
+        }
+        if let Some(what) = fault {
+            self.violation(core, from, what, now_us);
+        }
+    }
+
+    /// The hash of the own world after a frame.
+    pub fn own_hash(&mut self, core: &mut Core, index: u64, hash: u64) {
+        for from in self.comparison.take_own(index, hash) {
+            self.differs(core, index, from, hash);
+        }
+    }
+
+    fn differs(&mut self, core: &mut Core, index: u64, from: Address, hash: u64) {
+        if let Some(mut member) = self.members.remove(&from) {
+            core.note(format!("'{}' differs after frame {index}: it joins anew", member.name));
+            core.down(from, &mut member.down, &FromHost::Differs { index, hash });
+        }
+    }
+
+    /// The checkpoint of a frame with that mark is there.
+    pub fn checkpoint(&mut self, core: &mut Core, index: u64, bytes: Arc<Vec<u8>>) {
+        if self.making.take() != Some(index) {
+            return;
+        }
+        let size = bytes.len() as u64;
+        // As the log was then.
+        let mut people = core.log.people();
+        let after = core.log.from(index + 1, usize::MAX).unwrap_or_default();
+        for (person, applied) in &mut people {
+            let first = after.iter().flat_map(|f| &f.batches).find(|b| b.person == person.person);
+            if let Some(first) = first {
+                *applied = first.number - 1;
+            }
+        }
+        self.checkpoint = Some((index, bytes, people.clone()));
+        let waiting: Vec<Address> =
+            self.members.iter().filter(|(_, m)| m.waits).map(|(a, _)| *a).collect();
+        for to in waiting {
+            self.enter(core, to, Some((index, size)), people.clone());
+        }
+    }
+
+    /// No checkpoint could be made after a frame with that mark: another is tried.
+    pub fn checkpoint_failed(&mut self, index: u64, now_us: u64) {
+        if self.making == Some(index) {
+            self.making = None;
+            self.wanted_us = Some(now_us);
+        }
+    }
+
+    /// Whether the world had nothing under way after the last frame.
+    pub fn after_step(&mut self, at_rest: bool) {
+        self.at_rest = at_rest;
+    }
+
+    /// Makes the frames that are due, and sends what is to be sent.
+    pub fn advance(&mut self, core: &mut Core, now_us: u64) {
+        self.order(core, now_us);
+        let gone: Vec<Address> = self
+            .members
+            .iter()
+            .filter(|(_, m)| now_us >= m.heard_us + GONE_US)
+            .map(|m| *m.0)
+            .collect();
+        for address in gone {
+            if let Some(member) = self.members.remove(&address) {
+                core.note(format!("'{}' is gone", member.name));
+            }
+        }
+        self.acknowledge(core, now_us);
+        if now_us >= self.present_us {
+            self.present_us = now_us + IDLE_US;
+            core.among_heirs(&mut self.heirs, AmongHeirs::Host { term: self.term });
+        }
+        let due: Vec<Address> =
+            self.members.iter().filter(|(_, m)| now_us >= m.next_us).map(|m| *m.0).collect();
+        for to in due {
+            self.send_next(core, to, now_us);
+        }
+        let offered = self.members.values().filter(|m| m.have.is_none() && !m.waits);
+        let slowest = self.members.values().filter_map(|m| m.have).min().unwrap_or(u64::MAX);
+        let slowest = offered.map(|m| m.sent).min().unwrap_or(u64::MAX).min(slowest);
+        core.log.trim(slowest.max(core.log.last().saturating_sub(200_000)));
+    }
+
+    fn order(&mut self, core: &mut Core, now_us: u64) {
+        let own = core.outbox.count_after(self.waiting.entry(core.person).or_default().received);
+        let ready = own > 0 || self.waiting.values().any(|w| !w.ready.is_empty());
+        let passed = now_us.saturating_sub(self.epoch.1);
+        let due = self.epoch.0 + passed * u64::from(core.rate_hz) / 1_000_000;
+        if due <= core.log.tick() {
+            return;
+        }
+        if ready {
+            self.last_input_us = now_us;
+        }
+        let busy = now_us < self.last_input_us + BUSY_US || !self.arrivals.is_empty();
+        let waited = self.wanted_us.is_some_and(|at| self.at_rest || now_us >= at + REST_US);
+        let checkpoint = waited && self.making.is_none();
+        if !busy && !checkpoint && now_us < self.last_frame_us + IDLE_US {
+            return;
+        }
+        let compares = self.input_since_compare && now_us >= self.compare_us + 1_000_000;
+        let index = core.log.last() + 1;
+        let mut frame = Frame { index, tick: due, ..Frame::default() };
+        frame.arrivals.append(&mut self.arrivals);
+        if checkpoint {
+            frame.mark = Mark::Checkpoint;
+            (self.making, self.wanted_us) = (Some(index), None);
+        } else {
+            if compares {
+                frame.mark = Mark::Compare;
+                (self.compare_us, self.input_since_compare) = (now_us, false);
+            }
+            self.fill(core, &mut frame);
+        }
+        self.input_since_compare |= frame.has_input();
+        self.last_frame_us = now_us;
+        for batch in &frame.batches {
+            self.unacknowledged.push_back((index, batch.person, batch.number));
+        }
+        core.append(Arc::new(frame));
+    }
+
+    /// Everybody's next batch; of those who are behind, more.
+    fn fill(&mut self, core: &mut Core, frame: &mut Frame) {
+        let waiting = self.waiting.entry(core.person).or_default();
+        let count = core.outbox.count_after(waiting.received);
+        for batch in core.outbox.after(waiting.received, 1 + count / 8) {
+            let person = core.person;
+            frame.batches.push(Batch { person, ..batch.clone() });
+        }
+        if let Some(last) = frame.batches.last() {
+            waiting.received = last.number;
+        }
+        for waiting in self.waiting.values_mut() {
+            let count = 1 + waiting.ready.len() / 8;
+            let count = count.min(waiting.ready.len());
+            frame.batches.extend(waiting.ready.drain(..count));
+        }
+    }
+
+    fn acknowledge(&mut self, core: &mut Core, now_us: u64) {
+        let replicas = self.members.values().filter(|m| m.role != Role::Device);
+        let through = match replicas.filter_map(|m| m.have).max() {
+            Some(have) => {
+                self.alone_since_us = None;
+                have
+            }
+            None if self.members.values().any(|m| m.role != Role::Device) => 0,
+            None => {
+                let since = *self.alone_since_us.get_or_insert(now_us);
+                if since == 0 || now_us >= since + ALONE_US { core.log.last() } else { 0 }
+            }
+        };
+        while let Some((index, person, number)) = self.unacknowledged.front().copied() {
+            if index > through {
+                break;
+            }
+            self.unacknowledged.pop_front();
+            let entry = self.acknowledged.entry(person).or_default();
+            *entry = number.max(*entry);
+        }
+        core.outbox.acknowledge(self.acknowledged.get(&core.person).copied().unwrap_or(0));
+    }
+
+    fn send_next(&mut self, core: &mut Core, to: Address, now_us: u64) {
+        let Some(member) = self.members.get_mut(&to) else { return };
+        if member.waits {
+            member.next_us = now_us + IDLE_US;
+            return self.send_frames(core, to, Vec::new(), now_us);
+        }
+        let last = core.log.last();
+        if let Some(have) = member.have
+            && have < member.sent
+            && now_us >= member.progress_us + member.trip.patience_us()
+        {
+            (member.sent, member.progress_us) = (have, now_us);
+        }
+        let wants = member.role != Role::Device && member.have.is_some();
+        let frames =
+            if wants { core.log.from(member.sent + 1, PER_MESSAGE.0) } else { Some(vec![]) };
+        let Some(frames) = frames else {
+            return self.dismiss(core, to, "is too far behind: join again");
+        };
+        let frames = bounded(frames);
+        if let Some(newest) = frames.last() {
+            if member.have == Some(member.sent) {
+                member.progress_us = now_us;
+            }
+            member.sent = newest.index;
+        }
+        let behind = wants && member.sent < last;
+        let busy = now_us < self.last_input_us + BUSY_US;
+        member.next_us = now_us
+            + match (behind, busy) {
+                (true, _) => SEND_US / 10,
+                (_, true) => SEND_US,
+                _ => IDLE_US,
+            };
+        self.send_frames(core, to, frames, now_us);
+    }
+
+    fn send_frames(&mut self, core: &mut Core, to: Address, frames: Vec<Arc<Frame>>, now_us: u64) {
+        let Some(member) = self.members.get_mut(&to) else { return };
+        let down = FromHost::Down {
+            received: self.waiting.get(&member.person).map_or(0, |w| w.received),
+            acknowledged: self.acknowledged.get(&member.person).copied().unwrap_or(0),
+            sent_ms: ms(now_us),
+            echo_ms: member.trip.echo_ms(now_us),
+            frames,
+        };
+        core.down(to, &mut member.down, &down);
+    }
+}

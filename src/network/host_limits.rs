@@ -1,0 +1,22 @@
+//! The bounds that a host holds, and its times.
+
+/// People in one sculpture at once.
+pub const MAX_MEMBERS: usize = 64;
+/// Bytes that a member may send at once, and a second: a command with a mesh, then strokes.
+pub const BYTES: (f64, f64) = (24e6, 48e3);
+/// Greetings that are answered at once, and a second, of all strangers together.
+pub const GREETINGS: (f64, f64) = (64.0, 20.0);
+/// Batches of one person that wait for their ticks.
+pub const MAX_WAITING: usize = 4096;
+/// Violations after which a member is sent away.
+pub const PATIENCE: u32 = 200;
+/// A member that was not heard for so long is gone.
+pub const GONE_US: u64 = 5_000_000;
+/// A host that had replicas and has none waits so long before it acknowledges alone.
+pub const ALONE_US: u64 = 15_000_000;
+/// Strokes are waited for so long before a checkpoint ends them.
+pub const REST_US: u64 = 2_000_000;
+/// After the last input so long every tick has its frame.
+pub const BUSY_US: u64 = 1_000_000;
+/// Chunks that one request may ask for.
+pub const MAX_WANTED: u32 = 64;

@@ -1,0 +1,72 @@
+//! What a host keeps of each who greets it and of each who joined.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use crate::core::RoundTrip;
+use crate::keyring::Invitation;
+use crate::rate_limit::RateLimit;
+use crate::seal::Seal;
+use crate::wire::frame::{Batch, Frame, PersonId, Role};
+
+/// Frames of one message, and of their input's entries.
+pub const PER_MESSAGE: (usize, usize) = (64, 2048);
+
+/// Who said hello and may join next.
+#[derive(Debug)]
+pub struct Greeted {
+    pub up: Seal,
+    pub down: Seal,
+    pub invitation: Invitation,
+    pub at_us: u64,
+}
+
+/// Who joined.
+#[derive(Debug)]
+pub struct JoinedMember {
+    pub person: PersonId,
+    pub name: String,
+    pub role: Role,
+    pub up: Seal,
+    pub down: Seal,
+    pub heard_us: u64,
+    /// Waits for a checkpoint.
+    pub waits: bool,
+    /// Frames up to this one are there; `None`: the checkpoint is not, yet.
+    pub have: Option<u64>,
+    /// Frames up to this one were sent.
+    pub sent: u64,
+    pub progress_us: u64,
+    pub next_us: u64,
+    pub trip: RoundTrip,
+    pub limit: RateLimit,
+    pub violations: u32,
+    pub told_us: u64,
+}
+
+/// A person's batches on their way into frames.
+#[derive(Debug, Default)]
+pub struct BatchQueue {
+    /// All up to this one were received.
+    pub received: u64,
+    pub ready: VecDeque<Batch>,
+    pub early: BTreeMap<u64, Batch>,
+}
+
+/// As many of the frames as one message may hold; one at least.
+pub fn bounded(mut frames: Vec<Arc<Frame>>) -> Vec<Arc<Frame>> {
+    let entries = |f: &Arc<Frame>| {
+        f.batches.iter().map(|b| b.samples.len() + 64 * b.commands.len() + 1).sum::<usize>()
+    };
+    let mut sum = 0;
+    let mut count = 0;
+    for frame in frames.iter().take(PER_MESSAGE.0) {
+        sum += entries(frame);
+        if sum > PER_MESSAGE.1 && count > 0 {
+            break;
+        }
+        count += 1;
+    }
+    frames.truncate(count);
+    frames
+}

@@ -1,0 +1,44 @@
+//! One sculpture shared over a network. Each daemon sends its samples and commands to a host; the
+//! host orders them into ticks and sends the ticks to all; every replica steps the same world,
+//! which is deterministic. What is sent is input, never a mesh; only who joins is given the pages
+//! of a checkpoint.
+//!
+//! Where to start: [`station`], the protocol as a state machine without clock, IO and threads;
+//! [`wire`], its messages; [`executor`], which steps a world by frames. With the feature
+//! `zenoh`, `live` runs a station beside the tick loop, and `zenoh_link` carries its datagrams.
+//!
+//! ```text
+//! devices -> own batches -> host: frames -> every replica's world
+//!              (outbox)      (host, replica_log)   (executor)
+//! ```
+//!
+//! Laws kept here:
+//! * A sample is rounded before it is sent, and everybody steps what was sent, its sender too.
+//! * Input is acknowledged when a replica has it too; what is not is sent again, to the next host
+//!   where the first is gone. Nothing is stepped twice: batches are numbered.
+//! * Nobody without a key is listened to; what a member sends is bounded. Reading never panics.
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
+pub mod checkpoint;
+pub mod comparison;
+pub mod core;
+pub mod executor;
+pub mod host;
+pub mod host_limits;
+pub mod host_members;
+pub mod keyring;
+#[cfg(feature = "zenoh")]
+pub mod live;
+pub mod member;
+pub mod outbox;
+pub mod policy;
+pub mod random;
+pub mod rate_limit;
+pub mod replica_log;
+pub mod seal;
+pub mod station;
+#[cfg(feature = "zenoh")]
+pub mod transport;
+pub mod wire;
+#[cfg(feature = "zenoh")]
+pub mod zenoh_link;

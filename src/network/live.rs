@@ -1,0 +1,539 @@
+//! A station beside the tick loop, on a thread of its own (`sculptd-shared`), and what takes longer
+//! than a tick on another (`sculptd-replica`): hashes, checkpoints, worlds made of them.
+//!
+//! The tick thread hands its input over and steps what comes back; it waits for neither thread. It
+//! does allocate a little for each of its own samples that is shared.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam_channel as cc;
+
+use crate::checkpoint::Captured;
+use crate::core::Event;
+use crate::executor::{Asked, Executor, HashView};
+use crate::policy;
+use crate::station::Station;
+use crate::transport::Transport;
+use crate::wire::frame::{Frame, Mark, PersonId};
+use crate::wire::samples::rounded;
+use sculptd_clay::Workers;
+use sculptd_daemon::command_queue::QueuedCommand;
+use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedTick};
+use sculptd_devices::{Clock, DeviceId, Sample};
+use sculptd_engine::command::Command;
+use sculptd_engine::world::World;
+use sculptd_geometry::io::write_mesh;
+
+/// What waits between the threads at most; the loop's own input beyond it is told as lost.
+const WAITING: usize = 4096;
+/// Devices of one person.
+const MAX_DEVICES: usize = 16;
+/// Compared states that are kept for a dump.
+const KEPT_VIEWS: usize = 8;
+
+/// From the tick thread.
+enum FromLoop {
+    Input(Vec<Sample>, Vec<Command>),
+    Stepped { frame: Arc<Frame>, asked: Asked, at_rest: bool },
+}
+
+/// To the tick thread.
+enum ToLoop {
+    Frame(Arc<Frame>),
+    World(Box<World>, Executor),
+    Entered(PersonId, u32),
+}
+
+/// To the worker.
+enum Job {
+    Hash(HashView),
+    Checkpoint(u64, Box<Captured>),
+    Restore(Arc<Vec<u8>>),
+    Dump(Box<HashView>, PathBuf),
+}
+
+/// From the worker.
+enum Done {
+    Hash(HashView, u64),
+    Checkpoint(u64, Vec<u8>),
+    Restored(Option<Box<World>>),
+}
+
+/// What a run is told of its shared sculpture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Told {
+    /// For a person.
+    Note(String),
+    /// The host lets nobody in here any more.
+    Refused(String),
+}
+
+/// Settings of a shared run.
+#[derive(Debug)]
+pub struct SharedSettings {
+    /// Threads that step a dab, for a world that comes as a checkpoint.
+    pub workers: usize,
+    /// Where both worlds are written when they differ.
+    pub dumps: PathBuf,
+}
+
+/// The tick thread's end.
+#[derive(Debug)]
+pub struct SharedLink {
+    to: cc::Sender<FromLoop>,
+    from: cc::Receiver<ToLoop>,
+    executor: Executor,
+    /// The own devices, by their number on the wire.
+    devices: Vec<DeviceId>,
+    frames: VecDeque<Arc<Frame>>,
+    /// The frame whose own tick is being stepped.
+    stepping: Option<Arc<Frame>>,
+    hosting: Arc<AtomicBool>,
+    lost: u64,
+    _thread: SharedThread,
+}
+
+impl std::fmt::Debug for ToLoop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("ToLoop")
+    }
+}
+
+impl std::fmt::Debug for FromLoop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("FromLoop")
+    }
+}
+
+/// The station's thread; it leaves the sculpture and ends when this is dropped.
+#[derive(Debug)]
+struct SharedThread {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Drop for SharedThread {
+    fn drop(&mut self) {
+        self.stop.store(true, Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Why a sculpture cannot be shared.
+#[derive(Debug, thiserror::Error)]
+pub enum SharedError {
+    /// A thread or the network cannot be had.
+    #[error("{0}")]
+    Start(String),
+    /// The host says no.
+    #[error("not let in: {0}")]
+    Refused(String),
+    /// Nobody answers.
+    #[error("nobody hosts '{name}' here, or nobody answers: {last}")]
+    Silent {
+        /// The sculpture's name.
+        name: String,
+        /// The last that was heard.
+        last: String,
+    },
+}
+
+/// A station that runs.
+#[derive(Debug)]
+pub struct Shared {
+    /// For the loop.
+    pub link: SharedLink,
+    /// What the run is told.
+    pub told: cc::Receiver<Told>,
+}
+
+impl Shared {
+    /// Starts a station's threads.
+    ///
+    /// # Errors
+    /// [`SharedError::Start`]
+    pub fn start(
+        station: Station,
+        mut transport: Box<dyn Transport>,
+        clock: Clock,
+        settings: SharedSettings,
+    ) -> Result<Shared, SharedError> {
+        let failed = |e: std::io::Error| SharedError::Start(format!("no thread: {e}"));
+        transport.listen(station.address()).map_err(SharedError::Start)?;
+        let (to, from_loop) = cc::bounded(WAITING);
+        let (to_loop, from) = cc::unbounded();
+        let (tell, told) = cc::bounded(1024);
+        let (jobs, work) = cc::bounded(64);
+        let (finished, done) = cc::bounded(64);
+        let workers = settings.workers;
+        std::thread::Builder::new()
+            .name("sculptd-replica".into())
+            .spawn(move || work_on(&work, &finished, workers))
+            .map_err(failed)?;
+        let (stop, hosting) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
+        let running = Running {
+            station,
+            transport,
+            clock,
+            from_loop,
+            to_loop,
+            tell,
+            jobs,
+            done,
+            restoring: None,
+            views: BTreeMap::new(),
+            differs: None,
+            dumps: settings.dumps,
+            hosting: hosting.clone(),
+            stop: stop.clone(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("sculptd-shared".into())
+            .spawn(move || running.run())
+            .map_err(failed)?;
+        let link = SharedLink {
+            to,
+            from,
+            executor: Executor::new(1, 0),
+            devices: Vec::new(),
+            frames: VecDeque::new(),
+            stepping: None,
+            hosting,
+            lost: 0,
+            _thread: SharedThread { stop, thread: Some(thread) },
+        };
+        Ok(Shared { link, told })
+    }
+
+    /// Waits until the station was let in, and gives its first world and the host's rate; without a
+    /// world (a device sees none), as soon as it has a number.
+    ///
+    /// # Errors
+    /// [`SharedError::Refused`], [`SharedError::Silent`]
+    pub fn enter(
+        &mut self,
+        name: &str,
+        sees: bool,
+        patience: Duration,
+    ) -> Result<(Option<Box<World>>, u32), SharedError> {
+        let until = std::time::Instant::now() + patience;
+        let (mut last, mut rate) = (String::from("no word"), 0);
+        loop {
+            while let Ok(told) = self.told.try_recv() {
+                match told {
+                    Told::Note(text) => last = text,
+                    Told::Refused(why) => return Err(SharedError::Refused(why)),
+                }
+            }
+            match self.link.from.recv_timeout(Duration::from_millis(50)) {
+                Ok(ToLoop::Entered(person, rate_hz)) => {
+                    self.link.executor = Executor::new(rate_hz, person);
+                    rate = rate_hz;
+                    if !sees {
+                        return Ok((None, rate));
+                    }
+                }
+                Ok(ToLoop::World(world, executor)) => {
+                    self.link.executor = executor;
+                    return Ok((Some(world), rate));
+                }
+                Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
+                Err(_) if std::time::Instant::now() >= until => {
+                    return Err(SharedError::Silent { name: name.into(), last });
+                }
+                Err(_) => {}
+            }
+        }
+    }
+}
+
+impl SharedInput for SharedLink {
+    fn refuses(&mut self, command: &QueuedCommand) -> bool {
+        let why = policy::refused_command(&command.command).or_else(|| {
+            let large = command.command.owns_memory() && policy::is_too_large(&command.command);
+            large.then_some("it is larger than what can be shared at once")
+        });
+        if let Some(why) = why {
+            tracing::warn!("not done in a shared sculpture: {why}");
+        }
+        why.is_some()
+    }
+
+    fn submit(&mut self, samples: &mut Vec<Sample>, commands: &mut Vec<Command>) {
+        let mut own = Vec::new();
+        for mut sample in samples.drain(..).filter_map(|s| rounded(&s)) {
+            let known = self.devices.iter().position(|d| *d == sample.device);
+            let number = known.or_else(|| {
+                self.devices.push(sample.device);
+                (self.devices.len() <= MAX_DEVICES).then(|| self.devices.len() - 1)
+            });
+            let Some(number) = number else {
+                self.devices.truncate(MAX_DEVICES);
+                continue;
+            };
+            sample.device = DeviceId(number as u16);
+            own.push(sample);
+        }
+        for command in commands.iter_mut() {
+            let Command::DesktopLayout(desktop) = command else { continue };
+            for entry in &mut desktop.tablets {
+                // A tablet that has sent nothing yet has no number on the wire.
+                let device = entry.and_then(|(d, _)| self.devices.iter().position(|o| *o == d));
+                *entry = entry.zip(device).map(|((_, at), n)| (DeviceId(n as u16), at));
+            }
+        }
+        if own.is_empty() && commands.is_empty() {
+            return;
+        }
+        let input = FromLoop::Input(own, std::mem::take(commands));
+        if self.to.try_send(input).is_err() {
+            self.lost += 1;
+            tracing::warn!("input of {} ticks was lost on its way to the network", self.lost);
+        }
+    }
+
+    fn next(&mut self, world: &World) -> NextTick {
+        loop {
+            if let Some(frame) = self.frames.front() {
+                if let Some(tick) = self.executor.empty_ticks(world, frame).next() {
+                    return NextTick::Step(SharedTick { tick, ..SharedTick::default() });
+                }
+                let input = self.executor.input(frame, world);
+                self.stepping = self.frames.pop_front();
+                return NextTick::Step(SharedTick {
+                    tick: input.tick,
+                    samples: input.samples,
+                    commands: input.commands,
+                    own: input.own,
+                });
+            }
+            match self.from.try_recv() {
+                Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
+                Ok(ToLoop::World(world, executor)) => {
+                    self.executor = executor;
+                    return NextTick::World(world);
+                }
+                Ok(ToLoop::Entered(person, rate_hz)) => {
+                    self.executor.set_person(person, rate_hz);
+                }
+                Err(_) => return NextTick::Wait,
+            }
+        }
+    }
+
+    fn after_step(&mut self, world: &mut World) {
+        let frame = self.stepping.take();
+        let asked = self.executor.after_step(world, frame.as_deref());
+        if let Some(frame) = frame {
+            let at_rest = world.is_at_rest();
+            // Where the station is so far behind, it misses a comparison.
+            let _ = self.to.try_send(FromLoop::Stepped { frame, asked, at_rest });
+        }
+    }
+
+    fn hosts(&self) -> bool {
+        self.hosting.load(Relaxed)
+    }
+}
+
+/// The station's thread.
+struct Running {
+    station: Station,
+    transport: Box<dyn Transport>,
+    clock: Clock,
+    from_loop: cc::Receiver<FromLoop>,
+    to_loop: cc::Sender<ToLoop>,
+    tell: cc::Sender<Told>,
+    jobs: cc::Sender<Job>,
+    done: cc::Receiver<Done>,
+    /// Frames that wait for the world that they follow.
+    restoring: Option<Vec<Arc<Frame>>>,
+    views: BTreeMap<u64, HashView>,
+    /// A state differed: the host's is written when it is there.
+    differs: Option<u64>,
+    dumps: PathBuf,
+    hosting: Arc<AtomicBool>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Running {
+    fn run(mut self) {
+        let incoming = self.transport.incoming();
+        while !self.stop.load(Relaxed) {
+            let now_us = self.clock.now_us();
+            let wait = self.station.next_us(now_us).saturating_sub(now_us);
+            cc::select! {
+                recv(incoming) -> bytes => if let Ok(bytes) = bytes {
+                    self.station.receive(&bytes, self.clock.now_us());
+                },
+                recv(self.from_loop) -> from => match from {
+                    Ok(from) => self.take(from),
+                    Err(_) => break,
+                },
+                recv(self.done) -> done => if let Ok(done) = done {
+                    self.finished(done);
+                },
+                default(Duration::from_micros(wait.clamp(500, 50_000))) => {}
+            }
+            // A flood must not keep time from passing.
+            incoming.try_iter().take(512).for_each(|b| {
+                self.station.receive(&b, self.clock.now_us());
+            });
+            while let Ok(from) = self.from_loop.try_recv() {
+                self.take(from);
+            }
+            self.station.advance(self.clock.now_us());
+            self.tell_events();
+            self.send();
+        }
+        self.station.leave();
+        self.send();
+    }
+
+    fn send(&mut self) {
+        while let Some((to, bytes)) = self.station.take_outgoing() {
+            self.transport.send(to, bytes);
+        }
+    }
+
+    fn take(&mut self, from: FromLoop) {
+        match from {
+            FromLoop::Input(samples, commands) => {
+                self.station.submit(samples, commands, self.clock.now_us());
+            }
+            FromLoop::Stepped { frame, asked, at_rest } => {
+                self.station.after_step(at_rest);
+                if let Some(view) = asked.hash {
+                    let _ = self.jobs.try_send(Job::Hash(view));
+                }
+                if frame.mark == Mark::Checkpoint && self.station.hosts() {
+                    match asked.captured {
+                        Some(captured) => {
+                            let job = Job::Checkpoint(frame.index, Box::new(captured));
+                            let _ = self.jobs.try_send(job);
+                        }
+                        None => self.station.checkpoint_failed(frame.index, self.clock.now_us()),
+                    }
+                }
+            }
+        }
+    }
+
+    fn finished(&mut self, done: Done) {
+        match done {
+            Done::Hash(view, hash) => {
+                self.station.own_hash(view.index, hash);
+                self.views.insert(view.index, view);
+                while self.views.len() > KEPT_VIEWS {
+                    self.views.pop_first();
+                }
+            }
+            Done::Checkpoint(index, bytes) => self.station.checkpoint(index, Arc::new(bytes)),
+            Done::Restored(None) => {
+                self.note("the checkpoint could not be read: asking for another".into());
+                self.restoring = None;
+                self.station.restore_failed(self.clock.now_us());
+            }
+            Done::Restored(Some(mut world)) => {
+                if let Some(index) = self.differs.take() {
+                    let (scene, active) = (world.scene_view(), world.snapshot());
+                    let view = HashView { index, tick: world.tick(), scene, active };
+                    let name = format!("differs-frame-{index}-host.ply");
+                    let job = Job::Dump(Box::new(view), self.dumps.join(name));
+                    let _ = self.jobs.try_send(job);
+                }
+                let executor = Executor::new(self.station.rate_hz(), self.station.person());
+                let _ = self.to_loop.send(ToLoop::World(world, executor));
+                for frame in self.restoring.take().unwrap_or_default() {
+                    let _ = self.to_loop.send(ToLoop::Frame(frame));
+                }
+            }
+        }
+    }
+
+    fn note(&self, text: String) {
+        tracing::info!("{text}");
+        let _ = self.tell.try_send(Told::Note(text));
+    }
+
+    fn tell_events(&mut self) {
+        while let Some(event) = self.station.take_event() {
+            match event {
+                Event::Frame(frame) => match &mut self.restoring {
+                    Some(waiting) => waiting.push(frame),
+                    None => {
+                        let _ = self.to_loop.send(ToLoop::Frame(frame));
+                    }
+                },
+                Event::Restore { checkpoint, .. } => {
+                    self.restoring = Some(Vec::new());
+                    let _ = self.jobs.send(Job::Restore(checkpoint));
+                }
+                Event::Entered { person, rate_hz } => {
+                    let _ = self.to_loop.send(ToLoop::Entered(person, rate_hz));
+                }
+                Event::Hosting(on) => {
+                    self.transport.hosts(on);
+                    self.hosting.store(on, Relaxed);
+                }
+                Event::Differs { index, hashes: (own, host) } => {
+                    let view = self.views.get(&index);
+                    let tick = view.map_or(0, |v| v.tick);
+                    self.note(format!(
+                        "this replica differs from the host's at tick {tick}: {own:016x} here, \
+                         {host:016x} there; both are written to {} and it joins anew",
+                        self.dumps.display()
+                    ));
+                    if let Some(view) = view {
+                        let name = format!("differs-frame-{index}-own.ply");
+                        let job = Job::Dump(Box::new(view.clone()), self.dumps.join(name));
+                        let _ = self.jobs.try_send(job);
+                    }
+                    self.differs = Some(index);
+                }
+                Event::Note(text) => self.note(text),
+                Event::Refused(why) => {
+                    tracing::warn!("the host lets this daemon in no more: {why}");
+                    let _ = self.tell.try_send(Told::Refused(why));
+                }
+            }
+        }
+    }
+}
+
+/// The worker's thread.
+fn work_on(jobs: &cc::Receiver<Job>, done: &cc::Sender<Done>, workers: usize) {
+    for job in jobs {
+        let finished = match job {
+            Job::Hash(view) => {
+                let hash = view.hash();
+                Done::Hash(view, hash)
+            }
+            Job::Checkpoint(index, captured) => Done::Checkpoint(index, captured.to_bytes()),
+            Job::Restore(bytes) => {
+                let world = Captured::restore(&bytes, Workers::new(workers));
+                Done::Restored(world.ok().map(Box::new))
+            }
+            Job::Dump(view, path) => {
+                let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+                let written = written.map_err(|e| e.to_string()).and_then(|()| {
+                    write_mesh(&path, &view.active.to_tri().to_poly()).map_err(|e| e.to_string())
+                });
+                if let Err(e) = written {
+                    tracing::warn!("{}: {e}", path.display());
+                }
+                continue;
+            }
+        };
+        if done.send(finished).is_err() {
+            return;
+        }
+    }
+}

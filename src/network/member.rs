@@ -1,0 +1,360 @@
+//! A member: greets, is let in, fetches a checkpoint where it needs one, then follows the host's
+//! frames and sends its own input.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::keyring::{Invitation, Keyring};
+use crate::replica_log::ReplicaLog;
+use crate::seal::{Seal, Secret};
+use crate::wire::frame::{Frame, Role};
+use crate::wire::message::{
+    Address, CHUNK, Entry, FromHost, FromMember, Greeting, Nonce, Offer, Term, VERSION,
+};
+
+/// Between two greetings.
+const GREET_US: u64 = 200_000;
+/// Chunks that are asked for at once.
+const WINDOW: usize = 48;
+/// A chunk that did not come is asked for again.
+const CHUNK_US: u64 = 700_000;
+/// Frames that wait for one before them.
+const MAX_EARLY: usize = 4096;
+
+/// How far a member is.
+#[derive(Debug)]
+enum MemberPhase {
+    /// Says hello to whoever hosts.
+    Greets { nonce: Nonce, next_us: u64 },
+    /// Asks to be let in.
+    Joins { next_us: u64, tries: u32 },
+    /// Fetches a checkpoint.
+    Fetches(Box<Fetch>),
+    /// Follows.
+    Follows,
+}
+
+/// A checkpoint on its way.
+#[derive(Debug)]
+struct Fetch {
+    entry: Entry,
+    offer: Offer,
+    chunks: Vec<Option<Vec<u8>>>,
+    left: usize,
+    /// The first chunk of those that were asked for, and when; 0: not yet.
+    window: usize,
+    asked_us: u64,
+}
+
+/// A member's state.
+#[derive(Debug)]
+pub struct Member {
+    invitation: Invitation,
+    phase: MemberPhase,
+    host: Address,
+    /// The host's turn.
+    pub term: Term,
+    seals: Option<(Seal, Seal)>,
+    heard_us: u64,
+    early: BTreeMap<u64, Arc<Frame>>,
+    received: u64,
+    trip: RoundTrip,
+    next_us: u64,
+    /// The own world is that of the log: it may be continued, and may take over.
+    pub level: bool,
+    /// What a successor needs.
+    pub succession: Option<(Keyring, Secret)>,
+    hashes: BTreeMap<u64, u64>,
+    /// The host has been silent for too long.
+    pub lost: bool,
+    told: Option<String>,
+}
+
+impl Member {
+    /// A member that greets at once.
+    pub fn new(core: &mut Core, invitation: Invitation, now_us: u64) -> Member {
+        Member {
+            invitation,
+            phase: MemberPhase::Greets { nonce: core.nonce(), next_us: now_us },
+            host: 0,
+            term: Term::default(),
+            seals: None,
+            heard_us: now_us,
+            early: BTreeMap::new(),
+            received: 0,
+            trip: RoundTrip::default(),
+            next_us: now_us,
+            level: false,
+            succession: None,
+            hashes: BTreeMap::new(),
+            lost: false,
+            told: None,
+        }
+    }
+
+    /// Whether it follows a host.
+    pub fn follows(&self) -> bool {
+        matches!(self.phase, MemberPhase::Follows)
+    }
+
+    /// Begins anew with a greeting.
+    pub fn greet(&mut self, core: &mut Core, now_us: u64) {
+        self.phase = MemberPhase::Greets { nonce: core.nonce(), next_us: now_us };
+        self.seals = None;
+        self.early.clear();
+        self.heard_us = now_us;
+    }
+
+    /// Takes an answer to a greeting.
+    pub fn greeting(&mut self, core: &mut Core, from: Address, greeting: &Greeting, now_us: u64) {
+        let MemberPhase::Greets { nonce: own, .. } = self.phase else { return };
+        match greeting {
+            Greeting::Challenge { to, nonce, term, proof } if *to == own => {
+                if !self.invitation.secret.proves(proof, &own, nonce, term) || *term < self.term {
+                    return;
+                }
+                self.seals = Some(self.invitation.secret.seals(&own, nonce));
+                (self.host, self.term) = (from, *term);
+                self.heard_us = now_us;
+                self.phase = MemberPhase::Joins { next_us: now_us, tries: 0 };
+                self.advance(core, now_us);
+            }
+            Greeting::Refused { to, reason } if *to == own => {
+                // Not sealed: anybody may have said it, so the greetings go on.
+                if self.told.as_ref() != Some(reason) {
+                    core.note(format!("not let in: {reason}"));
+                    self.told = Some(reason.clone());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes a sealed message of the host.
+    pub fn receive(&mut self, core: &mut Core, from: Address, sealed: &[u8], now_us: u64) {
+        let Some((_, down)) = self.seals.as_ref().filter(|_| from == self.host) else { return };
+        let Some(plain) = down.open(sealed) else { return };
+        let Ok(message) = FromHost::from_bytes(&plain) else {
+            return core.note("the host sends what is no message; it is ignored");
+        };
+        (self.heard_us, self.lost) = (now_us, false);
+        match message {
+            FromHost::Entry(entry) => self.enter(core, entry, now_us),
+            FromHost::Refused(why) => {
+                if why.ends_with("join again") {
+                    self.level = false;
+                    return self.greet(core, now_us);
+                }
+                core.events.push_back(Event::Refused(why));
+            }
+            FromHost::Down { received, acknowledged, sent_ms, echo_ms, frames } => {
+                self.trip.take(sent_ms, echo_ms, now_us);
+                if self.follows() {
+                    self.received = self.received.max(received);
+                    core.outbox.acknowledge(acknowledged);
+                    for frame in frames {
+                        self.take_frame(core, frame);
+                    }
+                }
+            }
+            FromHost::Chunk { index, number, bytes } => {
+                self.chunk(core, index, number, bytes, now_us)
+            }
+            FromHost::Differs { index, hash } => {
+                let own = self.hashes.get(&index).copied().unwrap_or_default();
+                core.events.push_back(Event::Differs { index, hashes: (own, hash) });
+                self.level = false;
+                self.greet(core, now_us);
+            }
+        }
+    }
+
+    fn enter(&mut self, core: &mut Core, entry: Box<Entry>, now_us: u64) {
+        if !matches!(self.phase, MemberPhase::Joins { .. }) {
+            return;
+        }
+        self.told = None;
+        core.rate_hz = entry.rate_hz.max(1);
+        if core.person != entry.person || !self.level {
+            let (person, rate_hz) = (entry.person, core.rate_hz);
+            core.events.push_back(Event::Entered { person, rate_hz });
+        }
+        core.person = entry.person;
+        self.succession = entry.succession.as_ref().and_then(|(group, keys)| {
+            let group = Secret(group.as_slice().try_into().ok()?);
+            Some((Keyring::from_bytes(keys), group))
+        });
+        match entry.offer {
+            None => {
+                if core.role == Role::Device {
+                    core.log = ReplicaLog::at(0, 0, entry.turns.clone(), entry.people.clone());
+                } else if core.log.turns().last().is_none_or(|t| t.0 != entry.term) {
+                    core.log.begin_turn(entry.term);
+                }
+                self.follow(core, &entry, now_us);
+            }
+            Some(offer) => {
+                // 32 KiB a chunk: what is allocated is bounded by what was told and sealed.
+                let chunks = vec![None; offer.chunks as usize];
+                if offer.size.div_ceil(CHUNK as u64) != u64::from(offer.chunks) {
+                    return core.note("a checkpoint of no size was offered");
+                }
+                self.level = false;
+                let (left, entry) = (chunks.len(), *entry);
+                let fetch = Fetch { entry, offer, chunks, left, window: 0, asked_us: 0 };
+                self.phase = MemberPhase::Fetches(Box::new(fetch));
+                self.advance(core, now_us);
+            }
+        }
+    }
+
+    fn follow(&mut self, core: &mut Core, entry: &Entry, now_us: u64) {
+        core.outbox.begin_after(entry.applied);
+        self.received = entry.applied;
+        self.phase = MemberPhase::Follows;
+        self.level = core.role != Role::Device;
+        self.trip = RoundTrip::default();
+        (self.heard_us, self.next_us, self.lost) = (now_us, now_us, false);
+        let host = entry.people.iter().map(|p| p.0.name.as_str()).collect::<Vec<_>>().join(", ");
+        core.note(format!("joined turn {}; people so far: {host}", entry.term.number));
+    }
+
+    fn chunk(&mut self, core: &mut Core, index: u64, number: u32, bytes: Vec<u8>, now_us: u64) {
+        let MemberPhase::Fetches(fetch) = &mut self.phase else { return };
+        let slot = fetch.chunks.get_mut(number as usize).filter(|_| fetch.offer.index == index);
+        let Some(slot) = slot else { return };
+        if slot.is_none() {
+            *slot = Some(bytes);
+            fetch.left -= 1;
+        }
+        let end = (fetch.window + WINDOW).min(fetch.chunks.len());
+        if fetch.chunks[fetch.window..end].iter().all(Option::is_some) {
+            (fetch.window, fetch.asked_us) = (end, 0);
+        }
+        if fetch.left > 0 {
+            return self.advance(core, now_us);
+        }
+        let MemberPhase::Fetches(fetch) = std::mem::replace(&mut self.phase, MemberPhase::Follows)
+        else {
+            return;
+        };
+        let Fetch { entry, offer, chunks, .. } = *fetch;
+        let checkpoint: Vec<u8> = chunks.into_iter().flatten().flatten().collect();
+        if checkpoint.len() as u64 != offer.size {
+            core.note("a checkpoint came with another size than was told");
+            return self.greet(core, now_us);
+        }
+        let (turns, people) = (entry.turns.clone(), entry.people.clone());
+        core.log = ReplicaLog::at(offer.index, 0, turns, people);
+        let checkpoint = Arc::new(checkpoint);
+        core.events.push_back(Event::Restore { index: offer.index, checkpoint });
+        self.follow(core, &entry, now_us);
+    }
+
+    fn take_frame(&mut self, core: &mut Core, frame: Arc<Frame>) {
+        if frame.index <= core.log.last() || self.early.len() >= MAX_EARLY {
+            return;
+        }
+        self.early.insert(frame.index, frame);
+        while let Some(next) = self.early.remove(&(core.log.last() + 1)) {
+            if !core.append(next) {
+                core.note("a frame of the host does not follow the one before it");
+                self.early.clear();
+                break;
+            }
+        }
+    }
+
+    /// The hash of the own world after a frame.
+    pub fn own_hash(&mut self, core: &mut Core, index: u64, hash: u64) {
+        self.hashes.insert(index, hash);
+        while self.hashes.len() > 64 {
+            self.hashes.pop_first();
+        }
+        if let (MemberPhase::Follows, Some((up, _))) = (&self.phase, &mut self.seals) {
+            core.up(self.host, up, &FromMember::Hash { index, hash });
+        }
+    }
+
+    /// Goes.
+    pub fn leave(&mut self, core: &mut Core) {
+        if let Some((up, _)) = &mut self.seals {
+            core.up(self.host, up, &FromMember::Leave);
+        }
+    }
+
+    /// Sends what is to be sent.
+    pub fn advance(&mut self, core: &mut Core, now_us: u64) {
+        let silent = now_us >= self.heard_us + LOST_US;
+        match &mut self.phase {
+            MemberPhase::Greets { nonce, next_us } if now_us >= *next_us => {
+                *next_us = now_us + GREET_US;
+                let (nonce, key) = (*nonce, self.invitation.secret.name());
+                core.greet(To::Host, &Greeting::Hello { version: VERSION, nonce, key });
+            }
+            MemberPhase::Greets { .. } => {}
+            MemberPhase::Joins { next_us, tries } => {
+                if now_us < *next_us {
+                    return;
+                }
+                let Some((up, _)) = &mut self.seals else { return };
+                // A checkpoint may take a while to be made; a silent host is another.
+                (*next_us, *tries) = (now_us + GREET_US * 3, *tries + 1);
+                if *tries > 1 && silent {
+                    return self.greet(core, now_us);
+                }
+                if *tries == 1 {
+                    let reached = self.level.then(|| core.log.reached());
+                    let (name, role) = (core.name.clone(), core.role);
+                    core.up(self.host, up, &FromMember::Join { name, role, reached });
+                } else {
+                    let (sent_ms, echo_ms) = (ms(now_us), self.trip.echo_ms(now_us));
+                    let batches = Vec::new();
+                    let up_to = FromMember::Up { have: 0, after_gap: 0, sent_ms, echo_ms, batches };
+                    core.up(self.host, up, &up_to);
+                }
+            }
+            MemberPhase::Fetches(fetch) => {
+                if silent {
+                    return self.greet(core, now_us);
+                }
+                let Some((up, _)) = &mut self.seals else { return };
+                if fetch.asked_us == 0 || now_us >= fetch.asked_us + CHUNK_US {
+                    fetch.asked_us = now_us.max(1);
+                    let from = fetch.window;
+                    let first = fetch.chunks[from..].iter().position(Option::is_none).unwrap_or(0);
+                    let (first, index) = ((from + first) as u32, fetch.offer.index);
+                    let count = (from + WINDOW) as u32 - first;
+                    core.up(self.host, up, &FromMember::Want { index, first, count });
+                }
+            }
+            MemberPhase::Follows => {
+                self.lost = silent;
+                if now_us < self.next_us {
+                    return;
+                }
+                let patience = self.trip.patience_us();
+                let batches = core.outbox.due(self.received, now_us, patience);
+                let busy = !batches.is_empty() || core.outbox.count_after(self.received) > 0;
+                let behind = !self.early.is_empty();
+                self.next_us = now_us + if busy || behind { SEND_US } else { IDLE_US / 2 };
+                let Some((up, _)) = &mut self.seals else { return };
+                let message = FromMember::Up {
+                    have: if core.role == Role::Device { 0 } else { core.log.last() },
+                    after_gap: self.early.keys().next().copied().unwrap_or(0),
+                    sent_ms: ms(now_us),
+                    echo_ms: self.trip.echo_ms(now_us),
+                    batches,
+                };
+                core.up(self.host, up, &message);
+            }
+        }
+    }
+
+    /// Something new waits in the outbox: it is sent when the time between two messages is over,
+    /// and not when an idle member would speak.
+    pub fn hurry(&mut self, now_us: u64) {
+        self.next_us = self.next_us.min(now_us + SEND_US);
+    }
+}

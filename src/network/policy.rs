@@ -1,0 +1,33 @@
+//! What may be shared. Commands that need what only one daemon has, or that put everybody's work
+//! aside, may not; they are refused where they are made, and by the host again.
+
+use crate::wire::frame::{Batch, MAX_COMMAND};
+use sculptd_engine::command::Command;
+
+/// Why a command cannot be shared; `None`: it can.
+pub fn refused_command(command: &Command) -> Option<&'static str> {
+    match command {
+        Command::Jump(_) | Command::JumpScene(_) => {
+            Some("jumps within the history need the session file of one daemon")
+        }
+        Command::Begin(_) => Some("a visit begins anew for one installation alone"),
+        Command::Reopened => Some("nobody but the host ends what can be taken back"),
+        Command::Cut(_) => Some("a cut is computed for one replica; share the whole object"),
+        Command::OfPerson(_) => Some("whose a command is, the host says"),
+        Command::OfClay(of) => match &of.command {
+            Command::OfClay(_) => Some("it is nested"),
+            other => refused_command(other),
+        },
+        _ => None,
+    }
+}
+
+/// Why a batch is not taken; `None`: it is.
+pub fn refused(batch: &Batch) -> Option<&'static str> {
+    batch.commands.iter().find_map(refused_command)
+}
+
+/// Whether a command takes more bytes than one may ([`MAX_COMMAND`]).
+pub fn is_too_large(command: &Command) -> bool {
+    postcard::to_stdvec(command).map_or(true, |bytes| bytes.len() > MAX_COMMAND)
+}

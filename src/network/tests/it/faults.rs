@@ -1,0 +1,139 @@
+//! Strokes of several people over bad networks, and hosts that die.
+
+use crate::simulated::{BAD, Faults, GOOD, Random, Simulation, ball, undo};
+
+/// Long runs: seconds of strokes and kills, in the place of the short ones of every test run.
+fn long(name: &str, short: u64) -> u64 {
+    std::env::var(name).ok().and_then(|t| t.parse().ok()).unwrap_or(short)
+}
+
+fn together(people: usize, faults: Faults, seconds: f64, seed: u64) -> Simulation {
+    let mut s = Simulation::new(seed, faults);
+    s.run(0.5, |i| i == 0);
+    (1..people).for_each(|_| {
+        s.join_sculptor();
+    });
+    // Joiners come while the others sculpt.
+    s.run(3.0, |_| true);
+    assert!(s.replicas[1..].iter().all(|r| r.restored == 1), "{:?}", s.replicas[1].notes);
+    let before: Vec<_> = s.replicas.iter().map(|r| r.bytes).collect();
+    s.run(seconds, |_| true);
+    for (i, (r, b)) in s.replicas.iter().zip(before).enumerate() {
+        let bits = |n: u64| n as f64 * 8.0 / seconds / 1e3;
+        let (up, down) = (bits(r.bytes.0 - b.0), bits(r.bytes.1 - b.1));
+        println!("{people} people, replica {i}: {up:.1} kbit/s sent, {down:.1} kbit/s received");
+        // The host sends to all; a person's own input is what the others cost it and it them.
+        if i > 0 {
+            let person = up + down / people as f64;
+            assert!(person < 64.0, "{person} kbit/s");
+        }
+    }
+    s
+}
+
+#[test]
+fn two_people_over_a_good_network_have_one_sculpture() {
+    let mut s = together(2, GOOD, 5.0, 1);
+    s.run(1.5, |_| false);
+    s.verify();
+    let world = s.replicas[1].world.as_ref().expect("a world");
+    assert_ne!(world.hash(), ball().hash(), "somebody sculpted");
+    let compared = s.replicas[1].hashes.len();
+    assert!(compared >= 6, "{compared} comparisons");
+    // Undo goes through the log as all else does.
+    let before = world.hash();
+    let now = s.now_us;
+    s.replicas[1].station.submit(vec![], undo(), now);
+    s.run(1.0, |_| false);
+    s.verify();
+    assert_ne!(s.replicas[0].world.as_ref().map(|w| w.hash()), Some(before), "taken back");
+}
+
+#[test]
+fn eight_people_over_a_bad_network_have_one_sculpture() {
+    let seconds = long("SCULPTD_NETWORK_SECONDS", 10) as f64;
+    let mut s = together(8, BAD, seconds, 2);
+    // Nothing comes through for ten seconds, while all go on.
+    s.replicas.iter_mut().for_each(|r| r.cut_off = true);
+    s.run(long("SCULPTD_NETWORK_SILENCE", 4) as f64, |_| true);
+    s.replicas.iter_mut().for_each(|r| r.cut_off = false);
+    s.run(4.0, |_| true);
+    s.run(12.0, |_| false);
+    s.verify();
+    let given: u64 = s.replicas.iter().map(|r| r.transitions_given).sum();
+    assert!(given > 100);
+}
+
+#[test]
+fn a_replica_that_differs_is_found_and_joins_anew() {
+    let mut s = together(3, GOOD, 1.0, 3);
+    let mut broken = ball();
+    let tick = s.replicas[2].world.as_ref().map_or(0, |w| w.tick());
+    broken.step(tick, &[], &[]);
+    s.replicas[2].world = Some(broken);
+    s.run(4.0, |i| i < 2);
+    assert_eq!((s.replicas[2].differed, s.replicas[2].restored), (1, 2));
+    s.replicas[2].differed = 0;
+    s.replicas[2].hashes.clear();
+    s.run(2.0, |_| false);
+    s.verify();
+}
+
+#[test]
+fn a_host_that_dies_is_followed_within_two_seconds_and_nothing_acknowledged_is_lost() {
+    for seed in 0..long("SCULPTD_NETWORK_KILLS", 6) {
+        let mut random = Random(seed);
+        let faults = if seed % 2 == 0 { GOOD } else { BAD };
+        let people = 2 + seed as usize % 3;
+        let mut s = together(people, faults, 0.5, seed);
+        s.run(random.share() * 2.0, |_| true);
+        let host = s.host().expect("a host");
+        let acknowledged: Vec<(u8, u64)> = s
+            .lively()
+            .map(|r| {
+                let first = r.station.outbox().after(0, 1).next().map(|b| b.number);
+                let all = r.station.log().applied(r.station.person());
+                (r.station.person(), first.map_or(all, |n| n - 1))
+            })
+            .collect();
+        s.replicas[host].alive = false;
+        let at = s.now_us;
+        while s.host().is_none() {
+            s.run(0.01, |_| true);
+            assert!(s.now_us < at + 2_000_000, "seed {seed}: nobody took over");
+        }
+        let took = (s.now_us - at) as f64 / 1e6;
+        let next = s.host().expect("a host");
+        println!("seed {seed}: {people} people, took over in {took:.2} s");
+        for (person, through) in acknowledged {
+            let applied = s.replicas[next].station.log().applied(person);
+            assert!(applied >= through, "seed {seed}: {applied} of {through} of {person}");
+        }
+        s.run(3.0, |_| true);
+        s.run(3.0, |_| false);
+        s.verify();
+        // The old host comes back under its own name, as a replica.
+        let key = s.keyring.0[0].clone();
+        let name = format!("person {host}");
+        let back = s.join(&name, sculptd_network::wire::frame::Role::Sculptor, key);
+        s.run(3.0, |_| true);
+        s.run(3.0, |_| false);
+        s.verify();
+        assert_eq!(s.replicas[back].station.person(), host as u8 + 1);
+    }
+}
+
+#[test]
+fn a_host_that_was_cut_off_joins_the_one_that_took_over() {
+    let mut s = together(3, GOOD, 1.0, 9);
+    s.replicas[0].cut_off = true;
+    s.run(6.0, |_| true);
+    assert!(s.replicas[0].station.hosts(), "alone, it goes on");
+    assert!(s.replicas[1..].iter().any(|r| r.station.hosts()), "so do the others");
+    s.replicas[0].cut_off = false;
+    s.run(3.0, |_| true);
+    s.run(4.0, |_| false);
+    assert!(!s.replicas[0].station.hosts());
+    assert_eq!(s.replicas.iter().filter(|r| r.station.hosts()).count(), 1);
+    s.verify();
+}

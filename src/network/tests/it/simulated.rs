@@ -1,0 +1,339 @@
+//! Stations around worlds, and a network between them that is moved by hand.
+
+use std::collections::BTreeMap;
+
+use glam::Vec2;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{Clay, Workers};
+use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::HandSettings;
+use sculptd_engine::world::{World, WorldOptions};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes;
+use sculptd_network::checkpoint::Captured;
+use sculptd_network::core::{Event, To};
+use sculptd_network::executor::Executor;
+use sculptd_network::keyring::{Entropy, Invitation, Keyring, fresh};
+use sculptd_network::station::{Identity, Station};
+use sculptd_network::wire::frame::{Mark, Role};
+use sculptd_network::wire::samples::rounded;
+
+pub const RATE: u32 = 120;
+/// Microseconds that a step of the simulation takes.
+pub const STEP_US: u64 = 4_000;
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+#[derive(Debug, Clone)]
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// 0 to 1.
+    pub fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn entropy(seed: u64) -> Entropy {
+        let mut random = Random(seed);
+        Box::new(move |bytes| bytes.iter_mut().for_each(|b| *b = random.next() as u8))
+    }
+}
+
+/// What a network does to datagrams.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Faults {
+    pub delay_us: u64,
+    pub loss: f64,
+    /// The share of datagrams that come up to as late again.
+    pub reorder: f64,
+    pub twice: f64,
+}
+
+/// As the issue asks for.
+pub const BAD: Faults = Faults { delay_us: 200_000, loss: 0.01, reorder: 0.02, twice: 0.005 };
+pub const GOOD: Faults = Faults { delay_us: 500, loss: 0.0, reorder: 0.0, twice: 0.0 };
+
+/// One daemon.
+pub struct Replica {
+    pub station: Station,
+    pub world: Option<World>,
+    pub executor: Executor,
+    pub alive: bool,
+    /// Nothing comes to it or from it.
+    pub cut_off: bool,
+    pub notes: Vec<String>,
+    pub refused: Option<String>,
+    pub differed: usize,
+    pub restored: usize,
+    /// Bytes sent and received.
+    pub bytes: (u64, u64),
+    /// Samples with another tip than the one before that were given.
+    pub transitions_given: u64,
+    /// The hash after each frame that was compared.
+    pub hashes: BTreeMap<u64, u64>,
+    tip: bool,
+}
+
+pub struct Simulation {
+    pub replicas: Vec<Replica>,
+    pub now_us: u64,
+    pub faults: Faults,
+    pub keyring: Keyring,
+    random: Random,
+    seed: u64,
+    air: BTreeMap<(u64, u64), (usize, Vec<u8>)>,
+    sent: u64,
+    /// Transitions that were stepped, by person, on the log of the first replica that stepped them.
+    pub stroke_s: f64,
+}
+
+pub fn ball() -> World {
+    let mesh = Clay::build(&shapes::sphere_of_about(1500), &Job::default()).expect("a ball");
+    let options =
+        WorldOptions { dab_budget: 400_000, undo_bytes: 64 << 20, hands: HandSettings::default() };
+    World::new(mesh, Camera::default(), BrushSettings::default(), Workers::new(1), options)
+}
+
+impl Simulation {
+    /// A host, and nobody else yet.
+    pub fn new(seed: u64, faults: Faults) -> Simulation {
+        let mut entropy = Random::entropy(seed ^ 0xabcd);
+        let of =
+            |role, entropy: &mut Entropy| Invitation { role, name: None, secret: fresh(entropy) };
+        let roles = [Role::Sculptor, Role::Viewer, Role::Device];
+        let keyring = Keyring(roles.map(|r| of(r, &mut entropy)).to_vec());
+        let mut simulation = Simulation {
+            replicas: Vec::new(),
+            now_us: 1_000_000,
+            faults,
+            keyring: keyring.clone(),
+            random: Random(seed),
+            seed,
+            air: BTreeMap::new(),
+            sent: 0,
+            stroke_s: 0.8,
+        };
+        let identity = simulation.identity("person 0", Role::Sculptor, keyring.0[0].clone());
+        let world = ball();
+        let station = Station::host(identity, keyring, RATE, world.tick(), simulation.now_us);
+        simulation.add(station, Some(world));
+        simulation
+    }
+
+    pub fn identity(&self, name: &str, role: Role, invitation: Invitation) -> Identity {
+        let entropy =
+            Random::entropy(self.seed.wrapping_mul(1000) + self.replicas.len() as u64 + 1);
+        Identity { name: name.into(), role, invitation, entropy }
+    }
+
+    fn add(&mut self, station: Station, world: Option<World>) -> usize {
+        self.replicas.push(Replica {
+            station,
+            world,
+            executor: Executor::new(RATE, 0),
+            alive: true,
+            cut_off: false,
+            notes: Vec::new(),
+            refused: None,
+            differed: 0,
+            restored: 0,
+            bytes: (0, 0),
+            transitions_given: 0,
+            hashes: BTreeMap::new(),
+            tip: false,
+        });
+        self.replicas.len() - 1
+    }
+
+    pub fn join(&mut self, name: &str, role: Role, invitation: Invitation) -> usize {
+        let station = Station::join(self.identity(name, role, invitation), self.now_us);
+        self.add(station, None)
+    }
+
+    pub fn join_sculptor(&mut self) -> usize {
+        let key = self.keyring.0[0].clone();
+        self.join(&format!("person {}", self.replicas.len()), Role::Sculptor, key)
+    }
+
+    pub fn host(&self) -> Option<usize> {
+        self.replicas.iter().position(|r| r.alive && !r.cut_off && r.station.hosts())
+    }
+
+    /// A stroke and a pause after the other, of each replica on its own part of the ball.
+    fn strokes(&mut self, i: usize) {
+        let (now, stroke_s) = (self.now_us as f64 / 1e6 + i as f64 * 0.37, self.stroke_s);
+        let replica = &mut self.replicas[i];
+        let (turn, part) = ((now / (stroke_s + 0.3)).floor(), now % (stroke_s + 0.3));
+        let tip = part < stroke_s;
+        let angle = part * 4.0 + turn * 1.3 + i as f64;
+        let radius = 30.0 + 6.0 * (turn + i as f64).sin();
+        let at = Vec2::new(
+            (112.0 + radius * angle.cos()) as f32,
+            (74.0 + 0.7 * radius * angle.sin()) as f32,
+        );
+        let pen = Pen {
+            in_range: true,
+            tip,
+            pos_mm: at,
+            area_mm: Vec2::new(224.0, 148.0),
+            pressure: Some((0.4 + 0.3 * (part * 5.0).sin()) as f32),
+            tilt: Some(Vec2::new((part * 0.9).sin() as f32 * 0.3, 0.2)),
+            ..Pen::default()
+        };
+        let sample =
+            Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body: Body::Pen(pen) };
+        if replica.station.person() != 0 && tip != replica.tip {
+            (replica.tip, replica.transitions_given) = (tip, replica.transitions_given + 1);
+        }
+        replica.station.submit(rounded(&sample).into_iter().collect(), Vec::new(), self.now_us);
+    }
+
+    /// Passes time; everybody of `sculpts` sculpts.
+    pub fn run(&mut self, seconds: f64, sculpts: impl Fn(usize) -> bool) {
+        let until = self.now_us + (seconds * 1e6) as u64;
+        while self.now_us < until {
+            self.now_us += STEP_US;
+            let later = self.air.split_off(&(self.now_us, 0));
+            for (_, (to, bytes)) in std::mem::replace(&mut self.air, later) {
+                let replica = &mut self.replicas[to];
+                if replica.alive && !replica.cut_off {
+                    replica.bytes.1 += bytes.len() as u64;
+                    replica.station.receive(&bytes, self.now_us);
+                }
+            }
+            let tick = self.now_us / STEP_US % 2 == 0;
+            for i in 0..self.replicas.len() {
+                if !self.replicas[i].alive {
+                    continue;
+                }
+                if tick && sculpts(i) {
+                    self.strokes(i);
+                }
+                self.replicas[i].station.advance(self.now_us);
+                self.events(i);
+                while let Some((to, bytes)) = self.replicas[i].station.take_outgoing() {
+                    self.send(i, to, bytes);
+                }
+            }
+        }
+    }
+
+    fn events(&mut self, i: usize) {
+        let now_us = self.now_us;
+        let replica = &mut self.replicas[i];
+        while let Some(event) = replica.station.take_event() {
+            match event {
+                Event::Frame(frame) => {
+                    let world = replica.world.as_mut().expect("a frame comes after a checkpoint");
+                    let asked = replica.executor.execute(world, &frame);
+                    if let Some(view) = asked.hash {
+                        let hash = view.hash();
+                        replica.hashes.insert(frame.index, hash);
+                        replica.station.own_hash(frame.index, hash);
+                    }
+                    if frame.mark == Mark::Checkpoint {
+                        let captured =
+                            asked.captured.expect("a checkpoint's tick ends all strokes");
+                        if replica.station.hosts() {
+                            let bytes = captured.to_bytes();
+                            replica.station.checkpoint(frame.index, bytes.into());
+                        }
+                    }
+                    replica.station.after_step(world.is_at_rest());
+                }
+                Event::Restore { checkpoint, .. } => {
+                    let world = Captured::restore(&checkpoint, Workers::new(1)).expect("whole");
+                    world.verify_invariants().expect("sound");
+                    replica.world = Some(world);
+                    replica.executor = Executor::new(RATE, replica.station.person());
+                    replica.restored += 1;
+                }
+                Event::Entered { person, rate_hz } => {
+                    replica.executor.set_person(person, rate_hz);
+                }
+                Event::Hosting(_) => {}
+                Event::Differs { .. } => replica.differed += 1,
+                Event::Note(text) => {
+                    replica.notes.push(format!("{:.3} {text}", now_us as f64 / 1e6));
+                }
+                Event::Refused(why) => replica.refused = Some(why),
+            }
+        }
+    }
+
+    fn send(&mut self, from: usize, to: To, bytes: Vec<u8>) {
+        self.replicas[from].bytes.0 += bytes.len() as u64;
+        let all: Vec<usize> = (0..self.replicas.len())
+            .filter(|&k| k != from)
+            .filter(|&k| match to {
+                To::Host => self.replicas[k].station.hosts(),
+                To::Heirs => true,
+                To::Peer(address) => self.replicas[k].station.address() == address,
+            })
+            .collect();
+        if self.replicas[from].cut_off {
+            return;
+        }
+        for to in all {
+            let copies = 1 + usize::from(self.random.share() < self.faults.twice);
+            for _ in 0..copies {
+                if self.random.share() < self.faults.loss {
+                    continue;
+                }
+                let mut at = self.now_us + self.faults.delay_us;
+                if self.random.share() < self.faults.reorder {
+                    at += (self.random.share() * self.faults.delay_us.max(20_000) as f64) as u64;
+                }
+                self.sent += 1;
+                self.air.insert((at, self.sent), (to, bytes.clone()));
+            }
+        }
+    }
+
+    /// Bytes of somebody else on their way to a replica.
+    pub fn inject(&mut self, to: usize, bytes: &[u8]) {
+        self.replicas[to].station.receive(bytes, self.now_us);
+    }
+
+    pub fn lively(&self) -> impl Iterator<Item = &Replica> {
+        self.replicas.iter().filter(|r| r.alive)
+    }
+
+    /// All worlds are one, to the bit, and everything that was given is in them.
+    pub fn verify(&self) {
+        let host = self.host().expect("somebody hosts");
+        let log = self.replicas[host].station.log();
+        let hash = self.replicas[host].world.as_ref().map(World::hash);
+        for (i, r) in self.replicas.iter().enumerate().filter(|(_, r)| r.alive) {
+            let told = r.notes.join("\n");
+            assert_eq!(r.station.log().last(), log.last(), "replica {i} is behind:\n{told}");
+            assert_eq!(r.world.as_ref().map(World::hash), hash, "replica {i} differs:\n{told}");
+            assert!(
+                r.station.outbox().is_empty(),
+                "replica {i}: {} wait",
+                r.station.outbox().len()
+            );
+            assert_eq!(r.station.outbox().dropped, 0);
+            assert_eq!(r.differed, 0, "replica {i}:\n{told}");
+            for (at, own) in &self.replicas[host].hashes {
+                if let Some(other) = r.hashes.get(at) {
+                    assert_eq!(own, other, "replica {i} at frame {at}");
+                }
+            }
+        }
+    }
+}
+
+/// An undo of one's own; the world knows one timeline.
+pub fn undo() -> Vec<Command> {
+    vec![Command::Undo]
+}

@@ -1,0 +1,588 @@
+//! The messages. Those of [`Greeting`] go in the clear and only lead to a key; all others are
+//! sealed ([`crate::seal`]): whoever holds no key can neither read nor write one.
+
+use std::sync::Arc;
+
+use super::bytes::{BadBytes, ByteReader, put_bytes, put_number};
+use super::frame::{
+    Arrival, Batch, Frame, MAX_NAME, PersonId, Role, put_batches, put_frames, take_batches,
+    take_frames,
+};
+use super::samples::SampleCodec;
+
+/// The version of the messages; a host refuses others by name.
+pub const VERSION: u16 = 1;
+/// Bytes of one chunk of a checkpoint.
+pub const CHUNK: usize = 32 << 10;
+/// Bytes of a reason.
+const MAX_REASON: usize = 512;
+/// Bytes of the keys that a successor is given.
+const MAX_KEYRING: usize = 64 << 10;
+/// Chunks of a checkpoint: 8 GiB.
+const MAX_CHUNKS: u64 = 1 << 18;
+
+/// A name for one process on the network, drawn at random.
+pub type Address = u64;
+/// Random bytes that are used once.
+pub type Nonce = [u8; 16];
+
+/// The turn of a host: its number, how far its log reached when it began, and its address. Of two
+/// hosts the greater one stays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub struct Term {
+    /// Counts takeovers, from 1.
+    pub number: u32,
+    /// The last frame of the log when the turn began.
+    pub base: u64,
+    /// The host's.
+    pub host: Address,
+}
+
+impl Term {
+    fn put(&self, out: &mut Vec<u8>) {
+        put_number(out, u64::from(self.number));
+        put_number(out, self.base);
+        out.extend(self.host.to_le_bytes());
+    }
+
+    fn take(bytes: &mut ByteReader<'_>) -> Result<Term, BadBytes> {
+        Ok(Term {
+            number: bytes.at_most(u64::from(u32::MAX - 1))? as u32,
+            base: bytes.at_most(u64::MAX >> 1)?,
+            host: u64::from_le_bytes(bytes.array()?),
+        })
+    }
+}
+
+/// In the clear: how a key is agreed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Greeting {
+    /// To whoever hosts: somebody wants to join, with the key of this name.
+    Hello {
+        /// [`VERSION`].
+        version: u16,
+        /// Drawn for this greeting.
+        nonce: Nonce,
+        /// The name of the key, no secret.
+        key: [u8; 8],
+    },
+    /// The host's answer, with the proof that it has the key too.
+    Challenge {
+        /// Of the greeting that is answered.
+        to: Nonce,
+        /// Drawn for this answer.
+        nonce: Nonce,
+        /// The host's turn.
+        term: Term,
+        /// A code of both nonces and the turn under the key.
+        proof: [u8; 32],
+    },
+    /// The host refuses the greeting.
+    Refused {
+        /// Of the greeting that is answered.
+        to: Nonce,
+        /// For a person.
+        reason: String,
+    },
+}
+
+/// Where a log ends that somebody already has: the turn of its last frame, and its index.
+pub type Reached = (Term, u64);
+
+/// A checkpoint that waits to be fetched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Offer {
+    /// The frame right after which it was taken.
+    pub index: u64,
+    /// Its bytes.
+    pub size: u64,
+    /// Its chunks.
+    pub chunks: u32,
+}
+
+/// How somebody is let in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// The number of the person that joins.
+    pub person: PersonId,
+    /// The host's turn.
+    pub term: Term,
+    /// Ticks a second.
+    pub rate_hz: u32,
+    /// The last of the person's batches that is in the log: the next one is the one after it.
+    pub applied: u64,
+    /// The checkpoint to begin with; `None`: the frames after what is there follow.
+    pub offer: Option<Offer>,
+    /// Everybody with a number, and the last batch of each at the checkpoint, or at the end of what
+    /// is there.
+    pub people: Vec<(Arrival, u64)>,
+    /// The turns of the log, and the first frame of each.
+    pub turns: Vec<(Term, u64)>,
+    /// For those who may take over: the key of the group, and everybody's keys.
+    pub succession: Option<(Vec<u8>, Vec<u8>)>,
+}
+
+/// From a member to its host.
+#[derive(Debug, Clone)]
+pub enum FromMember {
+    /// The first sealed one.
+    Join {
+        /// As the person wants to be called.
+        name: String,
+        /// What the person wants to be.
+        role: Role,
+        /// What is there already.
+        reached: Option<Reached>,
+    },
+    /// Several times a second: what is there, and what is new.
+    Up {
+        /// The frame up to which all are here.
+        have: u64,
+        /// The first frame after a gap, where one is; 0: no gap.
+        after_gap: u64,
+        /// The sender's clock, ms.
+        sent_ms: u32,
+        /// The newest clock of the other side, as it would be now.
+        echo_ms: u32,
+        /// Batches that the host is not known to have.
+        batches: Vec<Batch>,
+    },
+    /// Chunks of a checkpoint are wanted.
+    Want {
+        /// Of the offer.
+        index: u64,
+        /// The first chunk.
+        first: u32,
+        /// How many.
+        count: u32,
+    },
+    /// The hash after a frame with the mark.
+    Hash {
+        /// The frame's index.
+        index: u64,
+        /// Of the world.
+        hash: u64,
+    },
+    /// The person goes.
+    Leave,
+}
+
+/// From the host to a member.
+#[derive(Debug, Clone)]
+pub enum FromHost {
+    /// Somebody is let in.
+    Entry(Box<Entry>),
+    /// Somebody is not, or no longer.
+    Refused(String),
+    /// Several times a second.
+    Down {
+        /// All batches up to this one have been received.
+        received: u64,
+        /// All batches up to this one are in frames that a replica has too.
+        acknowledged: u64,
+        /// As in [`FromMember::Up`].
+        sent_ms: u32,
+        /// As in [`FromMember::Up`].
+        echo_ms: u32,
+        /// Frames that follow each other.
+        frames: Vec<Arc<Frame>>,
+    },
+    /// A part of a checkpoint.
+    Chunk {
+        /// Of the offer.
+        index: u64,
+        /// Which.
+        number: u32,
+        /// At most [`CHUNK`].
+        bytes: Vec<u8>,
+    },
+    /// The worlds differ after a frame: the member joins anew.
+    Differs {
+        /// The frame's index.
+        index: u64,
+        /// The host's hash.
+        hash: u64,
+    },
+}
+
+/// Among those who may take over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AmongHeirs {
+    /// The host is there.
+    Host {
+        /// Its turn.
+        term: Term,
+    },
+    /// The host is gone, and the sender would take over.
+    Candidate {
+        /// The highest number of a turn that the sender knows of.
+        known: u32,
+        /// Where its log ends.
+        reached: Reached,
+        /// The sender.
+        by: Address,
+    },
+}
+
+impl Greeting {
+    /// As bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        match self {
+            Greeting::Hello { version, nonce, key } => {
+                out.push(0);
+                put_number(&mut out, u64::from(*version));
+                out.extend(nonce);
+                out.extend(key);
+            }
+            Greeting::Challenge { to, nonce, term, proof } => {
+                out.push(1);
+                out.extend(to);
+                out.extend(nonce);
+                term.put(&mut out);
+                out.extend(proof);
+            }
+            Greeting::Refused { to, reason } => {
+                out.push(2);
+                out.extend(to);
+                put_bytes(&mut out, reason.as_bytes());
+            }
+        }
+        out
+    }
+
+    /// # Errors
+    /// [`BadBytes`] where they are no greeting.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Greeting, BadBytes> {
+        let mut b = ByteReader::new(bytes);
+        let read = match b.byte()? {
+            0 => Greeting::Hello {
+                version: b.at_most(u64::from(u16::MAX))? as u16,
+                nonce: b.array()?,
+                key: b.array()?,
+            },
+            1 => Greeting::Challenge {
+                to: b.array()?,
+                nonce: b.array()?,
+                term: Term::take(&mut b)?,
+                proof: b.array()?,
+            },
+            2 => Greeting::Refused { to: b.array()?, reason: b.text(MAX_REASON)? },
+            _ => return Err(BadBytes),
+        };
+        b.end()?;
+        Ok(read)
+    }
+}
+
+impl FromMember {
+    /// As bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        match self {
+            FromMember::Join { name, role, reached } => {
+                out.extend([0, role.code(), u8::from(reached.is_some())]);
+                put_bytes(&mut out, name.as_bytes());
+                if let Some((term, index)) = reached {
+                    term.put(&mut out);
+                    put_number(&mut out, *index);
+                }
+            }
+            FromMember::Up { have, after_gap, sent_ms, echo_ms, batches } => {
+                out.push(1);
+                put_number(&mut out, *have);
+                put_number(&mut out, *after_gap);
+                put_number(&mut out, u64::from(*sent_ms));
+                put_number(&mut out, u64::from(*echo_ms));
+                put_batches(&mut out, batches, &mut SampleCodec::default());
+            }
+            FromMember::Want { index, first, count } => {
+                out.push(2);
+                put_number(&mut out, *index);
+                put_number(&mut out, u64::from(*first));
+                put_number(&mut out, u64::from(*count));
+            }
+            FromMember::Hash { index, hash } => {
+                out.push(3);
+                put_number(&mut out, *index);
+                out.extend(hash.to_le_bytes());
+            }
+            FromMember::Leave => out.push(4),
+        }
+        out
+    }
+
+    /// # Errors
+    /// [`BadBytes`] where they are no such message.
+    pub fn from_bytes(bytes: &[u8]) -> Result<FromMember, BadBytes> {
+        let mut b = ByteReader::new(bytes);
+        let read = match b.byte()? {
+            0 => {
+                let role = Role::of_code(b.byte()?)?;
+                let reached = b.byte()? != 0;
+                let name = b.text(MAX_NAME)?;
+                let reached = match reached {
+                    true => Some((Term::take(&mut b)?, b.at_most(u64::MAX >> 1)?)),
+                    false => None,
+                };
+                FromMember::Join { name, role, reached }
+            }
+            1 => FromMember::Up {
+                have: b.at_most(u64::MAX >> 1)?,
+                after_gap: b.at_most(u64::MAX >> 1)?,
+                sent_ms: b.at_most(u64::from(u32::MAX))? as u32,
+                echo_ms: b.at_most(u64::from(u32::MAX))? as u32,
+                batches: take_batches(&mut b, &mut SampleCodec::default())?,
+            },
+            2 => FromMember::Want {
+                index: b.number()?,
+                first: b.at_most(MAX_CHUNKS)? as u32,
+                count: b.at_most(MAX_CHUNKS)? as u32,
+            },
+            3 => FromMember::Hash { index: b.number()?, hash: u64::from_le_bytes(b.array()?) },
+            4 => FromMember::Leave,
+            _ => return Err(BadBytes),
+        };
+        b.end()?;
+        Ok(read)
+    }
+}
+
+impl Entry {
+    fn put(&self, out: &mut Vec<u8>) {
+        out.push(self.person);
+        self.term.put(out);
+        put_number(out, u64::from(self.rate_hz));
+        put_number(out, self.applied);
+        out.push(u8::from(self.offer.is_some()));
+        if let Some(offer) = &self.offer {
+            put_number(out, offer.index);
+            put_number(out, offer.size);
+            put_number(out, u64::from(offer.chunks));
+        }
+        put_number(out, self.people.len() as u64);
+        for (person, applied) in &self.people {
+            person.put(out);
+            put_number(out, *applied);
+        }
+        put_number(out, self.turns.len() as u64);
+        for (term, first) in &self.turns {
+            term.put(out);
+            put_number(out, *first);
+        }
+        out.push(u8::from(self.succession.is_some()));
+        if let Some((group, keys)) = &self.succession {
+            put_bytes(out, group);
+            put_bytes(out, keys);
+        }
+    }
+
+    fn take(b: &mut ByteReader<'_>) -> Result<Entry, BadBytes> {
+        let person = b.byte()?;
+        let term = Term::take(b)?;
+        let rate_hz = b.at_most(1000)? as u32;
+        let applied = b.at_most(u64::MAX >> 1)?;
+        let offer = match b.byte()? {
+            0 => None,
+            _ => Some(Offer {
+                index: b.at_most(u64::MAX >> 1)?,
+                size: b.at_most(MAX_CHUNKS * CHUNK as u64)?,
+                chunks: b.at_most(MAX_CHUNKS)? as u32,
+            }),
+        };
+        let mut people = Vec::new();
+        for _ in 0..b.count(256)? {
+            people.push((Arrival::take(b)?, b.at_most(u64::MAX >> 1)?));
+        }
+        let mut turns = Vec::new();
+        for _ in 0..b.count(1 << 16)? {
+            turns.push((Term::take(b)?, b.at_most(u64::MAX >> 1)?));
+        }
+        let succession = match b.byte()? {
+            0 => None,
+            _ => Some((b.bytes(64)?.to_vec(), b.bytes(MAX_KEYRING)?.to_vec())),
+        };
+        Ok(Entry { person, term, rate_hz, applied, offer, people, turns, succession })
+    }
+}
+
+impl FromHost {
+    /// As bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        match self {
+            FromHost::Entry(entry) => {
+                out.push(0);
+                entry.put(&mut out);
+            }
+            FromHost::Refused(reason) => {
+                out.push(1);
+                put_bytes(&mut out, reason.as_bytes());
+            }
+            FromHost::Down { received, acknowledged, sent_ms, echo_ms, frames } => {
+                out.push(2);
+                put_number(&mut out, *received);
+                put_number(&mut out, *acknowledged);
+                put_number(&mut out, u64::from(*sent_ms));
+                put_number(&mut out, u64::from(*echo_ms));
+                put_frames(&mut out, frames);
+            }
+            FromHost::Chunk { index, number, bytes } => {
+                out.push(3);
+                put_number(&mut out, *index);
+                put_number(&mut out, u64::from(*number));
+                put_bytes(&mut out, bytes);
+            }
+            FromHost::Differs { index, hash } => {
+                out.push(4);
+                put_number(&mut out, *index);
+                out.extend(hash.to_le_bytes());
+            }
+        }
+        out
+    }
+
+    /// # Errors
+    /// [`BadBytes`] where they are no such message.
+    pub fn from_bytes(bytes: &[u8]) -> Result<FromHost, BadBytes> {
+        let mut b = ByteReader::new(bytes);
+        let read = match b.byte()? {
+            0 => FromHost::Entry(Box::new(Entry::take(&mut b)?)),
+            1 => FromHost::Refused(b.text(MAX_REASON)?),
+            2 => FromHost::Down {
+                received: b.number()?,
+                acknowledged: b.number()?,
+                sent_ms: b.at_most(u64::from(u32::MAX))? as u32,
+                echo_ms: b.at_most(u64::from(u32::MAX))? as u32,
+                frames: take_frames(&mut b)?.into_iter().map(Arc::new).collect(),
+            },
+            3 => FromHost::Chunk {
+                index: b.number()?,
+                number: b.at_most(MAX_CHUNKS)? as u32,
+                bytes: b.bytes(CHUNK)?.to_vec(),
+            },
+            4 => FromHost::Differs { index: b.number()?, hash: u64::from_le_bytes(b.array()?) },
+            _ => return Err(BadBytes),
+        };
+        b.end()?;
+        Ok(read)
+    }
+}
+
+impl AmongHeirs {
+    /// As bytes.
+    pub fn to_bytes(self) -> Vec<u8> {
+        let mut out = Vec::new();
+        match self {
+            AmongHeirs::Host { term } => {
+                out.push(0);
+                term.put(&mut out);
+            }
+            AmongHeirs::Candidate { known, reached, by } => {
+                out.push(1);
+                put_number(&mut out, u64::from(known));
+                reached.0.put(&mut out);
+                put_number(&mut out, reached.1);
+                out.extend(by.to_le_bytes());
+            }
+        }
+        out
+    }
+
+    /// # Errors
+    /// [`BadBytes`] where they are no such message.
+    pub fn from_bytes(bytes: &[u8]) -> Result<AmongHeirs, BadBytes> {
+        let mut b = ByteReader::new(bytes);
+        let read = match b.byte()? {
+            0 => AmongHeirs::Host { term: Term::take(&mut b)? },
+            1 => AmongHeirs::Candidate {
+                known: b.at_most(u64::from(u32::MAX - 1))? as u32,
+                reached: (Term::take(&mut b)?, b.number()?),
+                by: u64::from_le_bytes(b.array()?),
+            },
+            _ => return Err(BadBytes),
+        };
+        b.end()?;
+        Ok(read)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::frame::Mark;
+    use proptest::prelude::*;
+    use sculptd_engine::command::Command;
+
+    fn messages() -> Vec<Vec<u8>> {
+        let term = Term { number: 3, base: 900, host: 77 };
+        let person = Arrival { person: 2, name: "Ada".into(), role: Role::Viewer };
+        let batch =
+            Batch { person: 2, number: 9, commands: vec![Command::Undo], ..Batch::default() };
+        let frame = |index, mark, batches| {
+            let arrivals = vec![person.clone()];
+            Arc::new(Frame { index, tick: index * 3, mark, arrivals, batches })
+        };
+        let frames =
+            vec![frame(4, Mark::Compare, vec![batch.clone()]), frame(5, Mark::None, vec![])];
+        let entry = Entry {
+            person: 2,
+            term,
+            rate_hz: 120,
+            applied: 9,
+            offer: Some(Offer { index: 4, size: 70_000, chunks: 3 }),
+            people: vec![(person.clone(), 8)],
+            turns: vec![(term, 1)],
+            succession: Some((vec![1; 32], vec![2; 90])),
+        };
+        let [sent_ms, echo_ms] = [5, 6];
+        vec![
+            FromHost::Entry(Box::new(entry)).to_bytes(),
+            FromHost::Refused("no".into()).to_bytes(),
+            FromHost::Down { received: 1, acknowledged: 2, sent_ms, echo_ms, frames }.to_bytes(),
+            FromHost::Chunk { index: 4, number: 1, bytes: vec![3; 99] }.to_bytes(),
+            FromHost::Differs { index: 4, hash: 5 }.to_bytes(),
+        ]
+    }
+
+    #[test]
+    fn messages_come_back_and_every_torn_one_is_an_error() {
+        for bytes in messages() {
+            let read = FromHost::from_bytes(&bytes).expect("whole");
+            assert_eq!(read.to_bytes(), bytes);
+            for cut in 0..bytes.len() {
+                assert_eq!(FromHost::from_bytes(&bytes[..cut]).err(), Some(BadBytes), "at {cut}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_read_without_a_panic(
+            bytes in proptest::collection::vec(any::<u8>(), 0..300),
+            kind in 0u8..5,
+        ) {
+            let mut bytes = bytes;
+            if let Some(first) = bytes.first_mut() {
+                *first = kind;
+            }
+            let _ = Greeting::from_bytes(&bytes);
+            let _ = FromMember::from_bytes(&bytes);
+            let _ = FromHost::from_bytes(&bytes);
+            let _ = AmongHeirs::from_bytes(&bytes);
+        }
+
+        #[test]
+        fn a_message_with_wrong_bytes_is_read_without_a_panic(
+            which in 0usize..5,
+            changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        ) {
+            let mut bytes = messages()[which].clone();
+            for (at, value) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] = value;
+            }
+            let _ = FromHost::from_bytes(&bytes);
+        }
+    }
+}

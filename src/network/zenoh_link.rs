@@ -1,0 +1,161 @@
+//! Datagrams over Zenoh: one key for each station, one for whoever hosts, one for all who may take
+//! over. Stations on one LAN find each other by multicast; others are named by an endpoint, and
+//! learn of each other from it (Zenoh's gossip), so that they stay connected when it is gone.
+//!
+//! ```text
+//! sculptd/1/NAME/to/ADDRESS    for one station
+//! sculptd/1/NAME/host          for whoever hosts
+//! sculptd/1/NAME/heirs         for all who may take over
+//! ```
+//!
+//! Everything is sealed before it comes here; Zenoh is trusted with nothing but its delivery.
+
+use std::collections::BTreeMap;
+
+use crossbeam_channel as cc;
+use zenoh::Wait;
+use zenoh::pubsub::{Publisher, Subscriber};
+use zenoh::qos::CongestionControl;
+
+use crate::core::To;
+use crate::transport::Transport;
+use crate::wire::message::Address;
+
+/// Datagrams that wait to be read; more are dropped, as a full network drops them.
+const WAITING: usize = 8192;
+/// Stations whose publisher is kept.
+const MAX_PUBLISHERS: usize = 256;
+
+/// Where others are found.
+#[derive(Debug, Clone, Default)]
+pub struct Endpoints {
+    /// Where this process listens, as `tcp/0.0.0.0:7447`; none: any port.
+    pub listen: Vec<String>,
+    /// Whom it connects to, as `tcp/studio.local:7447`.
+    pub connect: Vec<String>,
+    /// Others on the LAN are looked for by multicast.
+    pub multicast: bool,
+}
+
+/// Datagrams over Zenoh.
+#[derive(Debug)]
+pub struct ZenohLink {
+    session: zenoh::Session,
+    name: String,
+    sender: cc::Sender<Vec<u8>>,
+    incoming: cc::Receiver<Vec<u8>>,
+    subscribers: Vec<Subscriber<()>>,
+    host: Option<Subscriber<()>>,
+    publishers: BTreeMap<String, Publisher<'static>>,
+}
+
+/// Whether a sculpture may be called so: it is a part of a key.
+///
+/// # Errors
+/// Says what is expected.
+pub fn sculpture_name(text: &str) -> Result<String, String> {
+    let fine = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    match (1..=64).contains(&text.len()) && text.chars().all(fine) {
+        true => Ok(text.into()),
+        false => Err("expected 1 to 64 letters, digits, '-', '_' or '.'".into()),
+    }
+}
+
+impl ZenohLink {
+    /// Opens a session.
+    ///
+    /// # Errors
+    /// Where an endpoint cannot be used, as a text.
+    pub fn open(name: &str, endpoints: &Endpoints) -> Result<ZenohLink, String> {
+        let mut config = zenoh::Config::default();
+        let list = |all: &[String]| {
+            let quoted: Vec<String> = all.iter().map(|e| format!("{e:?}")).collect();
+            format!("[{}]", quoted.join(","))
+        };
+        let mut set = |key: &str, value: &str| {
+            config.insert_json5(key, value).map_err(|e| format!("{key} = {value}: {e}"))
+        };
+        set("mode", "\"peer\"")?;
+        set("scouting/multicast/enabled", if endpoints.multicast { "true" } else { "false" })?;
+        if !endpoints.listen.is_empty() {
+            set("listen/endpoints", &list(&endpoints.listen))?;
+        }
+        if !endpoints.connect.is_empty() {
+            set("connect/endpoints", &list(&endpoints.connect))?;
+            // Who is not there yet is tried again for ever, in the background.
+            set("connect/timeout_ms", "0")?;
+            set("connect/exit_on_failure", "false")?;
+        }
+        let session = zenoh::open(config).wait().map_err(|e| e.to_string())?;
+        let (sender, incoming) = cc::bounded(WAITING);
+        Ok(ZenohLink {
+            session,
+            name: name.into(),
+            sender,
+            incoming,
+            subscribers: Vec::new(),
+            host: None,
+            publishers: BTreeMap::new(),
+        })
+    }
+
+    fn key(&self, to: To) -> String {
+        let name = &self.name;
+        match to {
+            To::Host => format!("sculptd/1/{name}/host"),
+            To::Heirs => format!("sculptd/1/{name}/heirs"),
+            To::Peer(address) => format!("sculptd/1/{name}/to/{address:016x}"),
+        }
+    }
+
+    fn subscribe(&self, to: To) -> Result<Subscriber<()>, String> {
+        let sender = self.sender.clone();
+        let subscriber = self.session.declare_subscriber(self.key(to)).callback(move |sample| {
+            let _ = sender.try_send(sample.payload().to_bytes().into_owned());
+        });
+        subscriber.wait().map_err(|e| e.to_string())
+    }
+
+    fn put(&mut self, to: To, bytes: Vec<u8>) -> Result<(), zenoh::Error> {
+        let key = self.key(to);
+        if !self.publishers.contains_key(&key) {
+            if self.publishers.len() >= MAX_PUBLISHERS {
+                self.publishers.clear();
+            }
+            let publisher = self.session.declare_publisher(key.clone());
+            let publisher = publisher.congestion_control(CongestionControl::Drop).wait()?;
+            self.publishers.insert(key.clone(), publisher);
+        }
+        match self.publishers.get(&key) {
+            Some(publisher) => publisher.put(bytes).wait(),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Transport for ZenohLink {
+    fn hosts(&mut self, on: bool) {
+        self.host = match on {
+            true => self
+                .subscribe(To::Host)
+                .inspect_err(|e| tracing::warn!("nobody can join: {e}"))
+                .ok(),
+            false => None,
+        };
+    }
+
+    fn listen(&mut self, address: Address) -> Result<(), String> {
+        self.subscribers = vec![self.subscribe(To::Peer(address))?, self.subscribe(To::Heirs)?];
+        Ok(())
+    }
+
+    fn send(&mut self, to: To, bytes: Vec<u8>) {
+        if let Err(e) = self.put(to, bytes) {
+            tracing::debug!("a datagram was not sent: {e}");
+        }
+    }
+
+    fn incoming(&self) -> cc::Receiver<Vec<u8>> {
+        self.incoming.clone()
+    }
+}
