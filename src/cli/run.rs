@@ -172,11 +172,11 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         let shared = hosts.then(|| args.shared.host(&begun, &config)).transpose()?;
         (begun, shared)
     };
-    if let Some(kiosk) =
-        kiosk.as_ref().filter(|k| begun.world.mesh().triangle_count() > k.max_triangles)
-    {
+    let objects = begun.world.scene().objects();
+    let found: usize = objects.iter().map(|o| o.clay.triangle_count()).sum();
+    if let Some(kiosk) = kiosk.as_ref().filter(|k| found > k.max_triangles) {
         let words = kiosk.words(LANGUAGES).map_err(Fail::Config)?;
-        let (most, found) = (kiosk.max_triangles, begun.world.mesh().triangle_count());
+        let most = kiosk.max_triangles;
         return Err(Fail::Input(format!(
             "{}: {found} triangles, at most {most} (max_triangles)",
             words.too_large

@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
+use crate::scene::PrimitiveShape;
 use crate::wire::RpcError;
 
 /// The schema of every method, its parameters and its reply, and of the events (JSON Schema
@@ -21,6 +22,21 @@ static PARSED: LazyLock<Value> = LazyLock::new(|| serde_json::from_str(SCHEMA).u
 /// parameters. A wrong type is left to whoever reads them.
 pub(crate) fn check_params(method: &str, params: &Value) -> Result<(), RpcError> {
     check(&PARSED["methods"][method]["params"], params, "").map_err(RpcError::bad_params)
+}
+
+/// Why parameters are not those of a method: the reader's own words, but for a primitive, where
+/// those would name what the reader is made of.
+pub(crate) fn in_plain_words(params: &Value, error: &serde_json::Error) -> String {
+    let named = params.get("primitive");
+    match named.filter(|p| serde_json::from_value::<PrimitiveShape>((*p).clone()).is_err()) {
+        Some(found) => format!(
+            "primitive = {found}: expected one of {{\"box\": [x, y, z]}}, {{\"ball\": radius}}, \
+             {{\"cylinder\": [radius, height]}}, {{\"cone\": [radius, height]}}, \
+             {{\"torus\": [ring radius, tube radius]}}, \
+             {{\"tube\": [outer radius, inner radius, height]}} and {{\"plane\": [x, z]}}"
+        ),
+        None => error.to_string(),
+    }
 }
 
 /// Follows a reference into the definitions.

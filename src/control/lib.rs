@@ -4,9 +4,9 @@
 //! knows nobody: a program that drives a daemon needs it alone.
 //!
 //! Read first: [`method`] (every method, in one table), then [`client`] (how to call one), then
-//! the types: [`status`], [`brush`], [`view`], [`edit`], [`scene`], [`layers`], [`event`]. [`wire`]
-//! has the lines, the limits and the errors, [`range`](mod@range) the range of each number. The
-//! same for other languages is [`SCHEMA`].
+//! the types: [`status`], [`brush`], [`view`], [`edit`], [`scene`], [`layers`], [`snap`],
+//! [`event`]. [`wire`] has the lines, the limits and the errors, [`range`](mod@range) the range of
+//! each number. The same for other languages is [`SCHEMA`].
 //!
 //! ```
 //! use sculptd_control::Request;
@@ -40,6 +40,7 @@ pub mod range;
 pub mod scene;
 #[cfg(feature = "schema")]
 pub mod schema;
+pub mod snap;
 pub mod status;
 pub mod view;
 pub mod wire;

@@ -28,6 +28,7 @@ use crate::scene::{
     AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,
     RenameParams, ReshapeParams, SceneBooleanParams, SceneReply, ShowParams, TransformParams,
 };
+use crate::snap::{SnapParams, SnapReply};
 use crate::status::{
     HelloParams, HelloReply, MethodsReply, NoParams, SentReply, ShutdownReply, StatusParams,
     StatusReply, WindowParams, WindowReply,
@@ -243,6 +244,9 @@ methods! {
     "scene.lock" SceneLock scene_lock(LockParams) -> ObjectReply;
     /// Gives a primitive other numbers, until its first stroke.
     "scene.reshape" SceneReshape scene_reshape(ReshapeParams) -> ObjectReply;
+    /// Places an object flush on a face of another: the two faces lie in one plane and face each
+    /// other.
+    "scene.snap" SceneSnap scene_snap(SnapParams) -> SnapReply;
     /// A Boolean of two objects, where they stand. The result is a new object.
     "scene.boolean" SceneBoolean scene_boolean(SceneBooleanParams) -> CombineReply;
     /// Makes several objects one, whose parts may overlap.
@@ -292,7 +296,7 @@ fn read_params<T: DeserializeOwned>(method: &str, params: Value) -> Result<T, Rp
         return Err(RpcError::bad_params("expected an object"));
     }
     check::check_params(method, &params)?;
-    serde_json::from_value(params).map_err(|e| RpcError::bad_params(e.to_string()))
+    T::deserialize(&params).map_err(|e| RpcError::bad_params(check::in_plain_words(&params, &e)))
 }
 
 fn to_value<T: Serialize>(reply: &T) -> Result<Value, RpcError> {
@@ -350,6 +354,11 @@ mod tests {
         assert!(said.starts_with("target[2] = 1e+38: expected"), "{said}");
         let said = refused("mask", json!({ "action": { "cavity": -1 } }));
         assert_eq!(said, "action.cavity = -1: expected a number from 0 to 1");
+        let said = refused("scene.add", json!({ "primitive": "box" }));
+        assert!(
+            said.starts_with("primitive = \"box\": expected one of {\"box\": [x, y, z]}"),
+            "{said}"
+        );
         for (method, params) in [
             ("camera", json!({ "distance": 0 })),
             ("camera", json!({ "yaw": 1e38 })),

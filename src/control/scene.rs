@@ -157,7 +157,7 @@ pub struct ReshapeParams {
 }
 
 /// Parameters of `scene.boolean`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SceneBooleanParams {
@@ -170,6 +170,13 @@ pub struct SceneBooleanParams {
     /// The operands stay, hidden; else the result takes their place.
     #[serde(default)]
     pub keep: bool,
+    /// Faces in which the two only touch belong to an intersection too, both sides of them.
+    #[serde(default)]
+    pub keep_contact: bool,
+    /// Length in the world within which places are one; without it what the vertices resolve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = COORDINATE.max)))]
+    pub tolerance: Option<f64>,
 }
 
 /// Parameters of `scene.merge`.

@@ -14,11 +14,14 @@ use crossbeam_channel as cc;
 use serde::Serialize;
 
 use super::command_queue::{CommandSender, QueuedCommand};
+use super::hand_jobs;
+pub use super::hand_jobs::operation;
 use super::published::Published;
 use sculptd_clay::{Clay, Grafted, Level, LevelError, Levels, PAGE_VERTICES, Snapshot};
 use sculptd_engine::command::{Carving, Command, NewClay, OfClay};
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::ObjectId;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::{Cancelled, Job};
@@ -56,16 +59,10 @@ pub enum JoinError {
     Voxel { voxel: f32, least: f32, most: f32 },
     #[error("the loop has ended")]
     Ended,
-}
-
-/// What a choice from the menu means for the work and the thing.
-pub fn operation(choice: MenuItem) -> Option<Operation> {
-    match choice {
-        MenuItem::Add => Some(Operation::Union),
-        MenuItem::Carve => Some(Operation::Difference),
-        MenuItem::Keep => Some(Operation::Intersection),
-        _ => None,
-    }
+    #[error(transparent)]
+    Combine(#[from] crate::scene_jobs::CombineError),
+    #[error(transparent)]
+    Snap(#[from] crate::snap_jobs::SnapError),
 }
 
 /// The work and a tool made one: the commands that put the result in place. Where the tool reaches
@@ -138,26 +135,35 @@ pub fn level(
     })
 }
 
+/// What hands ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HandRequest {
+    /// What they hold is joined with the object, or with an object of the scene.
+    Join(MenuItem),
+    /// An object of the scene that they have put down is laid flush on a face near it.
+    LayDown(ObjectId),
+}
+
 /// A running joiner; it ends when this is dropped and what it computes is done.
 #[derive(Debug)]
 pub struct BooleanJobs {
-    asked: cc::Sender<MenuItem>,
+    asked: cc::Sender<HandRequest>,
 }
 
 impl BooleanJobs {
     /// # Errors
     /// If no thread can be started.
     pub fn start(shown: Arc<ArcSwap<Published>>, commands: CommandSender) -> std::io::Result<Self> {
-        let (asked, todo) = cc::bounded::<MenuItem>(1);
+        let (asked, todo) = cc::bounded::<HandRequest>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
-            for choice in todo {
+            for request in todo {
                 // A bug in one Boolean must not end those that follow.
-                let join = || at_rest(&shown, choice, &Job::default(), &commands);
+                let join = || by_hand(&shown, request, &Job::default(), &commands);
                 match catch_unwind(AssertUnwindSafe(join)) {
-                    Ok(Ok(_)) => {}
+                    Ok(Ok(())) => {}
                     Ok(Err(JoinError::Ended)) => return,
-                    Ok(Err(e)) => tracing::warn!("{}: {e}", choice.label()),
-                    Err(_) => tracing::error!("{}: the Boolean ended by a bug", choice.label()),
+                    Ok(Err(e)) => tracing::warn!("{request:?}: {e}"),
+                    Err(_) => tracing::error!("{request:?}: it ended by a bug"),
                 }
             }
         })?;
@@ -165,8 +171,30 @@ impl BooleanJobs {
     }
 
     /// Asks for a join. One at a time: a second wish while one is under way is not taken.
-    pub fn ask(&self, choice: MenuItem) -> bool {
-        self.asked.try_send(choice).is_ok()
+    pub fn ask(&self, request: HandRequest) -> bool {
+        self.asked.try_send(request).is_ok()
+    }
+}
+
+/// Carries out what hands asked for.
+fn by_hand(
+    shown: &ArcSwap<Published>,
+    request: HandRequest,
+    job: &Job,
+    commands: &CommandSender,
+) -> Result<(), JoinError> {
+    let now = shown.load_full();
+    let send = |queued| commands.send(queued).map_err(|_| JoinError::Ended);
+    match (request, now.object_in_hand) {
+        (HandRequest::Join(choice), Some(held)) => send(hand_jobs::join(&now, held, choice, job)?),
+        (HandRequest::Join(choice), None) => at_rest(shown, choice, job, commands).map(|_| ()),
+        (HandRequest::LayDown(id), _) => {
+            // The state that shows where it was put down comes right after the tick that asked.
+            match hand_jobs::lay_down(&now, id)? {
+                Some(queued) => send(queued),
+                None => Ok(()),
+            }
+        }
     }
 }
 

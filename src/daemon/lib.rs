@@ -16,6 +16,7 @@ pub mod control;
 pub mod demo_devices;
 pub mod doctor;
 pub mod garbage_thread;
+pub mod hand_jobs;
 #[cfg(unix)]
 pub mod http;
 pub mod kiosk;
@@ -26,6 +27,7 @@ pub mod metrics;
 pub mod pacer;
 pub mod page_thread;
 pub mod pen_trail;
+pub mod polygons;
 pub mod present_latency;
 pub mod published;
 pub mod remesh_job;
@@ -35,6 +37,7 @@ pub mod service;
 pub mod session;
 pub mod shared_input;
 pub mod simulated_loop;
+pub mod snap_jobs;
 pub mod startup;
 #[cfg(unix)]
 pub mod systemd;

@@ -15,7 +15,7 @@ use crossbeam_channel as cc;
 use super::pacer::Pacer;
 use super::page_thread::PageThread;
 use super::published::{Published, PublishedFigures, Publisher};
-use crate::boolean_jobs::BooleanJobs;
+use crate::boolean_jobs::{BooleanJobs, HandRequest};
 use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
@@ -181,6 +181,8 @@ struct TickBuffers {
     scene_results: Vec<Option<cc::Sender<SceneResult>>>,
     /// Of a shared sculpture: where those of the own commands go that are on their way.
     waiting: VecDeque<ResultSenders>,
+    /// What hands asked workers for, to be told once the state that it is about is published.
+    asked: Vec<HandRequest>,
     figures: TickStatistics,
     /// How long the last step took, ns.
     stepped: u64,
@@ -200,6 +202,7 @@ impl Ticking {
             commands: Vec::with_capacity(COMMANDS_PER_TICK),
             results: Vec::with_capacity(COMMANDS_PER_TICK),
             scene_results: Vec::with_capacity(COMMANDS_PER_TICK),
+            asked: Vec::new(),
             waiting: VecDeque::new(),
             figures: TickStatistics::default(),
             stepped: 0,
@@ -248,6 +251,12 @@ impl Ticking {
             shown.garbage_overflows = self.garbage.overflowed();
             (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = now.newest;
             self.publisher.publish(Published::of(&mut self.world, shown), &garbage);
+            // After the state that they are about is to be seen.
+            for request in now.asked.drain(..) {
+                if !self.joiner.as_ref().is_some_and(|j| j.ask(request)) {
+                    tracing::warn!("{request:?}: another join is under way");
+                }
+            }
             pacer.done(self.clock.now_us());
             now.figures.overruns = pacer.overruns;
         }
@@ -261,10 +270,9 @@ impl Ticking {
         if let Some(journal) = self.journal.as_deref_mut() {
             journal.tick(tick, &now.samples, &now.commands, &self.world);
         }
-        if let Some(choice) = report.join.filter(|_| asks)
-            && !self.joiner.as_ref().is_some_and(|j| j.ask(choice))
-        {
-            tracing::warn!("{}: another join is under way", choice.label());
+        if asks {
+            now.asked.extend(report.join.map(HandRequest::Join));
+            now.asked.extend(report.put_down.map(HandRequest::LayDown));
         }
         for (result, made) in now.results.drain(..).zip(self.world.cut_results()) {
             if let Some(result) = result {

@@ -15,7 +15,7 @@ use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::{HeldObject, Pose, Volume};
-use sculptd_engine::scene::{ObjectTransform, SceneView};
+use sculptd_engine::scene::{ObjectId, ObjectTransform, SceneView};
 use sculptd_engine::stroke::{CurveStroke, PenPoint};
 use sculptd_engine::world::World;
 
@@ -56,6 +56,10 @@ pub struct Published {
     pub hand_devices: [Option<DeviceId>; MAX_HANDS],
     /// What the hands hold, and where.
     pub thing: Option<HeldObject>,
+    /// Pinches pick up objects of the scene.
+    pub picking: bool,
+    /// The object of the scene that hands hold, or held last.
+    pub object_in_hand: Option<ObjectId>,
     /// The ball of the hands' menu that a fingertip is in, and 0 to 1 how far its ring has closed.
     pub menu: Option<(usize, f32)>,
     /// 0 fresh to 1 spent; and whether a lower plane of work should be offered.
@@ -129,6 +133,8 @@ impl Published {
             poses,
             hand_devices,
             thing: world.thing().cloned(),
+            picking: world.is_picking(),
+            object_in_hand: world.object_in_hand(),
             menu: tools.menu().showing(),
             fatigue: (tools.fatigue().spent(), tools.fatigue().wants_lower()),
             calibrating: tools.is_calibrating(),

@@ -16,6 +16,7 @@ use sculptd_geometry::io::{MorphTarget, MorphedMesh, SceneMesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
+use crate::polygons;
 use crate::published::Published;
 
 /// Why no new objects can be made of others.
@@ -99,7 +100,7 @@ pub fn selected(
         .filter(chosen)
         .map(|(_, (o, clay))| {
             let ObjectTransform { shift, turn, scale } = o.settings.transform;
-            let (name, mesh) = (o.settings.name.clone(), clay.to_tri().to_poly());
+            let (name, mesh) = (o.settings.name.clone(), polygons::polygons(&clay.to_tri()));
             SceneMesh { name, mesh, shift, turn, scale, morphed: morphed(clay) }
         })
         .collect();
@@ -139,16 +140,49 @@ fn built(plain: &TriMesh, job: &Job) -> Result<Clay, CombineError> {
     Clay::build(plain, job).map_err(|e| CombineError::Build(e.to_string()))
 }
 
-/// A Boolean of two objects where they stand. The result stands where the first does. `keep`: the
-/// operands stay, hidden.
+/// A Boolean of two objects, as it is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneBoolean {
+    /// What is made of the two.
+    pub operation: Operation,
+    /// The operands stay, hidden.
+    pub keep: bool,
+    /// Faces in which the two only touch belong to an intersection too.
+    pub keep_contact: bool,
+    /// Length in the world within which places are one; `None`: what the vertices resolve.
+    pub tolerance: Option<f64>,
+}
+
+impl SceneBoolean {
+    /// The result takes the place of the operands.
+    pub fn new(operation: Operation) -> Self {
+        SceneBoolean { operation, keep: false, keep_contact: false, tolerance: None }
+    }
+}
+
+/// The tolerance for two meshes of clay of which the second is seen from the frame of the first, in
+/// that frame's unit. Its turned coordinates look like double precision, but a face of it was
+/// rounded in the frame in which it is kept: contact is recognised only within that rounding.
+fn tolerance([a, b]: [&PolyMesh; 2], own: &PolyMesh, ratio: f64) -> f64 {
+    const ERRORS: f64 = 8.0;
+    let found = boolean::default_tolerance([a, b]).tolerance;
+    let kept = boolean::resolution(own);
+    let resolved = match kept.precision {
+        // Whole numbers and short decimals are exact, and stay so when they are turned.
+        boolean::Precision::Double => 0.0,
+        _ => ERRORS * kept.error * ratio,
+    };
+    found.max(resolved)
+}
+
+/// A Boolean of two objects where they stand. The result stands where the first does.
 ///
 /// # Errors
 /// [`CombineError`]
 pub fn boolean(
     shown: &Published,
     ids: [ObjectId; 2],
-    operation: Operation,
-    keep: bool,
+    asked: SceneBoolean,
     job: &Job,
 ) -> Result<Combined, CombineError> {
     if ids[0] == ids[1] {
@@ -159,8 +193,18 @@ pub fn boolean(
     let frame = a.settings.transform;
     let first = seen_from(a_clay, &frame, &frame);
     let second = seen_from(b_clay, &b.settings.transform, &frame);
-    let options = BooleanOptions::default();
-    let (solids, _) = boolean::compute([&first, &second], &[operation], &options, job, || 0.0)?;
+    let ratio = b.settings.transform.scale / frame.scale;
+    let tolerance = match asked.tolerance {
+        Some(length) => length / frame.scale,
+        None => tolerance([&first, &second], &b_clay.to_tri().to_poly(), ratio),
+    };
+    let options = BooleanOptions {
+        tolerance: Some(tolerance),
+        keep_contact: asked.keep_contact,
+        ..BooleanOptions::default()
+    };
+    let operations = [asked.operation];
+    let (solids, _) = boolean::compute([&first, &second], &operations, &options, job, || 0.0)?;
     let solid = solids.into_iter().next().ok_or(CombineError::Nothing)?;
     if solid.mesh.face_count() == 0 {
         return Err(CombineError::Nothing);
@@ -169,7 +213,8 @@ pub fn boolean(
     let clay = built(&plain, job)?;
     let source = ObjectSource::Mesh(Arc::new(plain));
     let new = NewObject::new(&a.settings.name, source, frame);
-    let (remove, hide) = if keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
+    let (remove, hide) =
+        if asked.keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
     let event = SceneEvent::Boolean;
     let exchange = Exchange { event, from: vec![a_of, b_of], remove, hide, add: vec![new] };
     Ok(Combined { exchange, clays: vec![clay] })

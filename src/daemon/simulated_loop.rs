@@ -10,15 +10,15 @@ use std::time::Duration;
 
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
-use crate::boolean_jobs;
 use crate::command_queue::QueuedCommand;
 use crate::tick::{Journal, in_order_of_time};
 use crate::tick_statistics::{Losses, Summary, TickStatistics, thread_cpu_ns};
+use crate::{boolean_jobs, hand_jobs};
 use sculptd_clay::GarbageSink;
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
-use sculptd_engine::world::World;
+use sculptd_engine::world::{StepReport, World};
 use sculptd_geometry::job::Job;
 
 /// Something that delivers samples when its time has come.
@@ -126,6 +126,7 @@ impl SimulatedLoop<'_> {
             if let Some(journal) = self.journal.as_deref_mut() {
                 journal.tick(tick, &samples, &commands, self.world);
             }
+            joined.extend(self.of_hands(&report));
             if let Some(operation) = report.join.and_then(boolean_jobs::operation)
                 && let Some(tool) = self.world.thing().map(|t| t.placed().to_poly())
             {
@@ -163,6 +164,27 @@ impl SimulatedLoop<'_> {
             }
         }
         Ok(figures)
+    }
+}
+
+impl SimulatedLoop<'_> {
+    /// What hands ask about objects of the scene, carried out at once.
+    fn of_hands(&mut self, report: &StepReport) -> Option<QueuedCommand> {
+        let join = report.join.zip(self.world.object_in_hand());
+        if join.is_none() && report.put_down.is_none() {
+            return None;
+        }
+        let shown = Published::of(self.world, PublishedFigures::default());
+        match (join, report.put_down) {
+            (Some((choice, held)), _) => hand_jobs::join(&shown, held, choice, &Job::default())
+                .inspect_err(|e| tracing::warn!("{}: {e}", choice.label()))
+                .ok(),
+            (None, Some(id)) => hand_jobs::lay_down(&shown, id)
+                .inspect_err(|e| tracing::warn!("put down: {e}"))
+                .ok()
+                .flatten(),
+            (None, None) => None,
+        }
     }
 }
 

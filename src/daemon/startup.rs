@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec2;
 
 use crate::config::Config;
+use crate::polygons;
 use sculptd_clay::{BuildError, Clay, Workers};
 use sculptd_devices::Body;
 use sculptd_devices::queue::Sender;
@@ -72,6 +73,7 @@ pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
 pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, StartupError> {
     let loaded = read_mesh_within(path, limit, job)?;
     let (plain, _) = loaded.mesh.triangulate();
+    polygons::remember(loaded.mesh, &plain);
     let built = build(plain, loaded.warnings, path.display().to_string(), job)?;
     Ok(Loaded { targets: loaded.targets, ..built })
 }

@@ -8,6 +8,8 @@
 //!   topology, whose budget is what dabs leave.
 
 mod hands;
+mod held;
+mod in_hand;
 mod layers;
 mod local_camera;
 mod people;
@@ -20,6 +22,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use self::in_hand::ObjectsInHand;
 use self::local_camera::LocalCamera;
 use self::people::People;
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SavedScene, SideData};
@@ -32,7 +35,7 @@ use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::layer_work::LayerWork;
 use crate::mask_region::MaskSeen;
 use crate::payload::{Payload, PayloadStore};
-use crate::scene::{Scene, Timeline};
+use crate::scene::{ObjectId, Scene, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::mask_all::MaskAll;
@@ -62,6 +65,8 @@ pub struct StepReport {
     /// A hand asked for the object that it holds to be joined with the clay: for a worker, see
     /// [`World::thing`].
     pub join: Option<MenuItem>,
+    /// A hand has put an object of the scene down: a worker may lay it flush on a face near it.
+    pub put_down: Option<ObjectId>,
     /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the
     /// history outside.
     pub missed: Option<HistoryEvent>,
@@ -117,6 +122,8 @@ pub struct World {
     last_hands: Option<Hands>,
     /// What the hands hold.
     thing: Option<HeldObject>,
+    /// The object of the scene that they carry.
+    in_hand: ObjectsInHand,
     report: StepReport,
     /// Steps that can be taken back, over all objects.
     timeline: Timeline,
@@ -178,6 +185,7 @@ impl World {
             hands: HandTools::new(options.hands),
             last_hands: None,
             thing: None,
+            in_hand: ObjectsInHand::default(),
             report: StepReport::default(),
             timeline: Timeline::new(),
             garbage: GarbageSink::default(),
@@ -380,6 +388,7 @@ impl World {
         }
         self.hands.lift();
         self.advance_strokes(u64::MAX);
+        self.let_go();
         self.topology.finish(&mut self.scene.active_mut().clay, &self.workers);
         self.close();
     }
@@ -449,6 +458,7 @@ impl World {
             self.report.paused |= !self.topology.is_empty();
         }
         self.report.topology_dropped += self.topology.take_dropped();
+        self.let_go_of_what_no_hand_holds();
         let active = self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle())
             || self.hands.is_touching()
             || !self.topology.is_empty();

@@ -48,6 +48,7 @@ pub mod distance;
 pub mod edges;
 mod fans;
 pub mod flat;
+pub mod flat_region;
 pub mod grid;
 pub mod io;
 pub mod job;

@@ -232,3 +232,69 @@ fn several_files_stand_in_their_true_size_and_place() {
     let replayed = session::replay::replay(&opened, None, Workers::new(1), &Job::default());
     assert_eq!(replayed.expect("replays").world.hash(), hash);
 }
+
+#[test]
+fn an_object_is_placed_flush_by_request_and_joined_without_a_gap() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (pot, session) = (dir.path().join("pot.ply"), dir.path().join("s.sculpt"));
+    let solid = shapes::cuboid(glam::DVec3::new(-20.0, 0.0, -20.0), glam::DVec3::splat(20.0));
+    write_mesh(&pot, &solid).expect("written");
+    let run = Running::begin(std::slice::from_ref(&pot), &session);
+    let added = run.ask("scene.add", json!({ "primitive": { "box": [8, 4, 6] }, "edge": 2.0 }));
+    let lid = added["id"].clone();
+    let turn = [0.1, 0.7, -0.3, 0.2];
+    let place = json!({ "shift": [50.0, 33.0, -7.0], "turn": turn });
+    run.ask("scene.transform", json!({ "id": lid, "transform": place }));
+    let before = run.objects();
+    // The lid's lower face, where it stands now, onto the top of the pot, middle on middle.
+    let of = sculptd_engine::scene::ObjectTransform {
+        shift: glam::DVec3::new(50.0, 33.0, -7.0),
+        turn: glam::DQuat::from_array(turn).normalize(),
+        scale: 1.0,
+    };
+    let face = of.apply(glam::DVec3::new(0.5, -2.0, 0.3)).to_array();
+    let asked = json!({
+        "id": lid, "at": face, "to": 0, "to_at": [3.0, 20.0, -4.0], "align": "centre"
+    });
+    let done = run.ask("scene.snap", asked.clone());
+    let areas: Vec<f64> = (0..2).map(|i| done["areas"][i].as_f64().expect("a number")).collect();
+    assert!((areas[0] - 48.0).abs() < 1e-9 && (areas[1] - 1600.0).abs() < 1e-9, "{areas:?}");
+    assert!(done["off"].as_f64().expect("a number") < 1e-9);
+    let bounds = run.objects()[1]["bounds"].clone();
+    assert!((bounds[0][1].as_f64().expect("a number") - 20.0).abs() < 1e-5, "{bounds}");
+    let same = json!({ "id": lid, "at": [0, 0, 0], "to": lid, "to_at": [0, 0, 0] });
+    assert!(run.refused("scene.snap", same).contains("two different"));
+    let made = json!({ "operation": "union", "a": 0, "b": lid });
+    run.ask("scene.boolean", made);
+    run.objects();
+    let path = dir.path().join("both.ply");
+    run.ask("export", json!({ "path": path }));
+    let mesh = read_mesh(&path, &Job::default()).expect("readable").mesh;
+    let (volume, want) = (measures(&mesh.triangulate().0).volume, 40.0 * 20.0 * 40.0 + 192.0);
+    assert!((volume - want).abs() < 1e-3, "{volume} of {want}");
+    run.ask("undo", json!({}));
+    run.ask("undo", json!({}));
+    assert_eq!(run.objects(), before);
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(1), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+}
+
+#[test]
+fn a_quad_file_leaves_as_quads_after_strokes() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (file, session) = (dir.path().join("ring.obj"), dir.path().join("s.sculpt"));
+    let quads = shapes::torus(3.0, 1.0, 48, 24);
+    write_mesh(&file, &quads).expect("written");
+    let run = Running::begin(std::slice::from_ref(&file), &session);
+    let revision = run.live.published.load().mesh.revision();
+    run.ask("mask", json!({ "action": "invert" }));
+    run.ask("mask", json!({ "action": "invert" }));
+    until("a change", || run.live.published.load().mesh.revision() > revision);
+    let path = dir.path().join("out.obj");
+    run.ask("export", json!({ "path": path }));
+    let read = read_mesh(&path, &Job::default()).expect("readable").mesh;
+    assert_eq!((read.corners, read.face_starts), (quads.corners, quads.face_starts));
+    run.end();
+}

@@ -324,6 +324,7 @@ history-boolean = boolesch
 history-merged = vereint
 history-split = geteilt
 history-layers = Ebenen
+history-snapped = bündig gelegt
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplizieren
 objects-rename = Umbenennen
 objects-remove = Entfernen
 objects-locked = Gesperrt: kein Strich, keine Bewegung, kein Entfernen
+objects-gizmo = Gizmo
+    .tip = Verschiebt, dreht und skaliert das Objekt mit dem Zeiger; mit Strg in Schritten
+objects-snap = Fläche an Fläche legen
+    .tip = Legt eine ebene Fläche eines Objekts bündig an eine eines anderen
+objects-snap-first = Auf die Fläche drücken, die bewegt wird
+objects-snap-second = Auf die Fläche drücken, an die sie kommt
 objects-eye = Auge
     .tip = Wird gezeichnet
 objects-lock = Sperre
@@ -473,6 +480,7 @@ menu-box = Quader
 menu-cylinder = Zylinder
 menu-undo = rückgängig
 menu-redo = wiederholen
+menu-pick-up = aufheben
 
 ## Page: walls
 
@@ -872,6 +880,7 @@ task-saved = Gespeichert: { $path }
 task-frames = { $frames } Bilder gespeichert in { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: fertig
+task-snapped = Die Flächen liegen aneinander
 task-trimmed = Zugeschnitten
 task-level = Stufe { $at } von { $all }
 task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $change } %

@@ -321,6 +321,7 @@ history-shown = προβολή
 history-locked = κλείδωμα
 history-reshaped = αναμόρφωση
 history-layers = στρώσεις
+history-snapped = προσαρμόστηκε
 history-boolean = Boolean
 history-merged = συγχώνευση
 history-split = διαχωρισμός
@@ -392,6 +393,12 @@ objects-duplicate = Διπλασιασμός
 objects-rename = Μετονομασία
 objects-remove = Αφαίρεση
 objects-locked = Κλειδωμένο: ούτε κινήσεις, ούτε μετακίνηση, ούτε αφαίρεση
+objects-gizmo = Gizmo
+    .tip = Μετακινεί, στρέφει και κλιμακώνει το αντικείμενο με τον δείκτη· με Ctrl σε βήματα
+objects-snap = Έδρα με έδρα
+    .tip = Ακουμπά μια επίπεδη έδρα ενός αντικειμένου σε έδρα άλλου
+objects-snap-first = Πατήστε την έδρα που θα μετακινηθεί
+objects-snap-second = Πατήστε την έδρα όπου θα ακουμπήσει
 objects-eye = όψη
     .tip = Σχεδιάζεται
 objects-lock = κλειδί
@@ -473,6 +480,7 @@ menu-box = κύβος
 menu-cylinder = κύλινδρος
 menu-undo = αναίρεση
 menu-redo = επανάληψη
+menu-pick-up = πιάσε
 
 ## Page: walls
 
@@ -872,6 +880,7 @@ task-saved = Αποθηκεύτηκε: { $path }
 task-frames = Αποθηκεύτηκαν { $frames } καρέ στο { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: έγινε
+task-snapped = Οι έδρες εφάπτονται
 task-trimmed = Περικόπηκε
 task-level = Επίπεδο { $at } από { $all }
 task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος { $change } %

@@ -326,6 +326,7 @@ history-boolean = Boolean
 history-merged = merged
 history-split = split
 history-layers = layers
+history-snapped = laid flush
 
 ## Page: look
 
@@ -394,6 +395,12 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-gizmo = Gizmo
+    .tip = Move, turn and scale the object by the pointer; with Ctrl in steps
+objects-snap = Snap face to face
+    .tip = Lays a flat face of one object flush on one of another
+objects-snap-first = Press on the face to move
+objects-snap-second = Press on the face to lay it on
 objects-eye = eye
     .tip = Drawn
 objects-lock = lock
@@ -475,6 +482,7 @@ menu-box = box
 menu-cylinder = cylinder
 menu-undo = undo
 menu-redo = redo
+menu-pick-up = pick up
 
 ## Page: walls
 
@@ -874,6 +882,7 @@ task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
+task-snapped = The faces lie on each other
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %

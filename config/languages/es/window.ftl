@@ -321,6 +321,7 @@ history-shown = mostrado u oculto
 history-locked = bloqueado o no
 history-reshaped = reformado
 history-layers = capas
+history-snapped = pegado
 history-boolean = booleana
 history-merged = unido
 history-split = separado
@@ -392,6 +393,12 @@ objects-duplicate = Duplicar
 objects-rename = Renombrar
 objects-remove = Quitar
 objects-locked = Bloqueado: ni trazos, ni movimientos, ni borrado
+objects-gizmo = Gizmo
+    .tip = Mueve, gira y escala el objeto con el puntero; con Ctrl, por pasos
+objects-snap = Pegar cara con cara
+    .tip = Pone una cara plana de un objeto a ras con la de otro
+objects-snap-first = Pulse la cara que se mueve
+objects-snap-second = Pulse la cara a la que se pega
 objects-eye = ver
     .tip = Se dibuja
 objects-lock = fijo
@@ -473,6 +480,7 @@ menu-box = cubo
 menu-cylinder = cilindro
 menu-undo = deshacer
 menu-redo = rehacer
+menu-pick-up = coger
 
 ## Page: walls
 
@@ -872,6 +880,7 @@ task-saved = Guardado { $path }
 task-frames = Guardados { $frames } cuadros en { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: hecho
+task-snapped = Las caras están a ras
 task-trimmed = Recortado
 task-level = Nivel { $at } de { $all }
 task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volumen { $change } %

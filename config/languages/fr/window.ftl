@@ -321,6 +321,7 @@ history-shown = montré ou caché
 history-locked = verrou changé
 history-reshaped = reformé
 history-layers = calques
+history-snapped = plaqué
 history-boolean = booléenne
 history-merged = fusionné
 history-split = séparé
@@ -392,6 +393,12 @@ objects-duplicate = Dupliquer
 objects-rename = Renommer
 objects-remove = Retirer
 objects-locked = Verrouillé : ni trait, ni déplacement, ni retrait
+objects-gizmo = Gizmo
+    .tip = Déplace, tourne et redimensionne l’objet au pointeur ; par pas avec Ctrl
+objects-snap = Plaquer face contre face
+    .tip = Plaque une face plane d’un objet contre celle d’un autre
+objects-snap-first = Appuyez sur la face à déplacer
+objects-snap-second = Appuyez sur la face où la plaquer
 objects-eye = œil
     .tip = Dessiné
 objects-lock = verrou
@@ -473,6 +480,7 @@ menu-box = cube
 menu-cylinder = cylindre
 menu-undo = annuler
 menu-redo = refaire
+menu-pick-up = prendre
 
 ## Page: walls
 
@@ -872,6 +880,7 @@ task-saved = Enregistré { $path }
 task-frames = { $frames } images enregistrées dans { $folder }
 task-failed = { $path } : { $error }
 task-done = { $operation } : fait
+task-snapped = Les faces sont l’une contre l’autre
 task-trimmed = Rogné
 task-level = Niveau { $at } sur { $all }
 task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume { $change } %

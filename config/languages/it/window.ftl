@@ -324,6 +324,7 @@ history-boolean = booleana
 history-merged = unito
 history-split = diviso
 history-layers = livelli
+history-snapped = messo a filo
 
 ## Page: look
 
@@ -392,6 +393,12 @@ objects-duplicate = Duplica
 objects-rename = Rinomina
 objects-remove = Rimuovi
 objects-locked = Bloccato: né tratti, né spostamenti, né rimozione
+objects-gizmo = Gizmo
+    .tip = Sposta, ruota e scala l’oggetto con il puntatore; con Ctrl a passi
+objects-snap = Accosta faccia a faccia
+    .tip = Mette una faccia piana di un oggetto a filo con quella di un altro
+objects-snap-first = Premi sulla faccia da spostare
+objects-snap-second = Premi sulla faccia a cui accostarla
 objects-eye = vedi
     .tip = Disegnato
 objects-lock = blocca
@@ -473,6 +480,7 @@ menu-box = cubo
 menu-cylinder = cilindro
 menu-undo = annulla
 menu-redo = ripeti
+menu-pick-up = prendi
 
 ## Page: walls
 
@@ -872,6 +880,7 @@ task-saved = Salvato { $path }
 task-frames = Salvati { $frames } fotogrammi in { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: fatto
+task-snapped = Le facce combaciano
 task-trimmed = Tagliato
 task-level = Livello { $at } di { $all }
 task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $change } %

@@ -320,6 +320,7 @@ history-shown = 表示の切り替え
 history-locked = ロックの切り替え
 history-reshaped = 形状の変更
 history-layers = レイヤー
+history-snapped = 面合わせ
 history-boolean = ブーリアン
 history-merged = 結合
 history-split = 分離
@@ -391,6 +392,12 @@ objects-duplicate = 複製
 objects-rename = 名前を変更
 objects-remove = 削除
 objects-locked = ロック中: 造形、移動、削除はできません
+objects-gizmo = ギズモ
+    .tip = ポインターで移動・回転・拡大縮小します。Ctrl で刻み
+objects-snap = 面と面を合わせる
+    .tip = オブジェクトの平らな面を別のオブジェクトの面にぴったり合わせます
+objects-snap-first = 動かす面を押す
+objects-snap-second = 合わせる先の面を押す
 objects-eye = 表示
     .tip = 描画する
 objects-lock = ロック
@@ -472,6 +479,7 @@ menu-box = 箱
 menu-cylinder = 円柱
 menu-undo = 元に戻す
 menu-redo = やり直す
+menu-pick-up = つかむ
 
 ## Page: walls
 
@@ -868,6 +876,7 @@ task-saved = 保存: { $path }
 task-frames = { $frames } フレームを { $folder } に保存しました
 task-failed = { $path }: { $error }
 task-done = { $operation }: 完了
+task-snapped = 面が合いました
 task-trimmed = トリムしました
 task-level = レベル { $at } / { $all }
 task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxel }、体積 { $change } %

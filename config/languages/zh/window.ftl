@@ -320,6 +320,7 @@ history-shown = 显示或隐藏
 history-locked = 锁定或解锁
 history-reshaped = 改形
 history-layers = 图层
+history-snapped = 已贴合
 history-boolean = 布尔
 history-merged = 合并
 history-split = 拆分
@@ -391,6 +392,12 @@ objects-duplicate = 复制
 objects-rename = 重命名
 objects-remove = 移除
 objects-locked = 已锁定: 不可雕刻、移动、移除
+objects-gizmo = 操纵器
+    .tip = 用指针移动、旋转和缩放对象；按住 Ctrl 按步进
+objects-snap = 面对面贴合
+    .tip = 把一个对象的平面贴到另一个对象的平面上
+objects-snap-first = 按下要移动的面
+objects-snap-second = 按下要贴合到的面
 objects-eye = 显示
     .tip = 绘制
 objects-lock = 锁定
@@ -472,6 +479,7 @@ menu-box = 立方体
 menu-cylinder = 柱体
 menu-undo = 撤销
 menu-redo = 重做
+menu-pick-up = 拿起
 
 ## Page: walls
 
@@ -868,6 +876,7 @@ task-saved = 已保存 { $path }
 task-frames = 已将 { $frames } 帧保存到 { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: 完成
+task-snapped = 两个面已贴合
 task-trimmed = 已修剪
 task-level = 级别 { $at } / { $all }
 task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体积 { $change } %

@@ -13,9 +13,10 @@ use super::host::{Host, failed, locked};
 use super::layers::{self, LayerDone};
 use super::mask_region::mask_region;
 use super::measurement;
-use super::scene;
+use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
+use super::{scene, snap};
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
@@ -30,6 +31,7 @@ use sculptd_control::event;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
+use sculptd_control::snap::{SnapParams, SnapReply};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::{Handler, Request, RpcError};
@@ -39,7 +41,6 @@ use sculptd_engine::hand::ReachBox;
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
 use sculptd_engine::stroke::CurveAction;
-use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::io::{read_mesh_within, read_regular};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::repair;
@@ -136,15 +137,6 @@ fn boolean(
         tries: joined.tries as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
     })
-}
-
-fn operation(asked: edit::Operation) -> Operation {
-    match asked {
-        edit::Operation::Union => Operation::Union,
-        edit::Operation::Intersection => Operation::Intersection,
-        edit::Operation::Difference => Operation::Difference,
-        edit::Operation::ReverseDifference => Operation::ReverseDifference,
-    }
 }
 
 impl Handler for Host {
@@ -355,14 +347,15 @@ impl Handler for Host {
         scene::reshape(self, &p)
     }
 
+    fn scene_snap(&self, p: SnapParams) -> Result<SnapReply, RpcError> {
+        snap::snap(self, &p)
+    }
+
     fn scene_boolean(
         &self,
         p: asked_scene::SceneBooleanParams,
     ) -> Result<asked_scene::CombineReply, RpcError> {
-        let ids = [ObjectId(p.a), ObjectId(p.b)];
-        scene::combine(self, |shown, job| {
-            scene_jobs::boolean(shown, ids, operation(p.operation), p.keep, job)
-        })
+        snap::boolean(self, &p)
     }
 
     fn scene_merge(

@@ -21,6 +21,7 @@ mod mask_region;
 mod measurement;
 mod scene;
 pub mod server;
+mod snap;
 mod status_reply;
 pub mod stroke;
 

@@ -40,7 +40,7 @@ fn placed(asked: &Placement) -> Result<ObjectTransform, RpcError> {
     transform.is_sane().then_some(transform).ok_or_else(bad)
 }
 
-fn placement(transform: &ObjectTransform) -> Placement {
+pub(super) fn placement(transform: &ObjectTransform) -> Placement {
     Placement {
         shift: transform.shift.to_array(),
         turn: transform.turn.to_array(),

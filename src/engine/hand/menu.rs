@@ -29,12 +29,20 @@ pub enum MenuItem {
     Undo,
     /// Does the step again that was taken back last.
     Redo,
+    /// From now on pinches pick up objects of the scene.
+    PickUp,
 }
 
 impl MenuItem {
     /// With empty hands.
-    pub const EMPTY: [MenuItem; 5] =
-        [MenuItem::Undo, MenuItem::Redo, MenuItem::Ball, MenuItem::Box, MenuItem::Cylinder];
+    pub const EMPTY: [MenuItem; 6] = [
+        MenuItem::Undo,
+        MenuItem::Redo,
+        MenuItem::Ball,
+        MenuItem::Box,
+        MenuItem::Cylinder,
+        MenuItem::PickUp,
+    ];
     /// With a thing in the hands.
     pub const HOLDING: [MenuItem; 4] =
         [MenuItem::Add, MenuItem::Carve, MenuItem::Keep, MenuItem::PutAway];
@@ -51,6 +59,7 @@ impl MenuItem {
             MenuItem::Cylinder => "cylinder",
             MenuItem::Undo => "undo",
             MenuItem::Redo => "redo",
+            MenuItem::PickUp => "pick up",
         }
     }
 }

@@ -428,6 +428,19 @@ impl HandTools {
         self.waiting.push_back(act);
     }
 
+    /// Where the hand that carries holds, in the world; of several the first.
+    pub fn grip_point(&self) -> Option<Vec3> {
+        let palm = |h: &TrackedHand| {
+            h.tool.or(h.grip.and(h.track.pinch_point.map(|p| self.volume.to_world(p))))
+        };
+        self.held.iter().filter(|h| h.track.pose == Pose::Pinch).find_map(palm)
+    }
+
+    /// Whether a hand carries something: its pinch is closed and has a grip.
+    pub fn is_gripping(&self) -> bool {
+        self.held.iter().any(|h| h.track.pose == Pose::Pinch && h.grip.is_some())
+    }
+
     /// Whether an act waits for the budget of a tick.
     pub fn has_waiting(&self) -> bool {
         !self.waiting.is_empty()

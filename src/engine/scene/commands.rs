@@ -39,6 +39,8 @@ pub enum SceneCommand {
     /// Something is done to the layers of the active object, unless it is locked. Edits of an
     /// intensity that follow each other are one step, see [`LayerEdit::Set`].
     Layers(LayerEdit),
+    /// An object is placed flush on a face of another.
+    Snap(Box<FlushPlacing>),
 }
 
 impl SceneCommand {
@@ -60,6 +62,7 @@ impl SceneCommand {
                 | SceneCommand::Reshape(..)
                 | SceneCommand::Rename(..)
                 | SceneCommand::Layers(_)
+                | SceneCommand::Snap(_)
         )
     }
 }
@@ -124,6 +127,18 @@ pub struct Exchange {
     pub add: Vec<NewObject>,
 }
 
+/// An object was placed flush: what the transform was computed from. Nothing is done when one of
+/// the two has changed since.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FlushPlacing {
+    /// The object that is moved, as it was.
+    pub moved: Operand,
+    /// The object that it is put on, as it was.
+    pub target: Operand,
+    /// Where the moved object stands from now on.
+    pub transform: ObjectTransform,
+}
+
 /// What was done to the scene, for the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -154,6 +169,8 @@ pub enum SceneEvent {
     Split,
     /// Something was done to the layers of an object.
     Layers,
+    /// An object was placed flush on a face of another.
+    Snap,
 }
 
 /// Why a command to the scene was not carried out. Nothing was changed.

@@ -14,6 +14,7 @@
 mod commands;
 mod object;
 mod primitive;
+mod snap;
 mod timeline;
 mod transform;
 mod view;
@@ -21,10 +22,12 @@ mod view;
 use std::sync::Arc;
 
 pub use commands::{
-    Exchange, MAX_OBJECTS, NewObject, ObjectSource, Operand, SceneCommand, SceneError, SceneEvent,
+    Exchange, FlushPlacing, MAX_OBJECTS, NewObject, ObjectSource, Operand, SceneCommand,
+    SceneError, SceneEvent,
 };
 pub use object::{MAX_NAME, Object, ObjectId, ObjectSettings, clean_name};
 pub use primitive::{BadPrimitive, Primitive, PrimitiveShape};
+pub use snap::{FaceAlignment, FlatFace, flush};
 pub(crate) use timeline::{Presence, ReplacedClay, SceneStep, Timeline};
 pub use transform::ObjectTransform;
 pub(crate) use view::combined_hash;

@@ -32,6 +32,7 @@ impl World {
     }
 
     pub(super) fn put_down(&mut self) {
+        self.end_picking();
         if let Some(held) = self.thing.take() {
             self.garbage.discard(Garbage::Shared(held.plain));
         }
@@ -43,6 +44,7 @@ impl World {
         match choice {
             MenuItem::Undo => self.apply_command(&Command::Undo),
             MenuItem::Redo => self.apply_command(&Command::Redo),
+            MenuItem::PickUp => self.begin_picking(),
             MenuItem::PutAway => self.put_down(),
             MenuItem::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
             MenuItem::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
@@ -66,11 +68,12 @@ impl World {
                 camera.target = after.to_world(mm);
                 camera.distance = (camera.distance * after.scale / before.scale).clamp(1e-6, 1e9);
             }
-            Act::Carry(by) => {
-                if let Some(thing) = &mut self.thing {
-                    thing.carry(by);
-                }
-            }
+            Act::Carry(by) => match &mut self.thing {
+                Some(thing) => thing.carry(by),
+                None => self.carry_object(by),
+            },
+            // Hands that carry objects do not sculpt: one that opens beside a part would press it.
+            Act::Push(_) | Act::Drag(_) | Act::Palm(_) if self.in_hand.picking => {}
             Act::Push(a) => {
                 let a = a.seen_from(&own);
                 return self.touch(&a.reach(), &a.kernel(), left);

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::in_hand::{ObjectsInHand, SavedHolding};
 use super::people::People;
 use super::{PenSlot, World, WorldOptions};
 use crate::camera::Camera;
@@ -142,16 +143,20 @@ impl SavedScene {
     }
 
     /// What stands behind the rest of a state; `None` where nothing does.
-    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People)>, BadState> {
+    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People, SavedHolding)>, BadState> {
         if bytes.is_empty() {
             return Ok(None);
         }
         let (scene, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
-        let people = match rest {
-            [] => People::default(),
+        if rest.is_empty() {
+            return Ok(Some((scene, People::default(), SavedHolding::default())));
+        }
+        let (people, rest) = postcard::take_from_bytes(rest).map_err(|_| BadState)?;
+        let holding = match rest {
+            [] => SavedHolding::default(),
             rest => postcard::from_bytes(rest).map_err(|_| BadState)?,
         };
-        Ok(Some((scene, people)))
+        Ok(Some((scene, people, holding)))
     }
 
     fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
@@ -173,7 +178,7 @@ impl Saved {
     pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
         let (_, rest): (Core, _) =
             take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
-        Ok(SavedScene::read(rest)?.map(|(scene, _)| scene))
+        Ok(SavedScene::read(rest)?.map(|(scene, ..)| scene))
     }
 }
 
@@ -301,6 +306,7 @@ impl World {
         !self.scene.active().clay.is_in_step()
             && !self.layers.is_edit()
             && !self.report.paused
+            && !self.in_hand.is_held()
             && self.pens.iter().all(|s| !s.track.is_open() && s.track.is_idle())
     }
 
@@ -325,13 +331,16 @@ impl World {
             kept_brushes: &self.kept_brushes,
         };
         let mut core = postcard::to_stdvec(&core).ok()?;
-        let alone = self.people.is_nobody();
-        if !self.scene.is_plain() || !alone {
+        let (alone, holding) = (self.people.is_nobody(), self.in_hand.saved());
+        if !self.scene.is_plain() || !alone || holding.picking {
             core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
         }
-        if !alone {
+        if !alone || holding.picking {
             // Behind the list of objects; a world of one person has nothing there.
             core = postcard::to_extend(&self.people, core).ok()?;
+        }
+        if holding.picking {
+            core = postcard::to_extend(&holding, core).ok()?;
         }
         Some(Saved {
             tick: self.tick,
@@ -362,7 +371,10 @@ impl World {
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        let (list, people) = SavedScene::read(rest)?.unzip();
+        let (list, people, holding) = match SavedScene::read(rest)? {
+            Some((list, people, holding)) => (Some(list), people, holding),
+            None => Default::default(),
+        };
         let mut clays = clays.into_iter();
         let mut scene = match list {
             None => {
@@ -385,11 +397,12 @@ impl World {
         world.hands = core.hands;
         world.last_hands = core.last_hands;
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
+        world.in_hand = ObjectsInHand::restored(holding);
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
         world.desktop = core.desktop;
         world.kept_brushes = Arc::new(core.kept_brushes);
-        world.people = people.unwrap_or_default();
+        world.people = people;
         Ok(world)
     }
 }

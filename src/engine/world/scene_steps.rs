@@ -6,8 +6,8 @@ use crate::command::{JumpObject, NewClay, OfClay, SceneJump};
 use crate::hand::ReachBox;
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{
-    Exchange, MAX_OBJECTS, NewObject, Object, ObjectId, ObjectSettings, ObjectSource, Presence,
-    ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent, SceneStep, clean_name,
+    Exchange, MAX_OBJECTS, NewObject, Object, ObjectId, ObjectSettings, ObjectSource, Operand,
+    Presence, ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent, SceneStep, clean_name,
 };
 use sculptd_clay::Clay;
 
@@ -87,6 +87,15 @@ impl World {
                 Ok(*id)
             }
             SceneCommand::Exchange(exchange) => self.exchange(exchange),
+            SceneCommand::Snap(placing) => {
+                self.as_it_was(&placing.moved)?;
+                self.as_it_was(&placing.target)?;
+                self.unlocked(placing.moved.id)?;
+                if !placing.transform.is_sane() {
+                    return Err(SceneError::Transform);
+                }
+                self.set(placing.moved.id, |settings| settings.transform = placing.transform)
+            }
             SceneCommand::Reshape(id, new) => {
                 self.unlocked(*id)?;
                 let object = self.scene.object(*id).ok_or(SceneError::NoObject(*id))?;
@@ -136,6 +145,11 @@ impl World {
         Ok(id)
     }
 
+    /// One step of undo for what an object was set to before.
+    pub(super) fn push_settings(&mut self, id: ObjectId, before: ObjectSettings) {
+        self.push(SceneStep::Set(id, Box::new(before)));
+    }
+
     fn push(&mut self, step: SceneStep) {
         let World { timeline, scene, garbage, options, .. } = self;
         timeline.push(step, scene, options.undo_bytes, garbage);
@@ -168,15 +182,18 @@ impl World {
         Ok(SceneStep::Present(Box::new(Presence { id, index, object, other_active })))
     }
 
+    /// Refuses where an object has changed since something was computed from it.
+    fn as_it_was(&self, from: &Operand) -> Result<(), SceneError> {
+        let same = self.scene.object(from.id).is_some_and(|o| {
+            (o.clay.object_id(), o.clay.revision()) == (from.clay, from.revision)
+                && o.settings.transform == from.transform
+        });
+        if same { Ok(()) } else { Err(SceneError::Changed(from.id)) }
+    }
+
     fn exchange(&mut self, exchange: &Exchange) -> SceneResult {
         for from in &exchange.from {
-            let same = self.scene.object(from.id).is_some_and(|o| {
-                (o.clay.object_id(), o.clay.revision()) == (from.clay, from.revision)
-                    && o.settings.transform == from.transform
-            });
-            if !same {
-                return Err(SceneError::Changed(from.id));
-            }
+            self.as_it_was(from)?;
         }
         for id in &exchange.remove {
             self.unlocked(*id)?;
@@ -421,6 +438,7 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Show(..) => SceneEvent::Show,
         SceneCommand::Lock(..) => SceneEvent::Lock,
         SceneCommand::Reshape(..) => SceneEvent::Reshape,
+        SceneCommand::Snap(_) => SceneEvent::Snap,
         SceneCommand::Exchange(exchange) => exchange.event,
         SceneCommand::Layers(_) => SceneEvent::Layers,
     }

@@ -498,7 +498,8 @@ fn attempt(
         }
         let mut facts = emit::finish(&mut mesh, &a.points.at, job)?;
         let contact = a.points.contact.farthest;
-        if facts.closed && facts.components > 1 && contact > 8.0 * floor {
+        let sheets = options.keep_contact && operation == Operation::Intersection;
+        if !sheets && facts.closed && facts.components > 1 && contact > 8.0 * floor {
             let gone = emit::drop_thin_shells(&mut mesh, &mut origins, 2.0 * contact);
             if gone > 0 {
                 facts = emit::facts(&mesh, job)?;

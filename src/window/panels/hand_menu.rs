@@ -32,7 +32,7 @@ pub fn menu_balls(state: &Published) -> Vec<MenuBall> {
         radius: RADIUS_MM * state.volume.scale,
         ring: state.menu.filter(|m| m.0 == i).map(|m| m.1),
     };
-    Menu::choices(state.thing.is_some()).iter().enumerate().map(one).collect()
+    Menu::choices(state.thing.is_some() || state.picking).iter().enumerate().map(one).collect()
 }
 
 /// What an item is called.
@@ -47,6 +47,7 @@ pub fn title(item: MenuItem) -> String {
         MenuItem::Cylinder => "menu-cylinder",
         MenuItem::Undo => "menu-undo",
         MenuItem::Redo => "menu-redo",
+        MenuItem::PickUp => "menu-pick-up",
     })
 }
 

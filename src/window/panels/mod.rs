@@ -45,4 +45,4 @@ pub mod trim;
 
 pub use act::act;
 pub use layout::{PANEL, all};
-pub use state::{Tab, UiRequest, UiState, View};
+pub use state::{SnapPicks, Tab, UiRequest, UiState, View};

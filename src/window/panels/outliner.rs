@@ -8,7 +8,7 @@ use std::cell::Cell;
 use glam::{DQuat, DVec3, EulerRot};
 
 use super::rows;
-use super::state::{Outliner, Pairing, UiRequest, UiState, View};
+use super::state::{Outliner, Pairing, SnapPicks, UiRequest, UiState, View};
 use super::theme;
 use crate::language::tr;
 use sculptd_engine::command::Command;
@@ -74,6 +74,25 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             ask(out, SceneCommand::Remove(id));
         }
     });
+    rows::flow(ui, |ui| {
+        let gizmo = ui.selectable_label(ui_state.outliner.gizmo, tr!("objects-gizmo"));
+        if gizmo.on_hover_text(tr!("objects-gizmo.tip")).clicked() {
+            ui_state.outliner.gizmo = !ui_state.outliner.gizmo;
+        }
+        let picking = ui_state.outliner.snapping;
+        let label = match picking {
+            None => "objects-snap",
+            Some(SnapPicks { moved: None }) => "objects-snap-first",
+            Some(_) => "objects-snap-second",
+        };
+        let button = ui.add_enabled(
+            scene.objects.len() > 1,
+            egui::Button::selectable(picking.is_some(), tr!(label)),
+        );
+        if button.on_hover_text(tr!("objects-snap.tip")).clicked() {
+            ui_state.outliner.snapping = picking.is_none().then(SnapPicks::default);
+        }
+    });
     if active.settings.locked {
         ui.colored_label(theme::quiet(ui), tr!("objects-locked"));
     } else {
@@ -137,6 +156,13 @@ fn row(
     });
 }
 
+/// A number as a drag shows it; what rounds to zero has no sign.
+fn plain_number(value: f64, decimals: std::ops::RangeInclusive<usize>) -> String {
+    let text = egui::emath::format_with_decimals_in_range(value, decimals);
+    let zero = text.chars().all(|c| !c.is_ascii_digit() || c == '0');
+    if zero { text.trim_start_matches(['-', '\u{2212}']).into() } else { text }
+}
+
 /// Where the active object stands.
 fn place(
     ui: &mut egui::Ui,
@@ -150,7 +176,8 @@ fn place(
     let before = shown;
     let done = Cell::new(false);
     let drag = |ui: &mut egui::Ui, value: &mut f64, speed: f64, name: &str| {
-        let response = ui.add(egui::DragValue::new(value).speed(speed).prefix(format!("{name} ")));
+        let value = egui::DragValue::new(value).speed(speed).custom_formatter(plain_number);
+        let response = ui.add(value.prefix(format!("{name} ")));
         done.set(done.get() || response.drag_stopped() || response.lost_focus());
     };
     let step = f64::from(extent) * 0.01;

@@ -78,6 +78,7 @@ impl WindowState {
                 ring_at(view, if down { pen.pressure } else { 1.0 }, pen.tilt, down);
             }
         }
+        self.gizmo_lines(&mut lines, state);
         if let Some(thing) = &state.thing {
             overlay::held_object(&mut lines, thing);
         }

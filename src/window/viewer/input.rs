@@ -64,6 +64,7 @@ impl WindowState {
                 self.camera.pan(by);
                 self.moved_view(wiring);
             }
+            Drag::Gizmo => self.drag_gizmo(wiring),
             Drag::None => self.sample(false, wiring),
         }
         self.pacing.want();
@@ -126,6 +127,9 @@ impl WindowState {
                     }
                 }
             }
+            if self.pointer.drag == Drag::Gizmo {
+                self.release_gizmo(wiring);
+            }
             self.pointer.drag = Drag::None;
             return;
         }
@@ -149,6 +153,9 @@ impl WindowState {
             && state.scene.active().is_some_and(|o| o.id != id)
         {
             let _ = wiring.commands.try_send(Command::Scene(SceneCommand::Activate(id)));
+            return;
+        }
+        if button == MouseButton::Left && self.press_on_objects(&state, ray, wiring) {
             return;
         }
         let on_clay = || handle.is_some() || state.pick(ray).is_some();

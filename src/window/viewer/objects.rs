@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 
 use super::frame_uniform::{Frame, in_view};
 use super::pages::Pages;
@@ -62,13 +62,19 @@ pub fn others(state: &Published) -> Vec<OtherObject<'_>> {
 
 /// The nearest visible object on a ray of the world.
 pub fn under(state: &Published, ray: Ray) -> Option<ObjectId> {
+    hit_under(state, ray).map(|(id, _)| id)
+}
+
+/// The nearest visible object on a ray of the world, and where the ray meets it, in the world.
+pub fn hit_under(state: &Published, ray: Ray) -> Option<(ObjectId, DVec3)> {
     let seen = state.scene.each(&state.mesh).filter(|(o, _)| o.settings.visible);
     let hits = seen.filter_map(|(o, clay)| {
         let transform = o.settings.transform;
         let hit = clay.pick(transform.inverse().ray(ray))?;
-        Some((f64::from(hit.t) * transform.scale, o.id))
+        let at = transform.apply(hit.position.as_dvec3());
+        Some((f64::from(hit.t) * transform.scale, o.id, at))
     });
-    hits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
+    hits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id, at)| (id, at))
 }
 
 impl Frame {
@@ -217,7 +223,7 @@ impl ObjectBuffers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DQuat, DVec3};
+    use glam::DQuat;
 
     #[test]
     fn an_object_is_seen_where_it_stands() {

@@ -3,6 +3,7 @@
 use glam::Vec2;
 use winit::keyboard::ModifiersState;
 
+use super::gizmo::GizmoDrag;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 
 /// What a pressed button drags.
@@ -13,6 +14,8 @@ pub enum Drag {
     Sculpt,
     Orbit,
     Pan,
+    /// A handle of the gizmo.
+    Gizmo,
 }
 
 #[derive(Debug, Default)]
@@ -28,6 +31,8 @@ pub struct Pointer {
     /// The brush as it was before Shift or Ctrl changed it for one stroke.
     pub(super) lent: Option<BrushSettings>,
     pub(super) speed: Speed,
+    /// The handle of the gizmo that is dragged.
+    pub(super) gizmo: Option<GizmoDrag>,
 }
 
 /// The speed of a pointer as a stand-in for its pressure: slow strokes press harder than quick

@@ -27,10 +27,11 @@ use sculptd_clay::{Clay, Snapshot};
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
 use sculptd_daemon::remesh_job::Wanted;
-use sculptd_daemon::scene_jobs::Selection;
+use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
+use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
-use sculptd_daemon::{Published, boolean_jobs, remesh_job, scene_jobs, startup};
+use sculptd_daemon::{Published, boolean_jobs, polygons, remesh_job, scene_jobs, startup};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::{HeldObject, MenuItem};
@@ -90,6 +91,7 @@ fn read_and_build(
 ) -> Result<startup::Loaded, startup::StartupError> {
     let loaded = read_mesh_within(path, MAX_FILE, &load.read)?;
     let (plain, _) = loaded.mesh.triangulate();
+    polygons::remember(loaded.mesh, &plain);
     load.read.progress(1.0);
     tell("read");
     if plain.triangles.len() >= SHOWN_EARLY {
@@ -271,19 +273,31 @@ impl Tasks {
             let state = shown.load_full();
             let active = state.scene.active().map_or(pairing.with, |o| o.id);
             let (ids, job) = ([active, pairing.with], Job::default());
-            let (text, wrong) =
-                match scene_jobs::boolean(&state, ids, pairing.operation, false, &job) {
-                    Ok(done) => {
-                        let command = Command::Scene(SceneCommand::Exchange(done.exchange));
-                        let built = Payload::Clays(done.clays);
-                        let sent = commands.send(QueuedCommand::with_payload(command, built));
-                        let operation = operation_title(pairing.operation);
-                        (tr!("task-done", operation = operation), sent.is_err())
-                    }
-                    Err(e) => (e.to_string(), true),
-                };
+            let asked = SceneBoolean::new(pairing.operation);
+            let (text, wrong) = match scene_jobs::boolean(&state, ids, asked, &job) {
+                Ok(done) => {
+                    let command = Command::Scene(SceneCommand::Exchange(done.exchange));
+                    let built = Payload::Clays(done.clays);
+                    let sent = commands.send(QueuedCommand::with_payload(command, built));
+                    let operation = operation_title(pairing.operation);
+                    (tr!("task-done", operation = operation), sent.is_err())
+                }
+                Err(e) => (e.to_string(), true),
+            };
             let _ = say.send(TaskReport::Message(text, wrong));
             let _ = say.send(TaskReport::Joined);
+        });
+    }
+
+    /// Lays a face of one object flush on a face of another.
+    pub fn snap(&self, faces: [PickedFace; 2], state: Arc<Published>, commands: CommandSender) {
+        let say = self.say.clone();
+        thread("sculptd-boolean", move || {
+            let (text, wrong) = match snap_jobs::command(&state, faces) {
+                Ok(command) => (tr!("task-snapped"), commands.send(command).is_err()),
+                Err(e) => (e.to_string(), true),
+            };
+            let _ = say.send(TaskReport::Message(text, wrong));
         });
     }
 

@@ -503,7 +503,7 @@ fn the_hands_menu_has_its_words_at_its_balls() {
     let balls = sculptd_window::panels::hand_menu::menu_balls(&h.state().published);
     assert_eq!(
         balls.iter().map(|b| b.ring).collect::<Vec<_>>(),
-        [None, Some(0.4), None, None, None]
+        [None, Some(0.4), None, None, None, None]
     );
     assert!(balls.windows(2).all(|b| b[1].place.y > b[0].place.y), "one over the other");
 }

@@ -8,6 +8,7 @@ use glam::{DQuat, DVec3, Vec3};
 use super::panels::harness;
 use super::pictures::painter;
 use sculptd_daemon::Published;
+use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::{
@@ -15,8 +16,9 @@ use sculptd_engine::scene::{
 };
 use sculptd_engine::world::World;
 use sculptd_window::look::Look;
-use sculptd_window::panels::{Tab, UiRequest};
-use sculptd_window::viewer::objects::{Stance, others, under};
+use sculptd_window::panels::{SnapPicks, Tab, UiRequest};
+use sculptd_window::viewer::gizmo::Gizmo;
+use sculptd_window::viewer::objects::{Stance, hit_under, others, under};
 use sculptd_window::viewer::renderer::{Beside, Scene};
 
 fn ask(world: &mut World, command: SceneCommand) {
@@ -118,4 +120,57 @@ fn the_outliner_lists_objects_and_asks_for_what_is_clicked() {
         matches!(a, UiRequest::AddPrimitive(p) if p.shape.name() == "torus" && p.triangles().is_ok())
     });
     assert!(added, "{:?}", h.state().asked);
+}
+
+#[test]
+fn the_gizmo_and_the_picking_of_faces_are_turned_on_in_the_outliner() {
+    let mut h = harness(Tab::Scene);
+    h.state_mut().published = super::published(&mut world());
+    h.run_steps(3);
+    h.get_by_label("Gizmo").click();
+    h.run_steps(3);
+    assert!(h.state().ui_state.outliner.gizmo);
+    h.get_by_label("Snap face to face").click();
+    h.run_steps(3);
+    assert!(h.state().ui_state.outliner.snapping.is_some());
+    h.get_by_label("Press on the face to move").click();
+    h.run_steps(3);
+    assert!(h.state().ui_state.outliner.snapping.is_none());
+}
+
+#[test]
+fn two_picked_faces_are_laid_on_each_other() {
+    let mut world = super::world(500);
+    for x in [-3.0, 3.0] {
+        let source =
+            ObjectSource::Primitive(Primitive { shape: PrimitiveShape::Box([2.0; 3]), edge: 0.5 });
+        let shift = DVec3::new(x, 0.0, 0.0);
+        let transform = ObjectTransform { shift, ..ObjectTransform::NONE };
+        ask(&mut world, SceneCommand::Add(NewObject::new("box", source, transform)));
+    }
+    let state = super::published(&mut world);
+    let camera = Camera { yaw: 0.0, pitch: 0.0, distance: 20.0, ..Camera::default() };
+    // The faces toward the eye.
+    let hit = |x: f32| {
+        let ray = camera.ray(camera.project(Vec3::new(x, 0.1, 1.0)).expect("before the eye"));
+        hit_under(&state, ray).expect("a box")
+    };
+    let (left, right) = (hit(-3.0), hit(3.0));
+    let mut picks = SnapPicks::default();
+    assert_eq!(picks.pick(left.0, left.1), None);
+    let both = picks.pick(right.0, right.1).expect("two objects");
+    let faces = both.map(|(id, at)| PickedFace { id, at });
+    let Command::Scene(command) = snap_jobs::command(&state, faces).expect("faces") else {
+        panic!("a command to the scene");
+    };
+    ask(&mut world, command);
+    let object = world.scene().object(left.0).expect("there");
+    let (lo, hi) = object.settings.transform.bounds(object.clay.bounds());
+    assert!((lo.z - 1.0).abs() < 1e-5 && (hi.z - 3.0).abs() < 1e-5, "{lo} {hi}");
+    let mut gizmo_lines = Vec::new();
+    let state = super::published(&mut world);
+    let active = state.scene.active().expect("one");
+    let gizmo = Gizmo::of(active, &active.settings.transform, &camera);
+    gizmo.lines(&mut gizmo_lines, None);
+    assert!(gizmo_lines.len() > 300 && gizmo.centre.distance(DVec3::new(3.0, 0.0, 0.0)) < 1e-6);
 }

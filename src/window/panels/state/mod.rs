@@ -35,7 +35,7 @@ pub use kiosk::KioskPad;
 pub use layers::LayerPanel;
 pub use messages::Message;
 pub use operation::{BooleanTrial, Modal, ModalSetting, TrialStatus, Trim, TrimShape};
-pub use outliner::{Outliner, Pairing};
+pub use outliner::{Outliner, Pairing, SnapPicks};
 pub use pens::PenTrace;
 pub use preferences::{Hint, HintsFollowed, Preferences, SCALE, TwoFingers};
 pub use request::UiRequest;

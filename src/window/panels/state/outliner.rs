@@ -1,5 +1,7 @@
 //! What the outliner holds between frames.
 
+use glam::DVec3;
+
 use sculptd_engine::scene::{ObjectId, ObjectTransform, Primitive};
 use sculptd_geometry::boolean::Operation;
 
@@ -12,6 +14,30 @@ pub struct Outliner {
     pub place: Option<(ObjectId, ObjectTransform)>,
     /// The numbers of a primitive that are being dragged.
     pub primitive: Option<(ObjectId, Primitive)>,
+    /// The gizmo of the active object is shown.
+    pub gizmo: bool,
+    /// Two faces are being picked, to lay the first on the second.
+    pub snapping: Option<SnapPicks>,
+}
+
+/// Faces that were picked for laying one on the other.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SnapPicks {
+    /// The object that is to be moved, and a point at its face, in the world.
+    pub moved: Option<(ObjectId, DVec3)>,
+}
+
+impl SnapPicks {
+    /// Takes a press on an object. Both picks, once the second is on another object.
+    pub fn pick(&mut self, id: ObjectId, at: DVec3) -> Option<[(ObjectId, DVec3); 2]> {
+        match self.moved {
+            Some(moved) if moved.0 != id => Some([moved, (id, at)]),
+            _ => {
+                self.moved = Some((id, at));
+                None
+            }
+        }
+    }
 }
 
 /// A Boolean of the active object, the first operand, and another.

@@ -1,0 +1,78 @@
+//! What hands ask of workers: a held object joined with another, or laid flush on a face near it.
+//! What comes of it is a command, which the loop carries out only where nothing has changed.
+
+use sculptd_engine::command::Command;
+use sculptd_engine::hand::MenuItem;
+use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::{ObjectId, ObjectView, SceneCommand, SceneError};
+use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::job::Job;
+
+use crate::command_queue::QueuedCommand;
+use crate::published::Published;
+use crate::scene_jobs::{self, CombineError, SceneBoolean};
+use crate::snap_jobs::{NearFace, SnapError, onto_what_is_near};
+
+/// How near a face must be to be laid on, mm of the hand: a little more than a hand is steady.
+const NEAR_MM: f32 = 15.0;
+/// Faces are laid on each other that are within 20 degrees of it.
+const COSINE: f64 = 0.94;
+
+/// What a choice from the menu means for an object and the held one.
+pub fn operation(choice: MenuItem) -> Option<Operation> {
+    match choice {
+        MenuItem::Add => Some(Operation::Union),
+        MenuItem::Carve => Some(Operation::Difference),
+        MenuItem::Keep => Some(Operation::Intersection),
+        _ => None,
+    }
+}
+
+/// The command that lays an object that was put down on the face near it; `None`: none is near.
+///
+/// # Errors
+/// Where the object is gone or locked.
+pub fn lay_down(shown: &Published, id: ObjectId) -> Result<Option<QueuedCommand>, SnapError> {
+    let near = NearFace { distance: f64::from(NEAR_MM * shown.volume.scale), cosine: COSINE };
+    let placed = onto_what_is_near(shown, id, near)?;
+    let command = |placing| Command::Scene(SceneCommand::Snap(Box::new(placing)));
+    Ok(placed.map(|p| command(p.placing).into()))
+}
+
+/// The object that a held one is joined with: the active one, or where that is held, of the visible
+/// ones whose box it meets the largest.
+fn partner(shown: &Published, held: ObjectId) -> Option<ObjectId> {
+    let open = |o: &ObjectView| o.id != held && o.settings.visible && !o.settings.locked;
+    if let Some(active) = shown.scene.active().filter(|o| open(o)) {
+        return Some(active.id);
+    }
+    let boxes = || {
+        let each = shown.scene.each(&shown.mesh);
+        each.map(|(o, clay)| (o, o.settings.transform.bounds(clay.bounds())))
+    };
+    let (_, (lo, hi)) = boxes().find(|(o, _)| o.id == held)?;
+    let meets = |(a, b): (glam::Vec3, glam::Vec3)| a.cmple(hi).all() && lo.cmple(b).all();
+    let near = boxes().filter(|(o, b)| open(o) && meets(*b));
+    let size = |(a, b): (glam::Vec3, glam::Vec3)| (b - a).element_product();
+    near.max_by(|(_, a), (_, b)| size(*a).total_cmp(&size(*b))).map(|(o, _)| o.id)
+}
+
+/// The command that joins a held object of the scene with another one, as one step of undo.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn join(
+    shown: &Published,
+    held: ObjectId,
+    choice: MenuItem,
+    job: &Job,
+) -> Result<QueuedCommand, CombineError> {
+    let operation = operation(choice).ok_or(CombineError::Nothing)?;
+    let other = partner(shown, held).ok_or(SceneError::Last)?;
+    let done = scene_jobs::boolean(shown, [other, held], SceneBoolean::new(operation), job)?;
+    let command = Command::Scene(SceneCommand::Exchange(done.exchange));
+    Ok(QueuedCommand::with_payload(command, Payload::Clays(done.clays)))
+}
+
+#[cfg(test)]
+mod tests;
