@@ -270,14 +270,16 @@ pub fn on_brush(action: Action, mut brush: BrushSettings) -> Option<Command> {
 }
 
 /// Actions that hold every word of a search, best first: a name that begins with it, then names,
-/// then other words. A name is found in the language of this thread and in English.
+/// then other words. A name is found in the language of this thread and in English, and a brush
+/// also as files write it: `clay-strips`.
 pub fn search(text: &str) -> Vec<&'static ActionEntry> {
-    let text = text.to_lowercase();
+    let text = text.to_lowercase().replace(['-', '_'], " ");
     let words: Vec<&str> = text.split_whitespace().collect();
     let mut found: Vec<(u8, &ActionEntry)> = all()
         .iter()
         .filter_map(|e| {
-            let names = [e.action.title().to_lowercase(), e.name.to_lowercase()];
+            let names = [e.action.title(), e.name.to_string()]
+                .map(|n| n.to_lowercase().replace(['-', '_'], " "));
             let in_name = |w: &str| names.iter().any(|name| name.contains(w));
             let holds = |w: &&str| in_name(w) || e.also.contains(*w);
             let rank = if names.iter().any(|name| name.starts_with(text.trim())) {
@@ -323,6 +325,7 @@ mod tests {
         }
         assert_eq!(search("annulla")[0].action, Action::Undo);
         assert_eq!(search("undo")[0].action, Action::Undo);
+        assert_eq!(search("clay-strips")[0].action, Action::Brush(BrushKind::ClayStrips));
         assert_eq!(Action::Brush(BrushKind::Smooth).entry().name, "Smooth brush");
         assert_ne!(Action::Brush(BrushKind::Smooth).title(), "Smooth brush");
     }
