@@ -5,8 +5,11 @@ use std::collections::BTreeSet;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use sculptd_clay::LayerEdit;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::present_latency::{ABOUT, STAGES};
+use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::thickness::preset::Preset;
 use sculptd_window::language::{Translation, Translations, current};
 use sculptd_window::look::MATERIALS;
@@ -144,15 +147,22 @@ fn every_page_fits_in_every_language() {
                 s.ui_state.look.map = Default::default();
                 s.published.hands = None;
                 fill(s, tab);
-                if tab == Tab::Scene {
-                    assert!(s.published.mesh.layers().is_some(), "the page shows a layer");
-                }
                 h.run_steps(3);
                 assert_eq!(current().code(), language.code());
                 pages += 1;
                 let at = format!("{} {width} at {scale}, {tab:?}", language.code());
                 bad.extend(misplaced(&h).into_iter().map(|what| format!("{at}: {what}")));
             }
+            // The layers of the object.
+            let mut world = super::world(2_000);
+            let layer = SceneCommand::Layers(LayerEdit::Add("layer 1".into()));
+            world.step(1, &[], &[Command::Scene(layer)]);
+            h.state_mut().published = super::published(&mut world);
+            assert!(h.state().published.mesh.layers().is_some(), "the page shows one");
+            h.state_mut().ui_state.tab = Tab::Scene;
+            h.run_steps(3);
+            let at = format!("{} {width} at {scale}, layers", language.code());
+            bad.extend(misplaced(&h).into_iter().map(|what| format!("{at}: {what}")));
         }
     }
     println!("{pages} pages");

@@ -6,10 +6,8 @@
 use egui::epaint::{ClippedShape, Shape};
 use egui::{Color32, Rect};
 use egui_kittest::Harness;
-use sculptd_clay::LayerEdit;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
-use sculptd_engine::scene::SceneCommand;
 use sculptd_window::look::Map;
 use sculptd_window::panels::state::{DistanceSummary, FrameFigures, TrialStatus};
 use sculptd_window::panels::{PANEL, Tab, View, all};
@@ -153,9 +151,7 @@ pub(super) fn fill(s: &mut State, tab: Tab) {
     match tab {
         Tab::Scene => {
             let plain = sculptd_geometry::shapes::sphere_of_about(200);
-            let layer = SceneCommand::Layers(LayerEdit::Add("layer 1".into()));
-            let held = Command::TakeUp(std::sync::Arc::new(plain));
-            world.step(1, &[], &[held, Command::Scene(layer)]);
+            world.step(1, &[], &[Command::TakeUp(std::sync::Arc::new(plain))]);
             s.published = super::published(&mut world);
             s.ui_state.trial.choice = Some(MenuItem::Carve);
             s.ui_state.trial.said =
