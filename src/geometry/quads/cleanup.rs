@@ -182,10 +182,20 @@ fn close_folded(s: &mut QuadSurface, f: u32) -> bool {
     false
 }
 
+/// Another way to cut two faces.
+struct FaceRecut {
+    /// The worse shape of the new faces.
+    least: f64,
+    /// The second of the old faces.
+    other: u32,
+    one: [u32; 4],
+    two: Option<[u32; 4]>,
+}
+
 /// Cuts the faces at an edge of `f` anew, so that the worse of them becomes better; two triangles
 /// may become one quad.
 fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
-    let mut best: Option<(f64, u32, [u32; 4], Option<[u32; 4]>)> = None;
+    let mut best: Option<FaceRecut> = None;
     for k in 0..corners(&s.faces[f as usize]).len() {
         let Some((g, ring)) = s.ring(f, k) else { continue };
         let now = shape(s, f).min(shape(s, g));
@@ -200,8 +210,8 @@ fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
         let n = ring.len();
         let mut offer = |one: [u32; 4], two: Option<[u32; 4]>| {
             let least = shape_of(s, one, up).min(two.map_or(1.0, |two| shape_of(s, two, up)));
-            if least > now + 0.01 && best.is_none_or(|b| least > b.0) {
-                best = Some((least, g, one, two));
+            if least > now + 0.01 && best.as_ref().is_none_or(|b| least > b.least) {
+                best = Some(FaceRecut { least, other: g, one, two });
             }
         };
         if n == 4 {
@@ -219,8 +229,8 @@ fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
             offer([v(0), v(1), v(2), v(3)], Some(two));
         }
     }
-    let Some((_, g, one, two)) = best else { return false };
-    s.replace(f, g, one, two);
+    let Some(FaceRecut { other, one, two, .. }) = best else { return false };
+    s.replace(f, other, one, two);
     true
 }
 
