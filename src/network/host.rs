@@ -6,9 +6,10 @@
 //! * What a member may send is bounded in bytes a second, in batches that wait, and by its role;
 //!   what goes beyond is dropped, counted and told.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::acknowledgement::Acknowledgements;
 use crate::comparison::HashComparison;
 use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
 use crate::host_limits::{
@@ -21,8 +22,8 @@ use crate::rate_limit::RateLimit;
 use crate::seal::Secret;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
 use crate::wire::message::{
-    Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, Nonce, Offer, Reached, Term,
-    VERSION,
+    Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer,
+    Reached, Term, VERSION,
 };
 
 /// The host's state.
@@ -38,9 +39,7 @@ pub struct Host {
     waiting: BTreeMap<PersonId, BatchQueue>,
     arrivals: Vec<Arrival>,
     strangers: RateLimit,
-    /// The last batch of each person in each frame that is not acknowledged.
-    unacknowledged: VecDeque<(u64, PersonId, u64)>,
-    acknowledged: BTreeMap<PersonId, u64>,
+    acknowledgements: Acknowledgements,
     /// The tick that was due at this time.
     epoch: (u64, u64),
     last_input_us: u64,
@@ -75,8 +74,7 @@ impl Host {
             waiting: BTreeMap::new(),
             arrivals: Vec::new(),
             strangers: RateLimit::new(GREETINGS.0, GREETINGS.1, now_us),
-            unacknowledged: VecDeque::new(),
-            acknowledged: BTreeMap::new(),
+            acknowledgements: Acknowledgements::default(),
             epoch: (core.log.tick(), now_us),
             last_input_us: now_us,
             last_frame_us: now_us,
@@ -95,7 +93,7 @@ impl Host {
         // What is in the log and was not acknowledged by the host before is by this one.
         for (person, applied) in core.log.people() {
             host.waiting.entry(person.person).or_default().received = applied;
-            host.unacknowledged.push_back((core.log.last(), person.person, applied));
+            host.acknowledgements.expect(core.log.last(), person.person, applied);
         }
         if first {
             let (name, role) = (core.name.clone(), core.role);
@@ -111,11 +109,6 @@ impl Host {
     /// What a successor needs.
     pub fn succession(&self) -> (Keyring, Secret) {
         (self.keyring.clone(), self.group.clone())
-    }
-
-    /// People here, this one not counted.
-    pub fn members(&self) -> usize {
-        self.members.len()
     }
 
     /// Takes a greeting.
@@ -139,10 +132,13 @@ impl Host {
         if self.greeted.len() >= MAX_MEMBERS {
             return refuse(core, "too many greet at once".into());
         }
-        let own: Nonce = core.nonce();
+        // A greeting that is repeated, because the way is long, has the same answer.
+        let known = self.greeted.get(&from).filter(|g| g.nonces.0 == nonce);
+        let own: Nonce = known.map_or_else(|| core.nonce(), |g| g.nonces.1);
         let (up, down) = invitation.secret.seals(&nonce, &own);
         let proof = invitation.secret.proof(&nonce, &own, &self.term);
-        self.greeted.insert(from, Greeted { up, down, invitation, at_us: now_us });
+        let (nonces, at_us) = ((nonce, own), now_us);
+        self.greeted.insert(from, Greeted { up, down, invitation, nonces, at_us });
         let term = self.term;
         core.greet(To::Peer(from), &Greeting::Challenge { to: nonce, nonce: own, term, proof });
     }
@@ -306,6 +302,18 @@ impl Host {
         match message {
             FromMember::Up { have, after_gap, sent_ms, echo_ms, batches } => {
                 member.trip.take(sent_ms, echo_ms, now_us);
+                if have == NOT_ENTERED {
+                    // Its entry was lost.
+                    let offer = self.checkpoint.as_ref().map(|c| (c.0, c.1.len() as u64));
+                    return match (member.waits, member.have) {
+                        (true, _) => {}
+                        (false, Some(_)) => self.enter(core, from, None, core.log.people()),
+                        (false, None) => {
+                            let people = self.checkpoint.as_ref().map(|c| c.2.clone());
+                            self.enter(core, from, offer, people.unwrap_or_default());
+                        }
+                    };
+                }
                 if have > core.log.last() {
                     return self.violation(core, from, "has frames that never were", now_us);
                 }
@@ -438,17 +446,13 @@ impl Host {
     /// Makes the frames that are due, and sends what is to be sent.
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
         self.order(core, now_us);
-        let gone: Vec<Address> = self
-            .members
-            .iter()
-            .filter(|(_, m)| now_us >= m.heard_us + GONE_US)
-            .map(|m| *m.0)
-            .collect();
-        for address in gone {
-            if let Some(member) = self.members.remove(&address) {
-                core.note(format!("'{}' is gone", member.name));
+        self.members.retain(|_, m| {
+            let here = now_us < m.heard_us + GONE_US;
+            if !here {
+                core.note(format!("'{}' is gone", m.name));
             }
-        }
+            here
+        });
         self.acknowledge(core, now_us);
         if now_us >= self.present_us {
             self.present_us = now_us + IDLE_US;
@@ -460,7 +464,7 @@ impl Host {
             self.send_next(core, to, now_us);
         }
         let offered = self.members.values().filter(|m| m.have.is_none() && !m.waits);
-        let slowest = self.members.values().filter_map(|m| m.have).min().unwrap_or(u64::MAX);
+        let slowest = self.replicas().filter_map(|m| m.have).min().unwrap_or(u64::MAX);
         let slowest = offered.map(|m| m.sent).min().unwrap_or(u64::MAX).min(slowest);
         core.log.trim(slowest.max(core.log.last().saturating_sub(200_000)));
     }
@@ -499,7 +503,7 @@ impl Host {
         self.input_since_compare |= frame.has_input();
         self.last_frame_us = now_us;
         for batch in &frame.batches {
-            self.unacknowledged.push_back((index, batch.person, batch.number));
+            self.acknowledgements.expect(index, batch.person, batch.number);
         }
         core.append(Arc::new(frame));
     }
@@ -522,28 +526,25 @@ impl Host {
         }
     }
 
+    /// Those who have a world.
+    fn replicas(&self) -> impl Iterator<Item = &JoinedMember> {
+        self.members.values().filter(|m| m.role != Role::Device)
+    }
+
     fn acknowledge(&mut self, core: &mut Core, now_us: u64) {
-        let replicas = self.members.values().filter(|m| m.role != Role::Device);
-        let through = match replicas.filter_map(|m| m.have).max() {
+        let through = match self.replicas().filter_map(|m| m.have).max() {
             Some(have) => {
                 self.alone_since_us = None;
                 have
             }
-            None if self.members.values().any(|m| m.role != Role::Device) => 0,
+            None if self.replicas().next().is_some() => 0,
             None => {
                 let since = *self.alone_since_us.get_or_insert(now_us);
                 if since == 0 || now_us >= since + ALONE_US { core.log.last() } else { 0 }
             }
         };
-        while let Some((index, person, number)) = self.unacknowledged.front().copied() {
-            if index > through {
-                break;
-            }
-            self.unacknowledged.pop_front();
-            let entry = self.acknowledged.entry(person).or_default();
-            *entry = number.max(*entry);
-        }
-        core.outbox.acknowledge(self.acknowledged.get(&core.person).copied().unwrap_or(0));
+        self.acknowledgements.reach(through);
+        core.outbox.acknowledge(self.acknowledgements.of(core.person));
     }
 
     fn send_next(&mut self, core: &mut Core, to: Address, now_us: u64) {
@@ -587,7 +588,7 @@ impl Host {
         let Some(member) = self.members.get_mut(&to) else { return };
         let down = FromHost::Down {
             received: self.waiting.get(&member.person).map_or(0, |w| w.received),
-            acknowledged: self.acknowledged.get(&member.person).copied().unwrap_or(0),
+            acknowledged: self.acknowledgements.of(member.person),
             sent_ms: ms(now_us),
             echo_ms: member.trip.echo_ms(now_us),
             frames,

@@ -8,6 +8,7 @@ use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
 use crate::seal::Seal;
 use crate::wire::frame::{Batch, Frame, PersonId, Role};
+use crate::wire::message::Nonce;
 
 /// Frames of one message, and of their input's entries.
 pub const PER_MESSAGE: (usize, usize) = (64, 2048);
@@ -18,6 +19,8 @@ pub struct Greeted {
     pub up: Seal,
     pub down: Seal,
     pub invitation: Invitation,
+    /// The member's, and the host's.
+    pub nonces: (Nonce, Nonce),
     pub at_us: u64,
 }
 

@@ -19,6 +19,7 @@
 //! * Nobody without a key is listened to; what a member sends is bounded. Reading never panics.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
+pub mod acknowledgement;
 pub mod checkpoint;
 pub mod comparison;
 pub mod core;

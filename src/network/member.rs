@@ -10,7 +10,7 @@ use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
 use crate::wire::message::{
-    Address, CHUNK, Entry, FromHost, FromMember, Greeting, Nonce, Offer, Term, VERSION,
+    Address, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer, Term, VERSION,
 };
 
 /// Between two greetings.
@@ -189,8 +189,8 @@ impl Member {
             None => {
                 if core.role == Role::Device {
                     core.log = ReplicaLog::at(0, 0, entry.turns.clone(), entry.people.clone());
-                } else if core.log.turns().last().is_none_or(|t| t.0 != entry.term) {
-                    core.log.begin_turn(entry.term);
+                } else {
+                    core.log.set_turns(entry.turns.clone());
                 }
                 self.follow(core, &entry, now_us);
             }
@@ -311,7 +311,8 @@ impl Member {
                 } else {
                     let (sent_ms, echo_ms) = (ms(now_us), self.trip.echo_ms(now_us));
                     let batches = Vec::new();
-                    let up_to = FromMember::Up { have: 0, after_gap: 0, sent_ms, echo_ms, batches };
+                    let have = NOT_ENTERED;
+                    let up_to = FromMember::Up { have, after_gap: 0, sent_ms, echo_ms, batches };
                     core.up(self.host, up, &up_to);
                 }
             }
@@ -331,6 +332,7 @@ impl Member {
             }
             MemberPhase::Follows => {
                 self.lost = silent;
+                core.log.trim(u64::MAX);
                 if now_us < self.next_us {
                     return;
                 }

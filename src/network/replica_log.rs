@@ -56,6 +56,11 @@ impl ReplicaLog {
         &self.turns
     }
 
+    /// The turns as a host tells them whose log this one is the beginning of.
+    pub fn set_turns(&mut self, turns: Vec<(Term, u64)>) {
+        self.turns = turns;
+    }
+
     /// A new host's turn begins with the next frame.
     pub fn begin_turn(&mut self, term: Term) {
         self.turns.push((term, self.last + 1));

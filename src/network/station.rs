@@ -232,7 +232,7 @@ impl Station {
                         self.core.events.push_back(Event::Hosting(false));
                         let mut member =
                             Member::new(&mut self.core, self.invitation.clone(), now_us);
-                        member.level = true;
+                        (member.level, member.term) = (true, term);
                         member.succession = Some(host.succession());
                         self.phase = StationPhase::Follows(Box::new(member));
                         self.election = None;

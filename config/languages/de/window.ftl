@@ -349,7 +349,7 @@ look-map = Karte
 map-none = Keine
     .tip = Der Ton selbst
 map-mask = Maske
-map-thickness = Stärke
+map-thickness = Wandstärke
 map-distance = Abstand
 look-camera = Kamera
 look-orthographic = Orthografisch
@@ -736,7 +736,7 @@ search-nothing = nichts heißt so
 
 radial-radius = Radius
 radial-mirror = Spiegel x
-radial-thickness = Stärke
+radial-thickness = Wandstärke
 radial-frame = Einpassen
 radial-strength = Stärke
 radial-carve = Abtragen

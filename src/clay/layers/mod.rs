@@ -23,7 +23,10 @@
 //! base would have to evaluate every layer above it, dab by dab.
 //!
 //! Where triangles change, offsets are carried along: a local Boolean leaves every vertex that
-//! stays with its offsets, and what it adds belongs to the base.
+//! stays with its offsets, and what it adds belongs to the base. Dynamic topology leaves clay that
+//! has layers alone. Whatever computes a whole new surface (remeshing, another level of detail, a
+//! Boolean of everything) makes clay without layers of the surface as it is seen, and whoever asks
+//! for it says so.
 
 mod offsets;
 mod stack;

@@ -7,9 +7,11 @@
 //! one vertex: files of this format have a vertex for each normal and texture coordinate. Morph
 //! targets come beside the mesh, which stands without them. Skins and materials are passed over.
 
+mod morph;
+
 use std::path::{Component, Path, PathBuf};
 
-use glam::{DMat4, DQuat, DVec3, Vec3};
+use glam::{DMat4, DQuat, DVec3};
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
@@ -24,9 +26,6 @@ use crate::{PolyMesh, repair};
 
 /// Corners that instances may add up to: a small file can name one mesh a million times.
 pub(super) const MAX_INSTANCED: usize = 200_000_000;
-
-/// Morph targets of one mesh that are read, at most.
-const MAX_TARGETS: usize = 256;
 
 fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
     FileProblem::new(at, expected.into(), found.into()).into()
@@ -104,6 +103,7 @@ pub(super) fn parse(
         groups: Vec::new(),
         left_out: 0,
         targets: Vec::new(),
+        unread_targets: 0,
         extras: serde_json::Value::Null,
     };
     if root.meshes.iter().flat_map(|m| &m.primitives).any(|p| p.targets.is_some()) {
@@ -169,6 +169,9 @@ pub(super) fn parse(
     }
     if file.left_out > 0 {
         warnings.push(format!("{} primitives of points or lines left out", file.left_out));
+    }
+    if file.unread_targets > 0 {
+        warnings.push(format!("{} morph targets left out", file.unread_targets));
     }
     let (materials, textures) = (root.materials.len(), root.textures.len());
     if materials + textures > 0 {
@@ -262,6 +265,7 @@ struct GltfFile<'a> {
     groups: Vec<u32>,
     left_out: usize,
     targets: Vec<MorphTarget>,
+    unread_targets: usize,
     /// The file as plain JSON, where it has morph targets.
     extras: serde_json::Value,
 }
@@ -316,7 +320,7 @@ impl GltfFile<'_> {
         let (unique, of) = weld_keys(placed.len(), job, |i| placed[i])?;
         let base = self.mesh.positions.len() as u32;
         self.mesh.positions.extend(unique.iter().map(|b| DVec3::from(b.map(f64::from_bits))));
-        self.morphs(mesh, place, &starts, (&of, base))?;
+        self.morphs(mesh, place, &starts, (&of, base));
         self.coloured |= colours.iter().any(|&c| c != [255; 4]);
         self.colours.resize(self.mesh.positions.len(), [255; 4]);
         for (v, c) in of.iter().zip(&colours).rev() {
@@ -336,65 +340,6 @@ impl GltfFile<'_> {
         }
         part.faces().for_each(|f| self.mesh.push_face(f));
         self.groups.extend(kept);
-        Ok(())
-    }
-
-    /// The morph targets of an instance. `starts`: its primitives and the first point of each.
-    /// `of`: which vertex each point has become, counted from `base`.
-    fn morphs(
-        &mut self,
-        mesh: usize,
-        place: DMat4,
-        starts: &[(usize, usize)],
-        (of, base): (&[u32], u32),
-    ) -> Result<(), ParseError> {
-        let root = self.root;
-        let source = &root.meshes[mesh];
-        let count = source.primitives.iter().filter_map(|p| p.targets.as_ref()).map(Vec::len).max();
-        let Some(count) = count.filter(|n| *n > 0) else { return Ok(()) };
-        let extras = &self.extras["meshes"][mesh]["extras"];
-        let extras = (extras["targetNames"].clone(), extras["sculptdLayers"].clone());
-        for k in 0..count.min(MAX_TARGETS) {
-            let mut offsets: Vec<(u32, Vec3)> = Vec::new();
-            for &(p, first) in starts {
-                let primitive = &source.primitives[p];
-                let Some(at) = primitive.attributes.get(&Checked::Valid(Semantic::Positions))
-                else {
-                    continue;
-                };
-                let what = format!("morph target {k} of primitive {p} of mesh {mesh}");
-                let own = self.accessor(at.value(), &what)?.count;
-                let target = primitive.targets.as_ref().and_then(|t| t.get(k)?.positions);
-                if let Some(target) = target {
-                    let target = self.accessor(target.value(), &what)?;
-                    if target.parts != 3 || target.count != own || first + own > of.len() {
-                        return Err(bad(
-                            FilePlace::File,
-                            format!("{own} offsets of three coordinates in {what}"),
-                            format!("{} of {}", target.count, target.parts),
-                        ));
-                    }
-                    for i in 0..own {
-                        let by = DVec3::new(target.get(i, 0), target.get(i, 1), target.get(i, 2));
-                        let by = place.transform_vector3(by).as_vec3();
-                        if by.is_finite() && by != Vec3::ZERO {
-                            offsets.push((base + of[first + i], by));
-                        }
-                    }
-                }
-            }
-            offsets.sort_by_key(|o| o.0);
-            offsets.dedup_by_key(|o| o.0);
-            let weight = source.weights.as_ref().and_then(|w| w.get(k).copied()).unwrap_or(0.0);
-            let own = &extras.1[k];
-            let name = extras.0[k].as_str();
-            self.targets.push(MorphTarget {
-                name: name.map_or_else(|| format!("target {}", k + 1), str::to_owned),
-                weight: own["intensity"].as_f64().map_or(weight, |w| w as f32),
-                visible: own["visible"].as_bool().unwrap_or(true),
-                offsets,
-            });
-        }
         Ok(())
     }
 
@@ -502,6 +447,23 @@ impl GltfFile<'_> {
             return Err(wrong("a known type", "another".into()));
         };
         let view = a.buffer_view.ok_or_else(|| wrong("a buffer view", "none".into()))?.value();
+        let parts =
+            parts_of(shape).ok_or_else(|| wrong("numbers or vectors", "matrices".into()))?;
+        let offset = a.byte_offset.map_or(0, |o| o.0) as usize;
+        self.values((view, offset), a.count.0 as usize, (kind.0, parts), what)
+    }
+
+    /// So many values of a kind and so many parts in a buffer view, from a byte of it on.
+    fn values(
+        &self,
+        (view, offset): (usize, usize),
+        count: usize,
+        (kind, parts): (ComponentType, usize),
+        what: &str,
+    ) -> Result<AccessorValues<'_>, ParseError> {
+        let wrong = |expected: &str, found: String| {
+            bad(FilePlace::File, format!("{expected} for the {what}"), found)
+        };
         let view = self
             .root
             .buffer_views
@@ -515,23 +477,15 @@ impl GltfFile<'_> {
         let bytes = start
             .checked_add(view.byte_length.0 as usize)
             .and_then(|end| buffer.get(start..end))
-            .and_then(|b| b.get(a.byte_offset.map_or(0, |o| o.0) as usize..))
+            .and_then(|b| b.get(offset..))
             .ok_or_else(|| {
                 wrong(
                     "bytes inside its buffer",
                     format!("a view past its end ({} bytes)", buffer.len()),
                 )
             })?;
-        let size = kind.0.size();
-        let parts = match shape {
-            Type::Scalar => 1,
-            Type::Vec2 => 2,
-            Type::Vec3 => 3,
-            Type::Vec4 => 4,
-            _ => return Err(wrong("numbers or vectors", "matrices".into())),
-        };
+        let size = kind.size();
         let stride = view.byte_stride.map_or(size * parts, |s| s.0);
-        let count = a.count.0 as usize;
         let need = count
             .checked_sub(1)
             .map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size * parts));
@@ -541,7 +495,18 @@ impl GltfFile<'_> {
                 format!("a count of {count} in {} bytes", bytes.len()),
             ));
         }
-        Ok(AccessorValues { bytes, stride, count, parts, kind: kind.0, size })
+        Ok(AccessorValues { bytes, stride, count, parts, kind, size })
+    }
+}
+
+/// Numbers of an element; `None` of a matrix.
+fn parts_of(shape: Type) -> Option<usize> {
+    match shape {
+        Type::Scalar => Some(1),
+        Type::Vec2 => Some(2),
+        Type::Vec3 => Some(3),
+        Type::Vec4 => Some(4),
+        _ => None,
     }
 }
 

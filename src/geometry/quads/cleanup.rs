@@ -1,8 +1,10 @@
 //! Fewer irregular vertices: operations on the quads that bring the number of faces around the
 //! vertices nearer to four (two on a border), where the shape allows.
 
+use glam::DVec3;
+
 use super::pairing::squareness;
-use super::quad_surface::QuadSurface;
+use super::quad_surface::{QuadSurface, corners};
 use super::surface::GONE;
 use crate::job::{Cancelled, Job};
 
@@ -69,7 +71,7 @@ fn close_best(s: &mut QuadSurface, f: u32) -> bool {
 }
 
 /// Whether no face around turns over when `a` and `c` meet at `to`.
-fn closes_upright(s: &QuadSurface, f: u32, a: u32, c: u32, to: glam::DVec3) -> bool {
+fn closes_upright(s: &QuadSurface, f: u32, a: u32, c: u32, to: DVec3) -> bool {
     let up = (s.vertex_normal(a) + s.vertex_normal(c)).normalize_or_zero();
     s.around[a as usize].iter().chain(&s.around[c as usize]).filter(|&&g| g != f).all(|&g| {
         let place = |v: u32| if v == a || v == c { to } else { s.positions[v as usize] };
@@ -127,24 +129,37 @@ pub(super) fn mend_folded(s: &mut QuadSurface) -> usize {
         if !s.alive(f as usize) || shape(s, f) >= FOLDED {
             continue;
         }
-        done += usize::from(close_folded(s, f) || turn_folded(s, f));
+        done += usize::from(turn_folded(s, f) || close_folded(s, f));
     }
     done
 }
 
-/// The squareness of quad `f`; 1 for a triangle.
+/// How well a face with these corners is shaped, 1 at best, 0 or below where it is folded.
+fn shape_of(s: &QuadSurface, face: [u32; 4], up: DVec3) -> f64 {
+    let at = |v: u32| s.positions[v as usize];
+    if face[3] != GONE {
+        return squareness(face.map(at), up);
+    }
+    let p = [face[0], face[1], face[2]].map(at);
+    let sine = |k: usize| {
+        let to = (p[(k + 1) % 3] - p[k]).normalize_or_zero();
+        to.cross((p[(k + 2) % 3] - p[k]).normalize_or_zero()).dot(up)
+    };
+    sine(0).min(sine(1)).min(sine(2))
+}
+
+/// The shape of face `f`, seen along the mean of the normals at its corners.
 fn shape(s: &QuadSurface, f: u32) -> f64 {
     let face = s.faces[f as usize];
-    if face[3] == GONE {
-        return 1.0;
-    }
-    let up: glam::DVec3 =
-        face.iter().map(|&v| s.vertex_normal(v)).sum::<glam::DVec3>().normalize_or_zero();
-    squareness(face.map(|v| s.positions[v as usize]), up)
+    let up = corners(&face).iter().map(|&v| s.vertex_normal(v)).sum::<DVec3>();
+    shape_of(s, face, up.normalize_or_zero())
 }
 
 fn close_folded(s: &mut QuadSurface, f: u32) -> bool {
     let face = s.faces[f as usize];
+    if face[3] == GONE {
+        return false;
+    }
     let at = |k: usize| s.positions[face[k % 4] as usize];
     // The shorter diagonal first.
     let first = usize::from(at(1).distance_squared(at(3)) < at(0).distance_squared(at(2)));
@@ -167,33 +182,45 @@ fn close_folded(s: &mut QuadSurface, f: u32) -> bool {
     false
 }
 
+/// Cuts the faces at an edge of `f` anew, so that the worse of them becomes better; two triangles
+/// may become one quad.
 fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
-    let mut best: Option<(f64, u32, [u32; 6], usize)> = None;
-    for k in 0..4 {
-        let Some((g, six)) = s.hexagon(f, k) else { continue };
+    let mut best: Option<(f64, u32, [u32; 4], Option<[u32; 4]>)> = None;
+    for k in 0..corners(&s.faces[f as usize]).len() {
+        let Some((g, ring)) = s.ring(f, k) else { continue };
         let now = shape(s, f).min(shape(s, g));
+        let ends = [ring[0], ring[corners(&s.faces[f as usize]).len() - 1]];
         let few = |v: u32| {
             s.around[v as usize].len() < if s.lines[v as usize].is_empty() { 4 } else { 2 }
         };
-        if few(six[0]) || few(six[3]) {
+        if ends.iter().any(|&v| few(v)) {
             continue;
         }
         let up = (s.normal(f) + s.normal(g)).normalize_or_zero();
-        for cut in [1, 2] {
-            if s.joined(six[cut], six[cut + 3]) {
+        let n = ring.len();
+        let mut offer = |one: [u32; 4], two: Option<[u32; 4]>| {
+            let least = shape_of(s, one, up).min(two.map_or(1.0, |two| shape_of(s, two, up)));
+            if least > now + 0.01 && best.is_none_or(|b| least > b.0) {
+                best = Some((least, g, one, two));
+            }
+        };
+        if n == 4 {
+            offer([ring[0], ring[1], ring[2], ring[3]], None);
+            continue;
+        }
+        for cut in 0..n {
+            let v = |i: usize| ring[(cut + i) % n];
+            // From the first to the fourth: a quad, and a quad or a triangle.
+            if (n == 6 && cut >= 3) || s.joined(v(0), v(3)) {
                 continue;
             }
-            let least = QuadSurface::cut(six, cut)
-                .iter()
-                .map(|q| squareness(q.map(|v| s.positions[v as usize]), up))
-                .fold(1.0, f64::min);
-            if least > now + 0.01 && best.is_none_or(|b| least > b.0) {
-                best = Some((least, g, six, cut));
-            }
+            let two =
+                [v(3), v(4), if n == 6 { v(5) } else { v(0) }, if n == 6 { v(0) } else { GONE }];
+            offer([v(0), v(1), v(2), v(3)], Some(two));
         }
     }
-    let Some((_, g, six, cut)) = best else { return false };
-    s.turn(f, g, six, cut);
+    let Some((_, g, one, two)) = best else { return false };
+    s.replace(f, g, one, two);
     true
 }
 

@@ -167,7 +167,7 @@ fn relax(s: &mut EditSurface, target: &ProjectionTarget, job: &Job) -> Result<()
             }
             if let [a, b] = s.lines[v as usize][..] {
                 let middle = s.positions[a as usize].midpoint(s.positions[b as usize]);
-                return target.line(p + (middle - p) * 0.5);
+                return target.line(p + (middle - p) * 0.5, s.chain[v as usize]);
             }
             s.neighbours(v, near);
             let middle =

@@ -17,8 +17,8 @@ pub(super) struct QuadInput {
     pub unit: f64,
     /// The triangles of the input, for projection.
     pub mesh: TriMesh,
-    /// The border's and the creases' segments, as triangles without area.
-    pub line_mesh: TriMesh,
+    /// The segments of each chain of lines, as triangles without area.
+    pub chains: Vec<TriMesh>,
     /// What was changed to make a manifold of the input.
     pub warnings: Vec<String>,
 }
@@ -88,8 +88,17 @@ pub(super) fn prepare(
     };
     let mut surface = EditSurface::new(positions, triangles);
     creases::find_lines(&mut surface, settings.creases);
-    let line_mesh = line_mesh(&surface);
-    Ok(QuadInput { surface, centre, unit: size * side, mesh, line_mesh, warnings })
+    let chains = creases::number_chains(&mut surface);
+    let as_mesh = |segments: &Vec<[u32; 2]>| TriMesh {
+        positions: segments
+            .iter()
+            .flat_map(|s| s.map(|v| surface.positions[v as usize].as_vec3()))
+            .collect(),
+        triangles: (0..segments.len() as u32).map(|k| [k * 2, k * 2 + 1, k * 2 + 1]).collect(),
+        colours: None,
+    };
+    let chains = chains.iter().map(as_mesh).collect();
+    Ok(QuadInput { surface, centre, unit: size * side, mesh, chains, warnings })
 }
 
 fn triangles_of(positions: Vec<DVec3>, triangles: &[[u32; 3]]) -> PolyMesh {
@@ -153,16 +162,4 @@ fn split_fans(positions: &mut Vec<DVec3>, triangles: &mut [[u32; 3]]) -> usize {
         }
     }
     positions.len() - before
-}
-
-fn line_mesh(surface: &EditSurface) -> TriMesh {
-    let mut out = TriMesh {
-        positions: surface.positions.iter().map(|p| p.as_vec3()).collect(),
-        ..TriMesh::default()
-    };
-    for (a, near) in surface.lines.iter().enumerate() {
-        let a = a as u32;
-        out.triangles.extend(near.iter().filter(|&&b| b > a).map(|&b| [a, b, b]));
-    }
-    out
 }

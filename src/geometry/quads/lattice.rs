@@ -136,7 +136,7 @@ fn project(s: &mut EditSurface, target: &ProjectionTarget) {
         s.positions[v] = if s.lines[v].is_empty() {
             target.surface(p, s.vertex_normal(v as u32))
         } else {
-            target.line(p)
+            target.line(p, s.chain[v])
         };
     }
 }

@@ -106,7 +106,7 @@ const FINE: f64 = 0.4;
 /// How often the size is corrected to meet the number of quads.
 const SIZES: usize = 3;
 /// The number of quads is met to this share.
-const NEAR_ENOUGH: f64 = 0.03;
+const NEAR_ENOUGH: f64 = 0.05;
 
 /// A quad mesh of the surface `mesh`, which may be open and of several parts.
 pub fn quad_remesh(
@@ -169,8 +169,8 @@ fn at_step(
         cleanup::pass(&mut quads, job)?;
         smooth::smooth(&mut quads, target, step, 6, job)?;
     }
-    for _ in 0..4 {
-        smooth::smooth(&mut quads, target, step, 5, job)?;
+    for _ in 0..12 {
+        smooth::smooth(&mut quads, target, step, 3, job)?;
         if cleanup::mend_folded(&mut quads) == 0 {
             break;
         }

@@ -39,7 +39,7 @@ impl LatticeFrame {
 
     /// The lattice point nearest to the vertex.
     fn rounded(&self, step: f64) -> DVec3 {
-        self.place(self.coordinates(self.at, step).map(f64::round), step)
+        self.place(self.coordinates(self.at, step).map(|x| floor(x + 0.5)), step)
     }
 }
 
@@ -59,28 +59,22 @@ fn middle(a: &LatticeFrame, b: &LatticeFrame) -> DVec3 {
     (p + q) * 0.5 - (n * x + m * y) * 0.25
 }
 
-/// Of the lattice points of both around the middle, the pair that is nearest, by index.
+/// Of the lattice points of `a` around the middle and the points of `b` nearest to them, the pair
+/// that is nearest, by index.
 pub(super) fn closest_points(
     a: &LatticeFrame,
     b: &LatticeFrame,
     step: f64,
 ) -> ([f64; 2], [f64; 2]) {
-    let m = middle(a, b);
-    let i = a.coordinates(m, step).map(floor);
-    let j = b.coordinates(m, step).map(floor);
-    let corner = |f: &LatticeFrame, base: [f64; 2], k: usize| {
-        let index = [base[0] + (k & 1) as f64, base[1] + (k >> 1) as f64];
-        (f.place(index, step), index)
-    };
-    let others: [_; 4] = std::array::from_fn(|k| corner(b, j, k));
-    let mut best = (f64::INFINITY, i, j);
+    let base = a.coordinates(middle(a, b), step).map(floor);
+    let mut best = (f64::INFINITY, base, [0.0; 2]);
     for k in 0..4 {
-        let (p, x) = corner(a, i, k);
-        for &(q, y) in &others {
-            let d = p.distance_squared(q);
-            if d < best.0 {
-                best = (d, x, y);
-            }
+        let i = [base[0] + f64::from(k & 1), base[1] + f64::from(k >> 1)];
+        let p = a.place(i, step);
+        let j = b.coordinates(p, step).map(|x| floor(x + 0.5));
+        let d = p.distance_squared(b.place(j, step));
+        if d < best.0 {
+            best = (d, i, j);
         }
     }
     (best.1, best.2)

@@ -16,6 +16,8 @@ pub(super) struct QuadSurface {
     pub around: Vec<Vec<u32>>,
     pub lines: Vec<Vec<u32>>,
     pub pinned: Vec<bool>,
+    /// The chain of lines of each vertex.
+    pub chain: Vec<u32>,
     /// Whether the vertex lies on the border.
     pub border: Vec<bool>,
 }
@@ -40,6 +42,7 @@ impl QuadSurface {
             around,
             lines: s.lines.clone(),
             pinned: s.pinned.clone(),
+            chain: s.chain.clone(),
             border,
         }
     }
@@ -184,6 +187,36 @@ impl QuadSurface {
         let six = [p, x, y, q, z, w];
         let twice = (0..6).any(|m| six[m + 1..].contains(&six[m]));
         (!twice).then_some((g, six))
+    }
+
+    /// The corners around `f` and the face across its edge from corner `k`, which is no line: the
+    /// edge runs from the first of them to the one with the number of `f`'s corners less one.
+    pub fn ring(&self, f: u32, k: usize) -> Option<(u32, Vec<u32>)> {
+        let own = corners(&self.faces[f as usize]);
+        let n = own.len();
+        let (q, p) = (own[k], own[(k + 1) % n]);
+        if self.lines[q as usize].contains(&p) {
+            return None;
+        }
+        let follows = |c: &[u32]| (0..c.len()).position(|i| c[i] == p && c[(i + 1) % c.len()] == q);
+        let &g = self.around[q as usize]
+            .iter()
+            .find(|&&g| g != f && follows(corners(&self.faces[g as usize])).is_some())?;
+        let other = corners(&self.faces[g as usize]);
+        let i = follows(other)?;
+        let mut ring: Vec<u32> = (1..=n).map(|m| own[(k + m) % n]).collect();
+        ring.extend((2..other.len()).map(|m| other[(i + m) % other.len()]));
+        let twice = (0..ring.len()).any(|m| ring[m + 1..].contains(&ring[m]));
+        (!twice).then_some((g, ring))
+    }
+
+    /// Replaces two faces by others, the second of which may be none.
+    pub fn replace(&mut self, f: u32, g: u32, one: [u32; 4], two: Option<[u32; 4]>) {
+        self.drop_face(g);
+        self.put_face(f, one);
+        if let Some(two) = two {
+            self.put_face(g, two);
+        }
     }
 
     /// Whether an edge runs between two vertices.

@@ -85,7 +85,7 @@ fn place(s: &QuadSurface, target: &ProjectionTarget, asked: &[[DVec3; 4]], v: us
     let step = sum / count - p;
     if let [a, b] = s.lines[v][..] {
         let along = (s.positions[a as usize] - s.positions[b as usize]).normalize_or_zero();
-        return target.line(p + along * step.dot(along) * 0.5);
+        return target.line(p + along * step.dot(along) * 0.5, s.chain[v]);
     }
     let up = s.vertex_normal(v as u32);
     target.surface(p + (step - up * step.dot(up)) * 0.8, up)

@@ -8,6 +8,8 @@
 //! the ends of the edge share exactly the vertices opposite the edge. So the genus, the borders and
 //! the number of parts never change, and no part becomes smaller than [`LEAST_PART`] vertices.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 /// Marks a triangle that is gone.
@@ -26,6 +28,10 @@ pub(super) struct EditSurface {
     /// The other ends of each vertex's lines.
     pub lines: Vec<Vec<u32>>,
     pub pinned: Vec<bool>,
+    /// The chain of lines that an unpinned vertex of a line belongs to, or [`GONE`].
+    pub chain: Vec<u32>,
+    /// The chains of lines between two pinned vertices, the lower one first.
+    pub direct: BTreeMap<(u32, u32), u32>,
     /// The connected part of each vertex.
     pub part: Vec<u32>,
     /// The vertices of each part.
@@ -46,8 +52,17 @@ impl EditSurface {
         let part: Vec<u32> = (0..n as u32).map(|v| sets.root(v)).collect();
         let mut part_size = vec![0; n];
         part.iter().for_each(|&p| part_size[p as usize] += 1);
-        let (lines, pinned) = (vec![Vec::new(); n], vec![false; n]);
-        EditSurface { positions, triangles, around, lines, pinned, part, part_size }
+        EditSurface {
+            positions,
+            triangles,
+            around,
+            lines: vec![Vec::new(); n],
+            pinned: vec![false; n],
+            chain: vec![GONE; n],
+            direct: BTreeMap::new(),
+            part,
+            part_size,
+        }
     }
 
     pub fn is_line(&self, a: u32, b: u32) -> bool {
@@ -57,6 +72,14 @@ impl EditSurface {
     /// What holds a vertex: 0 nothing, 1 a line, 2 its place.
     pub fn rank(&self, v: u32) -> u8 {
         if self.pinned[v as usize] { 2 } else { u8::from(!self.lines[v as usize].is_empty()) }
+    }
+
+    /// The chain of the line between two vertices, [`GONE`] where it is not known.
+    pub fn chain_between(&self, a: u32, b: u32) -> u32 {
+        match [a, b].map(|v| if self.pinned[v as usize] { GONE } else { self.chain[v as usize] }) {
+            [GONE, GONE] => self.direct.get(&(a.min(b), a.max(b))).copied().unwrap_or(GONE),
+            [GONE, chain] | [chain, _] => chain,
+        }
     }
 
     pub fn add_line(&mut self, a: u32, b: u32) {
@@ -218,6 +241,10 @@ impl EditSurface {
             self.lines[x as usize].retain(|&y| y != gone);
             if x != keep {
                 self.add_line(keep, x);
+                if self.pinned[keep as usize] && self.pinned[x as usize] {
+                    let ends = (keep.min(x), keep.max(x));
+                    self.direct.insert(ends, self.chain[gone as usize]);
+                }
             }
         }
         self.part_size[self.part[gone as usize] as usize] -= 1;
@@ -231,6 +258,7 @@ impl EditSurface {
         self.around.push(Vec::new());
         self.lines.push(Vec::new());
         self.pinned.push(false);
+        self.chain.push(if self.is_line(a, b) { self.chain_between(a, b) } else { GONE });
         let part = self.part[a as usize];
         self.part.push(part);
         self.part_size[part as usize] += 1;
@@ -310,7 +338,14 @@ impl EditSurface {
             if new[v] != GONE {
                 let w = new[v] as usize;
                 out.pinned[w] = self.pinned[v];
+                out.chain[w] = self.chain[v];
                 out.lines[w] = self.lines[v].iter().map(|&x| new[x as usize]).collect();
+            }
+        }
+        for (&(a, b), &chain) in &self.direct {
+            let (a, b) = (new[a as usize], new[b as usize]);
+            if a != GONE && b != GONE {
+                out.direct.insert((a.min(b), a.max(b)), chain);
             }
         }
         out

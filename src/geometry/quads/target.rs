@@ -11,18 +11,14 @@ use crate::job::{Cancelled, Job};
 pub(super) struct ProjectionTarget {
     tree: Bvh8,
     normals: Vec<DVec3>,
-    lines: Option<Bvh8>,
+    chains: Vec<Bvh8>,
 }
 
 impl ProjectionTarget {
     pub fn of(input: &QuadInput, job: &Job) -> Result<ProjectionTarget, Cancelled> {
         let tree = Bvh8::build(&input.mesh, job)?;
-        let lines = if input.line_mesh.triangles.is_empty() {
-            None
-        } else {
-            Some(Bvh8::build(&input.line_mesh, job)?)
-        };
-        Ok(ProjectionTarget { tree, normals: face_normals(&input.mesh), lines })
+        let chains = input.chains.iter().map(|c| Bvh8::build(c, job)).collect::<Result<_, _>>()?;
+        Ok(ProjectionTarget { tree, normals: face_normals(&input.mesh), chains })
     }
 
     /// The nearest point of the surface, and its unit normal, if the surface there faces the way of
@@ -40,9 +36,9 @@ impl ProjectionTarget {
         Some((n.point, self.normals[n.triangle as usize]))
     }
 
-    /// The nearest point of the lines within a unit; `p` where there is none.
-    pub fn line(&self, p: DVec3) -> DVec3 {
-        let near = self.lines.as_ref().and_then(|lines| lines.nearest(p, 1.0));
+    /// The nearest point of a chain of lines; `p` where there is no such chain.
+    pub fn line(&self, p: DVec3, chain: u32) -> DVec3 {
+        let near = self.chains.get(chain as usize).and_then(|c| c.nearest(p, f64::INFINITY));
         near.map_or(p, |n| n.point)
     }
 }

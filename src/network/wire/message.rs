@@ -122,6 +122,9 @@ pub struct Entry {
     pub succession: Option<(Vec<u8>, Vec<u8>)>,
 }
 
+/// In the place of [`FromMember::Up::have`]: the member still waits for its [`Entry`].
+pub const NOT_ENTERED: u64 = u64::MAX >> 1;
+
 /// From a member to its host.
 #[derive(Debug, Clone)]
 pub enum FromMember {

@@ -154,7 +154,10 @@ fn row(
         None => time,
     };
     let ink = if r.here { ui.visuals().strong_text_color() } else { theme::quiet(ui) };
-    ui.painter().text(text, egui::Align2::LEFT_CENTER, shown, font, ink);
+    let mut job = egui::text::LayoutJob::simple_singleline(shown, font, ink);
+    job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - text.x).max(24.0));
+    let galley = ui.painter().layout_job(job);
+    ui.painter().galley(text - vec2(0.0, galley.size().y * 0.5), galley, ink);
     response.on_hover_text(name)
 }
 

@@ -7,6 +7,10 @@ use super::state::{Action, KeyCombination, UiState, View};
 use super::theme;
 use crate::language::tr;
 
+/// Points that the keys of an action take in its row, and the button that takes a change back.
+const KEYS: f32 = 112.0;
+const RESET: f32 = 104.0;
+
 /// Actions whose keys went down this frame, while nobody types. While the window of the keys
 /// listens, a press is the answer to it and no action.
 pub fn pressed(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> Vec<Action> {
@@ -102,7 +106,13 @@ fn row(ui: &mut egui::Ui, keys: &KeyMap, action: Action, ui_state: &mut UiState)
     ui.horizontal(|ui| {
         let wrong = theme::alarm(ui);
         let text = egui::RichText::new(&name);
-        ui.add(egui::Label::new(if others.is_empty() { text } else { text.color(wrong) }));
+        let text = if others.is_empty() { text } else { text.color(wrong) };
+        // The keys, and the button that takes a change back, stand at the right.
+        let room = KEYS + if binding.own { RESET } else { 0.0 };
+        ui.scope(|ui| {
+            ui.set_max_width((ui.available_width() - room).max(40.0));
+            ui.add(egui::Label::new(text).truncate());
+        });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let listens = ui_state.keys.listening == Some(action);
             let text = match (listens, binding.keys) {

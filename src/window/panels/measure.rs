@@ -151,10 +151,11 @@ fn distance(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mu
     rows::flow(ui, |ui| {
         ui.radio_value(&mut sizes.against, DistanceTarget::Before, tr!("distance-before"))
             .on_hover_text(tr!("distance-before.tip"));
-        ui.add_enabled_ui(held, |ui| {
-            let held = DistanceTarget::HeldObject;
-            ui.radio_value(&mut sizes.against, held, tr!("distance-held"))
-        });
+        let to_held = sizes.against == DistanceTarget::HeldObject;
+        let radio = egui::RadioButton::new(to_held, tr!("distance-held"));
+        if ui.add_enabled(held, radio).clicked() {
+            sizes.against = DistanceTarget::HeldObject;
+        }
     });
     if !held && sizes.against == DistanceTarget::HeldObject {
         sizes.against = DistanceTarget::Before;

@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::present_latency::{ABOUT, STAGES};
 use sculptd_geometry::thickness::preset::Preset;
-use sculptd_window::language::{Translation, current};
+use sculptd_window::language::{Translation, Translations, current};
 use sculptd_window::look::MATERIALS;
 use sculptd_window::panels::Tab;
 use sculptd_window::panels::state::action;
@@ -144,6 +144,9 @@ fn every_page_fits_in_every_language() {
                 s.ui_state.look.map = Default::default();
                 s.published.hands = None;
                 fill(s, tab);
+                if tab == Tab::Scene {
+                    assert!(s.published.mesh.layers().is_some(), "the page shows a layer");
+                }
                 h.run_steps(3);
                 assert_eq!(current().code(), language.code());
                 pages += 1;
@@ -177,6 +180,10 @@ fn what_unfolds_and_what_lies_over_the_clay_fits_in_every_language() {
             }
             // The animation of what unfolds.
             h.run_steps(8);
+            let inner = ["dab-hardness", "stamp-size", "automask-cavity", "topology-length"];
+            for inner in inner.map(|id| language.find(id, &[]).expect("a message")) {
+                assert!(h.query_all_by_label(&inner).next().is_some(), "{inner} is unfolded");
+            }
             let at = format!("{} {width} at {scale}", language.code());
             bad.extend(misplaced(&h).into_iter().map(|what| format!("{at}, unfolded: {what}")));
             for which in ["help", "keys", "search"] {
@@ -214,4 +221,25 @@ fn a_language_is_chosen_in_the_preferences_and_spoken_at_once() {
     let found = action::search("thickness map");
     assert_eq!(found[0].action, action::Action::Thickness);
     assert_eq!(action::search("mappa dello spessore")[0].action, action::Action::Thickness);
+}
+
+#[test]
+fn where_no_font_has_the_letters_english_stands_in_and_the_page_says_so() {
+    // A code point that Unicode leaves to private use.
+    let unwritten = "language-name = \u{10fffd}\n    .latin = Unwritten\noff = \u{10fffd}\n";
+    let texts: Vec<(&str, &str)> =
+        sculptd::settings::WINDOW_TEXTS.iter().copied().chain([("qaa", unwritten)]).collect();
+    let mut s = state(Tab::More);
+    s.translations = Box::leak(Box::new(Translations::new(&texts, None, "en")));
+    s.ui_state.prefs.language = "qaa".into();
+    let mut h = Harness::builder().with_size([1280.0, 900.0]).build_ui_state(show, s);
+    h.run_steps(3);
+    assert!(h.state().ui_state.shown_language.fontless);
+    assert_eq!(current().code(), "en");
+    assert!(h.query_by_label_contains("Unwritten needs a font that this computer lacks").is_some());
+    // Another language is spoken again.
+    h.state_mut().ui_state.prefs.language = "el".into();
+    h.run_steps(3);
+    assert!(!h.state().ui_state.shown_language.fontless);
+    assert_eq!(current().code(), "el");
 }

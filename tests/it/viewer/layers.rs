@@ -6,9 +6,10 @@ use egui_kittest::kittest::Queryable;
 
 use super::panels::{State, harness};
 use sculptd_clay::{LayerEdit, LayerId};
-use sculptd_engine::command::Command;
+use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::world::World;
+use sculptd_window::panels::state::LayerPanel;
 use sculptd_window::panels::{Tab, UiRequest};
 
 fn edit(world: &mut World, edit: LayerEdit) {
@@ -104,4 +105,27 @@ fn a_dragged_intensity_is_sent_as_it_comes_and_ends_when_it_is_let_go() {
     };
     assert!(rest.iter().all(|e| of(e).1) && !of(last).1, "{all:?}");
     assert!(of(last).0 > of(&rest[0]).0 && of(last).0 <= 2.0, "{all:?}");
+}
+
+#[test]
+fn what_takes_the_place_of_an_object_with_layers_is_told() {
+    let mut world = super::world(2_000);
+    let mut panel = LayerPanel::default();
+    let mut told = |world: &mut World| panel.baked(&super::published(world));
+    edit(&mut world, LayerEdit::Add("wrinkles".into()));
+    edit(&mut world, LayerEdit::Add("scar".into()));
+    assert_eq!(told(&mut world), None);
+    edit(&mut world, LayerEdit::Bake);
+    assert_eq!(told(&mut world), None);
+    let tell = |world: &mut World, command: Command| {
+        let tick = world.tick() + 1;
+        world.step(tick, &[], &[command]);
+    };
+    tell(&mut world, Command::Undo);
+    assert_eq!(told(&mut world), None);
+    let plain = std::sync::Arc::new(sculptd_geometry::shapes::icosphere(0.8, 8));
+    tell(&mut world, Command::Replace(NewClay::new(plain, true)));
+    assert_eq!((told(&mut world), told(&mut world)), (Some(2), None));
+    tell(&mut world, Command::Undo);
+    assert_eq!(told(&mut world), None);
 }

@@ -12,6 +12,7 @@ use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
+use sculptd_window::language::Translations;
 use sculptd_window::look::Map;
 use sculptd_window::panels::state::{
     Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
@@ -26,6 +27,7 @@ pub(super) struct State {
     pub devices: Vec<String>,
     pub demo_runs: bool,
     pub tablet: Option<TabletKeys>,
+    pub translations: &'static Translations,
 }
 
 /// The preferences of a person who has chosen English.
@@ -42,6 +44,7 @@ pub(super) fn state(tab: Tab) -> State {
         devices: Vec::new(),
         demo_runs: false,
         tablet: None,
+        translations: super::translations(),
     }
 }
 
@@ -49,7 +52,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
     let keys = KeyMap::new(&s.ui_state.prefs.keys);
     let view = View {
         state: &s.published,
-        translations: super::translations(),
+        translations: s.translations,
         keys: &keys,
         presets: sculptd::presets(),
         camera: s.published.camera,

@@ -11,18 +11,31 @@ pub struct LayerPanel {
     pub renaming: Option<(LayerId, String)>,
     /// The intensity that is being dragged to.
     pub dragged: Option<(LayerId, f32)>,
-    /// The active object, the number of its clay and how many layers it had when it was last looked
-    /// at.
-    seen: Option<(ObjectId, u32, usize)>,
+    seen: Option<SeenLayers>,
+}
+
+/// The scene when its layers were last looked at.
+#[derive(Debug, Clone, Copy)]
+struct SeenLayers {
+    /// The active object, the number of its clay and how many layers it had.
+    active: ObjectId,
+    clay: u32,
+    count: usize,
+    /// The newest of all objects.
+    newest: ObjectId,
 }
 
 impl LayerPanel {
-    /// How many layers the active object had, where other clay without any has taken the place of
-    /// its own since this was last asked.
+    /// How many layers the active object had, where since this was last asked other clay without
+    /// any has taken the place of its own, or a new object that of the whole object.
     pub fn baked(&mut self, now: &Published) -> Option<usize> {
+        let active = now.scene.active()?.id;
         let count = now.mesh.layers().map_or(0, |s| s.layers.len());
-        let now = (now.scene.active()?.id, now.mesh.object_id(), count);
-        let (id, clay, had) = self.seen.replace(now)?;
-        (id == now.0 && clay != now.1 && count == 0 && had > 0).then_some(had)
+        let newest = now.scene.objects.iter().map(|o| o.id).max().unwrap_or(active);
+        let clay = now.mesh.object_id();
+        let was = self.seen.replace(SeenLayers { active, clay, count, newest })?;
+        let replaced = was.active == active && was.clay != clay;
+        let exchanged = now.scene.object(was.active).is_none() && active > was.newest;
+        ((replaced || exchanged) && count == 0 && was.count > 0).then_some(was.count)
     }
 }
