@@ -67,6 +67,20 @@ fn arc(from: DVec3, to: DVec3) -> DQuat {
     }
 }
 
+/// The turn about a unit vector by the angle of this cosine and sine, by half-angle formulas of
+/// which each is used where it loses no digits.
+fn about(axis: DVec3, cosine: f64, sine: f64) -> DQuat {
+    let (w, s) = if cosine > 0.0 {
+        let w = ((1.0 + cosine) * 0.5).sqrt();
+        (w, sine / (2.0 * w))
+    } else {
+        let s = ((1.0 - cosine) * 0.5).sqrt().copysign(sine);
+        (sine / (2.0 * s), s)
+    };
+    let v = axis * s;
+    DQuat::from_xyzw(v.x, v.y, v.z, w).normalize()
+}
+
 /// Where an object must stand so that `face` (in its own frame) lies flush on `target` (in the
 /// world). `now`: where it stands. `spin`: a further turn about the target's normal, radians.
 /// `None`: an edge is asked for where a face has none, or the place is out of range.
@@ -85,8 +99,7 @@ pub fn flush(
         // Seen from one side, the outlines of faces that face each other run in opposite ways.
         let (own, to) = (along(face.side?)?, -along(target.side?)?);
         let own = turn * own;
-        let angle = own.cross(to).dot(target.normal).atan2(own.dot(to));
-        turn = DQuat::from_axis_angle(target.normal, angle) * turn;
+        turn = about(target.normal, own.dot(to), own.cross(to).dot(target.normal)) * turn;
     }
     turn = (DQuat::from_axis_angle(target.normal, spin) * turn).normalize();
     // Products of rotations leave a few rounding errors; what they left is turned away.

@@ -268,7 +268,7 @@ mod tests {
         }
         assert_eq!(at(g.corner()), Some(GizmoHandle::Scale));
         assert_eq!(at(g.centre.as_vec3()), None);
-        assert_eq!(at((g.centre + DVec3::splat(9.0)).as_vec3()), None);
+        assert_eq!(at((g.centre - DVec3::splat(3.0)).as_vec3()), None);
     }
 
     #[test]
