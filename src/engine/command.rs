@@ -79,8 +79,8 @@ pub enum Command {
     /// Another command, of one of several people at one world: the view and the brush that it sets
     /// or needs are that person's.
     OfPerson(Box<OfPerson>),
-    /// A sculpture that several people had shared goes on with one: the view and the brush are those
-    /// of the first of them, and every device is that person's.
+    /// A sculpture that several people had shared goes on with one: the view and the brush are
+    /// those of the first of them, and every device is that person's.
     OnePerson,
 }
 

@@ -1,5 +1,5 @@
-//! Processes that share a sculpture over Zenoh on the loopback: strokes of both, one hash; a viewer;
-//! a wrong key; the host killed.
+//! Processes that share a sculpture over Zenoh on the loopback: strokes of both, one hash; a
+//! viewer; a wrong key; the host killed.
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
