@@ -81,8 +81,8 @@ fn free_endpoint() -> String {
     format!("tcp/{}", listener.local_addr().expect("bound"))
 }
 
-fn join<'a>(key: &'a str, at: &'a str, person: &'a str) -> Vec<&'a str> {
-    vec!["--join", "dragon", "--key", key, "--connect", at, "--as", person]
+fn join<'a>(name: &'a str, key: &'a str, at: &'a str, person: &'a str) -> Vec<&'a str> {
+    vec!["--join", name, "--key", key, "--connect", at, "--as", person]
 }
 
 fn key(keys: &Path, role: &str) -> String {
@@ -94,12 +94,14 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     let folder = tempfile::tempdir().expect("a folder");
     let (keys, at) = (folder.path().join("keys"), free_endpoint());
     let keys_text = keys.display().to_string();
-    let host = ["--host", "dragon", "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
+    // Others on the network may run this test too.
+    let dragon = format!("dragon-{}", std::process::id());
+    let host = ["--host", &dragon, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
     let mut ada = Daemon::start(&host);
     until("the host answers", || ada.hash().is_some());
     ada.stroke(0.45);
     let sculptor = key(&keys, "sculptor");
-    let bob = Daemon::start(&join(&sculptor, &at, "Bob"));
+    let bob = Daemon::start(&join(&dragon, &sculptor, &at, "Bob"));
     until("Bob is there", || bob.hash().is_some());
     bob.follows(&ada, "");
     let before = ada.hash().expect("a hash");
@@ -112,7 +114,7 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
 
     // A viewer sees, a stranger does not.
     let viewer = key(&keys, "viewer");
-    let mut wall = join(&viewer, &at, "Wall");
+    let mut wall = join(&dragon, &viewer, &at, "Wall");
     wall.extend(["--role", "viewer"]);
     let wall = Daemon::start(&wall);
     until("the wall is there", || wall.hash().is_some());
@@ -122,7 +124,7 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     sculptd_geometry::io::write_beside(&bad, |out| out.write_all(text.as_bytes()))
         .expect("written");
     let bad = bad.display().to_string();
-    let mut eve = Daemon::start(&join(&bad, &at, "Eve"));
+    let mut eve = Daemon::start(&join(&dragon, &bad, &at, "Eve"));
     until("Eve is turned away", || eve.child.try_wait().expect("waited for").is_some());
     assert!(eve.has_told("the key is not one of this sculpture"));
     assert!(ada.has_told("was not let in: the key is not one of this sculpture"));
