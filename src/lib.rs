@@ -135,8 +135,6 @@
 //!   and the own input, orders or follows. Waits for: the network, the tick thread, time.
 //! * `sculptd-replica`, made by `network::live`: hashes, checkpoints, and worlds made of them, for
 //!   that station. Waits for: the station.
-//! * `sculptd-notes`, made by `cli::shared`: says on standard error what happens to a shared
-//!   sculpture. Waits for: the station.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
 //! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, made by

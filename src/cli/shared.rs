@@ -9,7 +9,7 @@ use sculptd_daemon::shared_input::SharedInput;
 use sculptd_daemon::startup::Begun;
 use sculptd_devices::Clock;
 use sculptd_network::keyring::{Entropy, Invitation, Keyring};
-use sculptd_network::live::{Shared, SharedError, SharedSettings, Told};
+use sculptd_network::live::{Shared, SharedError, SharedSettings};
 use sculptd_network::random::system_entropy;
 use sculptd_network::station::{Identity, Station};
 use sculptd_network::wire::frame::Role;
@@ -45,8 +45,8 @@ pub struct SharedArgs {
     /// Where to listen for others, as tcp/0.0.0.0:7447. May be repeated; without it, any port.
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Vec<String>,
-    /// Whom to connect to, as tcp/studio.local:7447. May be repeated; without it, others are looked
-    /// for on the local network.
+    /// Whom to connect to, as tcp/studio.local:7447. May be repeated. Others on the local network
+    /// are found without it.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Vec<String>,
 }
@@ -66,9 +66,8 @@ impl SharedArgs {
     }
 
     fn link(&self, name: &str) -> Result<ZenohLink, Fail> {
-        let multicast = self.connect.is_empty();
         let (listen, connect) = (self.listen.clone(), self.connect.clone());
-        let endpoints = Endpoints { listen, connect, multicast };
+        let endpoints = Endpoints { listen, connect, multicast: true };
         ZenohLink::open(name, &endpoints).map_err(|e| Fail::Usage(format!("the network: {e}")))
     }
 
@@ -104,7 +103,6 @@ impl SharedArgs {
         let shared =
             Shared::start(station, Box::new(self.link(name)?), clock, settings(config, name));
         let shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
-        tell(&shared)?;
         Ok(Box::new(shared.link))
     }
 
@@ -143,7 +141,6 @@ impl SharedArgs {
             // It stands still.
             None => alone(config)?.world,
         };
-        tell(&shared)?;
         Ok((Begun { world, journal: None, warnings: Vec::new() }, Box::new(shared.link)))
     }
 }
@@ -156,19 +153,4 @@ fn settings(config: &Config, name: &str) -> SharedSettings {
 fn data_folder(what: &str) -> PathBuf {
     let own = directories::ProjectDirs::from("", "", "sculptd");
     own.map_or_else(std::env::temp_dir, |d| d.data_dir().to_path_buf()).join(what)
-}
-
-/// Says on standard error what happens to the shared sculpture.
-fn tell(shared: &Shared) -> Result<(), Fail> {
-    let told = shared.told.clone();
-    let print = move || {
-        for told in told {
-            match told {
-                Told::Note(text) => eprintln!("sculptd: {text}"),
-                Told::Refused(why) => eprintln!("sculptd: the host lets you in no more: {why}"),
-            }
-        }
-    };
-    let thread = std::thread::Builder::new().name("sculptd-notes".into()).spawn(print);
-    thread.map(drop).map_err(|e| Fail::Check(format!("no thread: {e}")))
 }

@@ -210,7 +210,11 @@ pub fn begin_with(
         let (mut writer, mut thread) = session::resume(&path)?;
         let world = &mut replayed.world;
         // What was open ends as a lifted pen; what can be taken back is in the file from here on.
-        let (tick, reopened) = (replayed.ticks + 1, [Command::Reopened]);
+        let tick = replayed.ticks + 1;
+        let mut reopened = vec![Command::Reopened];
+        if world.has_people() {
+            reopened.push(Command::OnePerson);
+        }
         world.step(tick, &[], &reopened);
         let keeper = Keeper::start(&path, world, purge, node, config.undo.history_bytes);
         keep(keeper, &mut writer, &mut thread, &mut warnings);

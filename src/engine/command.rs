@@ -79,6 +79,9 @@ pub enum Command {
     /// Another command, of one of several people at one world: the view and the brush that it sets
     /// or needs are that person's.
     OfPerson(Box<OfPerson>),
+    /// A sculpture that several people had shared goes on with one: the view and the brush are
+    /// those of the first of them, and every device is that person's.
+    OnePerson,
 }
 
 /// A command, and whose it is.
@@ -164,6 +167,7 @@ impl Command {
             | Command::Reach(_)
             | Command::Place(_)
             | Command::Reopened
+            | Command::OnePerson
             | Command::CurveStroke(_)
             | Command::DesktopLayout(_) => false,
         }

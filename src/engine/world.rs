@@ -331,6 +331,7 @@ impl World {
             Command::Scene(scene) => self.apply_scene(scene),
             Command::OfClay(of) => self.apply_of_clay(of),
             Command::OfPerson(of) => self.apply_of_person(of),
+            Command::OnePerson => self.forget_people(),
             Command::JumpScene(jump) => self.jump_scene(jump),
             Command::Reopened => {
                 self.lift_all();

@@ -16,7 +16,9 @@ use crate::host_limits::{
     ALONE_US, BUSY_US, BYTES, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE,
     REST_US,
 };
-use crate::host_members::{BatchQueue, Greeted, JoinedMember, PER_MESSAGE, bounded};
+use crate::host_members::{
+    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, bounded,
+};
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
 use crate::seal::Secret;
@@ -51,7 +53,7 @@ pub struct Host {
     wanted_us: Option<u64>,
     /// The frame of the checkpoint that is being made.
     making: Option<u64>,
-    checkpoint: Option<(u64, Arc<Vec<u8>>, Vec<(Arrival, u64)>)>,
+    checkpoint: Option<HeldCheckpoint>,
     at_rest: bool,
     alone_since_us: Option<u64>,
     present_us: u64,

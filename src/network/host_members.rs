@@ -7,11 +7,14 @@ use crate::core::RoundTrip;
 use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
 use crate::seal::Seal;
-use crate::wire::frame::{Batch, Frame, PersonId, Role};
+use crate::wire::frame::{Arrival, Batch, Frame, PersonId, Role};
 use crate::wire::message::Nonce;
 
 /// Frames of one message, and of their input's entries.
 pub const PER_MESSAGE: (usize, usize) = (64, 2048);
+
+/// The newest checkpoint: its frame, its bytes, and everybody's last batch then.
+pub type HeldCheckpoint = (u64, Arc<Vec<u8>>, Vec<(Arrival, u64)>);
 
 /// Who said hello and may join next.
 #[derive(Debug)]

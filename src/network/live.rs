@@ -41,7 +41,7 @@ const KEPT_VIEWS: usize = 8;
 /// From the tick thread.
 enum FromLoop {
     Input(Vec<Sample>, Vec<Command>),
-    Stepped { frame: Arc<Frame>, asked: Asked, at_rest: bool },
+    Stepped { frame: Arc<Frame>, asked: Box<Asked>, at_rest: bool },
 }
 
 /// To the tick thread.
@@ -225,9 +225,9 @@ impl Shared {
         sees: bool,
         patience: Duration,
     ) -> Result<(Option<Box<World>>, u32), SharedError> {
-        let begun = std::time::Instant::now();
-        let until = begun + patience;
-        let enough = |last: &str| last.starts_with("not let in") && begun.elapsed() > ENOUGH;
+        let clock = Clock::monotonic();
+        let passed = || Duration::from_micros(clock.now_us());
+        let enough = |last: &str| last.starts_with("not let in") && passed() > ENOUGH;
         let (mut last, mut rate) = (String::from("no word"), 0);
         loop {
             while let Ok(told) = self.told.try_recv() {
@@ -249,7 +249,7 @@ impl Shared {
                     return Ok((Some(world), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
-                Err(_) if std::time::Instant::now() >= until || enough(&last) => {
+                Err(_) if passed() >= patience || enough(&last) => {
                     return Err(SharedError::Silent { name: name.into(), last });
                 }
                 Err(_) => {}
@@ -334,7 +334,7 @@ impl SharedInput for SharedLink {
 
     fn after_step(&mut self, world: &mut World) {
         let frame = self.stepping.take();
-        let asked = self.executor.after_step(world, frame.as_deref());
+        let asked = Box::new(self.executor.after_step(world, frame.as_deref()));
         if let Some(frame) = frame {
             let at_rest = world.is_at_rest();
             // Where the station is so far behind, it misses a comparison.

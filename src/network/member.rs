@@ -120,12 +120,12 @@ impl Member {
                 self.phase = MemberPhase::Joins { next_us: now_us, tries: 0 };
                 self.advance(core, now_us);
             }
-            Greeting::Refused { to, reason } if *to == own => {
-                // Not sealed: anybody may have said it, so the greetings go on.
-                if self.told.as_ref() != Some(reason) {
-                    core.note(format!("not let in: {reason}"));
-                    self.told = Some(reason.clone());
-                }
+            // Not sealed: anybody may have said it, so the greetings go on.
+            Greeting::Refused { to, reason }
+                if *to == own && self.told.as_ref() != Some(reason) =>
+            {
+                core.note(format!("not let in: {reason}"));
+                self.told = Some(reason.clone());
             }
             _ => {}
         }

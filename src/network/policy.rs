@@ -11,7 +11,9 @@ pub fn refused_command(command: &Command) -> Option<&'static str> {
             Some("jumps within the history need the session file of one daemon")
         }
         Command::Begin(_) => Some("a visit begins anew for one installation alone"),
-        Command::Reopened => Some("nobody but the host ends what can be taken back"),
+        Command::Reopened | Command::OnePerson => {
+            Some("nobody but the host ends what can be taken back")
+        }
         Command::Cut(_) => Some("a cut is computed for one replica; share the whole object"),
         Command::OfPerson(_) => Some("whose a command is, the host says"),
         Command::OfClay(of) => match &of.command {

@@ -37,6 +37,8 @@ mod remesh_live;
 mod scene;
 mod service;
 mod sessions;
+#[cfg(all(unix, feature = "network"))]
+mod shared;
 mod soak;
 mod synthetic_hands;
 

@@ -76,6 +76,19 @@ impl World {
         self.people.is_nobody() || self.people.of_device(device) == self.people.shown
     }
 
+    /// Whether several people have shared the world.
+    pub fn has_people(&self) -> bool {
+        !self.people.is_nobody()
+    }
+
+    /// The first person's settings are the only ones.
+    pub(super) fn forget_people(&mut self) {
+        if self.people.other(1).is_some() {
+            self.act_as(1);
+        }
+        self.people = People::default();
+    }
+
     /// A command of a person.
     pub(super) fn apply_of_person(&mut self, of: &OfPerson) {
         if !matches!(of.command, Command::OfPerson(_)) {
@@ -84,7 +97,7 @@ impl World {
         }
     }
 
-    /// Before the samples and strokes of a step: what follows is nobody's in particular.
+    /// The view and the brush are those of the person who holds hands over the tracker.
     pub(super) fn act_as_hands(&mut self) {
         if !self.people.is_nobody() {
             self.act_as(self.people.hands);

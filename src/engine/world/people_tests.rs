@@ -96,3 +96,24 @@ fn a_saved_world_knows_everybody() {
     sculpt(&mut again, 41..90);
     assert_eq!(world.hash(), again.hash());
 }
+
+#[test]
+fn a_shared_world_goes_on_with_one_person() {
+    let mut world = world();
+    world.show_to(1);
+    settle(&mut world);
+    sculpt(&mut world, 3..40);
+    assert!(world.has_people());
+    let brush = *world.brush();
+    world.show_to(0);
+    world.step(40, &[], &[Command::Reopened, Command::OnePerson]);
+    assert!(!world.has_people());
+    assert_eq!(*world.brush(), brush, "that of the first");
+    // A device of any number is that person's.
+    let before = world.hash();
+    for tick in 41..60 {
+        world.step(tick, &[pen(1, tick < 58, 40.0 + tick as f32 * 0.3)], &[]);
+    }
+    assert_ne!(world.hash(), before);
+    assert_eq!(world.pens().count(), 1, "and it is shown");
+}

@@ -221,11 +221,11 @@ pub fn take_frames(bytes: &mut ByteReader<'_>) -> Result<Vec<Frame>, BadBytes> {
     if count == 0 {
         return Ok(Vec::new());
     }
-    let mut index = bytes.at_most(u64::MAX >> 1)?;
+    let first = bytes.at_most(u64::MAX >> 1)?;
     let mut tick = bytes.at_most(u64::MAX >> 1)?;
     let mut samples = SampleCodec::default();
     let mut frames = Vec::new();
-    for _ in 0..count {
+    for index in first..first + count as u64 {
         let flags = bytes.at_most(MAX_TICKS << 4)?;
         tick = tick.checked_add(flags >> 4).ok_or(BadBytes)?;
         let mark = match flags >> 2 & 3 {
@@ -244,7 +244,6 @@ pub fn take_frames(bytes: &mut ByteReader<'_>) -> Result<Vec<Frame>, BadBytes> {
             frame.batches = take_batches(bytes, &mut samples)?;
         }
         frames.push(frame);
-        index += 1;
     }
     Ok(frames)
 }

@@ -1,6 +1,8 @@
 //! The protocol on a simulated network: loss, delay, reordering, silence and the death of hosts,
 //! all from a seed, around worlds that really sculpt.
 
+#![allow(clippy::print_stdout)] // Traffic and times are told on standard output.
+
 mod faults;
 mod keys;
 mod simulated;

@@ -221,7 +221,7 @@ impl Simulation {
                 self.replicas[i].station.advance(self.now_us);
                 self.events(i);
                 while let Some((to, bytes)) = self.replicas[i].station.take_outgoing() {
-                    self.send(i, to, bytes);
+                    self.send(i, to, &bytes);
                 }
             }
         }
@@ -272,7 +272,7 @@ impl Simulation {
         }
     }
 
-    fn send(&mut self, from: usize, to: To, bytes: Vec<u8>) {
+    fn send(&mut self, from: usize, to: To, bytes: &[u8]) {
         self.replicas[from].bytes.0 += bytes.len() as u64;
         let all: Vec<usize> = (0..self.replicas.len())
             .filter(|&k| k != from)
@@ -296,7 +296,7 @@ impl Simulation {
                     at += (self.random.share() * self.faults.delay_us.max(20_000) as f64) as u64;
                 }
                 self.sent += 1;
-                self.air.insert((at, self.sent), (to, bytes.clone()));
+                self.air.insert((at, self.sent), (to, bytes.to_vec()));
             }
         }
     }
