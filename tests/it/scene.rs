@@ -256,7 +256,7 @@ fn an_object_is_placed_flush_by_request_and_joined_without_a_gap() {
     let asked = json!({
         "id": lid, "at": face, "to": 0, "to_at": [3.0, 20.0, -4.0], "align": "centre"
     });
-    let done = run.ask("scene.snap", asked.clone());
+    let done = run.ask("scene.snap", asked);
     let areas: Vec<f64> = (0..2).map(|i| done["areas"][i].as_f64().expect("a number")).collect();
     assert!((areas[0] - 48.0).abs() < 1e-9 && (areas[1] - 1600.0).abs() < 1e-9, "{areas:?}");
     assert!(done["off"].as_f64().expect("a number") < 1e-9);
