@@ -17,8 +17,9 @@
 //! Guaranteed: closed input gives a closed manifold of the same genus; creases and borders are
 //! chains of edges of the result and their corners stay; the same bits with any number of threads.
 //! Not guaranteed: all quads (faces between creases leave a triangle where their sides do not fit
-//! each other, and a quad that stays reflex is cut), as few irregular vertices as an
-//! integer-constrained parameterisation has (QuadriFlow, Huang et al. 2018), and freedom from self-intersections where the surface is thinner than a quad.
+//! each other, and a quad that stays reflex is cut), as few irregular vertices as an integer-
+//! constrained parameterisation has (QuadriFlow, Huang et al. 2018), and freedom from self-
+//! intersections where the surface is thinner than a quad.
 
 mod cleanup;
 mod creases;
