@@ -3,15 +3,15 @@
 //!
 //! The road, one module a stage:
 //!
-//! 1. [`input`]: triangles, welded and manifold, in a frame whose unit is the side of a quad.
-//! 2. [`even`]: even triangles of two fifths of that side.
-//! 3. [`orientation`], [`position`]: the fields of Jakob et al., "Instant Field-Aligned Meshes"
-//!    (2015), on the levels of [`hierarchy`].
-//! 4. [`lattice`]: the triangles of one lattice point are drawn together by edge collapses. Other
+//! 1. `input`: triangles, welded and manifold, in a frame whose unit is the side of a quad.
+//! 2. `even`: even triangles of two fifths of that side.
+//! 3. `orientation`, `position`: the fields of Jakob et al., "Instant Field-Aligned Meshes"
+//!    (2015), on the levels of `hierarchy`.
+//! 4. `lattice`: the triangles of one lattice point are drawn together by edge collapses. Other
 //!    than the greedy extraction of the paper this keeps a closed manifold closed and manifold,
 //!    with the same genus, whatever the fields say.
-//! 5. [`pairing`]: triangles are joined to quads by a maximum matching.
-//! 6. [`cleanup`], [`smooth`], [`reach`]: irregular vertices are removed, quads are made square,
+//! 5. `pairing`: triangles are joined to quads by a maximum matching.
+//! 6. `cleanup`, `smooth`, `reach`: irregular vertices are removed, quads are made square,
 //!    vertices lie on the input surface and on its tips.
 //!
 //! Guaranteed: closed input gives a closed manifold of the same genus; creases and borders are
