@@ -9,7 +9,7 @@ own that is ended after two minutes. A missing peer is left out. `quads`: share 
 `crossings`: `sculptd info` of the written file; `regular`: vertices with four faces (border vertices with two); `off 90`: mean
 difference of the quads' angles from 90 degrees; `far`: the greatest distance of the new mesh's vertices and face centres from the
 old mesh, and of the old one's from the new, in thousandths of the box's diagonal. Seconds are wall time of the remeshing alone for
-`sculptd`, with conversion of arrays for the peers.
+`sculptd`, with reading and writing for the peers.
 """
 import argparse
 import json
@@ -49,15 +49,14 @@ def write(path, vertices, faces):
 
 def peer(name, source, out, quads, creases):
     """Runs in a process of its own; prints the seconds."""
-    vertices, faces = read(source)
     start = time.perf_counter()
     if name.startswith("instant"):
         import pyinstantmeshes
 
         pure = name.endswith("pure")
-        made = pyinstantmeshes.remesh(
-            vertices.astype(np.float32),
-            np.array(faces, np.int32),
+        pyinstantmeshes.remesh_file(
+            source,
+            out,
             target_face_count=quads // 4 if pure else quads,
             crease_angle=creases or -1.0,
             extrinsic=True,
@@ -68,11 +67,10 @@ def peer(name, source, out, quads, creases):
     else:
         from pyQuadriFlow.pyQuadriFlow import pyquadriflow
 
+        vertices, faces = read(source)
         made = pyquadriflow(quads, 0, vertices.tolist(), faces, bool(creases), True, False, False, True)
-        made = made["vertices"], made["faces"]
-    seconds = time.perf_counter() - start
-    write(out, *(np.asarray(m).tolist() for m in made))
-    print("seconds", seconds)
+        write(out, made["vertices"], made["faces"])
+    print("seconds", time.perf_counter() - start)
 
 
 def ask(binary, *words):

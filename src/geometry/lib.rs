@@ -14,7 +14,7 @@
 //! | how thick are the walls? | [`thickness`] |
 //! | volume, area, projected area | [`measure`], [`projection`] |
 //! | how far, inside or outside? | [`distance`], [`grid`], [`winding`], [`march`] |
-//! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`] |
+//! | another mesh of the same solid | [`remesh`], [`quads`], [`decimate`], [`subdivide`], [`triangulate`] |
 //! | a thicker, thinner or hollow solid | [`offset`] |
 //! | rays and nearest points | [`bvh`] |
 //!

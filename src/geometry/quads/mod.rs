@@ -3,21 +3,23 @@
 //!
 //! The road, one module a stage:
 //!
-//! 1. [`input`]: triangles, welded and manifold, in a frame whose unit is the side of a quad.
-//! 2. [`even`]: even triangles of two fifths of that side.
-//! 3. [`orientation`], [`position`]: the fields of Jakob et al., "Instant Field-Aligned Meshes"
-//!    (2015), on the levels of [`hierarchy`].
-//! 4. [`lattice`]: the triangles of one lattice point are drawn together by edge collapses. Other
+//! 1. `input`: triangles, welded and manifold, in a frame whose unit is the side of a quad.
+//! 2. `even`: even triangles of two fifths of that side.
+//! 3. `orientation`, `position`: the fields of Jakob et al., "Instant Field-Aligned Meshes"
+//!    (2015), on the levels of `hierarchy`.
+//! 4. `lattice`: the triangles of one lattice point are drawn together by edge collapses. Other
 //!    than the greedy extraction of the paper this keeps a closed manifold closed and manifold,
 //!    with the same genus, whatever the fields say.
-//! 5. [`pairing`]: triangles are joined to quads by a maximum matching.
-//! 6. [`cleanup`], [`smooth`], [`reach`]: irregular vertices are removed, quads are made square,
+//! 5. `pairing`: triangles are joined to quads by a maximum matching.
+//! 6. `cleanup`, `smooth`, `reach`: irregular vertices are removed, quads are made square,
 //!    vertices lie on the input surface and on its tips.
 //!
 //! Guaranteed: closed input gives a closed manifold of the same genus; creases and borders are
 //! chains of edges of the result and their corners stay; the same bits with any number of threads.
-//! Not guaranteed: all quads (a crease or a border around an odd number of triangles leaves one),
-//! and freedom from self-intersections where the surface is thinner than a quad.
+//! Not guaranteed: all quads (faces between creases leave a triangle where their sides do not fit
+//! each other, and a quad that stays reflex is cut), as few irregular vertices as an integer-
+//! constrained parameterisation has (QuadriFlow, Huang et al. 2018), and freedom from self-
+//! intersections where the surface is thinner than a quad.
 
 mod cleanup;
 mod creases;

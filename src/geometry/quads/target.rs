@@ -21,8 +21,8 @@ impl ProjectionTarget {
         Ok(ProjectionTarget { tree, normals: face_normals(&input.mesh), chains })
     }
 
-    /// The nearest point of the surface, and its unit normal, if the surface there faces the way of
-    /// `normal`, which need not be of unit length (zero: any way); else `p` itself.
+    /// The nearest point of the surface if the surface there faces the way of `normal`, which need
+    /// not be of unit length (zero: any way); else `p` itself.
     pub fn surface(&self, p: DVec3, normal: DVec3) -> DVec3 {
         match self.tree.nearest(p, f64::INFINITY) {
             Some(n) if self.normals[n.triangle as usize].dot(normal) >= 0.0 => n.point,

@@ -71,6 +71,53 @@ fn a_box_with_creases_is_a_box() {
     assert!(f.mean_deviation < 6.0, "{f:?}");
 }
 
+/// A block of 5 by 3 by 1 unit cubes without two of them: two holes go through.
+fn block_with_two_holes() -> PolyMesh {
+    let solid =
+        |x: i32, y: i32| (0..5).contains(&x) && (0..3).contains(&y) && !(y == 1 && x % 2 == 1);
+    let mut out = PolyMesh::new();
+    let v = |x: i32, y: i32, z: i32| ((z * 4 + y) * 6 + x) as u32;
+    for z in 0..2 {
+        for y in 0..4 {
+            for x in 0..6 {
+                out.positions.push(DVec3::new(x as f64, y as f64, z as f64));
+            }
+        }
+    }
+    for y in 0..3 {
+        for x in (0..5).filter(|&x| solid(x, y)) {
+            out.push_face(&[v(x, y, 1), v(x + 1, y, 1), v(x + 1, y + 1, 1), v(x, y + 1, 1)]);
+            out.push_face(&[v(x, y, 0), v(x, y + 1, 0), v(x + 1, y + 1, 0), v(x + 1, y, 0)]);
+            let sides = [
+                (x, y - 1, [(x, y), (x + 1, y)]),
+                (x + 1, y, [(x + 1, y), (x + 1, y + 1)]),
+                (x, y + 1, [(x + 1, y + 1), (x, y + 1)]),
+                (x - 1, y, [(x, y + 1), (x, y)]),
+            ];
+            for (i, j, [(a, b), (c, d)]) in sides {
+                if !solid(i, j) {
+                    out.push_face(&[v(a, b, 0), v(c, d, 0), v(c, d, 1), v(a, b, 1)]);
+                }
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn two_holes_stay_with_and_without_creases() {
+    let block = block_with_two_holes();
+    assert_eq!(facts(&block).genus, Some(2));
+    // Each of the 14 faces between creases may leave a triangle or two without a partner.
+    let (mesh, f) = remeshed(&block, 1500, Some(40.0));
+    let r = facts(&mesh);
+    assert!(r.closed && r.manifold && r.genus == Some(2) && r.self_intersections == Some(0));
+    assert!(f.triangles <= 28 && f.mean_deviation < 5.0 && f.hausdorff[0] < 1e-6, "{f:?}");
+    assert!((facts(&mesh).volume.unwrap() - 13.0).abs() < 1e-3);
+    let (mesh, f) = remeshed(&block, 1500, None);
+    sound(&mesh, &f, 2, 1500);
+}
+
 #[test]
 fn an_open_plate_stays_open_with_a_straight_border() {
     let plate = shapes::grid(4.0, 2.0, 3, 3);
