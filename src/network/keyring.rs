@@ -193,6 +193,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::disallowed_methods)] // A broken file is what is wanted.
     fn a_folder_is_filled_once_and_read_afterwards() {
         let folder = tempfile::tempdir().expect("a folder");
         let (made, new) = Keyring::of_folder(folder.path(), &mut counting()).expect("made");

@@ -526,8 +526,7 @@ mod tests {
             let arrivals = vec![person.clone()];
             Arc::new(Frame { index, tick: index * 3, mark, arrivals, batches })
         };
-        let frames =
-            vec![frame(4, Mark::Compare, vec![batch.clone()]), frame(5, Mark::None, vec![])];
+        let frames = vec![frame(4, Mark::Compare, vec![batch]), frame(5, Mark::None, vec![])];
         let entry = Entry {
             person: 2,
             term,
