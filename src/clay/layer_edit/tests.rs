@@ -1,15 +1,13 @@
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use proptest::prelude::*;
 
 use crate::brush::GaussianBrush;
 use crate::layers::{LayerEdit, LayerError, LayerId, LayerOffsets};
-use crate::local_boolean::local;
 use crate::{Clay, LayerOperation, Page, Reach, Workers};
-use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::shapes::{cuboid, icosphere};
+use sculptd_geometry::shapes::icosphere;
 
 fn ball() -> Clay {
     Clay::build(&icosphere(1.0, 30), &Job::default()).expect("clay")
@@ -171,48 +169,6 @@ fn layers_come_in_by_vertex_numbers_and_pages_come_back_from_their_bytes() {
             assert!(Page::from_bytes(torn, page.topology().clone(), 1).is_err());
         }
     }
-}
-
-#[test]
-fn a_local_boolean_keeps_the_layers_of_what_it_leaves() {
-    let w = Workers::new(2);
-    let mut clay = ball();
-    let start = clay.to_tri().positions;
-    let offsets = start.iter().enumerate().map(|(v, p)| (v as u32, (*p * 0.05).to_array()));
-    let offsets = offsets.collect();
-    let layers = vec![LayerOffsets { name: "all".into(), intensity: 1.0, visible: true, offsets }];
-    let id = edit(&mut clay, &LayerEdit::Import(Arc::new(layers)), &w).expect("room");
-    let before = clay.hash();
-    let tool = cuboid(DVec3::new(0.9, -0.2, -0.2), DVec3::new(1.3, 0.2, 0.2));
-    let options = BooleanOptions::default();
-    let cut = local(&clay.snapshot(), &tool, Operation::Difference, &options, &Job::default());
-    let cut = cut.expect("it works").expect("it is local");
-    clay.begin_step();
-    let made = clay.graft(&cut).expect("it fits");
-    let mut pages = Vec::new();
-    clay.touched_by_step(&mut pages);
-    clay.run_layers(&LayerOperation::Capture, &pages, &w);
-    clay.end_step();
-    assert!(made.written > 0 && made.shared > 0);
-    let found = clay.verify_layers().and_then(|_| clay.verify_invariants());
-    assert_eq!((found, clay.layer_count()), (Ok(()), 1));
-    let cut = clay.to_tri().positions;
-    edit(&mut clay, &set(id, 1.0, false), &w).expect("there");
-    let hidden = clay.to_tri().positions;
-    // Vertices of the ball go back to it, to a rounding; what the cut added stays.
-    let (mut back, mut stayed) = (0, 0);
-    for (p, q) in cut.iter().zip(&hidden) {
-        match p == q {
-            true => stayed += 1,
-            false => {
-                assert!((q.length() - 1.0).abs() < 1e-6, "{q}");
-                back += 1;
-            }
-        }
-    }
-    assert!(back > start.len() * 3 / 4 && stayed > 8 && stayed < 400, "{back} {stayed}");
-    assert!(clay.undo() && clay.undo());
-    assert_eq!(clay.hash(), before);
 }
 
 #[derive(Debug, Clone)]
