@@ -14,7 +14,8 @@
 //! | how thick are the walls? | [`thickness`] |
 //! | volume, area, projected area | [`measure`], [`projection`] |
 //! | how far, inside or outside? | [`distance`], [`grid`], [`winding`], [`march`] |
-//! | another mesh of the same solid | [`remesh`], [`quads`], [`decimate`], [`subdivide`], [`triangulate`] |
+//! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`] |
+//! | quads that follow the shape | [`quads`] |
 //! | a thicker, thinner or hollow solid | [`offset`] |
 //! | rays and nearest points | [`bvh`] |
 //!
