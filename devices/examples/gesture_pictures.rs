@@ -44,6 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("two-pinches", vec![left(pinching(-62.0)), right(pinching(62.0))], apart.into()),
     ];
     for (name, hands, arrows) in gestures {
+        #[allow(clippy::disallowed_methods)] // A picture that is half written is made again.
         std::fs::write(folder.join(format!("gesture-{name}.svg")), picture(&hands, &arrows))?;
     }
     Ok(())

@@ -289,6 +289,7 @@ pub(crate) mod tests {
         let dir = tempfile::tempdir().expect("a folder");
         for (code, text) in [("en", "greeting = Ahoy"), ("gl", "greeting = Ola"), ("de", "a = {")] {
             std::fs::create_dir(dir.path().join(code)).expect("a folder");
+            #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
             std::fs::write(dir.path().join(code).join(FILE), text).expect("written");
         }
         let built_in = [("en", "greeting = Hello\nbye = Bye"), ("de", "greeting = Hallo")];

@@ -90,7 +90,7 @@ fn system_font(code: &str, letters: &[char]) -> Option<FontData> {
     let preferred = PREFERRED.iter().find(|p| p.0 == code).map_or(&[][..], |p| p.1);
     let rank = |face: &fontdb::FaceInfo| {
         let named = |name: &&str| face.families.iter().any(|(family, _)| family == *name);
-        let place = preferred.iter().position(|name| named(name)).unwrap_or(preferred.len());
+        let place = preferred.iter().position(named).unwrap_or(preferred.len());
         let weight = face.weight.0.abs_diff(fontdb::Weight::NORMAL.0);
         let name = face.families.first().map_or_else(String::new, |(family, _)| family.clone());
         (place, weight, face.style != fontdb::Style::Normal, face.monospaced, name)
