@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+use sculptd_clay::LayerEdit;
 use sculptd_clay::brush::{
     Alpha, BrushKind, BrushSettings, Falloff, MaskAction, Measure, Method, Picture, PressureCurve,
     StampBy,
 };
 use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::{TriMesh, shapes};
 use serde::{Deserialize, Serialize};
 
@@ -159,6 +161,7 @@ fn hold(name: &str, now: &Facts) {
 fn every_brush_draws_as_it_did() {
     for kind in BrushKind::ALL {
         let brush = BrushSettings { radius: 0.2, ..sculptd::presets().of(*kind) };
+        let whole = BrushSettings { strength: 1.0, ..brush };
         let mut start = form(60_000);
         if *kind == BrushKind::Boundary {
             // Open to the right of where the stroke begins.
@@ -169,6 +172,17 @@ fn every_brush_draws_as_it_did() {
             if *kind == BrushKind::MaskBlur {
                 // There must be a mask to blur.
                 studio.tell(Command::Mask(MaskAction::Cavity(0.1)));
+            }
+            if *kind == BrushKind::EraseLayer {
+                // There must be a layer that does something; half of it is erased.
+                let add = SceneCommand::Layers(LayerEdit::Add("layer".into()));
+                studio.tell(Command::Scene(add));
+                let draw = sculptd::presets().of(BrushKind::Draw);
+                studio.tell(Command::Brush(BrushSettings { radius: 0.2, ..draw }));
+                studio.stroke(&s_curve());
+                studio.tell(Command::Brush(whole));
+                let way = s_curve();
+                return studio.stroke(&way[way.len() / 2..]);
             }
             studio.stroke(&s_curve())
         });

@@ -27,7 +27,8 @@ pub(super) const TABS: [Tab; 8] = [
 ];
 
 /// Texts of buttons that cannot be pressed on the pages that the tests show.
-const DISABLED: [&str; 7] = ["Undo", "Redo", "Open", "Coarser", "to the held object", "Up", "Down"];
+const DISABLED: [&str; 8] =
+    ["Undo", "Redo", "Open", "Coarser", "to the held object", "Up", "Down", "Snap face to face"];
 
 /// A piece of text as it is painted.
 #[derive(Debug)]
