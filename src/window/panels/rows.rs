@@ -5,6 +5,8 @@ use egui::{ComboBox, Response, Slider, TextStyle, Ui, WidgetText};
 
 /// Points beside the bar of a slider: its number and the gaps.
 const NUMBER: f32 = 62.0;
+/// A bar beside its name is at least so long, as a part of the usual length.
+const SHORTEST: f32 = 0.75;
 /// Width of a list that unfolds, points.
 const LIST: f32 = 100.0;
 
@@ -16,9 +18,15 @@ fn width(ui: &Ui, text: &str) -> f32 {
 
 /// A slider with its name.
 pub fn slider(ui: &mut Ui, slider: Slider<'_>, name: &str) -> Response {
-    let bar = ui.spacing().slider_width + NUMBER;
-    if bar + width(ui, name) <= ui.available_width() {
-        return ui.add(slider.text(name));
+    let usual = ui.spacing().slider_width;
+    let bar = (ui.available_width() - NUMBER - width(ui, name)).min(usual);
+    // A bar that is a little shorter is better than two kinds of rows on one page.
+    if bar >= SHORTEST * usual {
+        let add = |ui: &mut Ui| {
+            ui.spacing_mut().slider_width = bar;
+            ui.add(slider.text(name))
+        };
+        return ui.scope(add).inner;
     }
     let label = ui.label(name);
     ui.add(slider).labelled_by(label.id)
