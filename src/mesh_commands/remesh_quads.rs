@@ -93,6 +93,14 @@ pub(super) fn remesh_quads(
     let (written, _) = read(out, &job)?;
     let report = check::report(&written, true, &job).map_err(interrupted)?;
     let metrics = metrics(&written, &mesh, &job).map_err(interrupted)?;
+    let quads_made = made.mesh.faces().filter(|face| face.len() == 4).count();
+    if metrics.quads < quads_made {
+        warnings.push(format!(
+            "the format of the output holds triangles: {} of {quads_made} quads were cut; OBJ, PLY \
+             and OFF keep them",
+            quads_made - metrics.quads
+        ));
+    }
     warn(mesh_file, &warnings);
     let facts = QuadsMade {
         file: out.into(),
@@ -118,15 +126,17 @@ pub(super) fn remesh_quads(
             f.triangles,
             f.other
         )?;
-        writeln!(
-            w,
-            "angles {:.1} to {:.1} degrees, {:.1} from 90 in the mean; {:.1} % of the vertices \
-             regular",
-            f.least_angle,
-            f.greatest_angle,
-            f.mean_deviation,
-            f.regular * 100.0
-        )?;
+        if f.quads > 0 {
+            writeln!(
+                w,
+                "angles {:.1} to {:.1} degrees, {:.1} from 90 in the mean; {:.1} % of the \
+                 vertices regular",
+                f.least_angle,
+                f.greatest_angle,
+                f.mean_deviation,
+                f.regular * 100.0
+            )?;
+        }
         writeln!(
             w,
             "off the old surface by {:.4} at most, the old one off it by {:.4}; {:.3} s",
