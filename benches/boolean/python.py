@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
-"""A Boolean through Python beside the same one by the program, on the same meshes in the same run.
+"""A Boolean through Python beside the same one by the Rust library, on the same meshes in one run.
 
-    python python.py path/to/sculptd [--triangles 1000000]
+    cargo build --release --example library
+    python python.py target/release/examples/library [--triangles 1000000] [--rounds 15]
 
-Needs numpy and the module `sculptd`. Two spheres that cross, of that many triangles in all; ours by
-`seconds` of `sculptd boolean --json` (from the loaded polygons to the checked result), Python's by
-the clock around `sculptd.boolean` from meshes that were made of arrays to the result's arrays. They
-take turns, five times each; medians, least, and the ratio. Also shows, by their addresses, that the
-arrays are not copied. Exits with 1 where the volumes differ by more than 1e-12.
+Needs numpy and the module `sculptd`. Two spheres that cross, of that many triangles in all. Both
+processes hold the loaded meshes and take turns: each time is from there to the checked result in
+triangles. Medians, least, and the ratio. Also shows, by their addresses, that the arrays are not
+copied. Exits with 1 where the volumes differ by more than 1e-12.
 """
 import argparse
-import json
 import statistics
 import subprocess
 import sys
@@ -20,8 +19,6 @@ from pathlib import Path
 
 import numpy as np
 import sculptd
-
-ROUNDS = 5
 
 
 def sphere(triangles, shift):
@@ -56,34 +53,40 @@ def address(array):
 
 def main():
     arguments = argparse.ArgumentParser()
-    arguments.add_argument("program")
+    arguments.add_argument("library")
     arguments.add_argument("--triangles", type=int, default=1_000_000)
+    arguments.add_argument("--rounds", type=int, default=15)
     options = arguments.parse_args()
     pair = [sphere(options.triangles / 2, s) for s in ((0.0, 0.0, 0.0), (0.51, 0.37, 0.23))]
     meshes = [sculptd.Mesh(v, f) for v, f in pair]
     seen = address(meshes[0].vertices)
     assert seen == address(meshes[0].vertices), "an array was copied"
     print(f"{sum(len(f) for _, f in pair)} triangles; vertices seen twice at {seen:#x}: no copy")
-    by_program, by_python = [], []
+    by_library, by_python = [], []
     with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
-        files = [folder / "a.ply", folder / "b.ply"]
+        files = [str(Path(folder) / name) for name in ("a.ply", "b.ply")]
         for mesh, file in zip(meshes, files):
-            mesh.write(str(file))
-        command = [options.program, "boolean", "difference", *map(str, files), "-o", str(folder / "out.ply"), "--json"]
-        for _ in range(ROUNDS):
-            told = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
-            by_program.append(told["seconds"])
+            mesh.write(file)
+        library = subprocess.Popen([options.library, *files], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        for turn in range(options.rounds + 1):
+            library.stdin.write("\n")
+            library.stdin.flush()
+            seconds, triangles, volume = library.stdout.readline().split()
             begun = time.perf_counter()
             made = sculptd.boolean(*meshes, "difference")
             arrays = made.mesh.vertices, made.mesh.triangulated().faces
-            by_python.append(time.perf_counter() - begun)
-    volumes = made.volume, told["results"][0]["volume"]
-    print(f"program {statistics.median(by_program):.3f} s (least {min(by_program):.3f})")
+            took = time.perf_counter() - begun
+            if turn > 0:  # The first turn warms both.
+                by_library.append(float(seconds))
+                by_python.append(took)
+        library.stdin.close()
+        library.wait()
+    ratios = sorted(p / r for p, r in zip(by_python, by_library))
+    print(f"library {statistics.median(by_library):.3f} s (least {min(by_library):.3f})")
     print(f"Python  {statistics.median(by_python):.3f} s (least {min(by_python):.3f})")
-    print(f"ratio of medians {statistics.median(by_python) / statistics.median(by_program):.3f}, of the least"
-          f" {min(by_python) / min(by_program):.3f}; {len(arrays[1])} triangles, volume {volumes[0]!r}")
-    sys.exit(abs(volumes[0] - volumes[1]) > 1e-12 * max(1.0, abs(volumes[0])))
+    print(f"Python / library: median of {len(ratios)} pairs {statistics.median(ratios):.3f}, of the least"
+          f" {min(by_python) / min(by_library):.3f}; {len(arrays[1])} and {triangles} triangles, volume {made.volume!r}")
+    sys.exit(abs(made.volume - float(volume)) > 1e-12 * max(1.0, abs(made.volume)))
 
 
 if __name__ == "__main__":

@@ -98,8 +98,10 @@ fn screen(dir: &Path) -> (Ended, String) {
     let told = dir.join("display");
     let file = std::fs::File::create(&told).expect("a file");
     let size = format!("{}x{}x24", SIZE.0, SIZE.1);
+    // Without `-noreset` the server starts anew when its last client leaves, which may be a tool
+    // that looked for the window, and refuses the daemon that connects meanwhile.
     let screen = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-screen", "0", &size, "-nolisten", "tcp"])
+        .args(["-displayfd", "1", "-screen", "0", &size, "-noreset", "-nolisten", "tcp"])
         .stdout(file)
         .stderr(Stdio::null())
         .spawn()
