@@ -1,6 +1,8 @@
-//! A Boolean by the library alone, for `python.py`, which takes turns with it: `library A.ply B.ply`
-//! reads two meshes once, and then for each line of standard input takes B out of A and prints the
-//! seconds from the loaded polygons to the result's triangles, their number and the volume.
+//! A Boolean by the library alone, for `python.py`, which takes turns with it.
+//!
+//! `library A.ply B.ply` reads two meshes once. Then for each line of standard input it takes B out
+//! of A and prints the seconds from the loaded polygons to the result's triangles, their number and
+//! the volume.
 
 #![allow(clippy::print_stdout)] // What `python.py` reads.
 
