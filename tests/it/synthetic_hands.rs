@@ -8,7 +8,7 @@ use sculptd_devices::sim::hand::skeleton;
 use sculptd_devices::sim::tracker::frame_json;
 use sculptd_devices::sim::{HandKey, HandScript, Jitter, JitterState, Performer};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
-use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose};
+use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose, ReachBox};
 
 const RATES: [f32; 4] = [30.0, 60.0, 90.0, 120.0];
 
@@ -147,6 +147,56 @@ fn two_hands_hold_and_zoom_at_every_frame_rate() {
 }
 
 /// The fingertip as the tools see it, frame by frame.
+/// The longest sweep of any act on clay, and the smallest and largest radius of this pose's, world
+/// units.
+fn sweeps(reach: [ReachBox; 2], pose: Pose, shape: Shape) -> (f32, [f32; 2]) {
+    let script = HandScript { performers: vec![performance(false, shape)] };
+    let mut tools = HandTools::new(HandSettings { reach: reach[0], ..HandSettings::default() });
+    tools.lay(Vec3::ZERO, 1.0, 0.0);
+    let (mut longest, mut radii, mut changed) = (0.0f32, [f32::MAX, 0.0f32], false);
+    for (t, hands) in frames(&script, 120.0, Jitter { rest_mm: 0.0, moving_mm: 0.0, ..tracker(0) })
+    {
+        tools.take(DeviceId(0), t, &hands);
+        if !changed && t > 1_600_000 {
+            (tools.settings.reach, changed) = (reach[1], true);
+            tools.lay(Vec3::ZERO, 1.0, 0.0);
+        }
+        while let Some(act) = tools.next_act() {
+            let (of, from, to, radius) = match act {
+                Act::Push(p) => (Pose::Point, p.from, p.to, p.radius),
+                Act::Drag(d) => (Pose::Pinch, d.from, d.to, d.radius),
+                Act::Palm(p) => (Pose::Flat, p.from, p.to, p.radius),
+                _ => continue,
+            };
+            longest = longest.max(from.distance(to));
+            if of == pose {
+                radii = [radii[0].min(radius), radii[1].max(radius)];
+            }
+        }
+    }
+    (longest, radii)
+}
+
+#[test]
+fn a_new_reach_under_a_working_hand_sweeps_nothing_and_keeps_its_tools() {
+    let all = ReachBox::default();
+    let near = ReachBox { middle_mm: vec3(60.0, 230.0, 40.0), half_mm: 60.0 };
+    for (pose, shape) in SHAPES {
+        if !matches!(pose, Pose::Point | Pose::Pinch | Pose::Flat) {
+            continue;
+        }
+        let (alone, radii) = sweeps([near, near], pose, shape);
+        let (changed, others) = sweeps([all, near], pose, shape);
+        println!("{pose:?}: longest sweep {alone:.3}, with a new reach {changed:.3}; {radii:?}");
+        assert!(
+            alone > 0.0 && changed < 1.2 * alone,
+            "{pose:?}: {changed} where {alone} is one's own"
+        );
+        assert!((others[1] / others[0] - 1.0).abs() < 1e-4, "{pose:?}: {others:?}");
+        assert!((radii[1] / others[0] - 1.0).abs() < 1e-4, "{pose:?}: {radii:?} {others:?}");
+    }
+}
+
 fn tip_of(tools: &HandTools, t: u64) -> Option<Vec3> {
     tools.tracks().find(|k| k.seen_us == t).and_then(|k| k.index_tip)
 }

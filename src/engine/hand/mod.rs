@@ -36,6 +36,7 @@ use std::collections::VecDeque;
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
+use self::reach_box::BOX_HALF_MM;
 use sculptd_devices::filter::HandsFilter;
 use sculptd_devices::{DeviceId, Hands};
 use sculptd_geometry::portable::turn_about;
@@ -109,10 +110,15 @@ impl HandTools {
         }
     }
 
-    /// Lays the tracked volume over a work anew.
+    /// Lays the tracked volume over a work anew. What the hands touch or hold begins where they are
+    /// then: the way between the two mappings is nobody's movement.
     pub fn lay(&mut self, middle: Vec3, extent: f32, yaw: f32) {
         self.volume = Volume::over(middle, extent, yaw, &self.settings.reach);
         self.yaw = yaw;
+        self.pair = None;
+        for held in &mut self.held {
+            (held.tool, held.turn) = (None, None);
+        }
     }
 
     /// The tracked volume over the object.
@@ -325,6 +331,12 @@ impl HandTools {
             .is_none_or(|at| t_us.saturating_sub(at) as f32 * 1e-3 > self.settings.view_rest_ms)
     }
 
+    /// World units a millimetre of a tool. A person who reaches less far moves more of the work with
+    /// each millimetre, but a fingertip stays as small beside the work as anybody's.
+    fn tool_scale(&self) -> f32 {
+        self.volume.scale * (self.settings.reach.half_mm / BOX_HALF_MM)
+    }
+
     fn one_hand(&mut self, i: usize, t_us: u64) {
         let s = self.settings;
         let TrackedHand { track, tool, turn, .. } = self.held[i];
@@ -349,6 +361,7 @@ impl HandTools {
             Pose::Neutral | Pose::Grab | Pose::Open => None,
         };
         if let Some(mm) = at_mm {
+            let tool_scale = self.tool_scale();
             let to = v.to_world(mm);
             let strength = strength * Volume::edge_fade(mm);
             if let Some(from) = tool.filter(|_| strength > 0.0) {
@@ -356,20 +369,20 @@ impl HandTools {
                     Pose::Point => self.wait(Act::Push(Push {
                         from,
                         to,
-                        radius: s.tip_radius_mm * v.scale,
+                        radius: s.tip_radius_mm * tool_scale,
                         strength,
                     })),
                     Pose::Pinch => {
                         self.wait(Act::Drag(Drag {
                             from,
                             to,
-                            radius: s.pinch_radius_mm * v.scale,
+                            radius: s.pinch_radius_mm * tool_scale,
                             strength,
                         }));
                     }
                     _ => {
                         let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
-                        let radius = s.palm_radius_mm * v.scale;
+                        let radius = s.palm_radius_mm * tool_scale;
                         self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
                     }
                 }
