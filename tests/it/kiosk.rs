@@ -148,7 +148,14 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
         sender.push(Sample { device: DeviceId(0), t_us, device_t_us: None, body: Body::Pen(pen) });
         sender.flush();
     };
+    // One that only passes by in the air is nobody yet.
     touch(10.0, false, true);
+    touch(12.0, false, true);
+    until("the pen is seen", || shown().pens.iter().flatten().any(|(id, _)| *id == DeviceId(0)));
+    let seen = shown().figures.dabs;
+    until("the film goes on", || shown().figures.dabs > seen + 10);
+    assert_eq!(stage(), Some(Stage::Attract));
+    touch(10.0, true, true);
     until("a visit begins", || stage() == Some(Stage::Working));
     until("the film's work is gone", || shown().mesh.hash() == clean);
     let before = shown().figures.dabs;

@@ -33,6 +33,9 @@ const RATE_HZ: f64 = 50.0;
 /// Ids of attract recordings: what they draw is nobody's touch.
 const ATTRACT_IDS: std::ops::Range<u16> = RECORDING_IDS + 50..RECORDING_IDS + 66;
 
+/// What stands for the hands among the pens that are felt.
+const HAND: u16 = u16::MAX;
+
 /// What every visitor begins with.
 #[derive(Debug, Clone)]
 pub struct Start {
@@ -178,7 +181,11 @@ impl KioskThread {
             let now = touch(&self.published.load());
             // Something that lies still on the tablet is nobody.
             let pressed = self.desk.touched.swap(false, Relaxed);
-            let touched = pressed || now.is_some() && now != felt;
+            let moved = now.is_some() && now != felt;
+            // A pen in the air keeps a visit going, but begins none: a mouse that somebody passes by,
+            // or a pointer that stands where the window opens, is no visitor.
+            let comes = now.as_ref().is_some_and(|felt| felt.iter().any(is_at_work));
+            let touched = pressed || moved && (comes || cycle.view().stage != Stage::Attract);
             felt = now;
             let done = self.desk.finished.swap(false, Relaxed);
             let act = cycle.step(touched, done);
@@ -293,6 +300,11 @@ impl KioskThread {
     }
 }
 
+/// A pen that presses, or a hand over the tracker: bare hands touch nothing.
+fn is_at_work(felt: &(u16, [f32; 3])) -> bool {
+    felt.0 == HAND || felt.1[2] > 0.0
+}
+
 /// What visitors touch now: their pens and hands, the attract loop's left out. `None`: nothing.
 fn touch(state: &Published) -> Option<Vec<(u16, [f32; 3])>> {
     let mut felt: Vec<(u16, [f32; 3])> = Vec::new();
@@ -303,7 +315,7 @@ fn touch(state: &Published) -> Option<Vec<(u16, [f32; 3])>> {
     }
     let visitors = state.hand_devices.iter().flatten().any(|id| !ATTRACT_IDS.contains(&id.0));
     if let Some(hands) = state.hands.as_ref().filter(|_| visitors) {
-        felt.extend(hands.as_slice().iter().map(|h| (u16::MAX, h.palm.to_array())));
+        felt.extend(hands.as_slice().iter().map(|h| (HAND, h.palm.to_array())));
     }
     (!felt.is_empty()).then_some(felt)
 }

@@ -14,6 +14,7 @@ use crate::look::Map;
 use crate::panels;
 use crate::panels::state::{KeyMap, TabletKeys, UiRequest, UiState, View};
 use sculptd_daemon::Published;
+use sculptd_daemon::kiosk::Stage;
 use sculptd_daemon::present_latency::PresentedFrame;
 use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
@@ -52,6 +53,8 @@ impl WindowState {
                 }
             }
         };
+        // While nobody is there the recording plays by itself: no tool is seen.
+        let nobody = self.drawn_kiosk.is_some_and(|k| k.stage == Stage::Attract);
         let p = &self.pointer;
         let scale = self.egui.egui_ctx().pixels_per_point();
         let over_panel = self.over_panel(self.pointer.at);
@@ -60,6 +63,7 @@ impl WindowState {
             let at = Vec2::new(modal.from.x, modal.from.y) * scale;
             ring_at(self.view_point(at), 1.0, None, false);
         } else if p.inside
+            && !nobody
             && (p.drag == Drag::Sculpt || (p.drag == Drag::None && !over_panel && !follows))
         {
             let felt = state
@@ -71,7 +75,7 @@ impl WindowState {
             let pressure = if down { felt.map_or(1.0, |f| f.1.pressure) } else { 1.0 };
             ring_at(self.view_point(p.at), pressure, None, down);
         }
-        for (id, pen) in state.pens.iter().flatten() {
+        for (id, pen) in state.pens.iter().flatten().filter(|_| !nobody) {
             if *id != sculptd_daemon::adaptors::POINTER_ID {
                 let down = pen.pressure > 0.0;
                 let view = self.predicted(*id, wiring).unwrap_or(pen.view);

@@ -35,8 +35,8 @@ pub struct Ring {
 }
 
 /// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped
-/// along the normal onto the clay, and where there is none within reach it stays in the tangent
-/// plane.
+/// along the normal onto the clay. Where there is none within reach, past an edge or over a hole,
+/// the circle goes on evenly between the corners beside the gap.
 pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec3, ring: &Ring) {
     let radius = ring.radius;
     let mut colour = match (ring.mirrored, ring.carve) {
@@ -48,17 +48,17 @@ pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec
         colour[3] = colour[3] / 4 * 3;
     }
     let (u, v) = normal.any_orthonormal_pair();
-    let corner = |i: usize| {
+    let flat = |i: usize| {
         let (s, c) = (i as f32 / CORNERS as f32 * std::f32::consts::TAU).sin_cos();
-        let flat = centre + (u * c + v * s) * radius;
-        let above = Ray { origin: flat + normal * radius, dir: -normal };
-        match state.pick(above) {
-            Some(hit) if (hit.t - radius).abs() < 0.6 * radius => {
-                hit.position + normal * (radius * 0.01)
-            }
-            _ => flat,
-        }
+        centre + (u * c + v * s) * radius
     };
+    let found = std::array::from_fn(|i| {
+        let above = Ray { origin: flat(i) + normal * radius, dir: -normal };
+        let height = state.pick(above).map(|hit| radius - hit.t)?;
+        (height.abs() < 0.6 * radius).then_some(height)
+    });
+    let heights = even_heights(&found);
+    let corner = |i: usize| flat(i) + normal * (heights[i % CORNERS] + radius * 0.01);
     let mut last = corner(0);
     for i in 1..=CORNERS {
         let next = corner(i);
@@ -66,6 +66,30 @@ pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec
         last = next;
     }
     segment(out, centre, centre + normal * radius * 0.4, colour);
+}
+
+/// The heights of a ring's corners over its plane, without a jump: gaps are bridged from corner to
+/// corner, and what stands out between two steps of relief is rounded off. All 0 where nothing was
+/// found.
+fn even_heights(found: &[Option<f32>; CORNERS]) -> [f32; CORNERS] {
+    let next = |from: usize| (1..=CORNERS).find_map(|k| Some((k, found[(from + k) % CORNERS]?)));
+    let before =
+        |from: usize| (1..=CORNERS).find_map(|k| Some((k, found[(from + CORNERS - k) % CORNERS]?)));
+    let mut heights: [f32; CORNERS] = std::array::from_fn(|i| {
+        let bridged = || {
+            let ((a, low), (b, high)) = (before(i)?, next(i)?);
+            Some(low + (high - low) * (a as f32 / (a + b) as f32))
+        };
+        found[i].or_else(bridged).unwrap_or_default()
+    });
+    for _ in 0..2 {
+        let rough = heights;
+        heights = std::array::from_fn(|i| {
+            let [a, b] = [rough[(i + CORNERS - 1) % CORNERS], rough[(i + 1) % CORNERS]];
+            0.5 * rough[i] + 0.25 * (a + b)
+        });
+    }
+    heights
 }
 
 /// The pen itself as it leans: from its tip along its barrel. `tilt` in radians, x to the right and
@@ -174,4 +198,22 @@ pub fn mirrors(symmetry: [bool; 3]) -> impl Iterator<Item = Vec3> {
 /// A view point from a pointer's place in a window.
 pub fn view_point(at: Vec2, size: Vec2) -> Vec2 {
     at / size.max(Vec2::ONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ring_bridges_a_gap_evenly_and_lies_flat_over_nothing() {
+        assert_eq!(even_heights(&[None; CORNERS]), [0.0; CORNERS]);
+        // Half of the ring lies on a slope, the other half hangs over an edge.
+        let found = std::array::from_fn(|i| (i < CORNERS / 2).then_some(0.01 * i as f32));
+        let heights = even_heights(&found);
+        let steps = (0..CORNERS).map(|i| (heights[(i + 1) % CORNERS] - heights[i]).abs());
+        assert!(steps.fold(0.0, f32::max) < 0.011, "{heights:?}");
+        assert!((heights[CORNERS / 4] - 0.01 * (CORNERS / 4) as f32).abs() < 1e-6);
+        let alone = even_heights(&std::array::from_fn(|i| (i == 5).then_some(0.3)));
+        assert!(alone.iter().all(|h| (h - 0.3).abs() < 1e-6), "{alone:?}");
+    }
 }
