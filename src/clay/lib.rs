@@ -49,6 +49,7 @@ mod clay;
 mod dab;
 mod dab_buffers;
 mod dyntopo;
+pub mod face_sets;
 mod garbage;
 mod kernel;
 mod layer_edit;

@@ -15,6 +15,7 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::{BoxTree, LEAF};
+use super::face_sets::PageSets;
 use super::layers::PageLayers;
 use sculptd_geometry::simd::leaves::Leaves;
 use sculptd_geometry::simd::rings::Hexes;
@@ -240,6 +241,8 @@ pub struct Page {
     pub(super) revision: u64,
     /// Base and offsets of the layers that change the page.
     pub(super) layers: Option<Arc<PageLayers>>,
+    /// Face sets and what is hidden, own and halo.
+    pub(super) sets: Option<Arc<PageSets>>,
 }
 
 impl Page {
@@ -254,6 +257,7 @@ impl Page {
             hi: self.hi,
             revision: self.revision,
             layers: self.layers.clone(),
+            sets: self.sets.clone(),
         }
     }
 
@@ -267,6 +271,7 @@ impl Page {
         self.tree.copy_from(&other.tree);
         (self.lo, self.hi) = (other.lo, other.hi);
         self.layers.clone_from(&other.layers);
+        self.sets.clone_from(&other.sets);
     }
 
     /// What the page has of its object's layers; `None`: no layer changes it.
@@ -368,7 +373,7 @@ impl Page {
     /// Makes room for a page of `own` vertices, a halo as large, and eight triangles a leaf for
     /// four triangles a vertex; what it held is gone.
     pub(super) fn make_room(&mut self, own: usize) {
-        self.layers = None;
+        (self.layers, self.sets) = (None, None);
         self.points.clear();
         self.normals.clear();
         self.points.reserve(2 * own);
@@ -398,8 +403,12 @@ impl Page {
     /// for a replay must forget the same steps.
     pub(super) fn weight(&self) -> usize {
         // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
-        let layers = self.layers.as_ref().map_or(0, |l| l.weight());
-        size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4 + layers
+        size_of::<Page>()
+            + 16
+            + self.points.len() * 32
+            + self.topology.triangles.len() * 4
+            + self.layers.as_ref().map_or(0, |l| l.weight())
+            + self.sets.as_ref().map_or(0, |s| s.weight())
     }
 
     /// Heap bytes of what a copy on write copies.
@@ -409,5 +418,6 @@ impl Page {
             + (self.points.capacity() + self.normals.capacity()) * 16
             + self.tree.bytes()
             + self.layers.as_ref().map_or(0, |l| l.weight())
+            + self.sets.as_ref().map_or(0, |s| s.weight())
     }
 }

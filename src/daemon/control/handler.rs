@@ -10,6 +10,7 @@ use serde_json::Value;
 
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
+use super::face_sets::{self, SetsDone};
 use super::layers::{self, LayerDone};
 use super::mask_region::mask_region;
 use super::measurement;
@@ -24,10 +25,12 @@ use crate::trim::Part;
 use crate::window_link::DisplayVariables;
 use crate::{Published, boolean_jobs, remesh_job, scene_jobs, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
+use sculptd_clay::face_sets::SetsEdit;
 use sculptd_clay::{LayerEdit, LayerId};
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
 use sculptd_control::event;
+use sculptd_control::face_sets as asked_sets;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
@@ -408,6 +411,41 @@ impl Handler for Host {
 
     fn layers_clear(&self, p: LayerParams) -> LayerDone {
         layers::edit(self, LayerEdit::Clear(LayerId(p.layer)))
+    }
+
+    fn sets_list(&self, _: NoParams) -> Result<asked_sets::FaceSetsReply, RpcError> {
+        Ok(face_sets::list(&self.published.load()))
+    }
+
+    fn sets_make(&self, p: asked_sets::FaceSetMakeParams) -> SetsDone {
+        face_sets::make(self, p)
+    }
+
+    fn sets_clear(&self, _: NoParams) -> SetsDone {
+        face_sets::edit(self, SetsEdit::Clear)
+    }
+
+    fn sets_hide(&self, p: asked_sets::FaceSetParams) -> SetsDone {
+        face_sets::hide(self, &p)
+    }
+
+    fn sets_show(&self, p: asked_sets::FaceSetShowParams) -> SetsDone {
+        face_sets::edit(self, p.set.map_or(SetsEdit::ShowAll, SetsEdit::Show))
+    }
+
+    fn sets_invert(&self, _: NoParams) -> SetsDone {
+        face_sets::edit(self, SetsEdit::Invert)
+    }
+
+    fn sets_isolate(&self, p: asked_sets::FaceSetParams) -> SetsDone {
+        face_sets::isolate(self, &p)
+    }
+
+    fn sets_extract(
+        &self,
+        p: asked_sets::FaceSetExtractParams,
+    ) -> Result<asked_scene::ObjectReply, RpcError> {
+        face_sets::extract(self, &p)
     }
 
     fn layers_bake(&self, _: NoParams) -> LayerDone {

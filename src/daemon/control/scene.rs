@@ -120,8 +120,8 @@ pub(super) fn ask(
 
 /// A command to the scene with what it needs.
 pub(super) struct QueuedSceneCommand {
-    command: SceneCommand,
-    payload: Option<Payload>,
+    pub(super) command: SceneCommand,
+    pub(super) payload: Option<Payload>,
 }
 
 impl From<SceneCommand> for QueuedSceneCommand {
