@@ -141,8 +141,8 @@
 //!   that station. Waits for: the station.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
-//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, made by
-//!   `window::viewer::tasks`: changes of the whole object that the window asked for, sent as
+//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`, made
+//!   by `window::viewer::tasks`: changes of the whole object that the window asked for, sent as
 //!   commands. Waits for: the loop's answer.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.

@@ -128,7 +128,8 @@ impl Page {
             return Err(BadPage);
         }
         let leaves = topology.triangles.len().div_ceil(LEAF);
-        let mut page = Page { topology, points, normals, revision, layers, sets, ..Page::default() };
+        let mut page =
+            Page { topology, points, normals, revision, layers, sets, ..Page::default() };
         page.tree.reset(leaves);
         if page.topology.own == 0 && page.topology.triangles.is_empty() {
             (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);

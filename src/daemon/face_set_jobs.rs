@@ -6,18 +6,20 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use crate::published::Published;
-use sculptd_clay::face_sets::{self, ExtractError, Part};
+use sculptd_clay::face_sets::{self, ExtractError, FaceSetPart, Partition, SetsEdit, SetsError};
 use sculptd_clay::{BuildError, Clay, Ray};
 use sculptd_engine::scene::{NewObject, ObjectSource, SceneError};
 use sculptd_geometry::job::Job;
 
-/// Why no object was extracted.
+/// Why no face sets were made, or no object extracted.
 #[derive(Debug, thiserror::Error)]
 pub enum ExtractionError {
     #[error(transparent)]
     Extract(#[from] ExtractError),
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(transparent)]
+    Sets(#[from] SetsError),
     #[error("the shell cannot be sculpted: {0}")]
     Build(#[from] BuildError),
 }
@@ -33,6 +35,14 @@ pub fn set_seen(shown: &Published, at: Vec2) -> Option<u16> {
     Some(shown.mesh.set_at(&hit))
 }
 
+/// The edit that gives the active object face sets by its shape.
+///
+/// # Errors
+/// Where there are more parts than numbers of sets.
+pub fn parted(shown: &Published, by: Partition) -> Result<SetsEdit, ExtractionError> {
+    Ok(face_sets::partition(&shown.mesh, by)?)
+}
+
 /// A part of the active object as a new one that stands where it does. `thickness` is in the unit
 /// of the scene.
 ///
@@ -40,7 +50,7 @@ pub fn set_seen(shown: &Published, at: Vec2) -> Option<u16> {
 /// Where there is no such part, or the thickness makes no solid.
 pub fn extract(
     shown: &Published,
-    part: Part,
+    part: FaceSetPart,
     thickness: f64,
     name: &str,
     job: &Job,

@@ -109,9 +109,14 @@ impl Snapshot {
         all.map(|(set, [vertices, hidden])| (set as u16, vertices, hidden)).collect()
     }
 
-    /// Whether any vertex is in a set or hidden.
-    pub fn has_sets(&self) -> bool {
-        self.pages().any(|p| p.sets.is_some())
+    /// How many sets there are besides that of what is in none; 1 where there is no other but
+    /// something is hidden. Costs nothing to speak of where there are none.
+    pub fn face_set_count(&self) -> u64 {
+        if !self.pages().any(|p| p.sets.is_some()) {
+            return 0;
+        }
+        let (sets, none) = (self.face_sets(), |s: &(u16, u64, u64)| s.0 == 0);
+        (sets.iter().filter(|s| !none(s)).count() as u64).max(1)
     }
 }
 

@@ -11,7 +11,7 @@ use sculptd_geometry::portable::PortableMath;
 
 /// Which part of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum FaceSetPart {
     /// Triangles whose corners are all masked by half or more.
     Masked,
     /// Triangles whose corners are all in this set.
@@ -37,7 +37,11 @@ pub enum ExtractError {
 ///
 /// # Errors
 /// Where nothing belongs to the part, or the thickness is 0 or no number.
-pub fn extract(clay: &Snapshot, part: Part, thickness: f32) -> Result<TriMesh, ExtractError> {
+pub fn extract(
+    clay: &Snapshot,
+    part: FaceSetPart,
+    thickness: f32,
+) -> Result<TriMesh, ExtractError> {
     if !thickness.is_finite() || thickness == 0.0 {
         return Err(ExtractError::Thickness);
     }
@@ -48,8 +52,8 @@ pub fn extract(clay: &Snapshot, part: Part, thickness: f32) -> Result<TriMesh, E
         for (v, &id) in page.topology().ids.iter().enumerate() {
             belongs[ranks.of(id)] = page.set_bits(v) & HIDDEN == 0
                 && match part {
-                    Part::Masked => page.mask(v) >= MASKED,
-                    Part::Set(set) => page.face_set(v) == set,
+                    FaceSetPart::Masked => page.mask(v) >= MASKED,
+                    FaceSetPart::Set(set) => page.face_set(v) == set,
                 };
         }
     }

@@ -46,12 +46,8 @@ pub fn partition(clay: &Snapshot, by: Partition) -> Result<SetsEdit, SetsError> 
             }
         }
     }
-    let shown: Vec<[u32; 3]> = tri
-        .triangles
-        .iter()
-        .copied()
-        .filter(|t| !t.iter().all(|&v| hidden[v as usize]))
-        .collect();
+    let shown: Vec<[u32; 3]> =
+        tri.triangles.iter().copied().filter(|t| !t.iter().all(|&v| hidden[v as usize])).collect();
     // For each triangle its part.
     let normals: Vec<Vec3> = shown
         .iter()

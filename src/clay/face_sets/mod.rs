@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::page::Page;
 
 pub use edit::{SetsEdit, SetsError};
-pub use extract::{ExtractError, Part, extract};
+pub use extract::{ExtractError, FaceSetPart, extract};
 pub use make::{Partition, partition};
 
 /// The bit of a vertex that is hidden.

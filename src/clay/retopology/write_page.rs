@@ -161,7 +161,9 @@ impl WriteTask {
             let s = &shared.edit.slots[shared.edit.source[h as usize] as usize];
             shared.pages[s.page as usize].set_bits((h - s.base) as usize)
         };
-        PageSets::shared(own.iter().copied().chain(self.foreign.iter().map(|f| f.1)).map(of).collect())
+        PageSets::shared(
+            own.iter().copied().chain(self.foreign.iter().map(|f| f.1)).map(of).collect(),
+        )
     }
 
     /// The local index of a vertex in the page that is written.

@@ -8,7 +8,7 @@ use super::host::{Host, failed};
 use super::scene::{QueuedSceneCommand, ask};
 use crate::Published;
 use crate::face_set_jobs;
-use sculptd_clay::face_sets::{Part, Partition, SetsEdit, partition};
+use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit, partition};
 use sculptd_control::RpcError;
 use sculptd_control::face_sets::{
     FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetParams, FaceSetReply,
@@ -34,6 +34,11 @@ pub(super) fn list(shown: &Published) -> FaceSetsReply {
         hidden: sets.iter().map(|s| s.hidden).sum(),
         sets,
     }
+}
+
+/// How many face sets the active object has; 1 where it has none but a part of it is hidden.
+pub(super) fn count(host: &Host) -> u64 {
+    host.published.load().mesh.face_set_count()
 }
 
 /// Hands an edit to the loop and waits for what came of it.
@@ -88,11 +93,11 @@ pub(super) fn isolate(host: &Host, p: &FaceSetParams) -> SetsDone {
 }
 
 pub(super) fn extract(host: &Host, p: &FaceSetExtractParams) -> Result<ObjectReply, RpcError> {
-    let part = p.set.map_or(Part::Masked, Part::Set);
+    let part = p.set.map_or(FaceSetPart::Masked, FaceSetPart::Set);
     let shown = host.published.load_full();
     let name = p.name.as_deref().unwrap_or("extract");
-    let (new, clay) = face_set_jobs::extract(&shown, part, p.thickness, name, &Job::default())
-        .map_err(failed)?;
+    let (new, clay) =
+        face_set_jobs::extract(&shown, part, p.thickness, name, &Job::default()).map_err(failed)?;
     let payload = Some(Payload::Clay(Box::new(clay)));
     ask(host, QueuedSceneCommand { command: SceneCommand::Add(new), payload })
 }

@@ -8,9 +8,9 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
-use super::face_sets::{self, SetsDone};
 use super::layers::{self, LayerDone};
 use super::mask_region::mask_region;
 use super::measurement;
@@ -130,10 +130,11 @@ fn boolean(
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
-    let layers = layers::count(host);
+    let (layers, sets) = (layers::count(host), face_sets::count(host));
     let joined = work(&place.job).map_err(failed)?;
     Ok(edit::BooleanReply {
         layers_baked: if joined.local { 0 } else { layers },
+        sets_dropped: if joined.local { 0 } else { sets },
         local: joined.local,
         pages_written: joined.pages_written as u64,
         pages_shared: joined.pages_shared as u64,
@@ -492,9 +493,10 @@ impl Handler for Host {
         let finer = params.to == LevelStep::Up;
         let (command, (level, levels)) =
             boolean_jobs::level(&self.published, finer).map_err(failed)?;
+        let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
         self.send(command)?;
-        let layers_baked = layers::count(self);
-        Ok(edit::LevelReply { level: level as u64, levels: levels as u64, layers_baked })
+        let (level, levels) = (level as u64, levels as u64);
+        Ok(edit::LevelReply { level, levels, layers_baked, sets_dropped })
     }
 
     fn remesh(&self, params: edit::RemeshParams) -> Result<edit::RemeshReply, RpcError> {
@@ -504,10 +506,11 @@ impl Handler for Host {
         let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
         let (command, made) =
             remesh_job::remeshed(&self.published, &wanted, &place.job).map_err(failed)?;
-        let layers_baked = layers::count(self);
+        let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
         self.send(command)?;
         Ok(edit::RemeshReply {
             layers_baked,
+            sets_dropped,
             voxel: made.voxel,
             vertices: made.vertices as u64,
             triangles: made.triangles as u64,
