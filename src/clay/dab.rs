@@ -15,11 +15,11 @@ use std::sync::Arc;
 
 use super::clay::Clay;
 use super::dab_buffers::{DabBuffers, HaloPart, PageOutput, PageTask};
-use super::face_sets::HIDDEN;
 use super::kernel::{Kernel, PageIn, PageOut};
 use super::layers::LayerStack;
 use super::normals::{LAYERED, MOVED, PAINTED, TURNED, around_moved};
 use super::page::{BLOCK, Page, block_of};
+use super::page_sets::HIDDEN;
 use super::reach::Reach;
 use super::workers::Workers;
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};

@@ -60,6 +60,7 @@ mod masks;
 pub mod multires;
 mod normals;
 pub mod page;
+mod page_sets;
 mod page_supply;
 mod pick;
 mod pool;

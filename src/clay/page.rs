@@ -15,8 +15,9 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::{BoxTree, LEAF};
-use super::face_sets::PageSets;
+
 use super::layers::PageLayers;
+use super::page_sets::{HIDDEN, PageSets, all_hidden};
 use sculptd_geometry::simd::leaves::Leaves;
 use sculptd_geometry::simd::rings::Hexes;
 
@@ -419,5 +420,40 @@ impl Page {
             + self.tree.bytes()
             + self.layers.as_ref().map_or(0, |l| l.weight())
             + self.sets.as_ref().map_or(0, |s| s.weight())
+    }
+
+    /// The page's face sets; `None`: no vertex is in a set or hidden.
+    pub fn sets(&self) -> Option<&PageSets> {
+        self.sets.as_deref()
+    }
+
+    /// The number of the set and [`HIDDEN`], of an own or a halo vertex.
+    #[inline]
+    pub(crate) fn set_bits(&self, local: usize) -> u16 {
+        self.sets().map_or(0, |s| s.rows[local])
+    }
+
+    /// The set of an own or a halo vertex; 0: none.
+    #[inline]
+    pub fn face_set(&self, local: usize) -> u16 {
+        self.set_bits(local) & !HIDDEN
+    }
+
+    /// Whether an own or a halo vertex is hidden.
+    #[inline]
+    pub fn is_hidden(&self, local: usize) -> bool {
+        self.set_bits(local) & HIDDEN != 0
+    }
+
+    /// The rows of a page where something is hidden.
+    #[inline]
+    pub(crate) fn hidden_rows(&self) -> Option<&[u16]> {
+        self.sets().filter(|s| s.any_hidden).map(|s| s.rows.as_slice())
+    }
+
+    /// Whether all corners of a triangle are hidden.
+    #[inline]
+    pub fn is_triangle_hidden(&self, triangle: usize) -> bool {
+        self.hidden_rows().is_some_and(|rows| all_hidden(rows, self.triangles()[triangle]))
     }
 }

@@ -5,8 +5,8 @@
 use std::sync::Arc;
 
 use super::boxtree::{BoxRay, BoxTree, LEAF};
-use super::face_sets::all_hidden;
 use super::page::Page;
+use super::page_sets::all_hidden;
 use super::ray::{Hit, Ray};
 use sculptd_geometry::simd::wide::{NO_TRIANGLE, Pack, Wide, WideWork, dispatch};
 

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use super::boxtree::LEAF;
 use super::clay::Clay;
-use super::face_sets::PageSets;
 use super::layers::PageLayers;
 use super::page::{BREAK, Page, PageTopology};
+use super::page_sets::PageSets;
 use crate::assembly::Built;
 
 /// The bytes are not those of a page.

@@ -3,9 +3,9 @@
 
 use super::boxtree::{BoxTree, LEAF};
 use super::clay::Clay;
-use super::face_sets::PageSets;
 use super::normals;
 use super::page::{BREAK, PageTopology};
+use super::page_sets::PageSets;
 use crate::assembly::PAGE_VERTICES;
 
 impl Clay {

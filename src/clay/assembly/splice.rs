@@ -11,9 +11,9 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
 
-use super::super::face_sets::PageSets;
 use super::super::layers::PageLayers;
 use super::super::page::Page;
+use super::super::page_sets::PageSets;
 use super::super::snapshot::Snapshot;
 use super::cut::{Corner, Cut, Home, NewVertex, concerned, home_of, touched};
 use super::{Homes, PAGE_VERTICES, assemble, order};

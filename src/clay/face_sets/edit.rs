@@ -204,6 +204,7 @@ impl Clay {
             return Err(SetsError::Nothing);
         }
         self.put_sets(&changed);
+        self.history.sink.discard_owned(changed);
         Ok(set)
     }
 

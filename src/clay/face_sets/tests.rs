@@ -7,9 +7,9 @@ use super::{
 };
 use crate::brush::mask_all::MaskAll;
 use crate::brush::{GaussianBrush, MaskAction};
+use crate::local_boolean::local;
 use crate::page::Page;
 use crate::{Clay, Detail, Ray, Reach, Workers};
-use crate::local_boolean::local;
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::shapes::{cuboid, icosphere};

@@ -17,8 +17,8 @@ use super::edit::{CLOSED, DEAD, Edit, MOST_NEIGHBOURS, OPEN};
 use super::scan::{Candidate, EdgeTask};
 use super::shape::{FLAT, FLIP_BELOW, FLIP_GAIN, LEAST, normal, sine2};
 use super::{Cuts, Detail, PAGE_WRITE, PROTECTED};
-use crate::face_sets::HIDDEN;
 use crate::page::Page;
+use crate::page_sets::HIDDEN;
 
 /// The triangles of a moved vertex may turn so far, as a cosine: further is a fold.
 const TURN: f32 = 0.35;

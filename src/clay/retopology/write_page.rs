@@ -8,9 +8,9 @@ use glam::{Vec3, Vec4};
 use super::edit::{Edit, NONE};
 use crate::assembly::{PAGE_VERTICES, order};
 use crate::boxtree::LEAF;
-use crate::face_sets::PageSets;
 use crate::normals;
 use crate::page::{BREAK, Neighbour, Page, PageTopology, Ring};
+use crate::page_sets::PageSets;
 
 /// A page to be written.
 #[derive(Debug)]
