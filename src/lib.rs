@@ -34,10 +34,12 @@
 //!    be late for it: the one that first takes up a brush that changes topology, which makes room
 //!    by the number of pages, and one with an undo, which finishes what was carried over, some
 //!    twenty milliseconds at most.
-//!    Three more exceptions: the end of a stroke on a layer allocates that layer's new offsets; a
-//!    command that needs the whole surface while layers are still being summed up finishes them in
-//!    its tick; and in a shared sculpture (feature `network`) ticks allocate, and each replica
-//!    builds a mesh that a command brings on this thread.
+//!    Four more exceptions: an edit of face sets looks at every vertex in its tick, and dynamic
+//!    topology on an object that has some allocates two bytes a vertex that it writes; the end of a
+//!    stroke on a layer allocates that layer's new offsets; a command that needs the whole surface
+//!    while layers are still being summed up finishes them in its tick; and in a shared sculpture
+//!    (feature `network`) ticks allocate, and each replica builds a mesh that a command brings on
+//!    this thread.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.
@@ -141,8 +143,8 @@
 //!   that station. Waits for: the station.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
-//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, made by
-//!   `window::viewer::tasks`: changes of the whole object that the window asked for, sent as
+//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`, made
+//!   by `window::viewer::tasks`: changes of the whole object that the window asked for, sent as
 //!   commands. Waits for: the loop's answer.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.

@@ -19,6 +19,7 @@ use super::kernel::{Kernel, PageIn, PageOut};
 use super::layers::LayerStack;
 use super::normals::{LAYERED, MOVED, PAINTED, TURNED, around_moved};
 use super::page::{BLOCK, Page, block_of};
+use super::page_sets::HIDDEN;
 use super::reach::Reach;
 use super::workers::Workers;
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
@@ -226,6 +227,7 @@ impl Clay {
                         Some(layers) => layers,
                         None => pages[slot.index as usize].layers.clone(),
                     };
+                    page.sets.clone_from(&pages[slot.index as usize].sets);
                     top.set_leaf(slot.index as usize, page.lo, page.hi);
                 }
                 stale.add(slot.index);
@@ -297,6 +299,17 @@ fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>
     kernel.page(&PageIn::new(slot.index, old, was.before, was.stack), &mut out);
     slot.affected = out.affected;
     slot.layers = out.layers;
+    if !K::CHANGES_HIDDEN
+        && let Some(rows) = old.hidden_rows()
+    {
+        for (v, mark) in slot.marks.iter_mut().enumerate() {
+            if *mark != 0 && rows[v] & HIDDEN != 0 {
+                page.points[v] = old.points[v];
+                *mark = 0;
+            }
+        }
+        side.colours.retain(|(v, _)| rows[*v as usize] & HIDDEN == 0);
+    }
     tally(slot);
     slot.any |= if slot.layers.is_some() { LAYERED } else { 0 };
 }

@@ -13,6 +13,9 @@ use sculptd_geometry::simd::cotangents;
 /// in any order; it sees the state before the dab everywhere, also of neighbours in other pages, so
 /// that the order cannot show.
 pub trait Kernel: Sync {
+    /// Whether it changes hidden vertices too; else what it writes there is dropped.
+    const CHANGES_HIDDEN: bool = false;
+
     /// Changes the own vertices of one page through `out`.
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);
 }
@@ -141,6 +144,12 @@ impl<'a> PageIn<'a> {
     #[inline(always)]
     pub fn id(&self, own: usize) -> u32 {
         self.page.topology.ids[own]
+    }
+
+    /// The face set of an own or a halo vertex; 0: none.
+    #[inline(always)]
+    pub fn face_set(&self, local: usize) -> u16 {
+        self.page.face_set(local)
     }
 
     /// Whether an own vertex lies on the border of the surface, or on a non-manifold edge.

@@ -15,7 +15,9 @@ use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::boxtree::{BoxTree, LEAF};
+
 use super::layers::PageLayers;
+use super::page_sets::{HIDDEN, PageSets, all_hidden};
 use sculptd_geometry::simd::leaves::Leaves;
 use sculptd_geometry::simd::rings::Hexes;
 
@@ -240,6 +242,8 @@ pub struct Page {
     pub(super) revision: u64,
     /// Base and offsets of the layers that change the page.
     pub(super) layers: Option<Arc<PageLayers>>,
+    /// Face sets and what is hidden, own and halo.
+    pub(super) sets: Option<Arc<PageSets>>,
 }
 
 impl Page {
@@ -254,6 +258,7 @@ impl Page {
             hi: self.hi,
             revision: self.revision,
             layers: self.layers.clone(),
+            sets: self.sets.clone(),
         }
     }
 
@@ -267,6 +272,7 @@ impl Page {
         self.tree.copy_from(&other.tree);
         (self.lo, self.hi) = (other.lo, other.hi);
         self.layers.clone_from(&other.layers);
+        self.sets.clone_from(&other.sets);
     }
 
     /// What the page has of its object's layers; `None`: no layer changes it.
@@ -368,7 +374,7 @@ impl Page {
     /// Makes room for a page of `own` vertices, a halo as large, and eight triangles a leaf for
     /// four triangles a vertex; what it held is gone.
     pub(super) fn make_room(&mut self, own: usize) {
-        self.layers = None;
+        (self.layers, self.sets) = (None, None);
         self.points.clear();
         self.normals.clear();
         self.points.reserve(2 * own);
@@ -398,8 +404,12 @@ impl Page {
     /// for a replay must forget the same steps.
     pub(super) fn weight(&self) -> usize {
         // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
-        let layers = self.layers.as_ref().map_or(0, |l| l.weight());
-        size_of::<Page>() + 16 + self.points.len() * 32 + self.topology.triangles.len() * 4 + layers
+        size_of::<Page>()
+            + 16
+            + self.points.len() * 32
+            + self.topology.triangles.len() * 4
+            + self.layers.as_ref().map_or(0, |l| l.weight())
+            + self.sets.as_ref().map_or(0, |s| s.weight())
     }
 
     /// Heap bytes of what a copy on write copies.
@@ -409,5 +419,41 @@ impl Page {
             + (self.points.capacity() + self.normals.capacity()) * 16
             + self.tree.bytes()
             + self.layers.as_ref().map_or(0, |l| l.weight())
+            + self.sets.as_ref().map_or(0, |s| s.weight())
+    }
+
+    /// The page's face sets; `None`: no vertex is in a set or hidden.
+    pub fn sets(&self) -> Option<&PageSets> {
+        self.sets.as_deref()
+    }
+
+    /// The number of the set and [`HIDDEN`], of an own or a halo vertex.
+    #[inline]
+    pub(crate) fn set_bits(&self, local: usize) -> u16 {
+        self.sets().map_or(0, |s| s.rows[local])
+    }
+
+    /// The set of an own or a halo vertex; 0: none.
+    #[inline]
+    pub fn face_set(&self, local: usize) -> u16 {
+        self.set_bits(local) & !HIDDEN
+    }
+
+    /// Whether an own or a halo vertex is hidden.
+    #[inline]
+    pub fn is_hidden(&self, local: usize) -> bool {
+        self.set_bits(local) & HIDDEN != 0
+    }
+
+    /// The rows of a page where something is hidden.
+    #[inline]
+    pub(crate) fn hidden_rows(&self) -> Option<&[u16]> {
+        self.sets().filter(|s| s.any_hidden).map(|s| s.rows.as_slice())
+    }
+
+    /// Whether all corners of a triangle are hidden.
+    #[inline]
+    pub fn is_triangle_hidden(&self, triangle: usize) -> bool {
+        self.hidden_rows().is_some_and(|rows| all_hidden(rows, self.triangles()[triangle]))
     }
 }

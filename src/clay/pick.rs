@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::boxtree::{BoxRay, BoxTree, LEAF};
 use super::page::Page;
+use super::page_sets::all_hidden;
 use super::ray::{Hit, Ray};
 use sculptd_geometry::simd::wide::{NO_TRIANGLE, Pack, Wide, WideWork, dispatch};
 
@@ -23,6 +24,7 @@ pub(super) struct Found {
 fn search<W: Wide>(w: W, ray: &BoxRay, page: &Page, number: u32, best: &mut Option<Found>) {
     let far = best.map_or(f32::INFINITY, |b| b.t);
     let triangles = &page.topology.triangles;
+    let hidden = page.hidden_rows();
     page.tree.walk_ray(ray, far, |leaf, mut far| {
         let first = leaf * LEAF;
         for half in (first..(first + LEAF).min(triangles.len())).step_by(4) {
@@ -30,6 +32,9 @@ fn search<W: Wide>(w: W, ray: &BoxRay, page: &Page, number: u32, best: &mut Opti
             for (lane, corners) in
                 triangles[half..(half + 4).min(triangles.len())].iter().enumerate()
             {
+                if hidden.is_some_and(|rows| all_hidden(rows, *corners)) {
+                    continue;
+                }
                 for c in 0..3 {
                     let p = page.points[corners[c] as usize];
                     pack.v[c][0][lane] = p.x;

@@ -150,6 +150,9 @@ impl Pool {
                 if let Some(layers) = free.layers.take() {
                     self.sink.discard(Garbage::Shared(layers));
                 }
+                if let Some(sets) = free.sets.take() {
+                    self.sink.discard(Garbage::Shared(sets));
+                }
                 // The last page that lets go of a topology leaves it here.
                 let mut topology = std::mem::replace(&mut free.topology, self.blank.clone());
                 if Arc::get_mut(&mut topology).is_some() {

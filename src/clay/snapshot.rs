@@ -252,7 +252,7 @@ pub(super) fn to_tri<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) ->
 }
 
 /// FNV-1a, 64 bits, a word at a time, over positions, mask, colours and triangles in the loaded
-/// order, then over the layers, where there are any.
+/// order, then over the layers and the face sets, where there are any.
 pub(super) fn hash<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> u64 {
     let plain = to_tri(page, totals);
     let rank = ranks(page, totals);
@@ -275,6 +275,8 @@ pub(super) fn hash<'a>(page: &dyn Fn(u32) -> &'a Arc<Page>, totals: Totals) -> u
     plain.triangles.iter().flatten().for_each(|&v| eat(v));
     for p in 0..totals.pages as u32 {
         page(p).layers().map(PageLayers::words).into_iter().flatten().for_each(&mut eat);
+        let own = page(p).own();
+        page(p).sets().iter().flat_map(|s| &s.rows()[..own]).for_each(|&s| eat(u32::from(s)));
     }
     h
 }

@@ -13,6 +13,7 @@ use super::boxtree::LEAF;
 use super::clay::Clay;
 use super::layers::PageLayers;
 use super::page::{BREAK, Page, PageTopology};
+use super::page_sets::PageSets;
 use crate::assembly::Built;
 
 /// The bytes are not those of a page.
@@ -70,7 +71,8 @@ impl PageTopology {
 
 impl Page {
     /// What a dab may change: points and normals, own and halo, 32 bytes a vertex. Behind them what
-    /// the page has of its object's layers (postcard), where it has anything.
+    /// the page has of its object's layers (postcard), where it has anything or face sets, and then
+    /// those, two bytes a vertex, where it has any.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.points.len() * 32);
         for row in self.points.iter().chain(&self.normals) {
@@ -78,11 +80,15 @@ impl Page {
                 out.extend_from_slice(&x.to_bits().to_le_bytes());
             }
         }
-        match self.layers() {
+        let none = PageLayers::default();
+        out = match (self.layers(), self.sets()) {
+            (None, None) => return out,
             // Plain data always serialises.
-            Some(layers) => postcard::to_extend(layers, out).unwrap_or_default(),
-            None => out,
-        }
+            (layers, _) => postcard::to_extend(layers.unwrap_or(&none), out).unwrap_or_default(),
+        };
+        let sets = self.sets().map_or(&[][..], |s| s.rows());
+        sets.iter().for_each(|s| out.extend_from_slice(&s.to_le_bytes()));
+        out
     }
 
     /// The page again, with what stands still in it.
@@ -96,14 +102,16 @@ impl Page {
     ) -> Result<Page, BadPage> {
         let all = topology.own + topology.halo_sources.len();
         let Some((bytes, rest)) = bytes.split_at_checked(all * 32) else { return Err(BadPage) };
-        let layers = if rest.is_empty() {
-            None
-        } else {
-            let layers: PageLayers = postcard::from_bytes(rest).map_err(|_| BadPage)?;
-            Some(Arc::new(layers)).filter(|l| l.fits(topology.own))
-        };
-        if layers.is_none() && !rest.is_empty() {
-            return Err(BadPage);
+        let (mut layers, mut sets) = (None, None);
+        if !rest.is_empty() {
+            let (some, rest): (PageLayers, &[u8]) =
+                postcard::take_from_bytes(rest).map_err(|_| BadPage)?;
+            if !some.fits(topology.own) || !(rest.is_empty() || rest.len() == all * 2) {
+                return Err(BadPage);
+            }
+            layers = some.shared();
+            let number = |b: &[u8]| u16::from_le_bytes([b[0], b[1]]);
+            sets = PageSets::shared(rest.chunks_exact(2).map(number).collect());
         }
         let row = |b: &[u8]| {
             let x =
@@ -120,7 +128,8 @@ impl Page {
             return Err(BadPage);
         }
         let leaves = topology.triangles.len().div_ceil(LEAF);
-        let mut page = Page { topology, points, normals, revision, layers, ..Page::default() };
+        let mut page =
+            Page { topology, points, normals, revision, layers, sets, ..Page::default() };
         page.tree.reset(leaves);
         if page.topology.own == 0 && page.topology.triangles.is_empty() {
             (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);

@@ -5,6 +5,7 @@ use super::boxtree::{BoxTree, LEAF};
 use super::clay::Clay;
 use super::normals;
 use super::page::{BREAK, PageTopology};
+use super::page_sets::PageSets;
 use crate::assembly::PAGE_VERTICES;
 
 impl Clay {
@@ -22,6 +23,11 @@ impl Clay {
                     "page {i}: {rows} rows expected, it has {}",
                     page.points.len()
                 ));
+            }
+            if page.sets().is_some_and(|s| {
+                s.rows().len() != rows || PageSets::shared(s.rows().to_vec()).as_deref() != Some(s)
+            }) {
+                return Err(format!("page {i}: its face sets are not those of its vertices"));
             }
             let corners = t.triangles.iter().flatten().chain(t.rings.iter()).chain(t.hexes.flat());
             if let Some(&v) = corners.into_iter().find(|&&v| (v & !BREAK) as usize >= rows) {
@@ -48,6 +54,9 @@ impl Clay {
                     return Err(format!(
                         "page {i}: halo vertex {k} is not where page {home} has it"
                     ));
+                }
+                if page.set_bits(t.own + k) != other.set_bits(local as usize) {
+                    return Err(format!("page {i}: halo vertex {k} is in another set at home"));
                 }
                 if !same(page.normals[t.own + k], other.normals[local as usize]) {
                     let (here, there) = (page.normals[t.own + k], other.normals[local as usize]);

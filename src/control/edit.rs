@@ -72,6 +72,10 @@ pub struct BooleanReply {
     /// surroundings of the tool were, the layers stay.
     #[serde(default)]
     pub layers_baked: u64,
+    /// Face sets that were dropped with the old surface; what was hidden is shown again. 0 where
+    /// they were carried over.
+    #[serde(default)]
+    pub sets_dropped: u64,
 }
 
 /// Parameters of `trim`.
@@ -149,6 +153,10 @@ pub struct LevelReply {
     /// Layers that were baked into the surface before another level took its place.
     #[serde(default)]
     pub layers_baked: u64,
+    /// Face sets that were dropped with the old surface; what was hidden is shown again. 0 where
+    /// they were carried over.
+    #[serde(default)]
+    pub sets_dropped: u64,
 }
 
 /// Parameters of `remesh`.
@@ -184,6 +192,10 @@ pub struct RemeshReply {
     /// Layers that were baked into the surface, which is another one now.
     #[serde(default)]
     pub layers_baked: u64,
+    /// Face sets that were dropped with the old surface; what was hidden is shown again. 0 where
+    /// they were carried over.
+    #[serde(default)]
+    pub sets_dropped: u64,
 }
 
 /// Parameters of `jump`.

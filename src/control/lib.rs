@@ -34,6 +34,7 @@ mod check;
 pub mod client;
 pub mod edit;
 pub mod event;
+pub mod face_sets;
 pub mod layers;
 pub mod method;
 pub mod range;

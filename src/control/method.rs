@@ -20,6 +20,10 @@ use crate::edit::{
     TakeUpReply, ThicknessParams, ThicknessReply, TrimParams,
 };
 use crate::event::SubscribeReply;
+use crate::face_sets::{
+    FaceSetExtractParams, FaceSetMakeParams, FaceSetParams, FaceSetReply, FaceSetShowParams,
+    FaceSetsReply,
+};
 use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
     LayerReply, LayerSetParams, LayersReply,
@@ -275,6 +279,23 @@ methods! {
     "layers.clear" LayersClear layers_clear(LayerParams) -> LayerReply;
     /// Makes the surface as it is the base, without layers.
     "layers.bake" LayersBake layers_bake(NoParams) -> LayerReply;
+    /// The face sets of the active object, and how much of it is hidden.
+    "sets.list" SetsList sets_list(NoParams) -> FaceSetsReply;
+    /// Makes face sets from the mask, from what is shown, or by the shape: one step of undo.
+    "sets.make" SetsMake sets_make(FaceSetMakeParams) -> FaceSetReply;
+    /// No vertex is in a face set any more. What is hidden stays hidden.
+    "sets.clear" SetsClear sets_clear(NoParams) -> FaceSetReply;
+    /// Hides a face set, or what is masked: it is not drawn, not hit by pens and not changed by
+    /// brushes. Exports keep it.
+    "sets.hide" SetsHide sets_hide(FaceSetParams) -> FaceSetReply;
+    /// Shows a face set again, or everything.
+    "sets.show" SetsShow sets_show(FaceSetShowParams) -> FaceSetReply;
+    /// Hides what is shown, and shows what is hidden.
+    "sets.invert" SetsInvert sets_invert(NoParams) -> FaceSetReply;
+    /// Hides all but one face set.
+    "sets.isolate" SetsIsolate sets_isolate(FaceSetParams) -> FaceSetReply;
+    /// Adds an object: what is masked, or a face set, as a closed shell of a thickness.
+    "sets.extract" SetsExtract sets_extract(FaceSetExtractParams) -> ObjectReply;
     /// How far the Boolean is that is under way.
     "progress" Progress progress(NoParams) -> ProgressReply;
     /// Ends the Boolean that is under way; nothing is changed.

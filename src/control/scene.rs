@@ -215,6 +215,10 @@ pub struct CombineReply {
     /// Layers of the operands: the new objects have their surfaces, baked.
     #[serde(default)]
     pub layers_baked: u64,
+    /// Face sets that were dropped with the old surface; what was hidden is shown again. 0 where
+    /// they were carried over.
+    #[serde(default)]
+    pub sets_dropped: u64,
 }
 
 /// Reply of `scene.list`.

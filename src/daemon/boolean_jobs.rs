@@ -63,6 +63,8 @@ pub enum JoinError {
     Combine(#[from] crate::scene_jobs::CombineError),
     #[error(transparent)]
     Snap(#[from] crate::snap_jobs::SnapError),
+    #[error(transparent)]
+    FaceSets(#[from] crate::face_set_jobs::ExtractionError),
 }
 
 /// The work and a tool made one: the commands that put the result in place. Where the tool reaches

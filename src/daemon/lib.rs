@@ -15,6 +15,7 @@ pub mod config;
 pub mod control;
 pub mod demo_devices;
 pub mod doctor;
+pub mod face_set_jobs;
 pub mod garbage_thread;
 pub mod hand_jobs;
 #[cfg(unix)]

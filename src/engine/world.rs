@@ -7,6 +7,7 @@
 //! * One step is bounded: dabs stop at the budget and go on in the next step, and so does dynamic
 //!   topology, whose budget is what dabs leave.
 
+mod face_sets;
 mod hands;
 mod held;
 mod in_hand;

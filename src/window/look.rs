@@ -127,6 +127,8 @@ pub struct Look {
     pub map: Map,
     /// A pale ground instead of a dark one.
     pub pale: bool,
+    /// Face sets of the active object by colours.
+    pub sets: bool,
     /// The ends of the map's scale.
     #[serde(skip)]
     pub scale: (f32, f32),
@@ -143,6 +145,7 @@ impl Default for Look {
             grid: false,
             map: Map::None,
             pale: false,
+            sets: true,
             scale: (0.0, 1.0),
         }
     }

@@ -1,5 +1,6 @@
 //! The scene by the control protocol of a running loop: objects, Booleans, files, replay.
 
+mod face_sets;
 mod layers;
 
 use std::path::Path;

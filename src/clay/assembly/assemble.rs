@@ -165,6 +165,7 @@ pub(crate) fn assemble(
         hi: Vec3::ZERO,
         revision: 0,
         layers: None,
+        sets: None,
     };
     normals::all(&mut out);
     out.refit(u32::MAX);

@@ -13,6 +13,7 @@ use glam::{Vec3, Vec4};
 
 use super::super::layers::PageLayers;
 use super::super::page::Page;
+use super::super::page_sets::PageSets;
 use super::super::snapshot::Snapshot;
 use super::cut::{Corner, Cut, Home, NewVertex, concerned, home_of, touched};
 use super::{Homes, PAGE_VERTICES, assemble, order};
@@ -194,6 +195,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
         write(&region, &layout, &numbers)?.into_iter().collect();
     normals(old, &mut pages, &layout, &beside);
     layers(old, &mut pages, &region, &layout, &inner);
+    sets(old, &mut pages, &region, &layout, &beside);
     Some(Remade { pages: pages.into_iter().collect(), next: [next_vertex, next_triangle] })
 }
 
@@ -340,6 +342,40 @@ fn layers(
             let from = from.and_then(|h| Some((old.page(h.0).layers()?, h.1 as usize)));
             (page.points[v].truncate(), from)
         }));
+    }
+}
+
+/// Vertices that stay keep their face sets; what is new is in none, and shown.
+fn sets(
+    old: &Snapshot,
+    pages: &mut BTreeMap<u32, Arc<Page>>,
+    region: &SplicedRegion,
+    layout: &[(u32, Vec<u32>)],
+    beside: &[u32],
+) {
+    let before = layout.iter().map(|l| l.0).filter(|p| (*p as usize) < old.page_count());
+    if !before.chain(beside.iter().copied()).any(|p| old.page(p).sets().is_some()) {
+        return;
+    }
+    let stayed = |r: &u32| region.from.get(*r as usize);
+    let kept = |r| stayed(r).map_or(0, |h| old.page(h.0).set_bits(h.1 as usize));
+    let own: BTreeMap<u32, Vec<u16>> =
+        layout.iter().map(|(p, own)| (*p, own.iter().map(kept).collect())).collect();
+    for p in layout.iter().map(|l| l.0).chain(beside.iter().copied()) {
+        let page = pages.get(&p).unwrap_or_else(|| old.page(p));
+        let at = |home: u32, local: usize| match own.get(&home) {
+            Some(sets) => sets[local],
+            None => old.page(home).set_bits(local),
+        };
+        let t = &page.topology;
+        let halo = (0..t.halo_sources.len()).map(|k| t.halo_home(k));
+        let everyone = (0..t.own).map(|v| (p, v)).chain(halo.map(|(h, l)| (h, l as usize)));
+        let rows = PageSets::shared(everyone.map(|(home, local)| at(home, local)).collect());
+        if rows != page.sets {
+            let mut copy = page.copy();
+            copy.sets = rows;
+            pages.insert(p, Arc::new(copy));
+        }
     }
 }
 

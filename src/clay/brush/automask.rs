@@ -22,6 +22,8 @@ pub struct AutoMasking {
     cavity: f32,
     /// The image whose connected part was marked.
     connected: Option<usize>,
+    /// The only face set that is free.
+    set: Option<u16>,
     stamp: Option<PlacedStamp>,
 }
 
@@ -40,6 +42,7 @@ impl AutoMasking {
             normal: (a.normal_degrees > 0.0).then(|| (dab.normal, a.normal_degrees.to_radians())),
             cavity: a.cavity * dab.radius,
             connected: a.topology.then_some(on.image),
+            set: a.face_sets.then_some(dab.set),
             stamp,
         }
     }
@@ -62,6 +65,9 @@ impl AutoMasking {
             w *= (n.dot(eye) / FRONT_FADE).clamp(0.0, 1.0);
         }
         if self.boundary && page.is_border(v) {
+            return 0.0;
+        }
+        if self.set.is_some_and(|set| page.face_set(v) != set) {
             return 0.0;
         }
         if let Some((normal, most)) = self.normal {

@@ -101,6 +101,8 @@ pub struct Dab<'a> {
     pub travelled: f32,
     /// See [`Dab::travelled`].
     pub stroke: u32,
+    /// The face set under the first dab of the stroke, of this image; 0: none.
+    pub set: u16,
 }
 
 impl Dab<'_> {
@@ -230,6 +232,7 @@ impl<'a> Dab<'a> {
             image: 0,
             travelled: 0.0,
             stroke: 1,
+            set: 0,
         };
         Dab { pace: dab.pace_of(strength), ..dab }
     }

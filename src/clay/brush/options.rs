@@ -38,6 +38,8 @@ pub struct AutoMask {
     pub normal_degrees: f32,
     /// Above 0 the more only hollows are touched, below 0 only ridges; -1 to 1.
     pub cavity: f32,
+    /// Only the face set that the stroke began in; each image has its own.
+    pub face_sets: bool,
 }
 
 impl AutoMask {

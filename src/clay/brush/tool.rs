@@ -383,6 +383,7 @@ mod tests {
                 image: 0,
                 travelled: 0.05 * i as f32,
                 stroke: 1,
+                set: 0,
             };
             let dab = Dab { pace: first.pace_of(first.strength), ..first };
             let report = DabReport::default();

@@ -125,6 +125,7 @@ fn random_brush(clay: &mut Clay, hit: &Hit, radius: f32, dice: &mut Dice, worker
         image: 0,
         travelled: radius,
         stroke: 1,
+        set: 0,
     };
     let dab = Dab { pace: dab.pace_of(settings.strength * 0.5), ..dab };
     let mut scratch = Scratch::default();

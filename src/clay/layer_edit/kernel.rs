@@ -166,6 +166,8 @@ pub(super) struct LayerKernel<'a> {
 }
 
 impl Kernel for LayerKernel<'_> {
+    const CHANGES_HIDDEN: bool = true;
+
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         let new = self.operation.apply(page, self.stack);
         out.visit_many(page.own());
@@ -188,6 +190,8 @@ impl Kernel for LayerKernel<'_> {
 pub(super) struct StackKernel<'a>(pub(super) &'a Arc<LayerStack>);
 
 impl Kernel for StackKernel<'_> {
+    const CHANGES_HIDDEN: bool = true;
+
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         let mut new = page.layers().cloned().unwrap_or_default();
         new.stack = Some(self.0.clone());

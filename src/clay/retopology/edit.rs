@@ -75,6 +75,8 @@ pub(crate) struct Edit {
     pub(crate) points: Vec<Vec4>,
     /// RGBA.
     pub(crate) colours: Vec<u32>,
+    /// Face set, and whether it is hidden.
+    pub(crate) sets: Vec<u16>,
     /// New vertices, in the order in which they were made.
     pub(crate) made: Vec<u32>,
     /// Triangles that were made; some are no more.
@@ -125,6 +127,7 @@ impl Edit {
             self.rings.resize(n, [0; MOST_NEIGHBOURS]);
             self.points.resize(n, Vec4::ZERO);
             self.colours.resize(n, 0);
+            self.sets.resize(n, 0);
         }
         base as u32
     }
@@ -239,6 +242,7 @@ impl Edit {
             self.state[i] |= PLACED;
             self.points[i] = page.points[row];
             self.colours[i] = page.normals[row].w.to_bits();
+            self.sets[i] = page.set_bits(row);
         }
     }
 
@@ -254,6 +258,7 @@ impl Edit {
         self.valence[i] = 0;
         self.points[i] = point;
         self.colours[i] = colour;
+        self.sets[i] = self.sets[beside as usize];
         self.made.push(h);
         self.mark(h);
         h

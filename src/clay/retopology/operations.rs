@@ -18,6 +18,7 @@ use super::scan::{Candidate, EdgeTask};
 use super::shape::{FLAT, FLIP_BELOW, FLIP_GAIN, LEAST, normal, sine2};
 use super::{Cuts, Detail, PAGE_WRITE, PROTECTED};
 use crate::page::Page;
+use crate::page_sets::HIDDEN;
 
 /// The triangles of a moved vertex may turn so far, as a cosine: further is a fold.
 const TURN: f32 = 0.35;
@@ -135,7 +136,9 @@ impl Pass<'_> {
     }
 
     fn may_change(&self, h: u32, ball: u8) -> bool {
-        self.mask(h) < PROTECTED && self.balls[ball as usize].contains(self.edit.at(h))
+        self.mask(h) < PROTECTED
+            && self.edit.sets[h as usize] & HIDDEN == 0
+            && self.balls[ball as usize].contains(self.edit.at(h))
     }
 
     /// The corners opposite an edge: `c` left of it, seen from `a` to `b`, and `d` right of it.

@@ -270,7 +270,9 @@ impl PageRebuild {
         pool: &mut Pool,
         workers: &Workers,
     ) -> bool {
-        let shared = WriteInput { edit, pages, relocated: self.relocated };
+        let known = edit.slots.iter().filter_map(|s| pages.get(s.page as usize));
+        let sets = known.clone().any(|p| p.sets.is_some());
+        let shared = WriteInput { edit, pages, relocated: self.relocated, sets };
         let parallel = self.writes.len() >= PARALLEL;
         while self.tasks.len() < self.writes.len() {
             self.tasks.push(WriteTask::new());

@@ -10,6 +10,7 @@ use crate::assembly::{PAGE_VERTICES, order};
 use crate::boxtree::LEAF;
 use crate::normals;
 use crate::page::{BREAK, Neighbour, Page, PageTopology, Ring};
+use crate::page_sets::PageSets;
 
 /// A page to be written.
 #[derive(Debug)]
@@ -61,6 +62,8 @@ pub(super) struct WriteInput<'a> {
     pub(super) pages: &'a [Arc<Page>],
     /// Vertices have other homes: triangles may have, too.
     pub(super) relocated: bool,
+    /// The object has face sets, or hidden vertices.
+    pub(super) sets: bool,
 }
 
 /// A triangle from its least vertex on.
@@ -139,12 +142,28 @@ impl WriteTask {
             page.points.push(point);
             page.normals.push(Vec3::ZERO.extend(colour));
         }
+        page.sets = shared.sets.then(|| self.sets(own, shared)).flatten();
         if own.is_empty() {
             (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             return;
         }
         normals::all(page);
         page.refit(u32::MAX);
+    }
+
+    /// The face sets of the page: each vertex has that which it had, a new one that of the vertex
+    /// that it was made beside.
+    fn sets(&self, own: &[u32], shared: &WriteInput<'_>) -> Option<Arc<PageSets>> {
+        let of = |h: u32| {
+            if shared.edit.is_placed(h) {
+                return shared.edit.sets[h as usize];
+            }
+            let s = &shared.edit.slots[shared.edit.source[h as usize] as usize];
+            shared.pages[s.page as usize].set_bits((h - s.base) as usize)
+        };
+        PageSets::shared(
+            own.iter().copied().chain(self.foreign.iter().map(|f| f.1)).map(of).collect(),
+        )
     }
 
     /// The local index of a vertex in the page that is written.
@@ -230,7 +249,7 @@ impl WriteTask {
         own: &[u32],
         shared: &WriteInput<'_>,
     ) -> bool {
-        let WriteInput { edit, pages, relocated } = *shared;
+        let WriteInput { edit, pages, relocated, .. } = *shared;
         self.anchor.clear();
         self.anchor.resize(own.len() + self.foreign.len(), NONE);
         self.triangles.clear();

@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
 use super::layers::{self, LayerDone};
@@ -24,10 +25,12 @@ use crate::trim::Part;
 use crate::window_link::DisplayVariables;
 use crate::{Published, boolean_jobs, remesh_job, scene_jobs, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
+use sculptd_clay::face_sets::SetsEdit;
 use sculptd_clay::{LayerEdit, LayerId};
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
 use sculptd_control::event;
+use sculptd_control::face_sets as asked_sets;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
@@ -127,10 +130,11 @@ fn boolean(
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
-    let layers = layers::count(host);
+    let (layers, sets) = (layers::count(host), face_sets::count(host));
     let joined = work(&place.job).map_err(failed)?;
     Ok(edit::BooleanReply {
         layers_baked: if joined.local { 0 } else { layers },
+        sets_dropped: if joined.local { 0 } else { sets },
         local: joined.local,
         pages_written: joined.pages_written as u64,
         pages_shared: joined.pages_shared as u64,
@@ -410,6 +414,41 @@ impl Handler for Host {
         layers::edit(self, LayerEdit::Clear(LayerId(p.layer)))
     }
 
+    fn sets_list(&self, _: NoParams) -> Result<asked_sets::FaceSetsReply, RpcError> {
+        Ok(face_sets::list(&self.published.load()))
+    }
+
+    fn sets_make(&self, p: asked_sets::FaceSetMakeParams) -> SetsDone {
+        face_sets::make(self, p)
+    }
+
+    fn sets_clear(&self, _: NoParams) -> SetsDone {
+        face_sets::edit(self, SetsEdit::Clear)
+    }
+
+    fn sets_hide(&self, p: asked_sets::FaceSetParams) -> SetsDone {
+        face_sets::hide(self, &p)
+    }
+
+    fn sets_show(&self, p: asked_sets::FaceSetShowParams) -> SetsDone {
+        face_sets::edit(self, p.set.map_or(SetsEdit::ShowAll, SetsEdit::Show))
+    }
+
+    fn sets_invert(&self, _: NoParams) -> SetsDone {
+        face_sets::edit(self, SetsEdit::Invert)
+    }
+
+    fn sets_isolate(&self, p: asked_sets::FaceSetParams) -> SetsDone {
+        face_sets::isolate(self, &p)
+    }
+
+    fn sets_extract(
+        &self,
+        p: asked_sets::FaceSetExtractParams,
+    ) -> Result<asked_scene::ObjectReply, RpcError> {
+        face_sets::extract(self, &p)
+    }
+
     fn layers_bake(&self, _: NoParams) -> LayerDone {
         layers::edit(self, LayerEdit::Bake)
     }
@@ -454,9 +493,10 @@ impl Handler for Host {
         let finer = params.to == LevelStep::Up;
         let (command, (level, levels)) =
             boolean_jobs::level(&self.published, finer).map_err(failed)?;
+        let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
         self.send(command)?;
-        let layers_baked = layers::count(self);
-        Ok(edit::LevelReply { level: level as u64, levels: levels as u64, layers_baked })
+        let (level, levels) = (level as u64, levels as u64);
+        Ok(edit::LevelReply { level, levels, layers_baked, sets_dropped })
     }
 
     fn remesh(&self, params: edit::RemeshParams) -> Result<edit::RemeshReply, RpcError> {
@@ -466,10 +506,11 @@ impl Handler for Host {
         let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
         let (command, made) =
             remesh_job::remeshed(&self.published, &wanted, &place.job).map_err(failed)?;
-        let layers_baked = layers::count(self);
+        let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
         self.send(command)?;
         Ok(edit::RemeshReply {
             layers_baked,
+            sets_dropped,
             voxel: made.voxel,
             vertices: made.vertices as u64,
             triangles: made.triangles as u64,

@@ -13,6 +13,7 @@
 //! (connections), [`stroke`] (a stroke as a request).
 
 pub mod events;
+mod face_sets;
 pub mod handler;
 pub mod host;
 mod layers;

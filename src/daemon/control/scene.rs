@@ -120,8 +120,8 @@ pub(super) fn ask(
 
 /// A command to the scene with what it needs.
 pub(super) struct QueuedSceneCommand {
-    command: SceneCommand,
-    payload: Option<Payload>,
+    pub(super) command: SceneCommand,
+    pub(super) payload: Option<Payload>,
 }
 
 impl From<SceneCommand> for QueuedSceneCommand {
@@ -212,17 +212,19 @@ pub(super) fn combine(
     let done = of(&host.published.load_full(), &place.job).map_err(failed)?;
     let objects = done.clays.len() as u64;
     let shown = host.published.load_full();
-    let layers = |(o, clay): (&sculptd_engine::scene::ObjectView, &sculptd_clay::Snapshot)| {
-        let operand = done.exchange.from.iter().any(|from| from.id == o.id);
-        clay.layers().filter(|_| operand).map_or(0, |s| s.layers.len() as u64)
+    let operands = || {
+        let all = shown.scene.each(&shown.mesh);
+        all.filter(|(o, _)| done.exchange.from.iter().any(|from| from.id == o.id)).map(|o| o.1)
     };
-    let layers_baked = shown.scene.each(&shown.mesh).map(layers).sum();
+    let layers = |clay: &sculptd_clay::Snapshot| clay.layers().map_or(0, |s| s.layers.len() as u64);
+    let layers_baked = operands().map(layers).sum();
+    let sets_dropped = operands().map(|clay| clay.face_set_count()).sum();
     let vertices = done.clays.iter().map(|c| c.vertex_count() as u64).sum();
     let payload = Some(Payload::Clays(done.clays));
     let command = SceneCommand::Exchange(done.exchange);
     let ObjectReply { id, .. } = ask(host, QueuedSceneCommand { command, payload })?;
     let seconds = (clock.now_us() - begun) as f64 * 1e-6;
-    Ok(CombineReply { id, objects, vertices, seconds, layers_baked })
+    Ok(CombineReply { id, objects, vertices, seconds, layers_baked, sets_dropped })
 }
 
 pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, RpcError> {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ObjectId, ObjectTransform, Primitive};
 use crate::payload::PayloadId;
+use sculptd_clay::face_sets::{SetsEdit, SetsError};
 use sculptd_clay::{LayerEdit, LayerError};
 use sculptd_geometry::TriMesh;
 
@@ -41,6 +42,8 @@ pub enum SceneCommand {
     Layers(LayerEdit),
     /// An object is placed flush on a face of another.
     Snap(Box<FlushPlacing>),
+    /// Something is done to the face sets of the active object, unless it is locked.
+    Sets(SetsEdit),
 }
 
 impl SceneCommand {
@@ -63,7 +66,7 @@ impl SceneCommand {
                 | SceneCommand::Rename(..)
                 | SceneCommand::Layers(_)
                 | SceneCommand::Snap(_)
-        )
+        ) || matches!(self, SceneCommand::Sets(edit) if edit.owns_memory())
     }
 }
 
@@ -171,6 +174,8 @@ pub enum SceneEvent {
     Layers,
     /// An object was placed flush on a face of another.
     Snap,
+    /// Something was done to the face sets of an object.
+    Sets,
 }
 
 /// Why a command to the scene was not carried out. Nothing was changed.
@@ -206,4 +211,7 @@ pub enum SceneError {
     /// What was asked of the layers cannot be done.
     #[error(transparent)]
     Layers(#[from] LayerError),
+    /// What was asked of the face sets cannot be done.
+    #[error(transparent)]
+    Sets(#[from] SetsError),
 }

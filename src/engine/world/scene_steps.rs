@@ -13,7 +13,8 @@ use sculptd_clay::Clay;
 
 /// What a command to the scene came to: the object that it made or was about. Of
 /// [`SceneCommand::Layers`] it has the number of the layer that was made or that it was about
-/// instead; `u32::MAX` stands for the base.
+/// instead; `u32::MAX` stands for the base. Of [`SceneCommand::Sets`] it has the number of the face
+/// set, 0 for none.
 pub type SceneResult = Result<ObjectId, SceneError>;
 
 impl World {
@@ -27,7 +28,8 @@ impl World {
     pub(super) fn apply_scene(&mut self, command: &SceneCommand) {
         let before = self.stance();
         let result = self.scene_command(command);
-        if result.is_ok() && !matches!(command, SceneCommand::Layers(_)) {
+        let noted = matches!(command, SceneCommand::Layers(_) | SceneCommand::Sets(_));
+        if result.is_ok() && !noted {
             self.scene.touch();
             self.stand(before);
             self.note(HistoryEvent::Scene(event_of(command)));
@@ -119,6 +121,7 @@ impl World {
                 ]));
                 Ok(*id)
             }
+            SceneCommand::Sets(edit) => self.edit_sets(edit),
             // Carried out above.
             SceneCommand::Layers(_) => Ok(self.scene.active().id),
         }
@@ -441,5 +444,6 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Snap(_) => SceneEvent::Snap,
         SceneCommand::Exchange(exchange) => exchange.event,
         SceneCommand::Layers(_) => SceneEvent::Layers,
+        SceneCommand::Sets(_) => SceneEvent::Sets,
     }
 }

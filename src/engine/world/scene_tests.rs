@@ -13,6 +13,7 @@ use crate::scene::{
     PrimitiveShape, SceneCommand, SceneError, SceneEvent,
 };
 use sculptd_clay::brush::{BrushKind, BrushSettings, MaskAction, Measure, Presets};
+use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit, extract, partition};
 use sculptd_clay::{Clay, Workers};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_geometry::{TriMesh, job::Job, shapes};
@@ -120,11 +121,49 @@ impl Dice {
     }
 }
 
+/// Makes, hides or shows face sets, or extracts one.
+fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
+    let mut snapshot = world.mesh().duplicate(0);
+    let snapshot = snapshot.snapshot();
+    let set = dice.roll(usize::from(snapshot.highest_set()) + 2) as u16;
+    let parted = |by| match partition(&snapshot, by) {
+        // As it was computed from the clay itself.
+        Ok(SetsEdit::Assign { pages, .. }) => {
+            SetsEdit::Assign { revision: world.mesh().revision(), pages }
+        }
+        other => panic!("{other:?}"),
+    };
+    let edit = match dice.roll(16) {
+        0..=2 => SetsEdit::FromMask,
+        3 => SetsEdit::FromVisible,
+        4..=5 => parted(Partition::Normals(20.0 + dice.roll(60) as f32)),
+        6 => parted(Partition::Crease(30.0)),
+        7 => parted(Partition::Loose),
+        8 => SetsEdit::Hide(set),
+        9 => SetsEdit::Show(set),
+        10 => SetsEdit::HideMasked,
+        11 => SetsEdit::Invert,
+        12 => SetsEdit::Isolate(set),
+        13 => SetsEdit::Clear,
+        14 => {
+            let part = if dice.roll(2) > 0 { FaceSetPart::Masked } else { FaceSetPart::Set(set) };
+            if let Ok(shell) = extract(&snapshot, part, 0.1) {
+                let source = ObjectSource::Mesh(shell.into());
+                let new = NewObject::new("shell", source, ObjectTransform::NONE);
+                let _ = ask(world, SceneCommand::Add(new));
+            }
+            return;
+        }
+        _ => SetsEdit::ShowAll,
+    };
+    let _ = ask(world, SceneCommand::Sets(edit));
+}
+
 /// One random operation.
 fn operate(world: &mut World, dice: &mut Dice) {
     let id = dice.object(world);
     let full = world.scene().objects().len() > 8;
-    match dice.roll(32) {
+    match dice.roll(40) {
         0..=6 => {
             let (from, to) = (dice.view(), dice.view());
             stroke(world, from, to);
@@ -168,10 +207,12 @@ fn operate(world: &mut World, dice: &mut Dice) {
         22 => {
             let mut brush = Presets::default().of(BrushKind::ALL[dice.roll(6)]);
             brush.radius = 0.3;
+            brush.auto.face_sets = dice.roll(2) > 0;
             brush.topology.by = if dice.roll(3) == 0 { Measure::Brush } else { Measure::Off };
             tell(world, Command::Brush(brush));
         }
         24..=31 => edit_at_random(world, dice),
+        32..=39 => edit_sets_at_random(world, dice),
         _ => {
             let of = world.scene().object(id).expect("there");
             let from = Operand {
@@ -220,6 +261,53 @@ fn random_run(workers: usize, rounds: usize, undo_bytes: u64) -> Vec<u64> {
     }
     assert_eq!(state(&world), newest, "redo of everything");
     hashes
+}
+
+#[test]
+fn a_brush_keeps_to_the_face_set_that_it_began_in() {
+    let mut world = world(1, u64::MAX);
+    let plain = shapes::icosphere(1.0, 40);
+    let masks = plain.positions.iter().map(|p| f32::from(p.x > 0.0)).collect();
+    let new = NewClay::new(plain.into(), false);
+    tell(&mut world, Command::ReplaceMasked(new, std::sync::Arc::new(masks)));
+    assert_eq!(ask(&mut world, SceneCommand::Sets(SetsEdit::FromMask)), Ok(ObjectId(1)));
+    tell(&mut world, Command::Mask(MaskAction::Clear));
+    let mut brush = BrushSettings { radius: 0.3, ..BrushSettings::default() };
+    brush.auto.face_sets = true;
+    tell(&mut world, Command::Brush(brush));
+    let camera = *world.camera();
+    let set = |at: Vec2| {
+        let hit = world.mesh().pick(camera.ray(at)).expect("the ball");
+        world.mesh().set_at(&hit)
+    };
+    let (left, right) = (Vec2::new(0.45, 0.5), Vec2::new(0.55, 0.5));
+    let (first, other) = (set(left), set(right));
+    assert!(first != other, "{first} and {other}");
+    let places = |world: &World, set| {
+        let mut all = Vec::new();
+        for p in 0..world.mesh().page_count() as u32 {
+            let page = world.mesh().page(p);
+            let rows = (0..page.own()).filter(|&v| page.face_set(v) == set);
+            all.extend(rows.map(|v| page.point(v).to_array().map(f32::to_bits)));
+        }
+        all
+    };
+    // The stroke goes on over the border, and changes nothing there.
+    let before = [first, other].map(|set| places(&world, set));
+    assert!(stroke(&mut world, left, right) > 100);
+    assert_ne!(places(&world, first), before[0]);
+    assert_eq!(places(&world, other), before[1]);
+    // What a stroke cannot see it does not meet: it goes on to the far side.
+    assert!(ask(&mut world, SceneCommand::Sets(SetsEdit::Isolate(other))).is_ok());
+    let before = places(&world, first);
+    assert!(stroke(&mut world, left, right) > 0);
+    assert_eq!(places(&world, first), before, "hidden");
+    tell(&mut world, Command::Undo);
+    tell(&mut world, Command::Undo);
+    assert!(!(0..world.mesh().page_count() as u32).any(|p| {
+        let page = world.mesh().page(p);
+        (0..page.own()).any(|v| page.is_hidden(v))
+    }));
 }
 
 #[test]

@@ -52,6 +52,9 @@ pub(super) struct Stroke {
     /// The way that the two average, in radii.
     #[serde(default)]
     way: f32,
+    /// The face set under the first dab of each image, where the brush keeps to it.
+    #[serde(default)]
+    sets: [Option<u16>; IMAGES],
 }
 
 /// Where a held brush took hold, and how far it was drawn.
@@ -246,6 +249,15 @@ impl StrokeContext<'_> {
         (mix(page.corners(hit.triangle as usize)), normal)
     }
 
+    /// The face set that an image of the stroke keeps to: that under its first dab.
+    fn first_set(&mut self, image: usize, hit: Option<&Hit>) -> u16 {
+        if !self.brush.auto.face_sets {
+            return 0;
+        }
+        let mesh = &*self.mesh;
+        *self.stroke.sets[image].get_or_insert_with(|| hit.map_or(0, |h| mesh.set_at(h)))
+    }
+
     /// The stroke goes on to a dab at `centre`: its direction, the pressure that counts, and the
     /// way that the dab stands for, in fifths of the radius.
     fn go_on(&mut self, at: &PenPoint, centre: Vec3, radius: f32, share: f32) -> f32 {
@@ -330,6 +342,7 @@ impl StrokeContext<'_> {
             image: 0,
             travelled: self.stroke.travelled,
             stroke: self.stroke.number,
+            set: self.first_set(0, Some(hit)),
         };
         let first = Dab { pace: first.pace_of(strength), ..first };
         let mut dabs = [first; IMAGES];
@@ -367,6 +380,7 @@ impl StrokeContext<'_> {
                 right: image.m * first.right,
                 lens: first.lens.image(image.m, image.t),
                 hand: image.hand,
+                set: self.first_set(i, there.as_ref()),
                 ..first
             };
             count += 1;

@@ -278,6 +278,7 @@ fn automasks(ui: &mut egui::Ui, brush: &mut BrushSettings) {
     let auto = &mut brush.auto;
     ui.checkbox(&mut auto.front_faces, tr!("automask-front"));
     ui.checkbox(&mut auto.topology, tr!("automask-topology"));
+    ui.checkbox(&mut auto.face_sets, tr!("automask-sets"));
     check(ui, &mut auto.boundary, "automask-boundary");
     slider(ui, &mut auto.normal_degrees, 0.0..=180.0, "automask-normal");
     slider(ui, &mut auto.cavity, -1.0..=1.0, "automask-cavity");

@@ -3,10 +3,10 @@
 use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, chooser, cube, curve_stroke, devices, files, fonts, hand_menu, help, hints,
-    history, keys, layers, legend, look, masks, measure, messages, modal, outliner, preferences,
-    pressure_curve, radial, remesh, rows, scene, search, start, symmetry, tablet_keys, theme,
-    timing, trim,
+    analysis, brush, chooser, cube, curve_stroke, devices, face_sets, files, fonts, hand_menu,
+    help, hints, history, keys, layers, legend, look, masks, measure, messages, modal, outliner,
+    preferences, pressure_curve, radial, remesh, rows, scene, search, start, symmetry, tablet_keys,
+    theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -121,6 +121,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
         Tab::Scene => {
             outliner::ui(ui, view, ui_state, out);
             layers::ui(ui, view, ui_state, out);
+            face_sets::ui(ui, view, ui_state, out);
             scene::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::levels(ui, view, ui_state, out);

@@ -10,6 +10,7 @@ pub mod chooser;
 pub mod cube;
 pub mod curve_stroke;
 pub mod devices;
+pub mod face_sets;
 pub mod files;
 pub mod fonts;
 pub mod hand_menu;

@@ -190,7 +190,7 @@ impl ObjectBuffers {
             self.frame(gpu, k + 1, &bare.seen_from(matrix, &other.transform));
             let kept = self.pages.remove(&other.id).filter(|p| p.fits(other.clay));
             let mut pages = kept.unwrap_or_else(|| Pages::new(&gpu.device, &gpu.queue, other.clay));
-            pages.update(&gpu.queue, other.clay);
+            pages.update(&gpu.queue, other.clay, false);
             self.uploaded += pages.uploaded;
             self.waiting += pages.waiting();
             self.pages.insert(other.id, pages);

@@ -82,7 +82,8 @@ impl Rows {
             let same = old.point(v) == new.point(v)
                 && old.normal(v) == new.normal(v)
                 && old.mask(v) == new.mask(v)
-                && old.colour(v) == new.colour(v);
+                && old.colour(v) == new.colour(v)
+                && old.face_set(v) == new.face_set(v);
             bits[v / 64] |= u64::from(!same) << (v % 64);
         }
     }
@@ -118,6 +119,8 @@ pub struct Pages {
     queue: Vec<u32>,
     queued: Vec<bool>,
     rows: Rows,
+    /// Face sets are shown by colours.
+    tinted: bool,
     slot: usize,
     scratch: Vec<Vertex>,
     runs: Vec<std::ops::Range<usize>>,
@@ -140,7 +143,7 @@ impl Pages {
         let mut ranges = Vec::with_capacity(mesh.page_count());
         for (p, page) in mesh.pages().enumerate() {
             let start = indices.len() as u32;
-            indices.extend(page.triangles().iter().flatten().map(|&v| place(page, p, slot, v)));
+            corners(page, p, slot, &mut indices);
             ranges.push(start..indices.len() as u32);
         }
         let index_buffer = buffer(indices.len() * 4, wgpu::BufferUsages::INDEX);
@@ -157,6 +160,7 @@ impl Pages {
             queue: (0..count as u32).collect(),
             queued: vec![true; count],
             rows: Rows::all(count, slot),
+            tinted: false,
             slot,
             scratch: Vec::with_capacity(slot),
             runs: Vec::with_capacity(slot.div_ceil(GAP)),
@@ -182,13 +186,34 @@ impl Pages {
     }
 
     /// Sends what changed of the pages since they were last sent, up to the budget; the first time
-    /// all of them.
-    pub fn update(&mut self, queue: &wgpu::Queue, mesh: &Snapshot) {
+    /// all of them. `tinted`: face sets are shown by colours.
+    pub fn update(&mut self, queue: &wgpu::Queue, mesh: &Snapshot, tinted: bool) {
         let first = self.seen.is_none();
+        if std::mem::replace(&mut self.tinted, tinted) != tinted
+            && mesh.pages().any(|p| p.sets().is_some())
+        {
+            let count = self.ranges.len();
+            self.rows = Rows::all(count, self.slot);
+            self.queue = (0..count as u32).collect();
+            self.queued.fill(true);
+        }
         if let Some(seen) = &self.seen {
             let (waiting, queued, rows) = (&mut self.queue, &mut self.queued, &mut self.rows);
+            let (slot, ranges, indices) = (self.slot, &self.ranges, &self.indices);
+            let mut fresh: Vec<u32> = Vec::new();
             mesh.each_changed(seen, |i, page| {
-                rows.mark(i, seen.page(i), page);
+                let old = seen.page(i);
+                rows.mark(i, old, page);
+                let differs = old.sets() != page.sets();
+                let mut all = 0..page.triangles().len();
+                if differs && all.any(|t| old.is_triangle_hidden(t) != page.is_triangle_hidden(t)) {
+                    fresh.clear();
+                    corners(page, i as usize, slot, &mut fresh);
+                    let at = u64::from(ranges[i as usize].start) * size_of::<u32>() as u64;
+                    queue.write_buffer(indices, at, bytemuck::cast_slice(&fresh));
+                    // They are made again without those of hidden triangles.
+                    self.edges = None;
+                }
                 if !std::mem::replace(&mut queued[i as usize], true) {
                     waiting.push(i);
                 }
@@ -205,8 +230,13 @@ impl Pages {
             self.rows.take(i, page.own(), &mut self.runs);
             for run in &self.runs {
                 self.scratch.clear();
-                let vertex =
-                    |v| Vertex::new(page.point(v), page.normal(v), page.mask(v), page.colour(v));
+                let vertex = |v| {
+                    let colour = match page.face_set(v) {
+                        set if tinted => with_set(page.colour(v), set),
+                        _ => page.colour(v),
+                    };
+                    Vertex::new(page.point(v), page.normal(v), page.mask(v), colour)
+                };
                 self.scratch.extend(run.clone().map(vertex));
                 let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
                 let at = (i as usize * self.slot + run.start) * size_of::<Vertex>();
@@ -241,7 +271,8 @@ impl Pages {
         let mut ranges = Vec::with_capacity(mesh.page_count());
         for (p, page) in mesh.pages().enumerate() {
             let start = ends.len() as u32;
-            for t in page.triangles() {
+            let shown = (0..page.triangles().len()).filter(|&t| !page.is_triangle_hidden(t));
+            for t in shown.map(|t| page.triangles()[t]) {
                 let [a, b, c] = t.map(|v| place(page, p, self.slot, v));
                 for (from, to) in [(a, b), (b, c), (c, a)] {
                     // The other triangle has the edge the other way; a border's edge may be left
@@ -313,6 +344,29 @@ impl Pages {
             pass.draw_indexed(r, 0, 0..1);
         }
         drawn
+    }
+}
+
+/// A colour with that of a face set over it: hues of sets that follow each other are a golden angle
+/// apart, so that neighbours differ.
+fn with_set(colour: [u8; 4], set: u16) -> [u8; 4] {
+    if set == 0 {
+        return colour;
+    }
+    let hue = (f32::from(set) * 0.618_034).fract() * 6.0;
+    let [r, g, b, a] = colour;
+    let tint = [(r, 0.0f32), (g, 4.0), (b, 2.0)].map(|(c, turn)| {
+        let wave = (((hue + turn) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0);
+        (f32::from(c) * (0.45 + 0.55 * wave)).round() as u8
+    });
+    [tint[0], tint[1], tint[2], a]
+}
+
+/// The corners of a page's triangles on the card; a hidden triangle is one of no size.
+fn corners(page: &Page, p: usize, slot: usize, out: &mut Vec<u32>) {
+    for (i, t) in page.triangles().iter().enumerate() {
+        let corners = t.map(|v| place(page, p, slot, v));
+        out.extend(if page.is_triangle_hidden(i) { [corners[0]; 3] } else { corners });
     }
 }
 

@@ -45,6 +45,9 @@ impl WindowState {
         if let Some(count) = self.ui_state.layers.baked(&state) {
             self.ui_state.say(tr!("task-layers-baked", count = count), false);
         }
+        if self.ui_state.face_sets.dropped(&state) {
+            self.ui_state.say(tr!("task-sets-dropped"), false);
+        }
         changed |= self.drawn_demo != (now < wiring.demo_until_us);
         changed |= self.asked_camera.is_some()
             || self.camera_animation.is_some()

@@ -315,7 +315,7 @@ impl Renderer {
         let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];
         gpu.queue.write_buffer(&self.line_ends, 0, bytemuck::cast_slice(lines));
         if let Some(pages) = &mut self.pages {
-            pages.update(&gpu.queue, scene.mesh);
+            pages.update(&gpu.queue, scene.mesh, scene.look.sets);
             (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting());
             if let Some(values) = scene.values.filter(|_| kind == 2.0) {
                 pages.set_map(&gpu.queue, values);

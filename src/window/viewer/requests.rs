@@ -84,6 +84,15 @@ impl WindowState {
                 self.ui_state.joining = true;
                 self.tasks.remesh(wanted, wiring.published.clone(), wiring.commands.clone());
             }
+            UiRequest::MakeSets(by) => {
+                self.ui_state.joining = true;
+                self.tasks.make_sets(by, wiring.published.clone(), wiring.commands.clone());
+            }
+            UiRequest::Extract(part, thickness) => {
+                self.ui_state.joining = true;
+                let of = (part, thickness);
+                self.tasks.extract(of, wiring.published.clone(), wiring.commands.clone());
+            }
             UiRequest::Reference => self.before = Some(state.mesh.clone()),
             UiRequest::Outline(path) => {
                 if let Some(found) = &self.ui_state.sizes.found {

@@ -96,6 +96,7 @@ impl WindowState {
         }
         let look = Look {
             map: Map::None,
+            sets: false,
             wireframe: false,
             grid: false,
             shade: 0.0,

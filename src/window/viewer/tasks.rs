@@ -23,6 +23,7 @@ use crate::panels::state::Pairing;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary,
 };
+use sculptd_clay::face_sets::{FaceSetPart, Partition};
 use sculptd_clay::{Clay, Snapshot};
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
@@ -31,7 +32,9 @@ use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
 use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
-use sculptd_daemon::{Published, boolean_jobs, polygons, remesh_job, scene_jobs, startup};
+use sculptd_daemon::{
+    Published, boolean_jobs, face_set_jobs, polygons, remesh_job, scene_jobs, startup,
+};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::{HeldObject, MenuItem};
@@ -362,6 +365,38 @@ impl Tasks {
             let count = made.triangles;
             let text = tr!("task-remeshed", count = count, voxel = voxel, change = change);
             Ok((vec![command], text))
+        });
+    }
+
+    /// Face sets by the shape of the active object.
+    pub fn make_sets(
+        &self,
+        by: Partition,
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
+        self.change("sculptd-sets", commands, move || {
+            let edit = face_set_jobs::parted(&shown.load_full(), by)?;
+            let command = Command::Scene(SceneCommand::Sets(edit));
+            Ok((vec![command.into()], tr!("task-sets-made")))
+        });
+    }
+
+    /// A part of the active object, and how thick it is laid on, as a new object.
+    pub fn extract(
+        &self,
+        (part, thickness): (FaceSetPart, f64),
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
+        self.change("sculptd-sets", commands, move || {
+            let (shown, name) = (shown.load_full(), tr!("sets-extract-name"));
+            let made = face_set_jobs::extract(&shown, part, thickness, &name, &Job::default())?;
+            let (new, clay) = made;
+            let (command, count) = (Command::Scene(SceneCommand::Add(new)), clay.vertex_count());
+            let payload = Payload::Clay(Box::new(clay));
+            let queued = QueuedCommand::with_payload(command, payload);
+            Ok((vec![queued], tr!("task-extracted", count = count)))
         });
     }
 

@@ -56,6 +56,7 @@ fn operation(event: HistoryEvent) -> Option<&'static str> {
             SceneEvent::Merge => "history-merged",
             SceneEvent::Split => "history-split",
             SceneEvent::Layers => "history-layers",
+            SceneEvent::Sets => "history-sets",
             SceneEvent::Snap => "history-snapped",
         }),
         _ => None,

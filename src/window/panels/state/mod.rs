@@ -3,6 +3,7 @@
 
 pub mod action;
 pub mod chooser;
+pub mod face_sets;
 pub mod files;
 pub mod history;
 pub mod key;
@@ -26,6 +27,7 @@ pub mod view;
 
 pub use action::{Action, ActionEntry};
 pub use chooser::{FileChooser, FilePurpose, FolderEntry, FolderListing, MESH_ENDINGS};
+pub use face_sets::FaceSetPanel;
 pub use files::{FilesPage, UNITS};
 pub use history::{HistoryVersions, KEPT, StepPicture, VersionRow};
 pub use key::KeyCombination;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::Vec3;
+use sculptd_clay::face_sets::{FaceSetPart, Partition};
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim::Part;
 use sculptd_devices::pad_actions::{Binding, Control};
@@ -47,6 +48,10 @@ pub enum UiRequest {
     Level(bool),
     /// The object gets one surface of even triangles.
     Remesh(Wanted),
+    /// The active object gets face sets by its shape.
+    MakeSets(Partition),
+    /// A part of the active object becomes a new one of this thickness, in the unit of the scene.
+    Extract(FaceSetPart, f64),
     /// Distances are those to the object as it is now.
     Reference,
     /// The shadow's outline is written.

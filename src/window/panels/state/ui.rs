@@ -1,6 +1,7 @@
 //! What a person has set in the window. Nothing of it belongs to the world.
 
 use super::chooser::FileChooser;
+use super::face_sets::FaceSetPanel;
 use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
 use super::keys::KeysPage;
@@ -52,6 +53,8 @@ pub struct UiState {
     pub outliner: Outliner,
     /// What was begun in the panel of layers.
     pub layers: LayerPanel,
+    /// The face sets as they were last counted, and what the next ones are made with.
+    pub face_sets: FaceSetPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     pub trim: Option<Trim>,

@@ -1,0 +1,265 @@
+//! Edits of the face sets: each costs a look at every vertex, and a new page where one changed or a
+//! neighbour's did.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{HIDDEN, MASKED, MOST_SETS, PageSets};
+use crate::clay::Clay;
+use crate::page::Page;
+use crate::ray::Hit;
+use crate::snapshot::Snapshot;
+
+/// What is done to the face sets of an object. Plain data: a part of commands.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum SetsEdit {
+    /// What is masked by half or more and not hidden becomes a new set.
+    FromMask,
+    /// What is not hidden becomes a new set.
+    FromVisible,
+    /// The sets of what is not hidden are these, computed from the clay of this revision: see
+    /// [`super::partition`].
+    Assign {
+        /// [`Clay::revision`] of the clay that they were computed from.
+        revision: u64,
+        /// For each page its number and the sets of its own vertices.
+        pages: Arc<Vec<(u32, Vec<u16>)>>,
+    },
+    /// No vertex is in a set any more. What is hidden stays hidden.
+    Clear,
+    /// A set is hidden.
+    Hide(u16),
+    /// A set is shown.
+    Show(u16),
+    /// What is masked by half or more is hidden.
+    HideMasked,
+    /// What was hidden is shown, what was shown is hidden.
+    Invert,
+    /// All but this set is hidden, and the set shown; 0 is what is in no set.
+    Isolate(u16),
+    /// Nothing is hidden any more.
+    ShowAll,
+}
+
+/// Why an edit of the face sets was not carried out. Nothing was changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SetsError {
+    /// There was nothing to do.
+    #[error("it would change nothing: nothing is masked by half or more, or it is so already")]
+    Nothing,
+    /// A set that no vertex is in.
+    #[error("there is no face set {0}")]
+    NoSet(u16),
+    /// All numbers are used up.
+    #[error("an object has at most {MOST_SETS} face sets; sets.clear makes room")]
+    Full,
+    /// The clay is another than the one that the sets were computed from.
+    #[error("the object has changed since its face sets were computed")]
+    Changed,
+}
+
+impl SetsEdit {
+    /// Whether it owns memory beyond its own size.
+    pub fn owns_memory(&self) -> bool {
+        matches!(self, SetsEdit::Assign { .. })
+    }
+}
+
+/// The greatest number that a vertex has.
+fn highest<'a>(pages: impl Iterator<Item = &'a Arc<Page>>) -> u16 {
+    let of = |p: &Arc<Page>| p.sets().and_then(|s| s.rows.iter().map(|r| r & !HIDDEN).max());
+    pages.filter_map(of).max().unwrap_or(0)
+}
+
+/// The set of the corner that is nearest to a hit, by its weights; of equal ones the first.
+fn set_at(page: &Page, hit: &Hit) -> u16 {
+    let Some(corners) = page.triangles().get(hit.triangle as usize) else { return 0 };
+    let [a, b, c] = hit.barycentric;
+    let nearest = if a >= b && a >= c { 0 } else { 1 + usize::from(c > b) };
+    page.face_set(usize::from(corners[nearest]))
+}
+
+impl Snapshot {
+    /// The face set under a hit of this snapshot; 0: none.
+    pub fn set_at(&self, hit: &Hit) -> u16 {
+        self.pages().nth(hit.page as usize).map_or(0, |page| set_at(page, hit))
+    }
+
+    /// The greatest number of a set; 0: there is none.
+    pub fn highest_set(&self) -> u16 {
+        highest(self.pages())
+    }
+
+    /// Each set that there is, ascending: its number, how many vertices it has, and how many of
+    /// them are hidden. Set 0 is what is in no set. Costs a look at every vertex.
+    pub fn face_sets(&self) -> Vec<(u16, u64, u64)> {
+        let mut counts = vec![[0u64; 2]; usize::from(self.highest_set()) + 1];
+        for page in self.pages() {
+            match page.sets() {
+                None => counts[0][0] += page.own() as u64,
+                Some(sets) => sets.rows[..page.own()].iter().for_each(|r| {
+                    let count = &mut counts[usize::from(r & !HIDDEN)];
+                    count[0] += 1;
+                    count[1] += u64::from(r & HIDDEN != 0);
+                }),
+            }
+        }
+        let all = counts.into_iter().enumerate().filter(|(_, c)| c[0] > 0);
+        all.map(|(set, [vertices, hidden])| (set as u16, vertices, hidden)).collect()
+    }
+
+    /// How many sets there are besides that of what is in none; 1 where there is no other but
+    /// something is hidden. Costs nothing to speak of where there are none.
+    pub fn face_set_count(&self) -> u64 {
+        if !self.pages().any(|p| p.sets.is_some()) {
+            return 0;
+        }
+        let (sets, none) = (self.face_sets(), |s: &(u16, u64, u64)| s.0 == 0);
+        (sets.iter().filter(|s| !none(s)).count() as u64).max(1)
+    }
+}
+
+impl Clay {
+    /// Whether any vertex is in a set or hidden.
+    pub fn has_sets(&self) -> bool {
+        self.pages.iter().any(|p| p.sets.is_some())
+    }
+
+    /// The face set under a hit of the clay as it is; 0: none.
+    pub fn set_at(&self, hit: &Hit) -> u16 {
+        self.pages.get(hit.page as usize).map_or(0, |page| set_at(page, hit))
+    }
+
+    /// Carries out an edit of the face sets, as a part of the open undo step. The set that was made
+    /// or that it was about; 0 where it was about none.
+    ///
+    /// # Errors
+    /// Where there is nothing to do, no such set, or no number left. Nothing is changed then.
+    pub fn edit_sets(&mut self, edit: &SetsEdit) -> Result<u16, SetsError> {
+        let mut set = 0;
+        match edit {
+            SetsEdit::FromMask | SetsEdit::FromVisible => {
+                set = highest(self.pages.iter()) + 1;
+                if set > MOST_SETS {
+                    return Err(SetsError::Full);
+                }
+            }
+            SetsEdit::Hide(of) | SetsEdit::Show(of) | SetsEdit::Isolate(of) => {
+                set = *of;
+                let own = |p: &Arc<Page>| (0..p.own()).any(|v| p.face_set(v) == set);
+                if !self.pages.iter().any(own) {
+                    return Err(SetsError::NoSet(set));
+                }
+            }
+            SetsEdit::Assign { revision, pages } => {
+                let fits = |(p, own): &(u32, Vec<u16>)| {
+                    self.pages.get(*p as usize).is_some_and(|page| page.own() == own.len())
+                };
+                let ascending = pages.windows(2).all(|two| two[0].0 < two[1].0);
+                if *revision != self.revision || !ascending || !pages.iter().all(fits) {
+                    return Err(SetsError::Changed);
+                }
+                if pages.iter().flat_map(|p| &p.1).any(|s| *s > MOST_SETS) {
+                    return Err(SetsError::Full);
+                }
+            }
+            SetsEdit::Clear | SetsEdit::HideMasked | SetsEdit::Invert | SetsEdit::ShowAll => {}
+        }
+        let mut given = match edit {
+            SetsEdit::Assign { pages, .. } => pages.as_slice(),
+            _ => &[],
+        };
+        let mut changed: Vec<(u32, Vec<u16>)> = Vec::new();
+        for (number, page) in self.pages.iter().enumerate() {
+            let (own, mut assigned) = (page.own(), None);
+            if let Some(((p, sets), rest)) = given.split_first()
+                && *p as usize == number
+            {
+                (assigned, given) = (Some(sets), rest);
+            }
+            let value = |v: usize| {
+                let now = page.set_bits(v);
+                let (of, hidden) = (now & !HIDDEN, now & HIDDEN);
+                match edit {
+                    SetsEdit::FromMask if hidden == 0 && page.mask(v) >= MASKED => set,
+                    SetsEdit::FromVisible if hidden == 0 => set,
+                    SetsEdit::Assign { .. } if hidden == 0 => assigned.map_or(now, |a| a[v]),
+                    SetsEdit::Clear => hidden,
+                    SetsEdit::Hide(_) if of == set => now | HIDDEN,
+                    SetsEdit::Show(_) if of == set => of,
+                    SetsEdit::HideMasked if page.mask(v) >= MASKED => now | HIDDEN,
+                    SetsEdit::Invert => now ^ HIDDEN,
+                    SetsEdit::Isolate(_) if of == set => of,
+                    SetsEdit::Isolate(_) => now | HIDDEN,
+                    SetsEdit::ShowAll => of,
+                    _ => now,
+                }
+            };
+            if (0..own).any(|v| value(v) != page.set_bits(v)) {
+                changed.push((number as u32, (0..own).map(value).collect()));
+            }
+        }
+        if changed.is_empty() {
+            return Err(SetsError::Nothing);
+        }
+        self.put_sets(&changed);
+        self.history.sink.discard_owned(changed);
+        Ok(set)
+    }
+
+    /// New sets of the own vertices of some pages, ascending; halos follow.
+    pub(crate) fn put_sets(&mut self, changed: &[(u32, Vec<u16>)]) {
+        let mut concerned: Vec<u32> = Vec::with_capacity(2 * changed.len());
+        for (number, _) in changed {
+            concerned.push(*number);
+            let t = &self.pages[*number as usize].topology;
+            concerned.extend(t.neighbours.iter().map(|n| n.page));
+        }
+        concerned.sort_unstable();
+        concerned.dedup();
+        let of = |page: u32| changed.binary_search_by_key(&page, |c| c.0).ok();
+        let fresh: Vec<(u32, Option<Arc<PageSets>>)> = concerned
+            .into_iter()
+            .filter_map(|number| {
+                let page = &self.pages[number as usize];
+                let own = |v: usize| page.set_bits(v);
+                let mut rows: Vec<u16> = Vec::with_capacity(page.points.len());
+                match of(number) {
+                    Some(i) => rows.extend_from_slice(&changed[i].1),
+                    None => rows.extend((0..page.own()).map(own)),
+                }
+                for (home, part) in page.topology.halo_parts() {
+                    let from = &page.topology.halo_sources[part];
+                    match of(home) {
+                        Some(i) => rows.extend(from.iter().map(|&l| changed[i].1[l as usize])),
+                        None => {
+                            let home = &self.pages[home as usize];
+                            rows.extend(from.iter().map(|&l| home.set_bits(l as usize)));
+                        }
+                    }
+                }
+                let sets = PageSets::shared(rows);
+                (sets != page.sets).then_some((number, sets))
+            })
+            .collect();
+        self.revision += 1;
+        let count = fresh.len();
+        for (number, sets) in fresh {
+            let mut page = self.pool.take();
+            let old = &self.pages[number as usize];
+            // Nobody else holds a page of the pool.
+            let Some(new) = Arc::get_mut(&mut page) else { continue };
+            new.fill_from(old);
+            (new.sets, new.revision) = (sets, self.revision);
+            self.stale.add(number);
+            let old = std::mem::replace(&mut self.pages[number as usize], page);
+            if let Some(old) = self.history.keep(number, old) {
+                self.pool.retire(old);
+            }
+        }
+        self.stale.clear_paths();
+        self.history.trim();
+        self.pool.reclaim(2 * count + 4);
+    }
+}

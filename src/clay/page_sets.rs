@@ -1,0 +1,41 @@
+//! The face sets of one page, as numbers. See [`crate::face_sets`].
+
+use std::sync::Arc;
+
+/// The bit of a vertex that is hidden.
+pub const HIDDEN: u16 = 0x8000;
+/// The greatest number of a set.
+pub const MOST_SETS: u16 = 0x7fff;
+
+/// The face sets of a page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PageSets {
+    /// Own, then halo.
+    pub(crate) rows: Vec<u16>,
+    /// Whether any of them is hidden.
+    pub(crate) any_hidden: bool,
+}
+
+impl PageSets {
+    /// One number a row, own and halo; `None` where all are 0.
+    pub(crate) fn shared(rows: Vec<u16>) -> Option<Arc<PageSets>> {
+        let any_hidden = rows.iter().any(|r| r & HIDDEN != 0);
+        rows.iter().any(|r| *r != 0).then(|| Arc::new(PageSets { rows, any_hidden }))
+    }
+
+    /// Own and halo: the number of the set, and [`HIDDEN`].
+    pub fn rows(&self) -> &[u16] {
+        &self.rows
+    }
+
+    /// What undo counts, bytes.
+    pub(crate) fn weight(&self) -> usize {
+        size_of::<PageSets>() + 16 + self.rows.len() * 2
+    }
+}
+
+/// Whether all three corners are hidden.
+#[inline(always)]
+pub(crate) fn all_hidden(rows: &[u16], corners: [u16; 3]) -> bool {
+    corners.iter().fold(HIDDEN, |all, &v| all & rows[v as usize]) != 0
+}

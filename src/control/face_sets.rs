@@ -1,0 +1,114 @@
+//! Face sets of the active object: groups of its surface, which part of it is hidden, and parts of
+//! it as objects of their own.
+
+use serde::{Deserialize, Serialize};
+
+/// Reply of `sets.list`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FaceSetsReply {
+    /// The active object.
+    pub object: u32,
+    /// Its face sets, ascending. Set 0 is what is in no set; it is there while anything is.
+    pub sets: Vec<FaceSetInfo>,
+    /// Vertices that are hidden, in whatever set.
+    pub hidden: u64,
+}
+
+/// A face set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FaceSetInfo {
+    /// Its number.
+    pub set: u16,
+    /// How many vertices are in it.
+    pub vertices: u64,
+    /// How many of them are hidden.
+    pub hidden: u64,
+}
+
+/// What a face set is made from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum FaceSetSource {
+    /// What is masked by half or more becomes a new set.
+    Mask,
+    /// All that is shown becomes a new set.
+    Visible,
+    /// Each part that hangs together becomes a set.
+    Loose,
+    /// Sets grow over what turns from their first triangle by at most `degrees`.
+    Normals,
+    /// Sets meet where the surface bends by more than `degrees` over an edge.
+    Crease,
+}
+
+/// Parameters of `sets.make`. What is hidden stays in its sets.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FaceSetMakeParams {
+    /// What the sets are made from.
+    pub from: FaceSetSource,
+    /// Of `normals` and `crease`; 0 to 180, without it 40.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = 180.0)))]
+    pub degrees: Option<f32>,
+}
+
+/// Names a face set: by its number, by a place of the view, or as what is masked. Only one of them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct FaceSetParams {
+    /// Its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(max = 32767)))]
+    pub set: Option<u16>,
+    /// The set that is seen at this place, x and y from 0 to 1, from the view's left upper corner.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(inner(range(min = 0.0, max = 1.0))))]
+    pub at: Option<[f32; 2]>,
+    /// What is masked by half or more, in the place of a set.
+    pub masked: bool,
+}
+
+/// Parameters of `sets.show`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct FaceSetShowParams {
+    /// The set that is shown; without it everything is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(max = 32767)))]
+    pub set: Option<u16>,
+}
+
+/// Parameters of `sets.extract`: a set as [`FaceSetParams`] names one, and how thick the solid is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FaceSetExtractParams {
+    /// Laid on along the normals, in the unit of the scene: outwards, or negative inwards; not 0.
+    #[cfg_attr(feature = "schema", schemars(range(min = -1e6, max = 1e6)))]
+    pub thickness: f64,
+    /// The number of the set; without it what is masked by half or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(max = 32767)))]
+    pub set: Option<u16>,
+    /// The name of the new object; without one `extract`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    pub name: Option<String>,
+}
+
+/// Reply of a method that changes face sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FaceSetReply {
+    /// The set that was made or that it was about; `null`: several, or none.
+    pub set: Option<u16>,
+    /// How many sets were made.
+    pub made: u64,
+}

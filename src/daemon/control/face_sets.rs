@@ -1,0 +1,103 @@
+//! What the methods of face sets do: they are about the active object.
+
+use std::collections::BTreeSet;
+
+use glam::Vec2;
+
+use super::host::{Host, failed};
+use super::scene::{QueuedSceneCommand, ask};
+use crate::Published;
+use crate::face_set_jobs;
+use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit, partition};
+use sculptd_control::RpcError;
+use sculptd_control::face_sets::{
+    FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetParams, FaceSetReply,
+    FaceSetSource, FaceSetsReply,
+};
+use sculptd_control::scene::ObjectReply;
+use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::SceneCommand;
+use sculptd_geometry::job::Job;
+
+/// What a method that changes face sets answers.
+pub(super) type SetsDone = Result<FaceSetReply, RpcError>;
+
+/// Where creases and turns part sets unless it is said, degrees.
+const USUAL_DEGREES: f32 = 40.0;
+
+/// The face sets of the active object.
+pub(super) fn list(shown: &Published) -> FaceSetsReply {
+    let info = |(set, vertices, hidden)| FaceSetInfo { set, vertices, hidden };
+    let sets: Vec<FaceSetInfo> = shown.mesh.face_sets().into_iter().map(info).collect();
+    FaceSetsReply {
+        object: shown.scene.active().map_or(0, |o| o.id.0),
+        hidden: sets.iter().map(|s| s.hidden).sum(),
+        sets,
+    }
+}
+
+/// How many face sets the active object has; 1 where it has none but a part of it is hidden.
+pub(super) fn count(host: &Host) -> u64 {
+    host.published.load().mesh.face_set_count()
+}
+
+/// Hands an edit to the loop and waits for what came of it.
+pub(super) fn edit(host: &Host, edit: SetsEdit) -> SetsDone {
+    let made = match &edit {
+        SetsEdit::FromMask | SetsEdit::FromVisible => 1,
+        SetsEdit::Assign { pages, .. } => {
+            let all: BTreeSet<u16> = pages.iter().flat_map(|p| p.1.iter().copied()).collect();
+            all.len() as u64 - u64::from(all.contains(&0))
+        }
+        _ => 0,
+    };
+    let done = ask(host, SceneCommand::Sets(edit))?;
+    let set = u16::try_from(done.id).ok().filter(|set| *set > 0);
+    Ok(FaceSetReply { set, made })
+}
+
+pub(super) fn make(host: &Host, p: FaceSetMakeParams) -> SetsDone {
+    let degrees = p.degrees.unwrap_or(USUAL_DEGREES);
+    let by = match p.from {
+        FaceSetSource::Mask => return edit(host, SetsEdit::FromMask),
+        FaceSetSource::Visible => return edit(host, SetsEdit::FromVisible),
+        FaceSetSource::Loose => Partition::Loose,
+        FaceSetSource::Normals => Partition::Normals(degrees),
+        FaceSetSource::Crease => Partition::Crease(degrees),
+    };
+    let made = partition(&host.published.load_full().mesh, by).map_err(failed)?;
+    edit(host, made)
+}
+
+/// The set that is meant; `None`: what is masked.
+fn named(host: &Host, p: &FaceSetParams) -> Result<Option<u16>, RpcError> {
+    match (p.set, p.at, p.masked) {
+        (Some(set), None, false) => Ok(Some(set)),
+        (None, Some(at), false) => {
+            let found = face_set_jobs::set_seen(&host.published.load(), Vec2::from(at));
+            found.map(Some).ok_or_else(|| RpcError::failed("nothing is seen there"))
+        }
+        (None, None, true) => Ok(None),
+        _ => Err(RpcError::bad_params("expected one of `set`, `at` and `masked`")),
+    }
+}
+
+pub(super) fn hide(host: &Host, p: &FaceSetParams) -> SetsDone {
+    edit(host, named(host, p)?.map_or(SetsEdit::HideMasked, SetsEdit::Hide))
+}
+
+pub(super) fn isolate(host: &Host, p: &FaceSetParams) -> SetsDone {
+    let set = named(host, p)?;
+    let masked = || RpcError::bad_params("expected one of `set` and `at`");
+    edit(host, SetsEdit::Isolate(set.ok_or_else(masked)?))
+}
+
+pub(super) fn extract(host: &Host, p: &FaceSetExtractParams) -> Result<ObjectReply, RpcError> {
+    let part = p.set.map_or(FaceSetPart::Masked, FaceSetPart::Set);
+    let shown = host.published.load_full();
+    let name = p.name.as_deref().unwrap_or("extract");
+    let (new, clay) =
+        face_set_jobs::extract(&shown, part, p.thickness, name, &Job::default()).map_err(failed)?;
+    let payload = Some(Payload::Clay(Box::new(clay)));
+    ask(host, QueuedSceneCommand { command: SceneCommand::Add(new), payload })
+}

@@ -1,0 +1,116 @@
+//! The face sets of the active object: making them, hiding parts of the surface, and parts of it
+//! as objects of their own.
+
+use super::rows;
+use super::state::{UiRequest, UiState, View};
+use crate::language::tr;
+use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit};
+use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneCommand;
+
+/// Sets that the list shows; of an object with more of them the first.
+const ROWS: usize = 64;
+
+fn ask(out: &mut Vec<UiRequest>, edit: SetsEdit) {
+    out.push(UiRequest::World(Command::Scene(SceneCommand::Sets(edit))));
+}
+
+/// A button by the message of its name, whose attribute `tip` says what it does.
+fn button(ui: &mut egui::Ui, can: bool, name: &str) -> bool {
+    let button = ui.add_enabled(can, egui::Button::new(tr!(name)));
+    button.on_hover_text(tr!(&format!("{name}.tip"))).clicked()
+}
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let title = egui::CollapsingHeader::new(tr!("sets-heading")).id_salt("sets-heading");
+    title.default_open(false).show(ui, |ui| {
+        let locked = view.state.scene.active().is_some_and(|o| o.settings.locked);
+        ui.add_enabled_ui(!locked, |ui| {
+            list(ui, view, ui_state, out);
+            make(ui, ui_state, out);
+            extract(ui, view, ui_state, out);
+        });
+    });
+    ui.separator();
+}
+
+/// The sets, what is in none first.
+fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let sets = ui_state.face_sets.sets(view.state).to_vec();
+    let hidden: u64 = sets.iter().map(|s| s.2).sum();
+    let plain = sets.iter().all(|s| s.0 == 0);
+    if !plain {
+        ui.checkbox(&mut ui_state.look.sets, tr!("sets-colours"));
+        for &(set, vertices, hidden) in sets.iter().take(ROWS) {
+            ui.push_id(set, |ui| {
+                ui.horizontal(|ui| {
+                    let shown = hidden < vertices;
+                    let eye = ui.selectable_label(shown, tr!("layers-eye"));
+                    if eye.on_hover_text(tr!("sets-eye-tip")).clicked() {
+                        ask(out, if shown { SetsEdit::Hide(set) } else { SetsEdit::Show(set) });
+                    }
+                    if button(ui, true, "sets-isolate") {
+                        ask(out, SetsEdit::Isolate(set));
+                    }
+                    let name = match set {
+                        0 => tr!("sets-none", count = vertices),
+                        _ => tr!("sets-row", number = set, count = vertices),
+                    };
+                    ui.add(egui::Label::new(name).truncate());
+                });
+            });
+        }
+    }
+    rows::flow(ui, |ui| {
+        if button(ui, true, "sets-hide-masked") {
+            ask(out, SetsEdit::HideMasked);
+        }
+        if button(ui, true, "sets-invert") {
+            ask(out, SetsEdit::Invert);
+        }
+        if button(ui, hidden > 0, "sets-show-all") {
+            ask(out, SetsEdit::ShowAll);
+        }
+        if button(ui, !plain, "sets-clear") {
+            ask(out, SetsEdit::Clear);
+        }
+    });
+}
+
+fn make(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    rows::flow(ui, |ui| {
+        if button(ui, true, "sets-from-mask") {
+            ask(out, SetsEdit::FromMask);
+        }
+        if button(ui, true, "sets-from-visible") {
+            ask(out, SetsEdit::FromVisible);
+        }
+        let free = !ui_state.joining;
+        let degrees = ui_state.face_sets.degrees;
+        for (by, name) in [
+            (Partition::Loose, "sets-loose"),
+            (Partition::Normals(degrees), "sets-normals"),
+            (Partition::Crease(degrees), "sets-crease"),
+        ] {
+            if button(ui, free, name) {
+                out.push(UiRequest::MakeSets(by));
+            }
+        }
+    });
+    let degrees = egui::Slider::new(&mut ui_state.face_sets.degrees, 1.0..=180.0);
+    rows::slider(ui, degrees.suffix("°"), &tr!("sets-degrees"));
+}
+
+fn extract(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let share = egui::Slider::new(&mut ui_state.face_sets.thickness, -0.2..=0.2);
+    rows::slider(ui, share.fixed_decimals(3), &tr!("sets-thickness"))
+        .on_hover_text(tr!("sets-thickness.tip"));
+    let (lo, hi) = view.state.mesh.bounds();
+    let scale = view.state.scene.active().map_or(1.0, |o| o.settings.transform.scale);
+    let thickness =
+        ui_state.face_sets.thickness * f64::from((hi - lo).max_element().max(0.0)) * scale;
+    let can = !ui_state.joining && thickness != 0.0;
+    if button(ui, can, "sets-extract-mask") {
+        out.push(UiRequest::Extract(FaceSetPart::Masked, thickness));
+    }
+}

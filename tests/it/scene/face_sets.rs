@@ -1,0 +1,94 @@
+//! Face sets by the control protocol of a running loop, in files and in sessions.
+
+use super::*;
+
+impl Running {
+    /// The face sets, once the state that shows the last command is published.
+    fn sets(&self) -> Value {
+        self.objects();
+        self.ask("sets.list", json!({}))
+    }
+
+    fn set_numbers(&self) -> Vec<u64> {
+        let sets = self.sets()["sets"].as_array().expect("a list").clone();
+        sets.iter().map(|s| s["set"].as_u64().expect("a number")).collect()
+    }
+
+    fn bits(&self) -> Value {
+        self.objects();
+        self.ask("hash", json!({}))["hash"].clone()
+    }
+}
+
+#[test]
+fn face_sets_are_made_hidden_extracted_by_request_and_come_back_from_a_session() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let session = dir.path().join("s.sculpt");
+    let run = Running::begin(&[], &session);
+    let start = run.bits();
+    let steps = || run.live.published.load().undo_steps;
+    let vertices = run.sets()["sets"][0]["vertices"].as_u64().expect("all are in none");
+    assert_eq!(run.set_numbers(), [0]);
+    assert!(run.refused("sets.make", json!({ "from": "mask" })).contains("nothing is masked"));
+    assert!(run.refused("sets.hide", json!({ "set": 3 })).contains("no face set 3"));
+    assert!(run.refused("sets.hide", json!({})).contains("expected one of"));
+    assert!(run.refused("sets.extract", json!({ "thickness": 0.1 })).contains("no triangle"));
+
+    // The left half of the view is masked, all the way through.
+    run.ask("mask-region", json!({ "region": { "box": [0, 0, 0.5, 1] }, "front_faces": false }));
+    assert_eq!(run.ask("sets.make", json!({ "from": "mask" })), json!({ "set": 1, "made": 1 }));
+    let listed = run.sets();
+    let half = listed["sets"][1]["vertices"].as_u64().expect("some");
+    assert!(half > vertices / 3 && half < vertices * 2 / 3, "{listed}");
+    let before = steps();
+    assert_eq!(run.ask("sets.hide", json!({ "at": [0.45, 0.5] }))["set"], 1);
+    assert_eq!(run.sets()["hidden"], half);
+    run.ask("sets.invert", json!({}));
+    assert_eq!(run.sets()["hidden"], vertices - half);
+    run.ask("sets.isolate", json!({ "set": 0 }));
+    run.ask("sets.show", json!({}));
+    assert_eq!((&run.sets()["hidden"], steps()), (&json!(0), before + 4));
+
+    // What is hidden leaves with the file all the same.
+    run.ask("sets.hide", json!({ "masked": true }));
+    let out = dir.path().join("out.obj");
+    let written = run.ask("export", json!({ "path": out, "objects": "active" }));
+    assert_eq!(written["vertices"], vertices);
+
+    // A shell of the other half, which is an object of its own; one step.
+    let before = steps();
+    let made = run.ask("sets.extract", json!({ "thickness": 0.2, "set": 0, "name": "half" }));
+    let shell = run.objects().iter().find(|o| o["id"] == made["id"]).expect("there").clone();
+    assert_eq!((&shell["name"], &shell["active"]), (&json!("half"), &json!(true)));
+    assert!(shell["vertices"].as_u64() > Some(vertices / 2));
+    assert_eq!(steps(), before + 1);
+    let parts = run.ask("sets.make", json!({ "from": "crease", "degrees": 50 }));
+    assert!(parts["made"].as_u64() >= Some(2), "{parts}");
+    assert!(run.refused("sets.make", json!({ "from": "crease", "degrees": 200 })).contains("180"));
+
+    // Another level has other vertices: the sets are dropped, and that is said.
+    run.ask("scene.activate", json!({ "id": 0 }));
+    assert_eq!(run.set_numbers(), [0, 1]);
+    assert_eq!(run.ask("level", json!({ "to": "up" }))["sets_dropped"], 1);
+    assert_eq!(run.set_numbers(), [0]);
+    run.ask("undo", json!({}));
+    assert_eq!(run.sets()["hidden"], half);
+
+    let all = steps();
+    for _ in 0..all {
+        run.ask("undo", json!({}));
+    }
+    assert_eq!(run.bits(), start, "undo of everything");
+    for _ in 0..all {
+        run.ask("redo", json!({}));
+    }
+    assert_eq!((run.set_numbers(), &run.sets()["hidden"]), (vec![0, 1], &json!(half)));
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(3), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+    let quick = session::reopen(&session, &opened, None, 1, &Job::default()).expect("a checkpoint");
+    let mut world = quick.replayed.world;
+    assert_eq!((world.hash(), world.verify_invariants()), (hash, Ok(())));
+    assert_eq!(world.snapshot().face_sets(), [(0, vertices - half, 0), (1, half, half)]);
+}
