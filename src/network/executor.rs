@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::checkpoint::Captured;
 use crate::wire::frame::{Frame, Mark, PersonId};
+use crate::wire::hands::with_unit_lengths;
 use sculptd_clay::Snapshot;
 use sculptd_devices::{DeviceId, Sample};
 use sculptd_engine::command::{Command, OfPerson};
@@ -98,7 +99,9 @@ impl Executor {
         for batch in &frame.batches {
             for sample in &batch.samples {
                 let device = world_device(batch.person, sample.device);
-                input.samples.push(Sample { device, t_us, ..*sample });
+                let mut sample = Sample { device, t_us, ..*sample };
+                with_unit_lengths(&mut sample);
+                input.samples.push(sample);
             }
             for command in &batch.commands {
                 if batch.person == self.person {

@@ -17,12 +17,13 @@ use crate::host_limits::{
     REST_US,
 };
 use crate::host_members::{
-    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, bounded,
+    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, bounded, fitting,
 };
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
 use crate::seal::Secret;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
+use crate::wire::frame_codec::frames_to_bytes;
 use crate::wire::message::{
     Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer,
     Reached, Term, VERSION,
@@ -247,6 +248,7 @@ impl Host {
             heard_us: now_us,
             waits: !resumes,
             have: resumes.then(|| reached.map_or(core.log.last(), |r| r.1)),
+            first: reached.map_or(core.log.last(), |r| r.1),
             sent: reached.map_or(core.log.last(), |r| r.1),
             progress_us: now_us,
             next_us: now_us,
@@ -281,7 +283,7 @@ impl Host {
         let Some(member) = self.members.get_mut(&to) else { return };
         member.waits = false;
         if let Some((index, _)) = offer {
-            member.sent = index;
+            (member.sent, member.first) = (index, index);
         }
         let chunks = |size: u64| size.div_ceil(CHUNK as u64) as u32;
         let waiting = self.waiting.get(&member.person);
@@ -512,18 +514,16 @@ impl Host {
 
     /// Everybody's next batch; of those who are behind, more.
     fn fill(&mut self, core: &mut Core, frame: &mut Frame) {
-        let waiting = self.waiting.entry(core.person).or_default();
-        let count = core.outbox.count_after(waiting.received);
-        for batch in core.outbox.after(waiting.received, 1 + count / 8) {
-            let person = core.person;
+        let (own, person) = (self.waiting.entry(core.person).or_default(), core.person);
+        let count = 1 + core.outbox.count_after(own.received) / 8;
+        let count = fitting(core.outbox.after(own.received, count));
+        for batch in core.outbox.after(own.received, count) {
             frame.batches.push(Batch { person, ..batch.clone() });
         }
-        if let Some(last) = frame.batches.last() {
-            waiting.received = last.number;
-        }
+        own.received = frame.batches.last().map_or(own.received, |last| last.number);
         for waiting in self.waiting.values_mut() {
             let count = 1 + waiting.ready.len() / 8;
-            let count = count.min(waiting.ready.len());
+            let count = fitting(waiting.ready.iter().take(count));
             frame.batches.extend(waiting.ready.drain(..count));
         }
     }
@@ -588,6 +588,8 @@ impl Host {
 
     fn send_frames(&mut self, core: &mut Core, to: Address, frames: Vec<Arc<Frame>>, now_us: u64) {
         let Some(member) = self.members.get_mut(&to) else { return };
+        let known = (member.first, member.have.unwrap_or(member.first));
+        let frames = frames_to_bytes(&frames, &core.log, known);
         let down = FromHost::Down {
             received: self.waiting.get(&member.person).map_or(0, |w| w.received),
             acknowledged: self.acknowledgements.of(member.person),

@@ -13,6 +13,9 @@ use crate::wire::message::Nonce;
 /// Frames of one message, and of their input's entries.
 pub const PER_MESSAGE: (usize, usize) = (64, 2048);
 
+/// Samples, commands and batches of one person and one frame; one batch may go beyond.
+const PER_FRAME: usize = 128;
+
 /// The newest checkpoint: its frame, its bytes, and everybody's last batch then.
 pub type HeldCheckpoint = (u64, Arc<Vec<u8>>, Vec<(Arrival, u64)>);
 
@@ -40,6 +43,8 @@ pub struct JoinedMember {
     pub waits: bool,
     /// Frames up to this one are there; `None`: the checkpoint is not, yet.
     pub have: Option<u64>,
+    /// The frames after this one are those of the log.
+    pub first: u64,
     /// Frames up to this one were sent.
     pub sent: u64,
     pub progress_us: u64,
@@ -75,4 +80,16 @@ pub fn bounded(mut frames: Vec<Arc<Frame>>) -> Vec<Arc<Frame>> {
     }
     frames.truncate(count);
     frames
+}
+
+/// How many of a person's next batches one frame takes, so that a frame of all people fits into a
+/// message, whatever they send; one at least, where there is one.
+pub fn fitting<'a>(batches: impl Iterator<Item = &'a Batch>) -> usize {
+    let mut sum = 0;
+    let fits = |b: &&Batch| {
+        let fits = sum < PER_FRAME;
+        sum += b.samples.len() + b.commands.len() + 1;
+        fits
+    };
+    batches.take_while(fits).count()
 }

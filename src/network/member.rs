@@ -9,6 +9,7 @@ use crate::keyring::{Invitation, Keyring};
 use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
+use crate::wire::frame_codec::frames_from_bytes;
 use crate::wire::message::{
     Address, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer, Term, VERSION,
 };
@@ -153,8 +154,13 @@ impl Member {
                 if self.follows() {
                     self.received = self.received.max(received);
                     core.outbox.acknowledge(acknowledged);
-                    for frame in frames {
-                        self.take_frame(core, frame);
+                    match frames_from_bytes(&frames, &core.log) {
+                        Ok(Some(frames)) => frames.into_iter().for_each(|frame| {
+                            self.take_frame(core, Arc::new(frame));
+                        }),
+                        // What they go on from was lost, and is sent again.
+                        Ok(None) => {}
+                        Err(_) => core.note("the host sends what are no frames; it is ignored"),
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::wire::frame::Batch;
+use crate::wire::frame::{Batch, MAX_ENTRIES};
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
 
@@ -48,10 +48,16 @@ impl Outbox {
         if kept.is_empty() && commands.is_empty() {
             return;
         }
-        self.next += 1;
-        let samples = kept.into_iter().map(|k| k.0).collect();
-        let batch = Batch { person: 0, number: self.next, samples, commands };
-        self.waiting.push_back((batch, None));
+        // One tick's is one batch, but for what is too much for one.
+        let mut samples = kept.into_iter().map(|k| k.0);
+        let mut commands = commands.into_iter();
+        while samples.len() + commands.len() > 0 {
+            self.next += 1;
+            let samples: Vec<Sample> = samples.by_ref().take(MAX_ENTRIES).collect();
+            let commands = commands.by_ref().take(MAX_ENTRIES).collect();
+            let batch = Batch { person: 0, number: self.next, samples, commands };
+            self.waiting.push_back((batch, None));
+        }
     }
 
     /// Batches up to this one are in the log, and a replica has them.

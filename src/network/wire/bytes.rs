@@ -107,6 +107,11 @@ impl<'a> ByteReader<'a> {
         Ok(bytes)
     }
 
+    /// All bytes that are left.
+    pub fn rest(&mut self) -> &'a [u8] {
+        std::mem::take(&mut self.0)
+    }
+
     /// So many bytes, as an array.
     ///
     /// # Errors

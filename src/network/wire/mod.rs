@@ -4,5 +4,8 @@
 
 pub mod bytes;
 pub mod frame;
+pub mod frame_codec;
+pub mod hands;
 pub mod message;
+pub mod range_coder;
 pub mod samples;
