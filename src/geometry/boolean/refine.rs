@@ -251,7 +251,7 @@ mod tests {
         }
 
         // Nothing to do: the faces stay as they are.
-        let mut coarse = whole.clone();
+        let mut coarse = whole;
         let told = refine_cut(&mut coarse, 100.0, &job).expect("not cancelled");
         assert!(told.reached);
     }
