@@ -82,37 +82,47 @@ fn at_distance(
     Ok(OffsetSurface { points: settle_all(&from, moved, &faces, job)?, faces, spacing: h })
 }
 
-/// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold, vertices
-/// at that distance to about a ten-thousandth of the spacing except at creases.
-/// [`RemeshError::Empty`] where shrinking leaves nothing.
+/// A solid grown or shrunk.
+#[derive(Debug, Clone)]
+pub struct Offset {
+    /// The new surface.
+    pub mesh: TriMesh,
+    /// Its least distance from the old one, over all of its triangles, in the mesh's unit.
+    pub least: f64,
+}
+
+/// The surface at `distance` (mm; negative shrinks) from the solid's: a closed 2-manifold. Its
+/// vertices are at one distance to about a ten-thousandth of the spacing except at creases. Where
+/// triangles cut across a bend they come nearer than their vertices, so the surface is made again,
+/// farther away by what is missing, until none of it is nearer than `distance`; [`Offset::least`]
+/// says what was reached. [`RemeshError::Empty`] where shrinking leaves nothing.
 pub fn offset(
     solid: &DistanceSolid,
     distance: f64,
     side: usize,
     job: &Job,
-) -> Result<TriMesh, RemeshError> {
-    let made = at_distance(solid, distance, side, job)?;
+) -> Result<Offset, RemeshError> {
+    let wanted = distance.abs();
+    let mut asked = wanted;
+    let mut made = at_distance(solid, distance, side, job)?;
     if made.faces.is_empty() {
         return Err(RemeshError::Empty);
     }
+    let mut least = least_wall(solid, &made, job)?;
+    for _ in 0..ROUNDS {
+        if least >= wanted {
+            break;
+        }
+        asked += (wanted - least) * 1.05 + made.spacing * 1e-4;
+        let next = at_distance(solid, asked.copysign(distance), side, job)?;
+        if next.faces.is_empty() {
+            break;
+        }
+        made = next;
+        least = least_wall(solid, &made, job)?;
+    }
     job.progress(1.0);
-    Ok(made.mesh())
-}
-
-/// How near the surface `made` comes to the solid's: the least distance over all of its triangles,
-/// not of its vertices alone. What [`offset`] made is nearer than it was asked for where its
-/// triangles cut across a bend.
-pub fn least_distance(
-    solid: &DistanceSolid,
-    made: &TriMesh,
-    job: &Job,
-) -> Result<f64, RemeshError> {
-    let surface = OffsetSurface {
-        points: made.positions.clone(),
-        faces: made.triangles.clone(),
-        spacing: 0.0,
-    };
-    least_wall(solid, &surface, job)
+    Ok(Offset { mesh: made.mesh(), least })
 }
 
 /// A hollowed solid.
@@ -145,7 +155,7 @@ fn cavity_at(
     closed(deep, wall * 0.5, job)
 }
 
-/// Rounds of [`hollow`] after which the wall is as it is: the second, as a rule, finds nothing.
+/// Rounds after which the least distance is as it is: the second, as a rule, finds nothing.
 const ROUNDS: usize = 8;
 /// Steps by which a place in a triangle comes to the one that is nearest to the old surface.
 const DESCENT: usize = 12;
@@ -358,6 +368,30 @@ mod tests {
         }
         assert!((1.999..2.2).contains(&least), "{least}");
         assert!(made.wall >= 2.0 && made.wall <= least + 1e-6, "{} {least}", made.wall);
+    }
+
+    #[test]
+    fn no_place_of_an_offset_is_nearer_than_asked() {
+        let ball = icosphere(10.0, 6);
+        let job = Job::default();
+        let solid = DistanceSolid::build(&ball, &job).unwrap();
+        for distance in [1.5, -1.5] {
+            // Coarse, so that chords come visibly nearer than vertices do.
+            let made = offset(&solid, distance, 16, &job).unwrap();
+            let mut least = f64::INFINITY;
+            for t in &made.mesh.triangles {
+                let [a, b, c] = t.map(|v| made.mesh.positions[v as usize].as_dvec3());
+                for i in 0..=12 {
+                    for j in 0..=12 - i {
+                        let p =
+                            a + (b - a) * (f64::from(i) / 12.0) + (c - a) * (f64::from(j) / 12.0);
+                        least = least.min(solid.tree.nearest(p, f64::INFINITY).unwrap().distance());
+                    }
+                }
+            }
+            assert!((1.5..1.7).contains(&least), "{least}");
+            assert!(made.least >= 1.5 && made.least <= least + 1e-6, "{} {least}", made.least);
+        }
     }
 
     #[test]

@@ -149,6 +149,8 @@ struct LocalMesh {
     tree: SpanTree,
     /// Triangles that are no longer where the tree has them.
     changed: Vec<u32>,
+    /// Whether each triangle is one of them.
+    is_changed: Vec<bool>,
     single: bool,
     step: f64,
     limit: f64,
@@ -176,7 +178,8 @@ impl LocalMesh {
         let spans: Vec<Span> =
             triangles.iter().map(|t| Span::of(t.map(|v| positions[v as usize]))).collect();
         let tree = SpanTree::build(&spans, job)?;
-        let (gone, touched) = (vec![false; triangles.len()], vec![false; triangles.len()]);
+        let none = vec![false; triangles.len()];
+        let (gone, touched, is_changed) = (none.clone(), none.clone(), none);
         let limit = (64.0 * step).max(4.0 * tolerance);
         Ok(LocalMesh {
             positions,
@@ -187,6 +190,7 @@ impl LocalMesh {
             around,
             tree,
             changed: Vec::new(),
+            is_changed,
             single,
             step,
             limit,
@@ -201,31 +205,42 @@ impl LocalMesh {
         (0..self.triangles.len() as u32).filter(|&t| !self.gone[t as usize]).collect()
     }
 
-    /// Pairs that cross with one of `list` in them.
-    fn crossings(&self, list: &[u32]) -> usize {
+    /// Pairs that cross with one of `list` in them, counted no further than to `most`.
+    fn crossings(&self, list: &[u32], most: usize) -> usize {
         let mut count = 0;
         let mut near: Vec<u32> = Vec::new();
         for &t in list.iter().filter(|t| !self.gone[**t as usize]) {
             let own = self.triangles[t as usize];
             let span = Span::of(own.map(|v| self.positions[v as usize])).grown(self.limit);
+            let crosses = |u: u32| {
+                let other = self.triangles[u as usize];
+                u != t
+                    && !self.gone[u as usize]
+                    && !(list.contains(&u) && u < t)
+                    && Span::of(other.map(|v| self.positions[v as usize])).meets(&span)
+                    && self_intersection::crosses(&self.positions, own, other)
+            };
             near.clear();
             self.tree.each_meets(&span, |u| near.push(u));
-            near.extend(&self.changed);
-            near.sort_unstable();
-            near.dedup();
-            count += near
-                .iter()
-                .filter(|&&u| {
-                    let other = self.triangles[u as usize];
-                    u != t
-                        && !self.gone[u as usize]
-                        && !(list.contains(&u) && u < t)
-                        && Span::of(other.map(|v| self.positions[v as usize])).meets(&span)
-                        && self_intersection::crosses(&self.positions, own, other)
-                })
-                .count();
+            // Those that changed are where they are, not where the tree has them: each once.
+            let still = near.iter().filter(|&&u| !self.is_changed[u as usize]);
+            for &u in still.chain(&self.changed) {
+                count += usize::from(crosses(u));
+                if count >= most {
+                    return count;
+                }
+            }
         }
         count
+    }
+
+    /// Marks triangles as changed.
+    fn mark(&mut self, list: &[u32]) {
+        for &t in list {
+            if !std::mem::replace(&mut self.is_changed[t as usize], true) {
+                self.changed.push(t);
+            }
+        }
     }
 
     /// Whether two triangles go through each other by more than any operation moves them: along
@@ -281,14 +296,16 @@ impl LocalMesh {
         }
         // Along the other triangle's normal, to its plane and a little beyond, or to its other
         // side.
-        for (own, other) in [(s, t), (t, s)] {
+        // Nothing changes from here to the first shift that helps, and there it ends.
+        let known = pair.map(|t| self.crossing_around(t));
+        for (n, (own, other)) in [(s, t), (t, s)].into_iter().enumerate() {
             let [a, b, c] = self.triangles[other as usize].map(|v| self.positions[v as usize]);
             let normal = (b - a).cross(c - a).normalize_or_zero();
-            for v in self.triangles[own as usize] {
+            for (k, v) in self.triangles[own as usize].into_iter().enumerate() {
                 let height = (self.positions[v as usize] - a).dot(normal);
                 for share in [1.0, 1.25, 2.0] {
                     let by = height * share + height.signum() * self.step;
-                    if by.abs() <= self.limit && self.shift(v, -normal * by) {
+                    if by.abs() <= self.limit && self.shift(v, -normal * by, known[n][k]) {
                         return;
                     }
                 }
@@ -296,12 +313,12 @@ impl LocalMesh {
         }
         let mut size = self.step;
         while size <= self.limit {
-            for t in pair {
-                for v in self.triangles[t as usize] {
+            for (n, t) in pair.into_iter().enumerate() {
+                for (k, v) in self.triangles[t as usize].into_iter().enumerate() {
                     for d in
                         [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z]
                     {
-                        if self.shift(v, d * size) {
+                        if self.shift(v, d * size, known[n][k]) {
                             return;
                         }
                     }
@@ -313,17 +330,30 @@ impl LocalMesh {
 
     /// Keeps the change that `make` does where fewer pairs cross among `list` and what is new.
     fn attempt(&mut self, list: &[u32], make: impl FnOnce(&mut LocalMesh) -> Option<Undo>) -> bool {
-        let before = self.crossings(list);
+        let before = self.crossings(list, usize::MAX);
+        self.attempt_below(before, list, make)
+    }
+
+    /// The same where `before` pairs are known to cross among `list`.
+    fn attempt_below(
+        &mut self,
+        before: usize,
+        list: &[u32],
+        make: impl FnOnce(&mut LocalMesh) -> Option<Undo>,
+    ) -> bool {
+        if before == 0 {
+            return false;
+        }
         let Some(undo) = make(self) else { return false };
         let marks = self.changed.len();
-        self.changed.extend(list.iter().copied());
-        if before > 0 && self.crossings(list) < before {
-            self.changed.sort_unstable();
-            self.changed.dedup();
+        self.mark(list);
+        if self.crossings(list, before) < before {
             list.iter().for_each(|&t| self.touched[t as usize] = true);
             return true;
         }
-        self.changed.truncate(marks);
+        for t in self.changed.drain(marks..) {
+            self.is_changed[t as usize] = false;
+        }
         if let Some((v, p)) = undo.position {
             self.positions[v as usize] = p;
         }
@@ -339,15 +369,25 @@ impl LocalMesh {
         false
     }
 
-    fn shift(&mut self, v: u32, by: DVec3) -> bool {
+    /// `before`: what [`LocalMesh::crossing_around`] says of `v`.
+    fn shift(&mut self, v: u32, by: DVec3, before: usize) -> bool {
+        if before == 0 {
+            return false;
+        }
         let list = self.around[v as usize].clone();
         let old = self.positions[v as usize];
         let new = if self.single { (old + by).as_vec3().as_dvec3() } else { old + by };
         new != old
-            && self.attempt(&list, |m| {
+            && self.attempt_below(before, &list, |m| {
                 m.positions[v as usize] = new;
                 Some(Undo { triangles: Vec::new(), position: Some((v, old)) })
             })
+    }
+
+    /// Pairs that cross with a triangle around each of a triangle's corners.
+    fn crossing_around(&self, t: u32) -> [usize; 3] {
+        let around = |v: u32| self.crossings(&self.around[v as usize], usize::MAX);
+        self.triangles[t as usize].map(around)
     }
 
     /// The triangle with the edge from `a` to `b`, and its third corner.

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::convert::{FileFacts, ReadyMesh, write_checked, write_ready};
 use super::distance::warn;
+use super::info::interrupted;
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{
@@ -89,6 +90,10 @@ pub struct BooleanArgs {
     /// Of `split`: the plane x*X + y*Y + z*Z = D; above is where (x, y, z) points.
     #[arg(long, value_name = "X,Y,Z,D", value_delimiter = ',', allow_hyphen_values = true)]
     pub plane: Vec<f64>,
+    /// Make smaller triangles along the cut: none that has a corner there keeps an edge longer than
+    /// this. The results are triangles then.
+    #[arg(long, value_name = "MM")]
+    pub refine_cut: Option<f64>,
     /// Say in the answer where the cut runs, and which operand's which face each face is of.
     #[arg(long)]
     pub details: bool,
@@ -115,6 +120,8 @@ struct BooleanAnswer {
     cut_segments: usize,
     /// That curve, in polylines.
     cut: Vec<Line>,
+    /// Triangles more than without `--refine-cut`, of all results.
+    refined: usize,
     warnings: Vec<String>,
 }
 
@@ -180,6 +187,12 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     if args.tolerance.is_some_and(|t| !(t >= 0.0 && t.is_finite())) {
         return Err(Fail::Usage("expected a tolerance of 0 or more".into()));
     }
+    if args.refine_cut.is_some_and(|edge| !(edge > 0.0 && edge.is_finite())) {
+        return Err(Fail::Usage("--refine-cut: expected a length above 0".into()));
+    }
+    if args.refine_cut.is_some() && args.what == What::Shells {
+        return Err(Fail::Usage("--refine-cut: shells are not cut".into()));
+    }
     let plane = match (args.what, &args.plane[..]) {
         (What::Split, &[x, y, z, d]) => Some((DVec3::new(x, y, z), d)),
         (What::Split, _) => return Err(Fail::Usage("split: expected --plane X,Y,Z,D".into())),
@@ -207,6 +220,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     }
     let start = now();
     let faces = match args.polygons {
+        _ if args.refine_cut.is_some() => ResultFaces::Triangles,
         Some(Polygons::Any) => ResultFaces::Polygons,
         Some(Polygons::Convex) => ResultFaces::ConvexPolygons,
         None if operands.iter().any(|m| m.faces().any(|f| f.len() != 3)) => {
@@ -322,7 +336,10 @@ impl ResultSet {
                     boolean::split(&operands[0], normal, offset, options, job, now)?;
                 out.note(report, args.details);
                 let names = ["above", "below"].map(str::to_owned);
-                names.into_iter().zip(made).map(|(n, s)| (n, s, None)).collect()
+                let mut made: Vec<_> =
+                    names.into_iter().zip(made).map(|(n, s)| (n, s, None)).collect();
+                made.iter_mut().try_for_each(|(n, s, _)| out.refine(n, s, args, job))?;
+                made
             }
             None => join(operands, args, options, job, now, &mut out)?,
         };
@@ -388,11 +405,12 @@ fn join(
         };
         solids = made
             .into_iter()
-            .map(|s| {
+            .map(|mut s| {
+                out.refine(s.operation.name(), &mut s, args, job)?;
                 let origins = s.origins.iter().map(of).collect();
-                (s.operation.name().to_owned(), s, Some(origins))
+                Ok((s.operation.name().to_owned(), s, Some(origins)))
             })
-            .collect();
+            .collect::<Result<_, Fail>>()?;
     }
     Ok(solids)
 }
@@ -411,6 +429,27 @@ fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: BooleanAnswer, json: boo
 }
 
 impl BooleanAnswer {
+    /// Smaller triangles along the cut, with `--refine-cut`.
+    fn refine(
+        &mut self,
+        name: &str,
+        solid: &mut BooleanSolid,
+        args: &BooleanArgs,
+        job: &Job,
+    ) -> Result<(), Fail> {
+        let Some(edge) = args.refine_cut else { return Ok(()) };
+        let made = boolean::refine_cut(solid, edge, job).map_err(interrupted)?;
+        self.refined += made.added;
+        if !made.reached {
+            self.warnings.push(format!(
+                "{name}: some edges at the cut are longer than {edge}: there are {} triangles, or \
+                 the coordinates know no place between their ends",
+                solid.mesh.face_count()
+            ));
+        }
+        Ok(())
+    }
+
     fn note(&mut self, report: BooleanReport, details: bool) {
         for (name, seconds) in report.phases {
             *self.phases.entry(name.into()).or_default() += seconds;

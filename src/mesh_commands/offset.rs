@@ -7,14 +7,14 @@ use super::remesh::{RemeshHow, finish};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::offset::{least_distance, offset, smooth_union};
+use sculptd_geometry::offset::{offset, smooth_union};
 
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["distance", "unite"])))]
 pub struct OffsetArgs {
     /// The mesh file.
     pub mesh: PathBuf,
-    /// How far to move the surface: out, or in where negative.
+    /// How far to move the surface, at least, everywhere: out, or in where negative.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub distance: Option<f64>,
     /// Instead: unite with the solid in this file, by a fillet of `--radius`.
@@ -44,19 +44,22 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
             warnings.extend(more);
             timed(|| smooth_union(&a, &b, args.radius, args.how.side, &job))
         }
-        (None, distance) => timed(|| offset(&a, distance.unwrap_or(0.0), args.how.side, &job)),
+        (None, distance) => {
+            let wanted = distance.unwrap_or(0.0);
+            let (made, seconds) = timed(|| offset(&a, wanted, args.how.side, &job));
+            let made = made?;
+            if made.least < wanted.abs() {
+                warnings.push(format!(
+                    "the new surface is {} from the old one at its nearest place instead of {}: a \
+                     larger --side keeps it",
+                    made.least,
+                    wanted.abs()
+                ));
+            }
+            (Ok(made.mesh), seconds)
+        }
     };
     let made = made?;
-    if let Some(wanted) = args.distance.filter(|_| args.unite.is_none()) {
-        let least = least_distance(&a, &made, &job)?;
-        if least < wanted.abs() {
-            warnings.push(format!(
-                "the new surface is {least} from the old one at its nearest place instead of {}: a \
-                 larger --side keeps it more exactly",
-                wanted.abs()
-            ));
-        }
-    }
     warn(&args.mesh, &warnings);
     finish(&args.out, &made, part.centre, seconds, warnings, json)
 }

@@ -36,12 +36,14 @@ mod emit;
 mod global;
 mod intersect;
 mod merge;
+mod one_surface;
 mod parts;
 mod pieces;
 mod planar;
 /// Points with an identity, and a hash map with a fixed order of hashing.
 pub mod points;
 mod precision;
+mod refine;
 mod simplify;
 mod solve;
 mod verify;
@@ -59,6 +61,7 @@ pub use points::Contact;
 pub use precision::{
     DefaultTolerance, Precision, Resolution, default_tolerance, resolution, single_tolerance,
 };
+pub use refine::{CutRefinement, refine_cut};
 pub use solve::solve;
 
 use crate::PolyMesh;
@@ -441,7 +444,7 @@ fn attempt(
     let mut common = common::common(operands, eps, job, &mut lap)?;
     if common.same_surface {
         let solids =
-            of_one_surface(operands[0], operations, options.faces.triangles(operands), job)?;
+            one_surface::results(operands[0], operations, options.faces.triangles(operands), job)?;
         if let Some(solids) = solids {
             lap("emit");
             report.contact = common.points.contact;
@@ -526,37 +529,6 @@ fn attempt(
     report.cut = a.curve();
     job.progress(1.0);
     Ok(Ok(solids))
-}
-
-/// The results where both operands are one surface: the first operand, or nothing. None where the
-/// operand is not a closed manifold as it is.
-fn of_one_surface(
-    operand: &PolyMesh,
-    operations: &[Operation],
-    triangles: bool,
-    job: &Job,
-) -> Result<Option<Vec<BooleanSolid>>, Cancelled> {
-    let mut solids = Vec::with_capacity(operations.len());
-    for &operation in operations {
-        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::new());
-        if operation.takes(0, Placement::Same, false).is_some() {
-            if triangles && operand.faces().any(|f| f.len() != 3) {
-                return Ok(None);
-            }
-            mesh.face_starts = operand.face_starts.clone();
-            mesh.corners = operand.corners.clone();
-            origins.extend(
-                (0..operand.face_count() as u32).map(|face| FaceOrigin { operand: 0, face }),
-            );
-        }
-        let facts = emit::finish(&mut mesh, &operand.positions, job)?;
-        if !facts.closed {
-            return Ok(None);
-        }
-        attributes::carry(&mut mesh, &origins, [operand, operand]);
-        solids.push(BooleanSolid { operation, mesh, origins, facts });
-    }
-    Ok(Some(solids))
 }
 
 /// What the volumes say against the results; `eps`: how far a surface may have moved.

@@ -33,7 +33,8 @@ pub(super) struct CollapsePlan<'a> {
 }
 
 impl<'a> CollapsePlan<'a> {
-    pub fn new(binary: &'a Bvh2) -> CollapsePlan<'a> {
+    /// `within`: how many triangles, at most four, a box has that the binary tree was built from.
+    pub fn new(binary: &'a Bvh2, within: impl Fn(u32) -> u32) -> CollapsePlan<'a> {
         let nodes = &binary.nodes;
         let mut plan =
             CollapsePlan { binary, choices: vec![CollapseChoice::default(); nodes.len()] };
@@ -49,21 +50,23 @@ impl<'a> CollapsePlan<'a> {
             }
         }
         for &n in order.iter().rev() {
-            plan.choices[n as usize] = plan.choose(n as usize);
+            plan.choices[n as usize] = plan.choose(n as usize, &within);
         }
         plan
     }
 
-    fn choose(&self, n: usize) -> CollapseChoice {
+    fn choose(&self, n: usize, within: &impl Fn(u32) -> u32) -> CollapseChoice {
         let node = &self.binary.nodes[n];
         let area = node.aabb().half_area();
         // A leaf costs what a node costs; with half or three times as much the trees are as fast.
         let as_leaf = area;
         if node.is_leaf() {
+            let first = node.first_index as usize;
+            let boxes = &self.binary.primitive_indices[first..first + node.prim_count as usize];
             return CollapseChoice {
                 cost: [as_leaf; 7],
                 left: [0; 7],
-                count: node.prim_count,
+                count: boxes.iter().map(|&i| within(i)).sum(),
                 leaf: true,
             };
         }
@@ -143,8 +146,8 @@ impl<'a> CollapsePlan<'a> {
         (out, count)
     }
 
-    /// The triangles, by place in the list the binary tree was built from, of a leaf; at most four.
-    pub fn triangles(&self, n: usize) -> ([u32; LEAF_MAX as usize], usize) {
+    /// The boxes, by place in the list the binary tree was built from, of a leaf; at most four.
+    pub fn boxes(&self, n: usize) -> ([u32; LEAF_MAX as usize], usize) {
         let (mut out, mut count) = ([0; LEAF_MAX as usize], 0);
         let mut todo = [0usize; LEAF_MAX as usize + 1];
         todo[0] = n;

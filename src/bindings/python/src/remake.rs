@@ -33,8 +33,8 @@ fn remesh(
     Ok(Mesh::at(&made, part.centre))
 }
 
-/// The surface at `distance` from that of `mesh`; negative shrinks. Raises EmptyResult where
-/// shrinking leaves nothing.
+/// The surface at `distance` from that of `mesh`, and nowhere nearer; negative shrinks. Raises
+/// EmptyResult where shrinking leaves nothing.
 #[pyfunction]
 #[pyo3(signature = (mesh, distance, *, side=256, progress=None))]
 fn offset(
@@ -50,7 +50,7 @@ fn offset(
     let (part, solid) = prepared(py, mesh.get(), &None)?;
     let made = watched(py, &progress, |job| offsets::offset(&solid, distance, side, job))?
         .map_err(|e| errors::remesh(&e))?;
-    Ok(Mesh::at(&made, part.centre))
+    Ok(Mesh::at(&made.mesh, part.centre))
 }
 
 /// `mesh` with a cavity inside that leaves a wall of at least `wall`. The old surface is kept bit
