@@ -421,6 +421,7 @@ fn one_dab<'a>(
         image: 0,
         travelled: 0.2 * radius * i as f32,
         stroke: (i / STROKE) as u32 + 1,
+        set: 0,
     };
     Dab { pace: dab.pace_of(settings.strength), ..dab }
 }
