@@ -37,6 +37,7 @@ pub mod event;
 pub mod layers;
 pub mod method;
 pub mod range;
+pub mod retopology;
 pub mod scene;
 #[cfg(feature = "schema")]
 pub mod schema;

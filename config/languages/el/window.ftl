@@ -464,6 +464,18 @@ remesh-sharp = Διατήρηση οξειών ακμών
 remesh-button = Remesh
     .tip = Μία επιφάνεια από ίσα τρίγωνα· τα επικαλυπτόμενα μέρη γίνονται ένα. { $keys }
 
+quads-heading = Τετράπλευρα
+quads-count = τετράπλευρα
+quads-levels = λεπτότερα επίπεδα
+    .tip = Τα τετράπλευρα είναι το χαμηλότερο επίπεδο· τα λεπτότερα επαναφέρουν τη λεπτομέρεια
+quads-button = Remesh με τετράπλευρα
+    .tip = Τετράπλευρα που ακολουθούν το σχήμα· μια εξαγωγή χωρίς επίπεδα τα γράφει
+
+decimate-heading = Αποδεκάτιση
+decimate-share = των τριγώνων
+decimate-button = Αποδεκάτιση
+    .tip = Λιγότερα τρίγωνα, για εκτύπωση και ιστό. Δεν προκύπτουν νέες αυτοτομές και το όριο της μάσκας μένει
+
 trim-heading = Περικοπή
 trim-box = Πλαίσιο
     .tip = Σύρετε πλαίσιο στην όψη: ό,τι είναι μέσα του κόβεται πέρα ως πέρα
@@ -884,6 +896,8 @@ task-snapped = Οι έδρες εφάπτονται
 task-trimmed = Περικόπηκε
 task-level = Επίπεδο { $at } από { $all }
 task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος { $change } %
+task-quads = { $quads } τετράπλευρα και { $triangles } τρίγωνα· τομές: { $crossings }
+task-decimated = { $before } τρίγωνα έγιναν { $now }· νέες τομές: { $crossings }
 task-layers-baked = Στρώσεις που ενσωματώθηκαν στη νέα επιφάνεια: { $count }
 task-preferences-unreadable = { $path }: { $error }· φυλάχτηκε ως { $aside }
 task-preferences-stuck = { $path }: { $error }· δεν μπορεί να παραμεριστεί: { $why }

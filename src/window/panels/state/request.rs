@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use glam::Vec3;
+use sculptd_daemon::decimate_job::DecimateWanted;
+use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim::Part;
 use sculptd_devices::pad_actions::{Binding, Control};
@@ -47,6 +49,10 @@ pub enum UiRequest {
     Level(bool),
     /// The object gets one surface of even triangles.
     Remesh(Wanted),
+    /// The object gets quads that follow its shape.
+    Quads(QuadsWanted),
+    /// The object gets fewer triangles.
+    Decimate(DecimateWanted),
     /// Distances are those to the object as it is now.
     Reference,
     /// The shadow's outline is written.

@@ -12,6 +12,7 @@ use super::outliner::Outliner;
 use super::pens::PenTrace;
 use super::preferences::Hint;
 use super::preferences::Preferences;
+use super::retopology::Retopology;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
 use super::tab::Tab;
@@ -54,6 +55,8 @@ pub struct UiState {
     pub layers: LayerPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
+    /// Quads and decimation.
+    pub retopology: Retopology,
     pub trim: Option<Trim>,
     /// The handle of a curve that was held last.
     pub handle: Option<usize>,
