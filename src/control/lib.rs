@@ -38,6 +38,7 @@ pub mod face_sets;
 pub mod layers;
 pub mod method;
 pub mod range;
+pub mod retopology;
 pub mod scene;
 #[cfg(feature = "schema")]
 pub mod schema;

@@ -28,6 +28,7 @@ use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
     LayerReply, LayerSetParams, LayersReply,
 };
+use crate::retopology::{DecimateParams, DecimateReply, RemeshQuadsParams, RemeshQuadsReply};
 use crate::scene::{
     AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,
     RenameParams, ReshapeParams, SceneBooleanParams, SceneReply, ShowParams, TransformParams,
@@ -226,6 +227,12 @@ methods! {
     /// Gives the object one closed surface of even triangles: one step of undo. Shells that overlap
     /// are united; masks and colours are carried over.
     "remesh" Remesh remesh(RemeshParams) -> RemeshReply;
+    /// Gives the object quads that follow the shape, its creases and guide lines, or makes them the
+    /// lowest of several levels: one step of undo. Masks and colours are carried over.
+    "remesh.quads" RemeshQuads remesh_quads(RemeshQuadsParams) -> RemeshQuadsReply;
+    /// Leaves as few triangles as are wanted, for printing and the web: one step of undo. Nothing
+    /// crosses itself that did not before, and the border of the mask stays.
+    "decimate" Decimate decimate(DecimateParams) -> DecimateReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;
     /// Every object of the scene, and which is active.

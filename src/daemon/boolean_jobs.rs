@@ -25,6 +25,7 @@ use sculptd_engine::scene::ObjectId;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::quads::QuadError;
 use sculptd_geometry::remesh::RemeshError;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
@@ -57,6 +58,12 @@ pub enum JoinError {
     Remesh(#[from] RemeshError),
     #[error("voxel = {voxel}: expected {least} to {most}, 1024 to 8 along the longest side")]
     Voxel { voxel: f32, least: f32, most: f32 },
+    #[error(transparent)]
+    Quads(#[from] QuadError),
+    #[error("levels = {0}: expected 0 to 6")]
+    QuadLevels(u32),
+    #[error("triangles = {0}: expected at least 4, or a max_error")]
+    Triangles(usize),
     #[error("the loop has ended")]
     Ended,
     #[error(transparent)]

@@ -9,10 +9,12 @@
 pub mod adaptors;
 pub mod boolean_jobs;
 pub mod brush_folder;
+pub mod carry_over;
 pub mod command_queue;
 pub mod config;
 #[cfg(unix)]
 pub mod control;
+pub mod decimate_job;
 pub mod demo_devices;
 pub mod doctor;
 pub mod face_set_jobs;
@@ -31,6 +33,7 @@ pub mod pen_trail;
 pub mod polygons;
 pub mod present_latency;
 pub mod published;
+pub mod quad_job;
 pub mod remesh_job;
 pub mod scene_jobs;
 #[cfg(unix)]

@@ -4,17 +4,17 @@
 use std::sync::Arc;
 
 use arc_swap::ArcSwap;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
-use crate::Published;
 use crate::boolean_jobs::{JoinError, of_clay, settled};
 use crate::command_queue::QueuedCommand;
-use sculptd_clay::Clay;
+use crate::{Published, carry_over};
+use sculptd_clay::{Clay, Levels};
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::distance::DistanceSolid;
-use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::job::Job;
 use sculptd_geometry::measure::measures;
 use sculptd_geometry::remesh::{RemeshSettings, remesh};
 
@@ -76,45 +76,35 @@ pub fn remeshed(
         let settings = RemeshSettings { side: side as usize, sharp: wanted.sharp };
         let new = remesh(&old, &solid, settings, job)?;
         let masks = now.mesh.masks();
-        let masks = masks.map(|m| carried(&m, &old, &solid, &new.positions, job)).transpose()?;
+        let places = |_: &Vec<f32>| carry_over::places(&old, &solid, &new.positions, job);
+        let at = masks.as_ref().map(places).transpose()?;
+        let masks = masks.zip(at).map(|(m, at)| carry_over::values(&old, &m, &at));
         let found = Remeshed {
             voxel: longest / side,
             vertices: new.positions.len(),
             triangles: new.triangles.len(),
             volume: [measures(&old).volume, measures(&new).volume],
         };
-        let built = Clay::build_masked(&new, masks.as_deref().unwrap_or(&[]), job);
-        let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
-        let clay = NewClay::new(Arc::new(new), true);
-        let command = match masks {
-            Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
-            None => Command::Replace(clay),
-        };
-        let queued = QueuedCommand::with_payload(command, Payload::Clay(Box::new(built)));
+        let queued = in_place(Arc::new(new), masks, None, job)?;
         Ok((of_clay(now, queued), found))
     })
 }
 
-/// A value of each old vertex at each new one: that of the nearest place on the old surface.
-fn carried(
-    values: &[f32],
-    old: &TriMesh,
-    solid: &DistanceSolid,
-    places: &[Vec3],
+/// The command that puts these triangles, with masks and levels, in the place of the object's. Its
+/// pages are built here.
+pub fn in_place(
+    new: Arc<TriMesh>,
+    masks: Option<Vec<f32>>,
+    levels: Option<Levels>,
     job: &Job,
-) -> Result<Vec<f32>, Cancelled> {
-    let places: Vec<DVec3> = places.iter().map(|p| p.as_dvec3()).collect();
-    let nearest = solid.nearest(&places, job)?;
-    let at = nearest.iter().map(|n| {
-        let Some(n) = n else { return 0.0 };
-        let triangle = n.triangle as usize;
-        let [a, b, c] = old.corners(triangle).map(Vec3::as_dvec3);
-        let area = |p: DVec3, q: DVec3| (p - n.point).cross(q - n.point).length();
-        let w = [area(b, c), area(c, a), area(a, b)];
-        let sum = w[0] + w[1] + w[2];
-        let w = if sum > 0.0 { w.map(|x| x / sum) } else { [1.0, 0.0, 0.0] };
-        let t = old.triangles[triangle];
-        (0..3).map(|i| f64::from(values[t[i] as usize]) * w[i]).sum::<f64>() as f32
-    });
-    Ok(at.collect())
+) -> Result<QueuedCommand, JoinError> {
+    let built = Clay::build_masked(&new, masks.as_deref().unwrap_or(&[]), job);
+    let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
+    let mut clay = NewClay::new(new, true);
+    clay.levels = levels.map(Arc::new);
+    let command = match masks {
+        Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
+        None => Command::Replace(clay),
+    };
+    Ok(QueuedCommand::with_payload(command, Payload::Clay(Box::new(built))))
 }

@@ -5,7 +5,13 @@
 //! A collapse is refused if it would break the surface (link condition: the edge's ends share
 //! exactly the vertices opposite the edge), turn a triangle by more than about 75 degrees or make a
 //! needle of it, or move the surface by more than the bound. Borders hold by planes set upright on
-//! them. What was closed and manifold stays so.
+//! them, and so do the borders between regions. What was closed and manifold stays so.
+//!
+//! A collapse looks at its own triangles only, so the result may cross itself where the surface is
+//! thin or two parts are near each other. Such crossings are looked for when all is done. Where
+//! there are any that the mesh did not have, all is done again with a bound on how many vertices
+//! one near them may stand for, a quarter each time, until there are none: a bound of one leaves
+//! the surface there as it was.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,6 +20,7 @@ use glam::{DMat3, DVec3};
 
 use super::PolyMesh;
 use super::edges::EdgeTable;
+use super::self_intersection;
 use crate::job::{Cancelled, Job};
 
 /// When to stop.
@@ -24,6 +31,20 @@ pub struct DecimationTarget {
     /// And before the mean square distance to the planes that a vertex stands for exceeds this one
     /// squared, in the mesh's unit; infinity for no bound.
     pub error: f64,
+}
+
+/// Rounds of the search for a result without new crossings.
+const ROUNDS: usize = 8;
+
+/// A mesh of fewer triangles, and what is to be said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decimated {
+    /// The mesh; its groups are those of the triangles that are left.
+    pub mesh: PolyMesh,
+    /// Pairs of triangles that cross each other where none did before.
+    pub new_crossings: usize,
+    /// How often all was done again, more carefully, because of crossings.
+    pub repeated: usize,
 }
 
 /// A symmetric quadratic form: the weighted sum of squared distances to planes.
@@ -87,26 +108,117 @@ struct CollapseSurface {
     stamp: Vec<u32>,
     fixed: Vec<bool>,
     border: Vec<bool>,
+    /// The region of each triangle.
+    regions: Vec<u32>,
+    /// How many vertices of the input each stands for, and may at most.
+    members: Vec<u32>,
+    most_members: Vec<u32>,
+    /// The vertex that each was joined with.
+    joined: Vec<u32>,
 }
 
 /// Errors as bits: those of non-negative numbers sort as the numbers do.
 type CollapseCandidate = Reverse<(u64, u32, u32, u32, u32)>;
 
 /// Collapses edges of the mesh's triangles (polygons are cut first) until `target` is reached or
-/// nothing more may go.
+/// nothing more may go. As [`decimate`], without regions.
 pub fn quadric(
     mesh: &PolyMesh,
     target: DecimationTarget,
     job: &Job,
 ) -> Result<PolyMesh, Cancelled> {
-    let (triangles, _) = mesh.triangles();
+    Ok(decimate(mesh, None, target, job)?.mesh)
+}
+
+/// Collapses edges of the mesh's triangles (polygons are cut first) until `target` is reached or
+/// nothing more may go, without crossings that were not there before. Borders between regions are
+/// kept as borders of the mesh are: those between the mesh's groups, and those between what
+/// `marked` says of its vertices; a triangle is marked if two of its corners are.
+pub fn decimate(
+    mesh: &PolyMesh,
+    marked: Option<&[bool]>,
+    target: DecimationTarget,
+    job: &Job,
+) -> Result<Decimated, Cancelled> {
+    let (mut triangles, faces) = mesh.triangles();
+    let proper = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    let groups = mesh.groups.as_ref();
+    let regions: Vec<u32> = triangles
+        .iter()
+        .zip(&faces)
+        .filter(|(t, _)| proper(t))
+        .map(|(t, &face)| {
+            let group = groups.and_then(|g| g.get(face as usize)).copied().unwrap_or(0);
+            let is = |v: &&u32| marked.is_some_and(|m| m.get(**v as usize) == Some(&true));
+            group << 1 | u32::from(t.iter().filter(is).count() >= 2)
+        })
+        .collect();
+    triangles.retain(proper);
+    let mut most_members = vec![u32::MAX; mesh.positions.len()];
+    let mut old_crossings: Option<Vec<bool>> = None;
+    let mut repeated = 0;
+    loop {
+        let s = collapsed(mesh, (&triangles, &regions), &most_members, target, job)?;
+        let left: Vec<[u32; 3]> =
+            s.triangles.iter().zip(&s.alive).filter(|(_, a)| **a).map(|(t, _)| *t).collect();
+        let mut found = self_intersection::pairs(&s.positions, &left, job)?;
+        let all: Vec<u32> = (0..s.joined.len() as u32).map(|v| s.stands_for(v)).collect();
+        if !found.is_empty() {
+            // What crossed before may go on crossing.
+            let old = match &old_crossings {
+                Some(old) => old,
+                None => old_crossings.insert(crossing_vertices(mesh, &triangles, job)?),
+            };
+            let mut of_old = vec![false; all.len()];
+            (0..all.len()).filter(|&v| old[v]).for_each(|v| of_old[all[v] as usize] = true);
+            let is_old = |t: u32| left[t as usize].iter().any(|&v| of_old[v as usize]);
+            found.retain(|&(t, u)| !(is_old(t) && is_old(u)));
+        }
+        if found.is_empty() || repeated == ROUNDS {
+            let mesh = s.finished(mesh);
+            return Ok(Decimated { mesh, new_crossings: found.len(), repeated });
+        }
+        repeated += 1;
+        let mut near = vec![false; all.len()];
+        let corners = found.iter().flat_map(|&(t, u)| [left[t as usize], left[u as usize]]);
+        corners.flatten().for_each(|v| near[v as usize] = true);
+        for (v, &to) in all.iter().enumerate().filter(|(_, to)| near[**to as usize]) {
+            most_members[v] = most_members[v].min(s.members[to as usize] / 4).max(1);
+        }
+    }
+}
+
+/// The vertices of triangles that cross others.
+fn crossing_vertices(
+    mesh: &PolyMesh,
+    triangles: &[[u32; 3]],
+    job: &Job,
+) -> Result<Vec<bool>, Cancelled> {
+    let mut out = vec![false; mesh.positions.len()];
+    for (t, u) in self_intersection::pairs(&mesh.positions, triangles, job)? {
+        for v in [triangles[t as usize], triangles[u as usize]].into_iter().flatten() {
+            out[v as usize] = true;
+        }
+    }
+    Ok(out)
+}
+
+/// Everything collapsed that may be.
+fn collapsed(
+    mesh: &PolyMesh,
+    (triangles, regions): (&[[u32; 3]], &[u32]),
+    most_members: &[u32],
+    target: DecimationTarget,
+    job: &Job,
+) -> Result<CollapseSurface, Cancelled> {
     let middle = mesh
         .positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let middle =
         if mesh.positions.is_empty() { DVec3::ZERO } else { middle.0 / 2.0 + middle.1 / 2.0 };
-    let mut s = CollapseSurface::of(mesh, triangles, middle);
+    let mut s = CollapseSurface::of(mesh, triangles.to_vec(), regions.to_vec(), middle);
+    s.most_members.copy_from_slice(most_members);
     let mut heap: BinaryHeap<CollapseCandidate> = BinaryHeap::new();
     let mut pairs: Vec<(u32, u32)> = s
         .triangles
@@ -116,7 +228,10 @@ pub fn quadric(
         .collect();
     pairs.sort_unstable();
     pairs.dedup();
-    for (a, b) in pairs {
+    for (i, (a, b)) in pairs.into_iter().enumerate() {
+        if i.is_multiple_of(1 << 14) {
+            job.check()?;
+        }
         s.offer(a, b, target.error, &mut heap);
     }
     let start = s.triangles.len();
@@ -148,19 +263,18 @@ pub fn quadric(
             s.offer(a, v, target.error, &mut heap);
         }
     }
-    let mut out = PolyMesh::new();
-    out.positions = s.positions.iter().map(|&p| p + middle).collect();
-    out.colours.clone_from(&mesh.colours);
-    for (t, _) in s.triangles.iter().zip(&s.alive).filter(|(_, a)| **a) {
-        out.push_face(t);
-    }
-    crate::repair::drop_unused(&mut out);
-    Ok(out)
+    // Crossings are looked for in the numbers that go out.
+    s.positions.iter_mut().for_each(|p| *p += middle);
+    Ok(s)
 }
 
 impl CollapseSurface {
-    fn of(mesh: &PolyMesh, mut triangles: Vec<[u32; 3]>, middle: DVec3) -> CollapseSurface {
-        triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+    fn of(
+        mesh: &PolyMesh,
+        triangles: Vec<[u32; 3]>,
+        regions: Vec<u32>,
+        middle: DVec3,
+    ) -> CollapseSurface {
         let n = mesh.positions.len();
         let mut s = CollapseSurface {
             positions: mesh.positions.iter().map(|&p| p - middle).collect(),
@@ -170,6 +284,10 @@ impl CollapseSurface {
             stamp: vec![0; n],
             fixed: vec![false; n],
             border: vec![false; n],
+            regions,
+            members: vec![1; n],
+            most_members: vec![u32::MAX; n],
+            joined: (0..n as u32).collect(),
             triangles,
         };
         let mut flat = PolyMesh::new();
@@ -185,19 +303,29 @@ impl CollapseSurface {
         }
         for half_edges in EdgeTable::of(&flat).each() {
             let (u, v) = half_edges[0].ends;
+            let upright = |corner: u32| {
+                let [a, b, c] = s.triangles[corner as usize / 3].map(|v| s.positions[v as usize]);
+                let (from, to) = (s.positions[u as usize], s.positions[v as usize]);
+                let normal = (to - from).cross((b - a).cross(c - a)).normalize_or_zero();
+                Quadric::plane(normal, from, (to - from).length_squared())
+            };
+            let region = |corner: u32| s.regions[corner as usize / 3];
             match half_edges {
                 [one] => {
-                    let [a, b, c] =
-                        s.triangles[one.corner as usize / 3].map(|v| s.positions[v as usize]);
-                    let (from, to) = (s.positions[u as usize], s.positions[v as usize]);
-                    let upright = (to - from).cross((b - a).cross(c - a)).normalize_or_zero();
-                    let form = Quadric::plane(upright, from, (to - from).length_squared());
+                    let form = upright(one.corner);
                     for v in [u, v] {
                         s.border[v as usize] = true;
                         s.forms[v as usize].add(&form);
                     }
                 }
-                [_, _] => {}
+                [one, two] => {
+                    if region(one.corner) != region(two.corner) {
+                        for form in [upright(one.corner), upright(two.corner)] {
+                            s.forms[u as usize].add(&form);
+                            s.forms[v as usize].add(&form);
+                        }
+                    }
+                }
                 _ => {
                     s.fixed[u as usize] = true;
                     s.fixed[v as usize] = true;
@@ -206,11 +334,55 @@ impl CollapseSurface {
         }
         // Where sheets only touch, a collapse might join them: such vertices stay.
         for v in 0..n {
-            if !s.one_fan(v as u32) {
+            // Where three regions meet or a border between two ends, the place stays.
+            if !s.one_fan(v as u32) || !matches!(s.region_borders(v as u32), 0 | 2) {
                 s.fixed[v] = true;
             }
         }
         s
+    }
+
+    /// The mesh of what is left.
+    fn finished(&self, old: &PolyMesh) -> PolyMesh {
+        let mut out = PolyMesh::new();
+        out.positions.clone_from(&self.positions);
+        out.colours.clone_from(&old.colours);
+        let alive = || (0..self.triangles.len()).filter(|&t| self.alive[t]);
+        alive().for_each(|t| out.push_face(&self.triangles[t]));
+        out.groups = old.groups.as_ref().map(|_| alive().map(|t| self.regions[t] >> 1).collect());
+        crate::repair::drop_unused(&mut out);
+        out
+    }
+
+    /// The vertex that `v` was joined with in the end.
+    fn stands_for(&self, mut v: u32) -> u32 {
+        while self.joined[v as usize] != v {
+            v = self.joined[v as usize];
+        }
+        v
+    }
+
+    /// How many edges between two regions end at `v`.
+    fn region_borders(&self, v: u32) -> usize {
+        let around = &self.around[v as usize];
+        let own = |t: u32| self.regions[t as usize];
+        if around.iter().all(|&t| own(t) == own(around[0])) {
+            return 0;
+        }
+        let each = around.iter().enumerate().flat_map(|(i, &t)| {
+            around[i + 1..].iter().filter(move |&&u| {
+                let other = self.triangles[u as usize];
+                let mut corners = self.triangles[t as usize].iter();
+                own(t) != own(u) && corners.any(|w| *w != v && other.contains(w))
+            })
+        });
+        each.count()
+    }
+
+    /// Whether triangles of several regions meet at `v`.
+    fn between_regions(&self, v: u32) -> bool {
+        let around = &self.around[v as usize];
+        around.iter().any(|&t| self.regions[t as usize] != self.regions[around[0] as usize])
     }
 
     /// Whether the triangles around `v` hang together by edges at `v`.
@@ -257,6 +429,10 @@ impl CollapseSurface {
         if self.fixed[a as usize] || self.fixed[b as usize] {
             return;
         }
+        let members = self.members[a as usize].saturating_add(self.members[b as usize]);
+        if members > self.most_members[a as usize].min(self.most_members[b as usize]) {
+            return;
+        }
         let (cost, to) = self.best(a, b);
         let mut form = self.forms[a as usize];
         form.add(&self.forms[b as usize]);
@@ -284,6 +460,11 @@ impl CollapseSurface {
             .filter(|t| self.triangles[*t as usize].contains(&b))
             .collect();
         let inner = self.border[a as usize] && self.border[b as usize] && shared.len() == 2;
+        // Nor may two borders between regions be joined across one of them.
+        let regions: Vec<u32> = shared.iter().map(|&t| self.regions[t as usize]).collect();
+        let across = regions.iter().all(|r| *r == regions[0])
+            && self.between_regions(a)
+            && self.between_regions(b);
         let rb = ring(b);
         let ra = ring(a);
         let common = ra.iter().filter(|v| rb.binary_search(v).is_ok()).count();
@@ -293,7 +474,12 @@ impl CollapseSurface {
             .filter(|&&v| v != b)
             .chain(rb.iter().filter(|&&v| v != a))
             .collect::<std::collections::BTreeSet<_>>();
-        if shared.is_empty() || inner || common != shared.len() || all.len() < shared.len() + 1 {
+        if shared.is_empty()
+            || inner
+            || across
+            || common != shared.len()
+            || all.len() < shared.len() + 1
+        {
             return false;
         }
         [a, b].iter().all(|&v| {
@@ -339,6 +525,10 @@ impl CollapseSurface {
         let form = self.forms[b as usize];
         self.forms[a as usize].add(&form);
         self.border[a as usize] |= self.border[b as usize];
+        self.members[a as usize] += self.members[b as usize];
+        self.most_members[a as usize] =
+            self.most_members[a as usize].min(self.most_members[b as usize]);
+        self.joined[b as usize] = a;
         self.stamp[a as usize] += 1;
         self.stamp[b as usize] += 1;
         gone
@@ -346,65 +536,4 @@ impl CollapseSurface {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::check::report;
-    use crate::shapes::{cuboid, grid, icosphere, torus};
-    use crate::subdivide::loop_;
-
-    fn down(mesh: &PolyMesh, triangles: usize, error: f64) -> PolyMesh {
-        quadric(mesh, DecimationTarget { triangles, error }, &Job::default()).unwrap()
-    }
-
-    #[test]
-    fn a_ball_stays_a_ball_and_a_ring_a_ring() {
-        let job = Job::default();
-        let ball = icosphere(1.0, 30).to_poly();
-        let few = report(&down(&ball, 600, f64::INFINITY), true, &job).unwrap();
-        assert!(
-            few.closed && few.manifold && few.genus == Some(0) && few.triangles <= 600,
-            "{few:?}"
-        );
-        assert_eq!(few.self_intersections, Some(0));
-        let sphere = 4.0 / 3.0 * std::f64::consts::PI;
-        assert!((few.volume.unwrap() - sphere).abs() < 0.02 * sphere, "{few:?}");
-        let ring = report(&down(&torus(3., 1., 80, 40), 300, f64::INFINITY), true, &job).unwrap();
-        assert!(
-            ring.closed && ring.manifold && ring.genus == Some(1) && ring.triangles <= 300,
-            "{ring:?}"
-        );
-    }
-
-    #[test]
-    fn flat_faces_cost_nothing_and_the_bound_holds_the_edges() {
-        let cube = cuboid(DVec3::ZERO, DVec3::ONE);
-        let mut fine = cube;
-        // Cut only, not smoothed: each level halves every edge.
-        for _ in 0..4 {
-            let sharp = loop_(&fine, 1, &Job::default()).unwrap();
-            let mut middle = sharp.clone();
-            let (tri, _) = fine.triangulate();
-            for (v, p) in fine.positions.iter().enumerate() {
-                middle.positions[v] = *p;
-            }
-            let flat = PolyMesh {
-                corners: tri.triangles.iter().flatten().copied().collect(),
-                face_starts: (0..=tri.triangles.len() as u32).map(|t| t * 3).collect(),
-                positions: fine.positions.clone(),
-                ..PolyMesh::new()
-            };
-            for (e, s) in EdgeTable::of(&flat).each().enumerate() {
-                let (u, v) = s[0].ends;
-                middle.positions[fine.positions.len() + e] =
-                    (fine.positions[u as usize] + fine.positions[v as usize]) / 2.0;
-            }
-            fine = middle;
-        }
-        assert_eq!(fine.face_count(), 12 * 256);
-        let r = report(&down(&fine, 0, 1e-6), true, &Job::default()).unwrap();
-        assert!(r.closed && r.manifold && r.triangles <= 40, "{r:?}");
-        assert!((r.volume.unwrap() - 1.0).abs() < 1e-6 && (r.area - 6.0).abs() < 1e-5, "{r:?}");
-        let sheet = report(&down(&grid(2., 3., 20, 20), 0, 1e-6), true, &Job::default()).unwrap();
-        assert!((sheet.area - 6.0).abs() < 1e-6 && sheet.triangles <= 20, "{sheet:?}");
-    }
-}
+mod tests;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::convert::deliver;
 use super::info::interrupted;
 use super::{Fail, Outcome};
-use sculptd_geometry::decimate::{DecimationTarget, quadric};
+use sculptd_geometry::decimate::{DecimationTarget, decimate};
 use sculptd_geometry::io::{read_mesh, writable_format};
 use sculptd_geometry::job::Job;
 
@@ -32,7 +32,14 @@ pub fn run(args: &DecimateArgs, json: bool) -> Outcome {
     let mut warnings = loaded.warnings;
     let target =
         DecimationTarget { triangles: args.faces, error: args.max_error.unwrap_or(f64::INFINITY) };
-    let made = quadric(&loaded.mesh, target, &job).map_err(interrupted)?;
+    let done = decimate(&loaded.mesh, None, target, &job).map_err(interrupted)?;
+    let made = done.mesh;
+    if done.new_crossings > 0 {
+        warnings.push(format!(
+            "{} pairs of triangles cross each other that did not before",
+            done.new_crossings
+        ));
+    }
     if args.max_error.is_none() && made.face_count() > args.faces {
         warnings.push(format!(
             "stopped at {} triangles: more would break the surface",

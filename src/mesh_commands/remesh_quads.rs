@@ -126,14 +126,16 @@ pub(super) fn remesh_quads(
             f.triangles,
             f.other
         )?;
-        if f.quads > 0 {
+        if let (Some(least), Some(greatest), Some(deviation)) =
+            (f.least_angle, f.greatest_angle, f.mean_deviation)
+        {
             writeln!(
                 w,
                 "angles {:.1} to {:.1} degrees, {:.1} from 90 in the mean; {:.1} % of the \
                  vertices regular",
-                f.least_angle,
-                f.greatest_angle,
-                f.mean_deviation,
+                least,
+                greatest,
+                deviation,
                 f.regular * 100.0
             )?;
         }

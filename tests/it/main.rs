@@ -33,6 +33,7 @@ mod mutations;
 mod own_brushes;
 mod recovery;
 mod remesh_live;
+mod retopology_live;
 #[cfg(unix)]
 mod scene;
 mod service;

@@ -498,6 +498,18 @@ remesh-sharp = Scharfe Kanten erhalten
 remesh-button = Remesh
     .tip = Eine Fläche gleichmäßiger Dreiecke; überlappende Teile werden eins. { $keys }
 
+quads-heading = Vierecke
+quads-count = Vierecke
+quads-levels = feinere Stufen
+    .tip = Die Vierecke sind die unterste Stufe; feinere Stufen bringen die Details zurück
+quads-button = Vierecke erzeugen
+    .tip = Vierecke, die der Form folgen; ein Export ohne Stufen schreibt sie
+
+decimate-heading = Dezimieren
+decimate-share = der Dreiecke
+decimate-button = Dezimieren
+    .tip = Weniger Dreiecke, für Druck und Web. Nichts durchdringt sich neu, und der Rand der Maske bleibt
+
 trim-heading = Zuschneiden
 trim-box = Rahmen
     .tip = Einen Rahmen über die Ansicht ziehen: was darin liegt, wird ganz hindurch abgeschnitten
@@ -918,6 +930,8 @@ task-snapped = Die Flächen liegen aneinander
 task-trimmed = Zugeschnitten
 task-level = Stufe { $at } von { $all }
 task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $change } %
+task-quads = { $quads } Vierecke und { $triangles } Dreiecke; Durchdringungen: { $crossings }
+task-decimated = Aus { $before } Dreiecken wurden { $now }; neue Durchdringungen: { $crossings }
 task-layers-baked = In die neue Fläche eingerechnete Ebenen: { $count }
 task-sets-made = Flächengruppen angelegt
 task-sets-dropped = Die Flächengruppen gingen mit der alten Fläche; nichts ist mehr verborgen

@@ -500,6 +500,18 @@ remesh-sharp = Keep sharp edges
 remesh-button = Remesh
     .tip = One surface of even triangles; overlapping parts become one. { $keys }
 
+quads-heading = Quads
+quads-count = quads
+quads-levels = finer levels
+    .tip = The quads are the lowest level; finer levels bring the detail back
+quads-button = Remesh with quads
+    .tip = Quads that follow the shape; an export without levels writes them
+
+decimate-heading = Decimate
+decimate-share = of the triangles
+decimate-button = Decimate
+    .tip = Fewer triangles, for printing and the web. Nothing new crosses itself, and the border of the mask stays
+
 trim-heading = Trim
 trim-box = Box
     .tip = Drag a box over the view: what lies in it is cut off, all the way through
@@ -920,6 +932,8 @@ task-snapped = The faces lie on each other
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %
+task-quads = { $quads } quads and { $triangles } triangles; crossings: { $crossings }
+task-decimated = { $before } triangles became { $now }; new crossings: { $crossings }
 task-layers-baked = Layers baked into the new surface: { $count }
 task-sets-made = Face sets made
 task-sets-dropped = The face sets went with the old surface; nothing is hidden any more

@@ -498,6 +498,18 @@ remesh-sharp = Conservar aristas vivas
 remesh-button = Remallar
     .tip = Una superficie de triángulos uniformes; las partes superpuestas se hacen una. { $keys }
 
+quads-heading = Cuadriláteros
+quads-count = cuadriláteros
+quads-levels = niveles más finos
+    .tip = Los cuadriláteros son el nivel más bajo; los niveles más finos devuelven el detalle
+quads-button = Remallar en cuadriláteros
+    .tip = Cuadriláteros que siguen la forma; una exportación sin niveles los escribe
+
+decimate-heading = Diezmado
+decimate-share = de los triángulos
+decimate-button = Diezmar
+    .tip = Menos triángulos, para imprimir y para la web. Sin nuevas autointersecciones, y el borde de la máscara se queda
+
 trim-heading = Recorte
 trim-box = Caja
     .tip = Arrastra una caja sobre la vista: lo que hay en ella se corta de lado a lado
@@ -918,6 +930,8 @@ task-snapped = Las caras están a ras
 task-trimmed = Recortado
 task-level = Nivel { $at } de { $all }
 task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volumen { $change } %
+task-quads = { $quads } cuadriláteros y { $triangles } triángulos; intersecciones: { $crossings }
+task-decimated = { $before } triángulos pasaron a { $now }; nuevas intersecciones: { $crossings }
 task-layers-baked = Capas consolidadas en la nueva superficie: { $count }
 task-sets-made = Conjuntos de caras creados
 task-sets-dropped = Los conjuntos de caras se fueron con la superficie anterior; ya nada está oculto

@@ -498,6 +498,18 @@ remesh-sharp = Garder les arêtes vives
 remesh-button = Remailler
     .tip = Une surface de triangles égaux ; les parties superposées n'en font qu'une. { $keys }
 
+quads-heading = Quadrilatères
+quads-count = quadrilatères
+quads-levels = niveaux plus fins
+    .tip = Les quadrilatères sont le niveau le plus bas ; les niveaux plus fins rendent le détail
+quads-button = Remailler en quadrilatères
+    .tip = Des quadrilatères qui suivent la forme ; un export sans niveaux les écrit
+
+decimate-heading = Décimation
+decimate-share = des triangles
+decimate-button = Décimer
+    .tip = Moins de triangles, pour l'impression et le web. Aucune nouvelle auto-intersection, et le bord du masque reste
+
 trim-heading = Rognage
 trim-box = Cadre
     .tip = Glisser un cadre sur la vue : ce qui s'y trouve est coupé de part en part
@@ -918,6 +930,8 @@ task-snapped = Les faces sont l’une contre l’autre
 task-trimmed = Rogné
 task-level = Niveau { $at } sur { $all }
 task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume { $change } %
+task-quads = { $quads } quadrilatères et { $triangles } triangles ; intersections : { $crossings }
+task-decimated = { $before } triangles sont devenus { $now } ; nouvelles intersections : { $crossings }
 task-layers-baked = Calques fusionnés dans la nouvelle surface : { $count }
 task-sets-made = Groupes de faces créés
 task-sets-dropped = Les groupes de faces ont disparu avec l’ancienne surface ; plus rien n’est caché

@@ -498,6 +498,18 @@ remesh-sharp = Conserva gli spigoli vivi
 remesh-button = Remesh
     .tip = Una superficie di triangoli uniformi; le parti sovrapposte diventano una. { $keys }
 
+quads-heading = Quadrilateri
+quads-count = quadrilateri
+quads-levels = livelli più fini
+    .tip = I quadrilateri sono il livello più basso; i livelli più fini riportano il dettaglio
+quads-button = Remesh in quadrilateri
+    .tip = Quadrilateri che seguono la forma; un'esportazione senza livelli li scrive
+
+decimate-heading = Decimazione
+decimate-share = dei triangoli
+decimate-button = Decima
+    .tip = Meno triangoli, per la stampa e il web. Nessuna nuova autointersezione, e il bordo della maschera resta
+
 trim-heading = Taglio
 trim-box = Riquadro
     .tip = Trascina un riquadro sulla vista: ciò che vi cade viene tagliato, da parte a parte
@@ -918,6 +930,8 @@ task-snapped = Le facce combaciano
 task-trimmed = Tagliato
 task-level = Livello { $at } di { $all }
 task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $change } %
+task-quads = { $quads } quadrilateri e { $triangles } triangoli; intersezioni: { $crossings }
+task-decimated = { $before } triangoli sono diventati { $now }; nuove intersezioni: { $crossings }
 task-layers-baked = Livelli consolidati nella nuova superficie: { $count }
 task-sets-made = Insiemi di facce creati
 task-sets-dropped = Gli insiemi di facce sono andati con la vecchia superficie; niente è più nascosto

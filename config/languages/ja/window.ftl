@@ -497,6 +497,18 @@ remesh-sharp = 鋭い辺を保つ
 remesh-button = リメッシュ
     .tip = そろった三角形の 1 つの面にします。重なった部分は 1 つになります。{ $keys }
 
+quads-heading = 四角形
+quads-count = 四角形の数
+quads-levels = 細かいレベル
+    .tip = 四角形が最も粗いレベルになり、細かいレベルが細部を戻します
+quads-button = 四角形でリメッシュ
+    .tip = 形に沿う四角形。レベルなしなら書き出しは四角形になります
+
+decimate-heading = 間引き
+decimate-share = 残す三角形
+decimate-button = 間引く
+    .tip = 印刷とウェブのために三角形を減らします。新しい自己交差は生じず、マスクの境界は残ります
+
 trim-heading = トリム
 trim-box = ボックス
     .tip = ビューの上でボックスをドラッグ。中の部分を奥まで切り落とします
@@ -914,6 +926,8 @@ task-snapped = 面が合いました
 task-trimmed = トリムしました
 task-level = レベル { $at } / { $all }
 task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxel }、体積 { $change } %
+task-quads = 四角形 { $quads } 枚、三角形 { $triangles } 枚、交差: { $crossings }
+task-decimated = 三角形 { $before } 枚が { $now } 枚に、新しい交差: { $crossings }
 task-layers-baked = 新しい面に統合したレイヤー: { $count }
 task-sets-made = 面セットを作りました
 task-sets-dropped = 面セットは元の面とともに失われました。隠れた部分はありません

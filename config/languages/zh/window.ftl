@@ -497,6 +497,18 @@ remesh-sharp = 保留锐边
 remesh-button = 重构网格
     .tip = 由均匀三角面组成的单一表面; 重叠部分合为一体。{ $keys }
 
+quads-heading = 四边形
+quads-count = 四边形数
+quads-levels = 更细级别
+    .tip = 四边形为最低级别; 更细的级别找回细节
+quads-button = 重构为四边形
+    .tip = 沿形状走向的四边形; 没有级别时导出为四边形
+
+decimate-heading = 减面
+decimate-share = 保留的三角面
+decimate-button = 减面
+    .tip = 为打印和网页减少三角面。不产生新的自相交, 遮罩边界保持不变
+
 trim-heading = 修剪
 trim-box = 框
     .tip = 在视图上拖出框: 框内部分被彻底切去
@@ -914,6 +926,8 @@ task-snapped = 两个面已贴合
 task-trimmed = 已修剪
 task-level = 级别 { $at } / { $all }
 task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体积 { $change } %
+task-quads = 四边形 { $quads }, 三角面 { $triangles }; 相交: { $crossings }
+task-decimated = 三角面由 { $before } 减为 { $now }; 新相交: { $crossings }
 task-layers-baked = 烘焙到新表面的图层: { $count }
 task-sets-made = 已创建面组
 task-sets-dropped = 面组已随旧表面一起移除；不再隐藏任何部分

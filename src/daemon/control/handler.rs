@@ -17,7 +17,7 @@ use super::measurement;
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
-use super::{scene, snap};
+use super::{retopology, scene, snap};
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
@@ -33,6 +33,9 @@ use sculptd_control::event;
 use sculptd_control::face_sets as asked_sets;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
+use sculptd_control::retopology::{
+    DecimateParams, DecimateReply, RemeshQuadsParams, RemeshQuadsReply,
+};
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
 use sculptd_control::snap::{SnapParams, SnapReply};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
@@ -518,6 +521,14 @@ impl Handler for Host {
             volume: made.volume[1],
             seconds: (clock.now_us() - begun) as f64 * 1e-6,
         })
+    }
+
+    fn remesh_quads(&self, params: RemeshQuadsParams) -> Result<RemeshQuadsReply, RpcError> {
+        retopology::remesh_quads(self, params)
+    }
+
+    fn decimate(&self, params: DecimateParams) -> Result<DecimateReply, RpcError> {
+        retopology::decimate(self, params)
     }
 
     fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {

@@ -20,6 +20,7 @@ mod layers;
 pub mod loop_link;
 mod mask_region;
 mod measurement;
+mod retopology;
 mod scene;
 pub mod server;
 mod snap;

@@ -13,6 +13,11 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::quads::{QuadSettings, metrics, quad_remesh};
 use sculptd_geometry::{check, repair};
 
+/// One digit; a dash where there are no quads.
+fn shown(angle: Option<f64>) -> String {
+    angle.map_or("-".into(), |a| format!("{a:.1}"))
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let quads = args.next().ok_or("how many quads?")?.parse()?;
@@ -36,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let size = (r.bounds.max - r.bounds.min).length();
         println!(
             "{name}: {} quads, {} triangles, closed {} -> {}, manifold {}, genus {:?} -> {:?}, \
-             regular {:.3}, angles {:.1} to {:.1}, off by {:.2}, distance {:.4} and {:.4} of the \
+             regular {:.3}, angles {} to {}, off by {}, distance {:.4} and {:.4} of the \
              diagonal, {:?} crossings",
             f.quads,
             f.triangles,
@@ -46,9 +51,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             before.genus,
             r.genus,
             f.regular,
-            f.least_angle,
-            f.greatest_angle,
-            f.mean_deviation,
+            shown(f.least_angle),
+            shown(f.greatest_angle),
+            shown(f.mean_deviation),
             f.hausdorff[0] / size,
             f.hausdorff[1] / size,
             r.self_intersections,

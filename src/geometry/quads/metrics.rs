@@ -19,12 +19,12 @@ pub struct QuadMetrics {
     pub triangles: usize,
     /// Faces of five corners or more.
     pub other: usize,
-    /// The least angle of a quad, in degrees.
-    pub least_angle: f64,
+    /// The least angle of a quad, in degrees; `None` without quads, as the two that follow.
+    pub least_angle: Option<f64>,
     /// The greatest angle of a quad, in degrees.
-    pub greatest_angle: f64,
+    pub greatest_angle: Option<f64>,
     /// By how much the angles of the quads differ from 90 degrees in the mean.
-    pub mean_deviation: f64,
+    pub mean_deviation: Option<f64>,
     /// The share of the vertices with four faces, or with two on a border, 0 to 1.
     pub regular: f64,
     /// Greatest distance from the new mesh to the old one, and from the old one to the new, in the
@@ -38,12 +38,13 @@ pub fn metrics(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadMetric
         quads: 0,
         triangles: 0,
         other: 0,
-        least_angle: 180.0,
-        greatest_angle: 0.0,
-        mean_deviation: 0.0,
+        least_angle: None,
+        greatest_angle: None,
+        mean_deviation: None,
         regular: 0.0,
         hausdorff: [0.0; 2],
     };
+    let (mut least, mut greatest, mut deviation): (f64, f64, f64) = (180.0, 0.0, 0.0);
     for face in made.faces() {
         match face.len() {
             3 => out.triangles += 1,
@@ -57,12 +58,16 @@ pub fn metrics(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadMetric
             let at = |i: usize| made.positions[face[(k + i) % 4] as usize];
             let (u, v) = (at(1) - at(0), at(3) - at(0));
             let angle = u.cross(v).length().portable_atan2(u.dot(v)).to_degrees();
-            out.least_angle = out.least_angle.min(angle);
-            out.greatest_angle = out.greatest_angle.max(angle);
-            out.mean_deviation += (angle - 90.0).abs();
+            least = least.min(angle);
+            greatest = greatest.max(angle);
+            deviation += (angle - 90.0).abs();
         }
     }
-    out.mean_deviation /= (out.quads * 4).max(1) as f64;
+    if out.quads > 0 {
+        out.least_angle = Some(least);
+        out.greatest_angle = Some(greatest);
+        out.mean_deviation = Some(deviation / (out.quads * 4) as f64);
+    }
     out.regular = regular(made);
     job.check()?;
     let old = CentredMesh::new(from, 1.0);

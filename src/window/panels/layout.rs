@@ -5,8 +5,8 @@ use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, face_sets, files, fonts, hand_menu,
     help, hints, history, keys, layers, legend, look, masks, measure, messages, modal, outliner,
-    preferences, pressure_curve, radial, remesh, rows, scene, search, start, symmetry, tablet_keys,
-    theme, timing, trim,
+    preferences, pressure_curve, radial, remesh, retopology, rows, scene, search, start, symmetry,
+    tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -127,6 +127,8 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
             trim::levels(ui, view, ui_state, out);
             ui.add_space(8.0);
             remesh::ui(ui, view, ui_state, out);
+            ui.add_space(8.0);
+            retopology::ui(ui, view, ui_state, out);
             ui.add_space(8.0);
             trim::buttons(ui, ui_state);
         }

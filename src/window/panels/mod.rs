@@ -33,6 +33,7 @@ pub mod preferences;
 pub mod pressure_curve;
 pub mod radial;
 pub mod remesh;
+pub mod retopology;
 pub mod rows;
 pub mod scene;
 pub mod search;

@@ -110,7 +110,10 @@ impl WindowState {
             self.map_changes += 1;
             match done {
                 TaskReport::Message(text, wrong) => self.ui_state.say(text, wrong),
-                TaskReport::Joined => self.ui_state.joining = false,
+                TaskReport::Joined => {
+                    self.ui_state.joining = false;
+                    self.ui_state.retopology.under_way = None;
+                }
                 TaskReport::Used(path) => self.ui_state.prefs.used(path),
                 TaskReport::Map(values, about) => {
                     self.values = Some(values);

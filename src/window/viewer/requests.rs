@@ -1,5 +1,6 @@
 //! What the panels asked for.
 
+use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 use super::camera_animation::CameraAnimation;
@@ -9,6 +10,7 @@ use crate::panels::state::{Action, FilePurpose, UiRequest};
 use sculptd_daemon::Published;
 use sculptd_daemon::session::history::Want;
 use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
 
 impl WindowState {
     pub(super) fn answer(&mut self, request: UiRequest, state: &Published, wiring: &Wiring) {
@@ -93,6 +95,16 @@ impl WindowState {
                 let of = (part, thickness);
                 self.tasks.extract(of, wiring.published.clone(), wiring.commands.clone());
             }
+            UiRequest::Quads(wanted) => {
+                let (state, commands) = (wiring.published.clone(), wiring.commands.clone());
+                let job = self.begin_change();
+                self.tasks.quads(wanted, job, state, commands);
+            }
+            UiRequest::Decimate(wanted) => {
+                let (state, commands) = (wiring.published.clone(), wiring.commands.clone());
+                let job = self.begin_change();
+                self.tasks.decimate(wanted, job, state, commands);
+            }
             UiRequest::Reference => self.before = Some(state.mesh.clone()),
             UiRequest::Outline(path) => {
                 if let Some(found) = &self.ui_state.sizes.found {
@@ -116,5 +128,13 @@ impl WindowState {
             UiRequest::Do(_) => {}
         }
         self.pacing.want();
+    }
+
+    /// Marks a change that can be watched and cancelled as under way.
+    fn begin_change(&mut self) -> Arc<Job> {
+        let job = Arc::new(Job::default());
+        self.ui_state.joining = true;
+        self.ui_state.retopology.under_way = Some(job.clone());
+        job
     }
 }

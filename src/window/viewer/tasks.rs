@@ -27,13 +27,16 @@ use sculptd_clay::face_sets::{FaceSetPart, Partition};
 use sculptd_clay::{Clay, Snapshot};
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
+use sculptd_daemon::decimate_job::DecimateWanted;
+use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
 use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{
-    Published, boolean_jobs, face_set_jobs, polygons, remesh_job, scene_jobs, startup,
+    Published, boolean_jobs, decimate_job, face_set_jobs, polygons, quad_job, remesh_job,
+    scene_jobs, startup,
 };
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
@@ -397,6 +400,39 @@ impl Tasks {
             let payload = Payload::Clay(Box::new(clay));
             let queued = QueuedCommand::with_payload(command, payload);
             Ok((vec![queued], tr!("task-extracted", count = count)))
+        });
+    }
+
+    /// The object as quads that follow its shape.
+    pub fn quads(
+        &self,
+        wanted: QuadsWanted,
+        job: Arc<Job>,
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
+        self.change("sculptd-remesh", commands, move || {
+            let (command, made) = quad_job::quads(&shown, &wanted, &job)?;
+            let (quads, others, crossing) = (made.quads, made.other_faces, made.self_intersections);
+            let text = tr!("task-quads", quads = quads, triangles = others, crossings = crossing);
+            Ok((vec![command], made.warnings.into_iter().fold(text, |all, w| all + "; " + &w)))
+        });
+    }
+
+    /// The object with fewer triangles.
+    pub fn decimate(
+        &self,
+        wanted: DecimateWanted,
+        job: Arc<Job>,
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
+        self.change("sculptd-remesh", commands, move || {
+            let (command, made) = decimate_job::decimated(&shown, &wanted, &job)?;
+            let (before, now, crossing) =
+                (made.triangles_before, made.triangles, made.new_crossings);
+            let text = tr!("task-decimated", before = before, now = now, crossings = crossing);
+            Ok((vec![command], text))
         });
     }
 

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use sculptd_clay::face_sets::{FaceSetPart, Partition};
+use sculptd_daemon::decimate_job::DecimateWanted;
+use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim::Part;
 use sculptd_devices::pad_actions::{Binding, Control};
@@ -52,6 +54,10 @@ pub enum UiRequest {
     MakeSets(Partition),
     /// A part of the active object becomes a new one of this thickness, in the unit of the scene.
     Extract(FaceSetPart, f64),
+    /// The object gets quads that follow its shape.
+    Quads(QuadsWanted),
+    /// The object gets fewer triangles.
+    Decimate(DecimateWanted),
     /// Distances are those to the object as it is now.
     Reference,
     /// The shadow's outline is written.

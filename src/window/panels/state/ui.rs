@@ -13,6 +13,7 @@ use super::outliner::Outliner;
 use super::pens::PenTrace;
 use super::preferences::Hint;
 use super::preferences::Preferences;
+use super::retopology::Retopology;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
 use super::tab::Tab;
@@ -57,6 +58,8 @@ pub struct UiState {
     pub face_sets: FaceSetPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
+    /// Quads and decimation.
+    pub retopology: Retopology,
     pub trim: Option<Trim>,
     /// The handle of a curve that was held last.
     pub handle: Option<usize>,

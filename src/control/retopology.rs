@@ -1,0 +1,96 @@
+//! Other triangles for the same surface: quads that follow the shape, and fewer triangles.
+
+use serde::{Deserialize, Serialize};
+
+#[cfg(feature = "schema")]
+use crate::range::COORDINATE;
+
+/// Parameters of `remesh.quads`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RemeshQuadsParams {
+    /// About how many quads.
+    #[cfg_attr(feature = "schema", schemars(range(min = 6, max = 1_000_000)))]
+    pub quads: u32,
+    /// Edges whose faces turn by more than this many degrees are kept; without it none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = 180.0)))]
+    pub creases: Option<f64>,
+    /// Lines on the surface that the quads follow, each a list of points in the mesh's unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "schema", schemars(length(min = 0, max = 1000)))]
+    pub guides: Vec<Vec<[f64; 3]>>,
+    /// The quads become the lowest level, with so many finer ones on which the detail of the old
+    /// surface is; the finest is shown.
+    #[serde(default)]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 6)))]
+    pub levels: u32,
+}
+
+/// Reply of `remesh.quads`. Volumes are in the mesh's unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RemeshQuadsReply {
+    /// Quads, on the lowest level. Clay is made of triangles; without finer levels an export writes
+    /// the quads as long as no triangle was changed.
+    pub quads: u64,
+    /// Triangles among them, on the lowest level.
+    pub other_faces: u64,
+    /// Vertices of the level that is shown.
+    pub vertices: u64,
+    /// Triangles of the level that is shown.
+    pub triangles: u64,
+    /// The volume before.
+    pub volume_before: f64,
+    /// The volume after.
+    pub volume: f64,
+    /// Pairs of triangles that cross each other: where the surface is thinner than a quad.
+    pub self_intersections: u64,
+    /// Vertices of finer levels without a place on the old surface: these are smooth.
+    pub without_detail: u64,
+    /// How long it took, seconds.
+    pub seconds: f64,
+    /// Layers that were baked into the surface, which is another one now.
+    pub layers_baked: u64,
+    /// What was changed first, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Parameters of `decimate`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct DecimateParams {
+    /// Stop at this many triangles; at least 4, or 0 with `max_error`.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 67_108_864)))]
+    pub triangles: u32,
+    /// Stop before the surface moves by more than about this, in the mesh's unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = COORDINATE.max)))]
+    pub max_error: Option<f32>,
+}
+
+/// Reply of `decimate`. Volumes are in the mesh's unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct DecimateReply {
+    /// Vertices of the new mesh.
+    pub vertices: u64,
+    /// Triangles of the new mesh: more than wanted where the error or the shape allow no fewer.
+    pub triangles: u64,
+    /// Triangles before.
+    pub triangles_before: u64,
+    /// The volume before.
+    pub volume_before: f64,
+    /// The volume after.
+    pub volume: f64,
+    /// Pairs of triangles that cross each other where none did before.
+    pub new_self_intersections: u64,
+    /// How often it was computed again, more carefully, so that nothing crosses.
+    pub repeated: u64,
+    /// How long it took, seconds.
+    pub seconds: f64,
+    /// Layers that were baked into the surface, which is another one now.
+    pub layers_baked: u64,
+}

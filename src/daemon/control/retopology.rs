@@ -1,0 +1,74 @@
+//! The methods that give the object other triangles.
+
+use glam::DVec3;
+
+use super::host::{Host, failed};
+use super::layers;
+use crate::decimate_job::{DecimateWanted, decimated};
+use crate::quad_job::{QuadsWanted, quads};
+use sculptd_control::RpcError;
+use sculptd_control::retopology as asked;
+use sculptd_devices::Clock;
+
+pub(super) fn remesh_quads(
+    host: &Host,
+    params: asked::RemeshQuadsParams,
+) -> Result<asked::RemeshQuadsReply, RpcError> {
+    if params.creases.is_some_and(|c| !(0.0..=180.0).contains(&c)) {
+        return Err(RpcError::bad_params("creases: expected an angle of 0 to 180 degrees"));
+    }
+    let guides = params.guides.into_iter();
+    let wanted = QuadsWanted {
+        quads: params.quads as usize,
+        creases: params.creases,
+        guides: guides.map(|line| line.into_iter().map(DVec3::from).collect()).collect(),
+        levels: params.levels,
+    };
+    let place = host.begin_boolean()?;
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let (command, made) = quads(&host.published, &wanted, &place.job).map_err(failed)?;
+    let layers_baked = layers::count(host);
+    host.send(command)?;
+    Ok(asked::RemeshQuadsReply {
+        quads: made.quads as u64,
+        other_faces: made.other_faces as u64,
+        vertices: made.vertices as u64,
+        triangles: made.triangles as u64,
+        volume_before: made.volume[0],
+        volume: made.volume[1],
+        self_intersections: made.self_intersections as u64,
+        without_detail: made.without_detail as u64,
+        seconds: (clock.now_us() - begun) as f64 * 1e-6,
+        layers_baked,
+        warnings: made.warnings,
+    })
+}
+
+pub(super) fn decimate(
+    host: &Host,
+    params: asked::DecimateParams,
+) -> Result<asked::DecimateReply, RpcError> {
+    if params.max_error.is_some_and(|e| !(e >= 0.0 && e.is_finite())) {
+        return Err(RpcError::bad_params("max_error: expected a distance of 0 or more"));
+    }
+    let wanted =
+        DecimateWanted { triangles: params.triangles as usize, max_error: params.max_error };
+    let place = host.begin_boolean()?;
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let (command, made) = decimated(&host.published, &wanted, &place.job).map_err(failed)?;
+    let layers_baked = layers::count(host);
+    host.send(command)?;
+    Ok(asked::DecimateReply {
+        vertices: made.vertices as u64,
+        triangles: made.triangles as u64,
+        triangles_before: made.triangles_before as u64,
+        volume_before: made.volume[0],
+        volume: made.volume[1],
+        new_self_intersections: made.new_crossings as u64,
+        repeated: made.repeated as u64,
+        seconds: (clock.now_us() - begun) as f64 * 1e-6,
+        layers_baked,
+    })
+}
