@@ -230,8 +230,8 @@ methods! {
     /// Gives the object quads that follow the shape, its creases and guide lines, or makes them the
     /// lowest of several levels: one step of undo. Masks and colours are carried over.
     "remesh.quads" RemeshQuads remesh_quads(RemeshQuadsParams) -> RemeshQuadsReply;
-    /// Leaves as few triangles as are wanted, for printing and the web: one step of undo. Nothing
-    /// crosses itself that did not before, and the border of the mask stays.
+    /// Leaves as few triangles as are wanted, for printing and the web: one step of undo.
+    /// New crossings are undone where they can be and counted, and the border of the mask stays.
     "decimate" Decimate decimate(DecimateParams) -> DecimateReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;
