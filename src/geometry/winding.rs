@@ -119,55 +119,11 @@ impl Winding {
 
 /// The solid angle of a triangle seen from the origin, over 4 pi; positive where its front is
 /// turned away from it.
-pub fn solid_angle(corners: [DVec3; 3]) -> f64 {
-    let (up, down) = half_angle(corners);
-    up.atan2(down) / (2.0 * PI)
-}
-
-/// Sine and cosine of half the solid angle, both times one length.
-#[inline(always)]
-fn half_angle([a, b, c]: [DVec3; 3]) -> (f64, f64) {
+pub fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let up = a.dot(b.cross(c));
     let down = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    (up, down)
-}
-
-/// A sum of half solid angles as a product of complex numbers and the turns that it took, which
-/// needs one arc tangent for all: it would take half of a query's time.
-#[derive(Debug, Clone, Copy)]
-struct AngleSum {
-    sine: f64,
-    cosine: f64,
-    turns: i32,
-}
-
-impl AngleSum {
-    const NONE: AngleSum = AngleSum { sine: 0.0, cosine: 1.0, turns: 0 };
-
-    /// Adds an angle by its sine and cosine, both times one length; nothing where both are 0.
-    #[inline(always)]
-    fn add(&mut self, (up, down): (f64, f64)) {
-        let size = up.abs() + down.abs();
-        // Also where it is not a number.
-        if !(size > 0.0 && size < f64::INFINITY) {
-            return;
-        }
-        let (up, down) = (up / size, down / size);
-        let sine = self.sine * down + self.cosine * up;
-        let cosine = self.cosine * down - self.sine * up;
-        // Two angles of one sign whose sum has the other went past half a turn.
-        self.turns += i32::from(self.sine >= 0.0 && up >= 0.0 && sine < 0.0);
-        self.turns -= i32::from(self.sine < 0.0 && up < 0.0 && sine >= 0.0);
-        // A length between a quarter and 1, so that no number of angles makes it vanish.
-        let length = sine.abs() + cosine.abs();
-        (self.sine, self.cosine) = (sine / length, cosine / length);
-    }
-
-    /// The sum in whole turns.
-    fn turns(self) -> f64 {
-        f64::from(self.turns) + self.sine.atan2(self.cosine) / (2.0 * PI)
-    }
+    up.atan2(down) / (2.0 * PI)
 }
 
 struct WindingQuery<'a> {
@@ -188,7 +144,7 @@ impl WideWork for WindingQuery<'_> {
             if tree.stack_need() > 128 { vec![0u32; tree.stack_need()] } else { Vec::new() };
         let stack: &mut [u32] = if heap.is_empty() { &mut inline } else { &mut heap };
         let mut top = 1;
-        let (mut far_sum, mut near_sum) = (0.0f64, AngleSum::NONE);
+        let (mut far_sum, mut near_sum) = (0.0f64, 0.0f64);
         while top > 0 {
             top -= 1;
             let at = stack[top] as usize;
@@ -221,46 +177,11 @@ impl WideWork for WindingQuery<'_> {
                 let pack = &tree.packs()[(child & !LEAF) as usize];
                 for lane in 0..4 {
                     if pack.id[lane] != NO_TRIANGLE {
-                        near_sum.add(half_angle(corners(pack, lane).map(|c| c - exact)));
+                        near_sum += solid_angle(corners(pack, lane).map(|c| c - exact));
                     }
                 }
             }
         }
-        far_sum / (4.0 * PI) + near_sum.turns()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_product_of_angles_is_their_sum() {
-        let mut seed = 5u64;
-        let mut number = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
-        };
-        for round in 0..200 {
-            let (mut sum, mut product) = (0.0, AngleSum::NONE);
-            for _ in 0..round {
-                let mut point = || DVec3::new(number(), number(), number());
-                // Seen from all sides, more often with the front away, so that turns add up.
-                let mut triangle = [point(), point(), point()];
-                if solid_angle(triangle) < 0.0 && round % 3 > 0 {
-                    triangle.swap(0, 1);
-                }
-                sum += solid_angle(triangle);
-                product.add(half_angle(triangle));
-            }
-            assert!((sum - product.turns()).abs() < 1e-12, "{round}: {sum} {}", product.turns());
-            assert!(round < 150 || round % 3 == 0 || sum > 2.0);
-        }
-        // A corner at the place itself has no angle.
-        let mut none = AngleSum::NONE;
-        none.add(half_angle([DVec3::ZERO, DVec3::X, DVec3::Y]));
-        assert_eq!(none.turns(), 0.0);
+        far_sum / (4.0 * PI) + near_sum
     }
 }
