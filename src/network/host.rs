@@ -23,7 +23,6 @@ use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
 use crate::seal::Secret;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
-use crate::wire::frame_codec::frames_to_bytes;
 use crate::wire::message::{
     Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer,
     Reached, Term, VERSION,
@@ -333,7 +332,7 @@ impl Host {
                     if now_us >= member.progress_us + member.trip.patience_us() / 2 {
                         member.progress_us = now_us;
                         let frames = bounded(frames.unwrap_or_default());
-                        self.send_frames(core, from, frames, now_us);
+                        self.send_frames(core, from, &frames, now_us);
                     }
                 }
                 self.take_batches(core, from, batches, now_us);
@@ -553,7 +552,7 @@ impl Host {
         let Some(member) = self.members.get_mut(&to) else { return };
         if member.waits {
             member.next_us = now_us + IDLE_US;
-            return self.send_frames(core, to, Vec::new(), now_us);
+            return self.send_frames(core, to, &[], now_us);
         }
         let last = core.log.last();
         if let Some(have) = member.have
@@ -583,13 +582,12 @@ impl Host {
                 (_, true) => SEND_US,
                 _ => IDLE_US,
             };
-        self.send_frames(core, to, frames, now_us);
+        self.send_frames(core, to, &frames, now_us);
     }
 
-    fn send_frames(&mut self, core: &mut Core, to: Address, frames: Vec<Arc<Frame>>, now_us: u64) {
+    fn send_frames(&mut self, core: &mut Core, to: Address, frames: &[Arc<Frame>], now_us: u64) {
         let Some(member) = self.members.get_mut(&to) else { return };
-        let known = (member.first, member.have.unwrap_or(member.first));
-        let frames = frames_to_bytes(&frames, &core.log, known);
+        let frames = member.bytes_of(frames, &core.log);
         let down = FromHost::Down {
             received: self.waiting.get(&member.person).map_or(0, |w| w.received),
             acknowledged: self.acknowledgements.of(member.person),

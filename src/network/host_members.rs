@@ -6,8 +6,10 @@ use std::sync::Arc;
 use crate::core::RoundTrip;
 use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
+use crate::replica_log::ReplicaLog;
 use crate::seal::Seal;
 use crate::wire::frame::{Arrival, Batch, Frame, PersonId, Role};
+use crate::wire::frame_codec::frames_to_bytes;
 use crate::wire::message::Nonce;
 
 /// Frames of one message, and of their input's entries.
@@ -53,6 +55,13 @@ pub struct JoinedMember {
     pub limit: RateLimit,
     pub violations: u32,
     pub told_us: u64,
+}
+
+impl JoinedMember {
+    /// Frames as bytes for this member, as differences to those that it is known to have.
+    pub fn bytes_of(&self, frames: &[Arc<Frame>], log: &ReplicaLog) -> Vec<u8> {
+        frames_to_bytes(frames, log, (self.first, self.have.unwrap_or(self.first)))
+    }
 }
 
 /// A person's batches on their way into frames.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use crate::wire::frame::{Arrival, Batch, Frame, PersonId};
+use crate::wire::frame_codec::KnownFrames;
 use crate::wire::message::{Reached, Term};
 
 /// Frames that are kept for those who lag behind: at 120 a second the last two minutes.
@@ -134,6 +135,16 @@ impl ReplicaLog {
         index <= self.last
             && self.turn_of(index) == term
             && (index == self.last || self.frames.front().is_some_and(|f| f.index <= index + 1))
+    }
+}
+
+impl KnownFrames for ReplicaLog {
+    fn last_index(&self) -> u64 {
+        self.last
+    }
+
+    fn frames_from(&self, first: u64, most: usize) -> Option<Vec<Arc<Frame>>> {
+        self.from(first, most)
     }
 }
 

@@ -84,8 +84,8 @@ fn a_process_that_is_stopped_during_a_stroke_accounts_for_every_frame() {
         number("samples_sent")
     );
     assert_eq!(received + coalesced + lost, number("samples_sent"), "{summary}");
-    // And one sample that says that the hand has left; another where the daemon, continued, looked at
-    // the time since the last frame before it read what waited in the socket.
+    // And one sample that says that the hand has left; another where the daemon, continued, looked
+    // at the time since the last frame before it read what waited in the socket.
     let left = number("samples_sent") - frames;
     assert!((1..=2).contains(&left), "{frames} frames: {summary}");
     assert_eq!(summary["losses"]["transition"], 0);

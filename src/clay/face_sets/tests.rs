@@ -162,7 +162,9 @@ fn a_local_boolean_keeps_the_sets_of_what_it_leaves() {
     let before = clay.snapshot().face_sets();
     assert_eq!(before.iter().map(|s| s.0).collect::<Vec<_>>(), [2, 3]);
     let (start, at) = (clay.hash(), DVec3::new(0.86, 0.02, 0.5));
-    let tool = cuboid(at - 0.1, at + 0.1);
+    // Of as many vertices as it takes away: else the pages around could not hold the result.
+    let mut tool = icosphere(0.1, 6).to_poly();
+    tool.positions.iter_mut().for_each(|p| *p += at);
     for operation in [Operation::Difference, Operation::Union] {
         let (options, job) = (BooleanOptions::default(), Job::default());
         let cut = local(&clay.snapshot(), &tool, operation, &options, &job).expect("a cut");
@@ -173,7 +175,7 @@ fn a_local_boolean_keeps_the_sets_of_what_it_leaves() {
         let after = clay.snapshot().face_sets();
         assert_eq!(after.iter().map(|s| s.0).collect::<Vec<_>>(), [0, 2, 3]);
         // What is new is in none; of both sets a few vertices went.
-        assert!(after[0].1 < 200, "{after:?}");
+        assert!(after[0].1 < 400, "{after:?}");
         for k in [0, 1] {
             let gone = before[k].1 - after[k + 1].1;
             assert!((1..200).contains(&gone), "{before:?} {after:?}");

@@ -182,8 +182,8 @@ impl KioskThread {
             // Something that lies still on the tablet is nobody.
             let pressed = self.desk.touched.swap(false, Relaxed);
             let moved = now.is_some() && now != felt;
-            // A pen in the air keeps a visit going, but begins none: a mouse that somebody passes by,
-            // or a pointer that stands where the window opens, is no visitor.
+            // A pen in the air keeps a visit going, but begins none: a pointer that stands where
+            // the window opens is no visitor.
             let comes = now.as_ref().is_some_and(|felt| felt.iter().any(is_at_work));
             let touched = pressed || moved && (comes || cycle.view().stage != Stage::Attract);
             felt = now;

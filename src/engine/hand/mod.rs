@@ -331,8 +331,8 @@ impl HandTools {
             .is_none_or(|at| t_us.saturating_sub(at) as f32 * 1e-3 > self.settings.view_rest_ms)
     }
 
-    /// World units a millimetre of a tool. A person who reaches less far moves more of the work with
-    /// each millimetre, but a fingertip stays as small beside the work as anybody's.
+    /// World units a millimetre of a tool. A person who reaches less far moves more of the work
+    /// with each millimetre, but a fingertip stays as small beside the work as anybody's.
     fn tool_scale(&self) -> f32 {
         self.volume.scale * (self.settings.reach.half_mm / BOX_HALF_MM)
     }

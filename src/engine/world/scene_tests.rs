@@ -267,7 +267,9 @@ fn random_run(workers: usize, rounds: usize, undo_bytes: u64) -> Vec<u64> {
 fn a_brush_keeps_to_the_face_set_that_it_began_in() {
     let mut world = world(1, u64::MAX);
     let plain = shapes::icosphere(1.0, 40);
-    let masks = plain.positions.iter().map(|p| f32::from(p.x > 0.0)).collect();
+    // The border goes down the middle of what the camera sees.
+    let right = world.camera().axes().0;
+    let masks = plain.positions.iter().map(|p| f32::from(p.dot(right) > 0.0)).collect();
     let new = NewClay::new(plain.into(), false);
     tell(&mut world, Command::ReplaceMasked(new, std::sync::Arc::new(masks)));
     assert_eq!(ask(&mut world, SceneCommand::Sets(SetsEdit::FromMask)), Ok(ObjectId(1)));

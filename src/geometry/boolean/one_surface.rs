@@ -53,7 +53,7 @@ mod tests {
         compute([a, b], &Operation::ALL, &options, &Job::default(), || 0.0).expect("a result")
     }
 
-    /// Whether the operands were told to be one surface: nothing was cut and nothing was classified.
+    /// Whether the operands were told to be one surface: nothing was cut or classified.
     fn at_once(report: &BooleanReport) -> bool {
         report
             .phases

@@ -60,7 +60,7 @@ fn flat_faces_cost_nothing_and_the_bound_holds_the_edges() {
 fn two_sheets_close_to_each_other_do_not_cross() {
     // Two nested balls a hundredth apart: the error alone would let one through the other.
     let (outer, inner) = (icosphere(1.0, 30).to_poly(), icosphere(0.99, 30).to_poly());
-    let mut both = outer.clone();
+    let mut both = outer;
     let n = both.positions.len() as u32;
     both.positions.extend(&inner.positions);
     for face in inner.faces() {

@@ -11,7 +11,6 @@ use super::frame::{
 };
 use super::range_coder::{BitModel, Coder, Decoder, Encoder, NumberModel};
 use super::samples::SampleCodec;
-use crate::replica_log::ReplicaLog;
 use sculptd_devices::{Body, DeviceId, Pad, Sample};
 
 /// Frames before a message from which it goes on: whoever sculpts has samples in the last two.
@@ -25,7 +24,7 @@ const MAX_ARRIVAL: usize = 128;
 
 /// What is usual of batches and frames.
 #[derive(Debug)]
-struct Models {
+struct FrameModels {
     other_person: BitModel,
     other_number: BitModel,
     samples: NumberModel,
@@ -36,11 +35,11 @@ struct Models {
     arrivals: BitModel,
 }
 
-impl Default for Models {
+impl Default for FrameModels {
     fn default() -> Self {
         let number = NumberModel::default;
         let rare = BitModel::RARE;
-        Models {
+        FrameModels {
             other_person: rare,
             other_number: rare,
             samples: number(),
@@ -57,7 +56,7 @@ impl Default for Models {
 #[derive(Debug, Default)]
 struct FrameCodec {
     samples: SampleCodec,
-    models: Box<Models>,
+    models: Box<FrameModels>,
     /// Everybody's last batch.
     numbers: Vec<(PersonId, u64)>,
     /// Whose the batches of the last frame were.
@@ -200,13 +199,21 @@ pub fn take_batches(bytes: ByteReader<'_>) -> Result<Vec<Batch>, BadBytes> {
     Ok(batches)
 }
 
+/// The frames that somebody has, for what is written as differences to them.
+pub trait KnownFrames {
+    /// The index of the last frame.
+    fn last_index(&self) -> u64;
+    /// At most so many frames from that index on; `None`: they are kept no more.
+    fn frames_from(&self, first: u64, most: usize) -> Option<Vec<Arc<Frame>>>;
+}
+
 /// The frames after `from` up to `base`, of which the writer knows that the reader has them.
-fn context(log: &ReplicaLog, from: u64, base: u64) -> Option<FrameCodec> {
+fn context(log: &impl KnownFrames, from: u64, base: u64) -> Option<FrameCodec> {
     let mut codec = FrameCodec::default();
-    if base < from || base - from > CONTEXT || base > log.last() {
+    if base < from || base - from > CONTEXT || base > log.last_index() {
         return None;
     }
-    for frame in log.from(from + 1, (base - from) as usize)? {
+    for frame in log.frames_from(from + 1, (base - from) as usize)? {
         codec.follow(&frame);
     }
     Some(codec)
@@ -216,7 +223,7 @@ fn context(log: &ReplicaLog, from: u64, base: u64) -> Option<FrameCodec> {
 /// `have` as the log has them.
 pub fn frames_to_bytes(
     frames: &[Arc<Frame>],
-    log: &ReplicaLog,
+    log: &impl KnownFrames,
     (first, have): (u64, u64),
 ) -> Vec<u8> {
     let mut out = Vec::new();
@@ -244,7 +251,10 @@ pub fn frames_to_bytes(
 ///
 /// # Errors
 /// [`BadBytes`] where they are none.
-pub fn frames_from_bytes(bytes: &[u8], log: &ReplicaLog) -> Result<Option<Vec<Frame>>, BadBytes> {
+pub fn frames_from_bytes(
+    bytes: &[u8],
+    log: &impl KnownFrames,
+) -> Result<Option<Vec<Frame>>, BadBytes> {
     if bytes.is_empty() {
         return Ok(Some(Vec::new()));
     }
@@ -277,6 +287,7 @@ pub fn frames_from_bytes(bytes: &[u8], log: &ReplicaLog) -> Result<Option<Vec<Fr
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::replica_log::ReplicaLog;
     use sculptd_devices::Pen;
 
     fn frame(index: u64, people: u8) -> Arc<Frame> {

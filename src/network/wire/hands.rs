@@ -189,7 +189,7 @@ struct LastHand {
 
 /// What is usual of hands.
 #[derive(Debug)]
-struct Models {
+struct HandModels {
     id: BitModel,
     shape: BitModel,
     count: NumberModel,
@@ -203,7 +203,7 @@ const KINDS: [usize; 6] = [PALM, NORMAL, SHARES, WRIST, TIPS, JOINTS];
 /// Writes and reads the hands of one message.
 #[derive(Debug, Default)]
 pub struct HandsCodec {
-    models: Option<Box<Models>>,
+    models: Option<Box<HandModels>>,
     hands: Vec<LastHand>,
 }
 
@@ -246,7 +246,7 @@ impl HandsCodec {
         hands: &Hands,
     ) -> Result<Hands, BadBytes> {
         let mut models = self.models.take().unwrap_or_else(|| {
-            Box::new(Models {
+            Box::new(HandModels {
                 id: BitModel::RARE,
                 shape: BitModel::RARE,
                 count: NumberModel::default(),

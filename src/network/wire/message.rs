@@ -520,7 +520,7 @@ mod tests {
             rate_hz: 120,
             applied: 9,
             offer: Some(Offer { index: 4, size: 70_000, chunks: 3 }),
-            people: vec![(person.clone(), 8)],
+            people: vec![(person, 8)],
             turns: vec![(term, 1)],
             succession: Some((vec![1; 32], vec![2; 90])),
         };

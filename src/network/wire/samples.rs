@@ -139,7 +139,7 @@ impl LastPen {
 
 /// What is usual; learnt from one message alone, of all its people together.
 #[derive(Debug)]
-struct Models {
+struct SampleModels {
     hands: BitModel,
     other_device: BitModel,
     kind: BitModel,
@@ -151,10 +151,10 @@ struct Models {
     others: NumberModel,
 }
 
-impl Default for Models {
+impl Default for SampleModels {
     fn default() -> Self {
         let number = NumberModel::default;
-        Models {
+        SampleModels {
             hands: BitModel::RARE,
             other_device: BitModel::RARE,
             kind: BitModel::RARE,
@@ -172,7 +172,7 @@ impl Default for Models {
 /// before it of the same device lets expect.
 #[derive(Debug, Default)]
 pub struct SampleCodec {
-    models: Box<Models>,
+    models: Box<SampleModels>,
     /// Who came last is last.
     pens: Vec<LastPen>,
     hands: HandsCodec,

@@ -405,6 +405,8 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     assert!(matches!(h.state().asked[..], [UiRequest::Level(true)]), "{:?}", h.state().asked);
     h.state_mut().asked.clear();
     // The solid "Box" stands above the trim's.
+    h.get_all_by_label("Box").last().expect("a button").scroll_to_me();
+    h.run_steps(3);
     h.get_all_by_label("Box").last().expect("a button").click();
     h.run_steps(3);
     assert!(h.state().ui_state.trim.is_some());
