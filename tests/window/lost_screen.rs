@@ -157,12 +157,18 @@ fn a_tablet_s_stroke_ends_with_the_screen_and_none_begins_unseen() {
         }
     });
     s.until("the pen sculpts", |s| s.figure("dabs") > 20);
-    assert_eq!(s.figure("undo_steps"), 0, "one stroke, not ended");
+    // A pen that is kept from reporting for long has left, as far as a serial port can tell: on a
+    // busy machine a stroke may have ended so, and another begun.
+    let steps = s.figure("undo_steps");
     lose(&mut s);
-    s.until("the stroke is closed", |s| s.figure("undo_steps") == 1);
-    let (ended, dabs, samples) = (hash(&s), s.figure("dabs"), s.figure("samples"));
-    s.until("the pen moves on", |s| s.figure("samples") > samples + 100);
-    assert_eq!((hash(&s), s.figure("dabs")), (ended.clone(), dabs), "a pen that nobody sees");
+    s.until("the stroke is closed", |s| s.figure("undo_steps") > steps);
+    // The pen goes on, and nothing of it reaches the clay. A stroke that began now would go on too.
+    s.until("a pen that nobody sees moves nothing", |s| {
+        let (before, samples) = ((hash(s), s.figure("dabs")), s.figure("samples"));
+        s.until("the pen moves on", |s| s.figure("samples") > samples + 100);
+        (hash(s), s.figure("dabs")) == before
+    });
+    let (ended, steps) = (hash(&s), s.figure("undo_steps"));
     stop.store(true, Relaxed);
     moving.join().expect("the pen rests");
     s.new_screen();
@@ -170,7 +176,9 @@ fn a_tablet_s_stroke_ends_with_the_screen_and_none_begins_unseen() {
     assert!(alive(&mut s));
     assert_eq!(hash(&s), ended);
     s.seen("lost-3-tablet");
-    s.ask("undo", &Value::Null);
+    for _ in 0..steps {
+        s.ask("undo", &Value::Null);
+    }
     s.until("the stroke can be taken back", |s| hash(s) == clean);
 }
 
