@@ -45,6 +45,9 @@ pub struct Published {
     /// The tracked volume over the work.
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
+    /// Where each pen that draws made its last dab, and its normal there; see
+    /// [`World::last_dabs`].
+    pub last_dabs: [Option<(DeviceId, [Vec3; 2])>; SHOWN_PENS],
     /// Where on its own tablet each pen in range is: shares of the tablet's area.
     pub tablets: [Option<(DeviceId, glam::Vec2)>; SHOWN_PENS],
     /// The curve that a pen has laid; empty: none.
@@ -100,6 +103,10 @@ impl Published {
         for (slot, pen) in pens.iter_mut().zip(world.pens()) {
             *slot = Some(pen);
         }
+        let mut last_dabs = [None; SHOWN_PENS];
+        for (slot, dab) in last_dabs.iter_mut().zip(world.last_dabs()) {
+            *slot = Some(dab);
+        }
         let mut tablets = [None; SHOWN_PENS];
         for (slot, tablet) in tablets.iter_mut().zip(world.tablets()) {
             *slot = Some(tablet);
@@ -127,6 +134,7 @@ impl Published {
             middle: world.middle(),
             volume: *world.volume(),
             pens,
+            last_dabs,
             tablets,
             draft: world.curve_stroke().cloned().unwrap_or_default(),
             hands: world.hands().copied(),

@@ -68,9 +68,9 @@ pub struct StepReport {
     pub join: Option<MenuItem>,
     /// A hand has put an object of the scene down: a worker may lay it flush on a face near it.
     pub put_down: Option<ObjectId>,
-    /// Undo or redo was asked for, and nothing in memory answers to it: for whoever keeps the
-    /// history outside.
-    pub missed: Option<HistoryEvent>,
+    /// How often undo (counted below 0) or redo (above) was asked for, and nothing in memory answers
+    /// to it: for whoever keeps the history outside.
+    pub missed: i32,
     /// Balls in which dynamic topology was still to be done and was given up: more waited than the
     /// list holds, or than could be done before a command that ends strokes.
     pub topology_dropped: u64,
@@ -264,14 +264,14 @@ impl World {
                 self.lift_all();
                 match self.undo_step() {
                     true => self.note(HistoryEvent::Undo),
-                    false => self.report.missed = Some(HistoryEvent::Undo),
+                    false => self.report.missed -= 1,
                 }
             }
             Command::Redo => {
                 self.lift_all();
                 match self.redo_step() {
                     true => self.note(HistoryEvent::Redo),
-                    false => self.report.missed = Some(HistoryEvent::Redo),
+                    false => self.report.missed += 1,
                 }
             }
             Command::LiftAll => self.lift_all(),

@@ -221,6 +221,22 @@ fn undo_goes_back_beyond_memory_and_a_restart_and_branches_stay() {
 }
 
 #[test]
+fn undos_of_one_tick_each_go_back_a_step_beyond_memory() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut s = Studio::begin(dir.path(), 3000, 1);
+    let mut hashes = vec![s.world.hash()];
+    for k in 0..4 {
+        hashes.push(s.stroke(Vec2::new(-0.1 + 0.06 * k as f32, 0.05)));
+    }
+    s.settle();
+    s.tick(&[], &[Command::Undo, Command::Undo, Command::Undo]);
+    s.becomes(hashes[1]);
+    s.tick(&[], &[Command::Redo, Command::Redo]);
+    s.becomes(hashes[3]);
+    s.end();
+}
+
+#[test]
 fn steps_in_memory_and_steps_in_the_file_are_one_history() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut s = Studio::begin(dir.path(), 3000, 1 << 28);

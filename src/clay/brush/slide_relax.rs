@@ -2,9 +2,10 @@
 //! other way round (Shift, or the other end of the pen) it relaxes them, each vertex towards the
 //! middle of its neighbours.
 //!
-//! A vertex goes in its tangent plane by less than a third of its shortest edge, so that no
-//! triangle turns over, and is put back upon the triangles that it came from: it never leaves the
-//! surface as the dab found it. A border stays.
+//! A vertex goes in its tangent plane by less than a third of its shortest edge over a fifth of the
+//! radius, so that no triangle turns over and closer dabs do not take it further, and is put back
+//! upon the triangles that it came from: it never leaves the surface as the dab found it. A border
+//! stays.
 
 use glam::Vec3;
 
@@ -12,7 +13,7 @@ use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
-/// Of the shortest edge about a vertex, the furthest that one dab takes it.
+/// Of the shortest edge about a vertex, the furthest that a dab for which `span` is 1 takes it.
 const SAFE: f32 = 0.3;
 
 /// One dab of slide relax, made ready.
@@ -33,12 +34,15 @@ impl Brush for SlideRelaxBrush {
             return VertexChange::default();
         }
         let n = spot.normal();
-        let by = self.by.unwrap_or_else(|| spot.middle() - spot.p) * (dab.strength * spot.weight);
+        let by = match self.by {
+            Some(by) => by * dab.strength,
+            None => (spot.middle() - spot.p) * dab.evening(dab.strength),
+        } * spot.weight;
         let mut shortest = f32::INFINITY;
         for k in spot.page.ring(spot.v) {
             shortest = shortest.min((spot.page.point(k) - spot.p).length_squared());
         }
-        let flat = (by - n * by.dot(n)).clamp_length_max(SAFE * shortest.sqrt());
+        let flat = (by - n * by.dot(n)).clamp_length_max(SAFE * dab.span.min(1.0) * shortest.sqrt());
         VertexChange::by(put_back(spot, flat))
     }
 }

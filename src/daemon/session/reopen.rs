@@ -13,7 +13,7 @@ use super::history::{Store, StoreError, Tree};
 use super::reader::Opened;
 use super::replay::{Replayed, Run};
 use sculptd_clay::{Clay, ObjectState, Snapshot, Workers};
-use sculptd_engine::world::{HistoryEvent, World, WorldOptions};
+use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 
 /// Checkpoints that are tried, from the newest back.
@@ -109,11 +109,8 @@ pub(super) fn from_checkpoint(
     let world = World::restore(clays, saved, Workers::new(workers), options).map_err(damaged)?;
     let mut odd = false;
     let mut see = |_: u64, world: &mut World| {
-        odd |= match world.report().missed {
-            Some(HistoryEvent::Undo) => steps.0 > 0,
-            Some(HistoryEvent::Redo) => steps.1 > 0,
-            _ => false,
-        };
+        let missed = world.report().missed;
+        odd |= missed < 0 && steps.0 > 0 || missed > 0 && steps.1 > 0;
     };
     let run = Run { opened, base, store: Some(store), until };
     let replayed = run.from(world, job, &mut see);

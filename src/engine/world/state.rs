@@ -145,6 +145,17 @@ impl World {
         shown.filter_map(|s| s.track.seen.map(|at| (s.device, at)))
     }
 
+    /// Where each pen that draws made its last dab and its normal there, in the world: on the
+    /// surface as the stroke found it, for the brushes that measure there.
+    pub fn last_dabs(&self) -> impl Iterator<Item = (DeviceId, [Vec3; 2])> + '_ {
+        let to_world = self.scene.active().settings.transform;
+        let open = self.pens.iter().filter(|s| self.is_shown(s.device) && s.track.is_open());
+        open.filter_map(move |s| {
+            let (at, normal) = (s.stroke.last_measured?, s.stroke.last_normal);
+            Some((s.device, [to_world.point(at), to_world.direction(normal)]))
+        })
+    }
+
     /// Where on its own tablet each pen is while in range: shares of the tablet's area.
     pub fn tablets(&self) -> impl Iterator<Item = (DeviceId, glam::Vec2)> + '_ {
         let shown = self.pens.iter().filter(|s| self.is_shown(s.device));

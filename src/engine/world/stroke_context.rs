@@ -39,7 +39,10 @@ pub(super) struct Stroke {
     pub(super) rested: u32,
     /// Centre of the last dab on the surface that dabs are measured on.
     #[serde(default)]
-    last_measured: Option<Vec3>,
+    pub(super) last_measured: Option<Vec3>,
+    /// The normal of the last dab, for showing only.
+    #[serde(skip)]
+    pub(super) last_normal: Vec3,
     /// The direction of the stroke, averaged over [`HEADING`] radii, of any length.
     #[serde(default)]
     heading: Vec3,
@@ -311,6 +314,7 @@ impl StrokeContext<'_> {
         if drag.is_none() {
             self.stroke.travelled += moved.length();
             self.stroke.last = Some(hit.position);
+            self.stroke.last_normal = normal;
             span = self.go_on(at, centre, radius, share);
         }
         let pressure = if drag.is_none() { self.stroke.pressure } else { at.pressure };

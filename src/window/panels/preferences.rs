@@ -20,6 +20,8 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     ui.checkbox(&mut p.light, tr!("preferences-light"));
     ui.checkbox(&mut p.speed_is_pressure, tr!("preferences-speed"))
         .on_hover_text(tr!("preferences-speed.tip"));
+    ui.checkbox(&mut p.lead_strokes, tr!("preferences-lead"))
+        .on_hover_text(tr!("preferences-lead.tip"));
     rows::flow(ui, |ui| {
         ui.label(tr!("preferences-fingers"));
         for (two, name) in [

@@ -1,6 +1,16 @@
 // The clay, lit from the eye's own frame so that form reads from every side, and the lines that lie
 // over it.
 
+// A part of a stroke that is shown before it is made.
+struct LedDab {
+    // xyz: where it begins; w: the radius.
+    start: vec4<f32>,
+    // xyz: where it ends.
+    end: vec4<f32>,
+    // xyz: what it adds in its middle; w: -1 where that leads into the clay, else 1.
+    by: vec4<f32>,
+};
+
 struct Frame {
     view_projection: mat4x4<f32>,
     // Rows of the view's rotation: right, up, backward. The w of the first is 1 where colours come
@@ -21,6 +31,11 @@ struct Frame {
     // The ground's lower and upper colour.
     low: vec4<f32>,
     high: vec4<f32>,
+    led: array<LedDab, 8>,
+    // The falloff's values at even steps from the middle to the rim.
+    profile: array<vec4<f32>, 3>,
+    // x: how many are led.
+    led_count: vec4<u32>,
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -35,13 +50,81 @@ struct Corner {
     @location(5) known: f32,
 };
 
+fn profile_at(i: u32) -> f32 {
+    let j = min(i, 11u);
+    return frame.profile[j / 4u][j % 4u];
+}
+
+// The falloff at so many steps from the middle, and its slope by a step; the slope is even between
+// the values, or facets would be seen.
+fn fall(step: f32) -> vec2<f32> {
+    let j = min(u32(step), 10u);
+    let at = step - f32(j);
+    let a = profile_at(j);
+    let b = profile_at(j + 1u);
+    let before = profile_at(select(j - 1u, 1u, j == 0u));
+    let after = select(profile_at(j + 2u), 0.0, j + 2u > 11u);
+    return vec2<f32>(mix(a, b, at), mix(b - before, after - a, at) * 0.5);
+}
+
+struct Surface {
+    place: vec3<f32>,
+    normal: vec3<f32>,
+};
+
+// A vertex with what the pens will have added to it. Each way counts as four dabs along it. The
+// normal follows from how fast that falls off.
+fn led(place: vec3<f32>, normal: vec4<f32>) -> Surface {
+    var out = Surface(place, normal.xyz);
+    for (var i = 0u; i < frame.led_count.x; i++) {
+        let dab = frame.led[i];
+        let height = length(dab.by.xyz);
+        let up = dab.by.xyz / max(height, 1e-30);
+        let side = clamp((dot(normal.xyz, up) * dab.by.w + 0.5) * 2.0, 0.0, 1.0);
+        let share = 0.25 * side * (1.0 - normal.w);
+        for (var k = 0u; k < 4u; k++) {
+            let centre = mix(dab.start.xyz, dab.end.xyz, (f32(k) + 0.5) * 0.25);
+            let away = place - centre;
+            // As on the surface that the stroke found, whatever it has raised since.
+            let flat = away - up * dot(away, up);
+            let x = length(flat) / dab.start.w;
+            if (x >= 1.0 || dot(away, away) > 4.0 * dab.start.w * dab.start.w) {
+                continue;
+            }
+            let there = fall(x * 11.0);
+            out.place += dab.by.xyz * (share * there.x);
+            // Where the surface is steep already, it becomes less so by as much.
+            let rise = height * share * dab.by.w * max(dot(normal.xyz, up) * dab.by.w, 0.1);
+            let slope = there.y * 11.0 / dab.start.w * rise;
+            out.normal -= flat / max(length(flat), 1e-30) * slope;
+        }
+    }
+    return out;
+}
+
 @vertex
 fn clay_vertex(
+    @location(0) at: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+    @location(2) colour: vec4<f32>,
+    @location(3) value: f32,
+) -> Corner {
+    let moved = led(at, normal);
+    return corner(moved.place, vec4<f32>(moved.normal, normal.w), colour, value);
+}
+
+// What lies over the clay is not led.
+@vertex
+fn overlay_vertex(
     @location(0) place: vec3<f32>,
     @location(1) normal: vec4<f32>,
     @location(2) colour: vec4<f32>,
     @location(3) value: f32,
 ) -> Corner {
+    return corner(place, normal, colour, value);
+}
+
+fn corner(place: vec3<f32>, normal: vec4<f32>, colour: vec4<f32>, value: f32) -> Corner {
     var out: Corner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
     out.normal = normal.xyz;
@@ -154,8 +237,12 @@ fn line_fragment(in: LineCorner) -> @location(0) vec4<f32> {
 }
 
 @vertex
-fn edge_vertex(@location(0) place: vec3<f32>) -> LineCorner {
+fn edge_vertex(
+    @location(0) at: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+) -> LineCorner {
     var out: LineCorner;
+    let place = led(at, normal).place;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
     out.clip.z -= 0.5 * frame.map.w;
     out.colour = vec4<f32>(0.0, 0.0, 0.0, 0.3);

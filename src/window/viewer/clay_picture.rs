@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::preview::Preview;
+use super::provisional::ProvisionalDabs;
 use super::renderer::LineEnd;
 use crate::look::Look;
 use sculptd_engine::camera::Camera;
@@ -22,6 +23,7 @@ pub(super) struct ClayPictureKey {
     pub(super) look: Look,
     pub(super) brush: Option<(Vec3, f32)>,
     pub(super) lines: Vec<LineEnd>,
+    pub(super) led: ProvisionalDabs,
     /// The mesh in the place of the clay, kept so that no other comes to lie at its address.
     pub(super) preview: Option<Arc<Preview>>,
     /// Counts the changes of the mesh over the clay.
@@ -45,6 +47,7 @@ impl PartialEq for ClayPictureKey {
             && self.look == other.look
             && self.brush == other.brush
             && self.lines == other.lines
+            && self.led == other.led
             && (self.overlay, self.values, self.size) == (other.overlay, other.values, other.size)
     }
 }
@@ -62,6 +65,7 @@ mod tests {
             look: Look::default(),
             brush: None,
             lines: Vec::new(),
+            led: ProvisionalDabs::default(),
             preview: None,
             overlay: 0,
             values: 0,

@@ -7,6 +7,7 @@ use super::objects::{self, Stance};
 use super::overlay;
 use super::pages::MapValues;
 use super::pointer::Drag;
+use super::provisional::ProvisionalDabs;
 use super::renderer::{Beside, LineEnd, Renderer, Scene};
 use super::state::WindowState;
 use super::wiring::Wiring;
@@ -130,9 +131,10 @@ impl WindowState {
         self.update_overlay_mesh(&state);
         self.shots(&state);
         let (lines, brush) = self.lines(&state, wiring);
+        let led = self.led(&state, wiring);
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.draw_clay(&state, (&lines, brush), &mut encoder, &texture.texture);
+        self.draw_clay(&state, (&lines, brush, led), &mut encoder, &texture.texture);
         let requests = self.panels(&state, wiring, &mut encoder, &view);
         let own_ms = (wiring.clock.now_ns() - begun_ns) as f64 / 1e6;
         self.gpu.queue.submit([encoder.finish()]);
@@ -157,7 +159,7 @@ impl WindowState {
     fn draw_clay(
         &mut self,
         state: &Published,
-        (lines, brush): (&[LineEnd], Option<(Vec3, f32)>),
+        (lines, brush, led): (&[LineEnd], Option<(Vec3, f32)>, ProvisionalDabs),
         encoder: &mut wgpu::CommandEncoder,
         surface: &wgpu::Texture,
     ) {
@@ -181,6 +183,7 @@ impl WindowState {
             look: self.ui_state.look,
             brush,
             lines: lines.to_vec(),
+            led,
             preview: preview.cloned(),
             overlay: self.overlay_mesh.stamp,
             values: self.map_changes,
@@ -203,6 +206,7 @@ impl WindowState {
                     overlay: Some(&self.overlay_mesh),
                     stance: Stance::of(state),
                     others: &others,
+                    led: Some(&led),
                 },
             };
             let view = target.create_view(&Default::default());

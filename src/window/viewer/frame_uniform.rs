@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
+use super::provisional::ProvisionalDabs;
 use crate::look::SCALE;
 use sculptd_clay::Page;
 
@@ -21,6 +22,7 @@ pub(super) struct Frame {
     pub(super) scale: [[f32; 4]; SCALE],
     pub(super) low: [f32; 4],
     pub(super) high: [f32; 4],
+    pub(super) led: ProvisionalDabs,
 }
 
 /// Whether a page's box may be seen: not wholly beyond one plane of the view.

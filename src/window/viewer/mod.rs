@@ -26,6 +26,7 @@ mod pointer;
 mod poll;
 pub mod preferences_file;
 pub mod preview;
+pub mod provisional;
 pub mod renderer;
 mod requests;
 mod scene_pointer;

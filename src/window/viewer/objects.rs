@@ -10,6 +10,7 @@ use glam::{DVec3, Mat4, Vec3};
 
 use super::frame_uniform::{Frame, in_view};
 use super::pages::Pages;
+use super::provisional::ProvisionalDabs;
 use crate::viewer::gpu::Gpu;
 use sculptd_clay::{Ray, Snapshot};
 use sculptd_daemon::Published;
@@ -94,6 +95,7 @@ impl Frame {
             up: direction(self.up),
             back: direction(self.back),
             brush: place.extend(radius * own.scale as f32).to_array(),
+            led: self.led.seen_from(transform),
             ..*self
         }
     }
@@ -182,10 +184,11 @@ impl ObjectBuffers {
         self.frame(gpu, 0, &frame.seen_from(matrix, &stance.transform));
         self.pages.retain(|id, _| others.iter().any(|o| o.id == *id));
         (self.uploaded, self.waiting) = (0, 0);
-        // A map is of the active object, and so is the brush.
+        // A map is of the active object, and so are the brush and what is led.
         let kind = if frame.map[2] == 2.0 { 0.0 } else { frame.map[2] };
         let [low, high, _, nearer] = frame.map;
-        let bare = Frame { brush: [0.0; 4], map: [low, high, kind, nearer], ..*frame };
+        let map = [low, high, kind, nearer];
+        let bare = Frame { brush: [0.0; 4], led: ProvisionalDabs::default(), map, ..*frame };
         for (k, other) in others.iter().enumerate() {
             self.frame(gpu, k + 1, &bare.seen_from(matrix, &other.transform));
             let kept = self.pages.remove(&other.id).filter(|p| p.fits(other.clay));

@@ -10,6 +10,7 @@ use super::gpu::Gpu;
 use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
+use super::provisional::ProvisionalDabs;
 use crate::look::{Look, Map, linear};
 use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
 use crate::viewer::ssao::Ssao;
@@ -54,6 +55,8 @@ pub struct Beside<'a> {
     pub stance: Stance,
     /// The other objects.
     pub others: &'a [OtherObject<'a>],
+    /// What the pens will have raised when the frame is seen.
+    pub led: Option<&'a ProvisionalDabs>,
 }
 
 /// Depth, samples where there are several a pixel, pixels.
@@ -148,7 +151,7 @@ impl Renderer {
                 layout: Some(&pipeline_layout),
                 vertex: wgpu::VertexState {
                     module: &shader,
-                    entry_point: Some(&format!("{}_vertex", if overlay { "clay" } else { name })),
+                    entry_point: Some(&format!("{name}_vertex")),
                     compilation_options: Default::default(),
                     buffers,
                 },
@@ -309,6 +312,7 @@ impl Renderer {
             scale: scene.look.map.scale(),
             low: linear(ground[0]),
             high: linear(ground[1]),
+            led: scene.beside.led.copied().unwrap_or_default(),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
         self.objects.send(gpu, &frame, &matrix, &stance, others);

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use glam::{DVec2, Vec2};
 
 use super::pointer::{Drag, give_back, lent};
+use super::provisional::ProvisionalDabs;
 use super::state::WindowState;
 use super::tablet_map::{TabletMap, Tablets};
 use super::wiring::Wiring;
@@ -40,12 +41,22 @@ impl WindowState {
     }
 
     /// Where a tablet's pen will be over the view when a frame that is drawn now is seen; `None`
-    /// for another device. Nothing but the ring follows it: what is sculpted depends on the pen's
-    /// own samples alone.
+    /// for another device. Only what is drawn follows it: what is sculpted depends on the pen's own
+    /// samples alone.
     pub(super) fn predicted(&self, device: DeviceId, wiring: &Wiring) -> Option<Vec2> {
         let (_, map) = self.tablets.known.iter().find(|t| t.0 == device)?;
         let share = map.predictor().place_at(self.seen_us(wiring))?;
         Some(self.tablets.sent.place(device).unwrap_or_default().view(share.as_vec2()))
+    }
+
+    /// What the pen of a tablet will have raised when a frame that is drawn now is seen.
+    pub(super) fn led(&self, state: &Published, wiring: &Wiring) -> ProvisionalDabs {
+        let drawing = |id: DeviceId| state.last_dabs.iter().flatten().any(|d| d.0 == id);
+        let pen = state.pens.iter().flatten().find(|(id, _)| drawing(*id));
+        pen.filter(|_| self.ui_state.prefs.lead_strokes)
+            .and_then(|(id, pen)| Some((id, pen, self.predicted(*id, wiring)?)))
+            .map(|(id, pen, ahead)| ProvisionalDabs::lead(state, &self.camera, (*id, pen), ahead))
+            .unwrap_or_default()
     }
 
     /// Whether a ring is shown ahead of its pen: the next frame shows it elsewhere, though nothing

@@ -287,6 +287,27 @@ fn a_scraped_ridge_is_smooth_on_a_ball_along_a_curve_and_under_a_trembling_pen()
 }
 
 #[test]
+fn what_levels_or_evens_leaves_no_waves_on_a_ball() {
+    for kind in [
+        BrushKind::Flatten,
+        BrushKind::Fill,
+        BrushKind::Scrape,
+        BrushKind::Trim,
+        BrushKind::Plane,
+        BrushKind::Smooth,
+        BrushKind::SurfaceSmooth,
+        BrushKind::Sharpen,
+    ] {
+        let trial = Trial { form: TestForm::Ball, ..Trial::new(sculptd::presets().of(kind)) };
+        for (across, tremble) in [10, 30, 100].into_iter().flat_map(|a| [(a, 0.0), (a, TREMBLE)]) {
+            let (height, waviness) = Trial { across, tremble, ..trial }.draw().crest();
+            println!("{kind}, {across} across, {tremble:.4}: {waviness:.3} at {height:.5}");
+            assert!(waviness <= 0.3, "{kind}, {across}: {waviness} degrees");
+        }
+    }
+}
+
+#[test]
 fn strips_are_even_on_relief() {
     // What is left of the relief along the middle of the strip, as a share of what was there.
     let left = |kind: BrushKind| {
@@ -411,6 +432,15 @@ fn what_levels_or_draws_together_does_not_depend_on_the_spacing_either() {
         let off = off_by_spacing(sculptd::presets().of(kind), Vec2::new(19.0, 23.0));
         assert!(off < 0.02, "{kind}: {off}");
     }
+}
+
+#[test]
+fn sliding_triangles_go_as_far_with_any_spacing() {
+    // Where they go to is off by some hundredths; without a bound over the way it would be by more
+    // than the whole.
+    let brush = sculptd::presets().of(BrushKind::SlideRelax);
+    let off = off_by_spacing(brush, Vec2::new(19.0, 23.0));
+    assert!(off < 0.06, "{off}");
 }
 
 #[test]

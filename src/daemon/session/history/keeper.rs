@@ -79,10 +79,9 @@ impl Handle {
                 self.send(HistoryMessage::HistoryEntry { tick, moment: moment.clone() });
             }
         }
-        match world.report().missed {
-            Some(HistoryEvent::Undo) => self.want(Want::Undo),
-            Some(HistoryEvent::Redo) => self.want(Want::Redo),
-            _ => {}
+        let missed = world.report().missed;
+        for _ in 0..missed.unsigned_abs() {
+            self.want(if missed < 0 { Want::Undo } else { Want::Redo });
         }
         owed
     }

@@ -87,6 +87,8 @@ pub struct Preferences {
     pub smooth_edges: bool,
     /// The speed of a pointer without pressure stands in for it.
     pub speed_is_pressure: bool,
+    /// A stroke of a tablet's pen is shown where the pen will be when the frame is seen.
+    pub lead_strokes: bool,
     /// What two fingers on a touch screen do when they move together.
     pub two_fingers: TwoFingers,
     #[serde(alias = "done")]
@@ -104,6 +106,7 @@ impl Default for Preferences {
             light: false,
             smooth_edges: false,
             speed_is_pressure: true,
+            lead_strokes: true,
             two_fingers: TwoFingers::default(),
             hints: HintsFollowed::default(),
             look: Look::default(),
