@@ -10,6 +10,7 @@ mod learning;
 mod panels;
 mod pictures;
 mod preferences;
+mod regions;
 mod scene;
 mod stall;
 mod versions;

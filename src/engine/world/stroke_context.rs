@@ -9,7 +9,9 @@ use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::dab::{HEADING, IMAGES, SHARPEST};
 use sculptd_clay::brush::restore::Restore;
-use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
+use sculptd_clay::brush::{
+    BrushKind, BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool, draw_face_sets,
+};
 use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
 use sculptd_geometry::portable::{PortableMath, turn_matrix};
 
@@ -55,6 +57,9 @@ pub(super) struct Stroke {
     /// The face set under the first dab of each image, where the brush keeps to it.
     #[serde(default)]
     sets: [Option<u16>; IMAGES],
+    /// The face set that the stroke draws, once it is known: `Some(None)` where no number is left.
+    #[serde(default)]
+    draws: Option<Option<u16>>,
 }
 
 /// Where a held brush took hold, and how far it was drawn.
@@ -258,6 +263,21 @@ impl StrokeContext<'_> {
         *self.stroke.sets[image].get_or_insert_with(|| hit.map_or(0, |h| mesh.set_at(h)))
     }
 
+    /// The face set that the stroke draws, if its brush does: found at its first dab, `hit`. A new
+    /// one has a number above those of all others, so that no stroke joins another by chance.
+    fn drawn_set(&mut self, at: &PenPoint, hit: &Hit) -> Option<u16> {
+        let s = self.brush;
+        if s.kind != BrushKind::DrawFaceSets {
+            return None;
+        }
+        let mesh = &*self.mesh;
+        *self.stroke.draws.get_or_insert_with(|| match s.extra[draw_face_sets::SET] as u16 {
+            _ if s.negative != at.inverted => Some(mesh.set_at(hit)),
+            0 => mesh.next_set(),
+            set => Some(set),
+        })
+    }
+
     /// The stroke goes on to a dab at `centre`: its direction, the pressure that counts, and the
     /// way that the dab stands for, in fifths of the radius.
     fn go_on(&mut self, at: &PenPoint, centre: Vec3, radius: f32, share: f32) -> f32 {
@@ -343,6 +363,7 @@ impl StrokeContext<'_> {
             travelled: self.stroke.travelled,
             stroke: self.stroke.number,
             set: self.first_set(0, Some(hit)),
+            draws: self.drawn_set(at, hit),
         };
         let first = Dab { pace: first.pace_of(strength), ..first };
         let mut dabs = [first; IMAGES];
