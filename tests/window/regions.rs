@@ -31,7 +31,8 @@ fn a_lasso_drawn_with_the_pointer_masks_what_it_surrounds() {
     let steps = s.figure("undo_steps");
     s.drive(&["key", "l"]);
     s.seen("region-bar");
-    let around = [(-80, -60), (0, -90), (80, -60), (90, 0), (60, 70), (-20, 90), (-80, 60), (-90, 0)];
+    let around =
+        [(-80, -60), (0, -90), (80, -60), (90, 0), (60, 70), (-20, 90), (-80, 60), (-90, 0)];
     lasso(&s, &around);
     // The outline is there while the button is held, and the clay feels nothing.
     let drawing = s.seen("region-lasso");

@@ -549,7 +549,7 @@ region-face-set = Face set
     .tip = What is in the region becomes a new face set
 region-done = Done
     .tip = Ends drawing regions (Esc)
-region-note = Drag over the view. Ctrl turns it round, Esc ends.
+region-note = Drag over the view; with Ctrl the other way round. Esc ends.
 region-polyline-note = Press each corner; the first or last once more, or Enter, closes it.
 
 menu-add = add

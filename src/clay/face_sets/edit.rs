@@ -58,7 +58,9 @@ pub enum PartEdit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SetsError {
     /// There was nothing to do.
-    #[error("it would change nothing: nothing is masked by half or more, nothing lies there, or it is so already")]
+    #[error(
+        "it would change nothing: nothing is masked by half or more, nothing lies there, or it is so already"
+    )]
     Nothing,
     /// A set that no vertex is in.
     #[error("there is no face set {0}")]

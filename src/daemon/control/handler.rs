@@ -324,17 +324,11 @@ impl Handler for Host {
         scene::ask(self, SceneCommand::Duplicate(ObjectId(p.id)))
     }
 
-    fn scene_rename(
-        &self,
-        p: asked_scene::RenameParams,
-    ) -> ObjectDone {
+    fn scene_rename(&self, p: asked_scene::RenameParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Rename(ObjectId(p.id), p.name))
     }
 
-    fn scene_transform(
-        &self,
-        p: asked_scene::TransformParams,
-    ) -> ObjectDone {
+    fn scene_transform(&self, p: asked_scene::TransformParams) -> ObjectDone {
         scene::transform(self, &p)
     }
 
@@ -350,10 +344,7 @@ impl Handler for Host {
         scene::ask(self, SceneCommand::Lock(ObjectId(p.id), p.locked))
     }
 
-    fn scene_reshape(
-        &self,
-        p: asked_scene::ReshapeParams,
-    ) -> ObjectDone {
+    fn scene_reshape(&self, p: asked_scene::ReshapeParams) -> ObjectDone {
         scene::reshape(self, &p)
     }
 

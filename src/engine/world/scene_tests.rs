@@ -137,8 +137,7 @@ fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
     let edit = match dice.roll(18) {
         16.. => {
             let region = ViewRegion::Box([dice.view(), dice.view()]);
-            let edit =
-                [PartEdit::NewSet, PartEdit::Hide, PartEdit::Isolate][dice.roll(3)];
+            let edit = [PartEdit::NewSet, PartEdit::Hide, PartEdit::Isolate][dice.roll(3)];
             let asked = SetsRegion { region, edit, front_faces: dice.roll(2) > 0 };
             let _ = ask(world, SceneCommand::SetsRegion(asked));
             return;

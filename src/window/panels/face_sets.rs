@@ -6,6 +6,7 @@ use super::rows;
 use super::state::region::RegionPurpose;
 use super::state::{UiRequest, UiState, View};
 use crate::language::tr;
+use crate::look::with_set;
 use sculptd_clay::brush::{BrushKind, BrushSettings, draw_face_sets};
 use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit};
 use sculptd_engine::command::Command;
@@ -13,6 +14,8 @@ use sculptd_engine::scene::SceneCommand;
 
 /// Sets that the list shows; of an object with more of them the first.
 const ROWS: usize = 64;
+/// The surface that the colours of sets are shown on in the list.
+const PALE: [u8; 4] = [235, 220, 210, 255];
 
 fn ask(out: &mut Vec<UiRequest>, edit: SetsEdit) {
     out.push(UiRequest::World(Command::Scene(SceneCommand::Sets(edit))));
@@ -43,6 +46,22 @@ fn choice(ui: &mut egui::Ui, on: bool, name: &str) -> bool {
     button.on_hover_text(tr!(&format!("{name}.tip"))).clicked()
 }
 
+/// The colour in which a set is shown.
+fn swatch(ui: &mut egui::Ui, set: u16) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
+    let [r, g, b, _] = with_set(PALE, set);
+    ui.painter().rect_filled(rect, 3.0, egui::Color32::from_rgb(r, g, b));
+}
+
+/// A number of vertices with three digits or a few more.
+fn short(count: u64) -> String {
+    match count {
+        0..10_000 => count.to_string(),
+        10_000..1_000_000 => format!("{} k", count / 1000),
+        _ => format!("{:.1} M", count as f64 / 1e6),
+    }
+}
+
 /// The brush that draws a set; where it is `drawn` already, new ones.
 fn drawing(view: &View<'_>, drawn: Option<u16>, set: u16) -> BrushSettings {
     let (now, kept) = (&view.state.brush, &view.state.kept_brushes);
@@ -61,8 +80,8 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
     let hidden: u64 = sets.iter().map(|s| s.2).sum();
     let plain = sets.iter().all(|s| s.0 == 0);
     let brush = &view.state.brush;
-    let drawn = (brush.kind == BrushKind::DrawFaceSets)
-        .then(|| brush.extra[draw_face_sets::SET] as u16);
+    let drawn =
+        (brush.kind == BrushKind::DrawFaceSets).then(|| brush.extra[draw_face_sets::SET] as u16);
     if !plain {
         ui.checkbox(&mut ui_state.look.sets, tr!("sets-colours"));
         for &(set, vertices, hidden) in sets.iter().take(ROWS) {
@@ -81,9 +100,16 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
                     }
                     let name = match set {
                         0 => tr!("sets-none", count = vertices),
-                        _ => tr!("sets-row", number = set, count = vertices),
+                        _ => {
+                            swatch(ui, set);
+                            tr!("sets-row", number = set, count = vertices)
+                        }
                     };
-                    ui.add(egui::Label::new(name).truncate());
+                    let short = match set {
+                        0 => name.clone(),
+                        _ => format!("{set}: {}", short(vertices)),
+                    };
+                    ui.add(egui::Label::new(short).truncate()).on_hover_text(name);
                 });
             });
         }
@@ -124,9 +150,9 @@ fn make(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
             }
         }
     });
-    region::buttons(ui, &mut ui_state.region, RegionPurpose::FaceSet);
     let degrees = egui::Slider::new(&mut ui_state.face_sets.degrees, 1.0..=180.0);
     rows::slider(ui, degrees.suffix("°"), &tr!("sets-degrees"));
+    region::buttons(ui, &mut ui_state.region, RegionPurpose::FaceSet);
 }
 
 fn extract(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {

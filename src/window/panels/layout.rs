@@ -5,8 +5,8 @@ use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, face_sets, files, fonts, hand_menu,
     help, hints, history, keys, layers, legend, look, masks, measure, messages, modal, outliner,
-    preferences, pressure_curve, radial, region, remesh, retopology, rows, scene, search, start, symmetry,
-    tablet_keys, theme, timing, trim,
+    preferences, pressure_curve, radial, region, remesh, retopology, rows, scene, search, start,
+    symmetry, tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.

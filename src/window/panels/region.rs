@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Id, Key, LayerId, Order, Painter, PointerButton, Pos2, Rect, Sense};
+use egui::{Color32, Event, Id, Key, LayerId, Order, Painter, PointerButton, Pos2, Rect, Sense};
 use egui::{Shape, Stroke, vec2};
 use glam::Vec2;
 
@@ -86,9 +86,7 @@ pub fn drawn(drawing: &RegionDrawing, free: Rect, to: Pos2) -> Option<ViewRegion
     let way = to - from;
     let bounds = Rect::from_points(&drawing.points);
     match drawing.shape {
-        RegionShape::Box => {
-            (way.x.abs().min(way.y.abs()) > SLIP).then_some(ViewRegion::Box(ends))
-        }
+        RegionShape::Box => (way.x.abs().min(way.y.abs()) > SLIP).then_some(ViewRegion::Box(ends)),
         RegionShape::Line => (way.length() > SLIP).then_some(ViewRegion::Line(ends)),
         RegionShape::Lasso | RegionShape::Polyline => {
             let corners: Vec<Vec2> = drawing.points.iter().map(|p| share(free, *p)).collect();
@@ -147,9 +145,32 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
             response.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Canvas, true, tr!("region-heading"))
             });
-            let at = ctx.input(|i| i.pointer.latest_pos()).unwrap_or(free.center());
-            let at = at.clamp(free.min, free.max);
-            let finished = follow(&mut drawing, &response, at) || pressed(Key::Enter);
+            let clamp = |at: Pos2| at.clamp(free.min, free.max);
+            let (mut at, mut moves) = (free.center(), Vec::new());
+            ctx.input(|i| {
+                at = clamp(i.pointer.latest_pos().unwrap_or(at));
+                for event in &i.events {
+                    match event {
+                        Event::PointerMoved(to) => moves.push(clamp(*to)),
+                        // What was before the press belongs to nothing.
+                        Event::PointerButton {
+                            button: PointerButton::Primary,
+                            pressed,
+                            pos,
+                            ..
+                        } => {
+                            if *pressed {
+                                moves.clear();
+                            } else {
+                                at = clamp(*pos);
+                            }
+                        }
+                        _ => {}
+                    }
+                }
+            });
+            let pressed_enter = pressed(Key::Enter);
+            let finished = follow(&mut drawing, &response, at, &moves) || pressed_enter;
             let painter = ui.painter().clone().with_clip_rect(free);
             outline(&painter, &drawing, at);
             response.on_hover_cursor(egui::CursorIcon::Crosshair);
@@ -174,8 +195,14 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
     }
 }
 
-/// Takes over what the pointer did; whether the region is finished.
-fn follow(drawing: &mut RegionDrawing, response: &egui::Response, at: Pos2) -> bool {
+/// Takes over what the pointer did since the last frame: where it went (`moves`; a slow frame is
+/// several of them late) and where it is. Whether the region is finished.
+fn follow(
+    drawing: &mut RegionDrawing,
+    response: &egui::Response,
+    at: Pos2,
+    moves: &[Pos2],
+) -> bool {
     let down = response.drag_started_by(PointerButton::Primary);
     let up = response.drag_stopped_by(PointerButton::Primary);
     let points = &mut drawing.points;
@@ -194,8 +221,10 @@ fn follow(drawing: &mut RegionDrawing, response: &egui::Response, at: Pos2) -> b
     if points.is_empty() {
         return false;
     }
-    let far = points.last().is_some_and(|last| last.distance(at) >= STEP);
-    if drawing.shape == RegionShape::Lasso && far {
+    for to in moves.iter().filter(|_| drawing.shape == RegionShape::Lasso) {
+        if points.last().is_some_and(|last| last.distance(*to) < STEP) {
+            continue;
+        }
         if points.len() == MOST_CORNERS {
             // Every second place goes.
             let mut keep = false;
@@ -204,7 +233,7 @@ fn follow(drawing: &mut RegionDrawing, response: &egui::Response, at: Pos2) -> b
                 keep
             });
         }
-        points.push(at);
+        points.push(*to);
     }
     up
 }
@@ -217,7 +246,8 @@ fn outline(painter: &Painter, drawing: &RegionDrawing, to: Pos2) {
         _ => Color32::from_rgb(255, 214, 120),
     };
     let fill = Color32::from_rgba_unmultiplied(colour.r(), colour.g(), colour.b(), 36);
-    let (line, under) = (Stroke::new(1.8, colour), Stroke::new(4.0, Color32::from_black_alpha(110)));
+    let (line, under) =
+        (Stroke::new(1.8, colour), Stroke::new(4.0, Color32::from_black_alpha(110)));
     match drawing.shape {
         RegionShape::Box => {
             let rect = Rect::from_two_pos(from, to);
@@ -278,7 +308,8 @@ fn bar(
                         (drawing.purpose, tool.purpose) = (purpose, purpose);
                     }
                 }
-                ends = ui.button(tr!("region-done")).on_hover_text(tr!("region-done.tip")).clicked();
+                ends =
+                    ui.button(tr!("region-done")).on_hover_text(tr!("region-done.tip")).clicked();
             });
             let how = match drawing.shape {
                 RegionShape::Polyline => tr!("region-polyline-note"),

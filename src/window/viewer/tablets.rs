@@ -161,7 +161,8 @@ impl WindowState {
         let mut layers: Vec<egui::LayerId> =
             context.memory(|m| m.areas().visible_layer_ids()).into_iter().collect();
         layers.sort_unstable_by_key(|l| (l.order, l.id.value()));
-        let above = |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(takes_presses);
+        let above =
+            |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(takes_presses);
         layers
             .into_iter()
             .filter(|l| takes_presses(*l))

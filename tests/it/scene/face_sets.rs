@@ -117,7 +117,8 @@ fn face_sets_are_drawn_by_strokes_and_made_of_regions_by_request_and_replayed() 
     let lasso = json!({ "polygon": [[0.4, 0.4], [0.6, 0.4], [0.5, 0.7]] });
     let made = run.ask("sets.region", json!({ "region": lasso, "action": "make" }));
     assert_eq!(made, json!({ "set": 10, "made": 1 }));
-    let front = json!({ "region": { "box": [0, 0, 0.5, 1] }, "action": "hide", "front_faces": true });
+    let front =
+        json!({ "region": { "box": [0, 0, 0.5, 1] }, "action": "hide", "front_faces": true });
     assert_eq!(run.ask("sets.region", front), json!({ "set": null, "made": 0 }));
     let half = run.sets()["hidden"].as_u64().expect("a number");
     assert!(half > vertices / 8 && half < vertices * 3 / 8, "{half} of {vertices}");

@@ -14,11 +14,11 @@ use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::language::Translations;
 use sculptd_window::look::Map;
+use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::state::{
     Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
     ThicknessSummary, ThinSpot, TrialStatus,
 };
-use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
 pub(super) struct State {

@@ -68,7 +68,8 @@ fn a_lasso_masks_and_frees_until_escape_ends_it() {
     assert_eq!(now, Some((RegionShape::Lasso, RegionPurpose::Mask)));
     drag(&mut h, &around());
     let all = asked(&mut h);
-    let [UiRequest::World(Command::MaskRegion(MaskRegion { region, mask, front_faces }))] = &all[..]
+    let [UiRequest::World(Command::MaskRegion(MaskRegion { region, mask, front_faces }))] =
+        &all[..]
     else {
         panic!("{all:?}")
     };
@@ -103,9 +104,8 @@ fn a_lasso_masks_and_frees_until_escape_ends_it() {
     // What is far too long keeps its form with fewer corners.
     h.key_press(Key::L);
     h.run_steps(2);
-    let long: Vec<Pos2> = (0..2600)
-        .map(|i| pos2(400.0 + (i % 97) as f32 * 4.0, 200.0 + (i / 8) as f32))
-        .collect();
+    let long: Vec<Pos2> =
+        (0..2600).map(|i| pos2(400.0 + (i % 97) as f32 * 4.0, 200.0 + (i / 8) as f32)).collect();
     drag(&mut h, &long);
     let all = asked(&mut h);
     let [UiRequest::World(Command::MaskRegion(long))] = &all[..] else { panic!("{all:?}") };
