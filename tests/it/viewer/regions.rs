@@ -1,6 +1,6 @@
 //! Regions drawn over the view: by the panel, by a key, by the search; what they ask for.
 
-use egui::{Key, Modifiers, Pos2, pos2};
+use egui::{Event, Key, Modifiers, Pos2, Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec2;
@@ -56,9 +56,7 @@ fn around() -> Vec<Pos2> {
 #[test]
 fn a_lasso_masks_and_frees_until_escape_ends_it() {
     let mut h = harness(Tab::Scene);
-    h.get_by_label("Mask").scroll_to_me();
-    h.run_steps(3);
-    h.get_by_label("Mask").click();
+    h.get_by_role_and_label(Role::DisclosureTriangle, "Mask").click();
     h.run_steps(8);
     h.get_by_label("Lasso").scroll_to_me();
     h.run_steps(3);
@@ -115,7 +113,7 @@ fn a_lasso_masks_and_frees_until_escape_ends_it() {
 
 #[test]
 fn a_box_hides_ctrl_turns_it_round_and_a_polyline_makes_a_face_set() {
-    let mut h = harness(Tab::Scene);
+    let mut h = harness(Tab::Look);
     h.state_mut().ui_state.region.begin(RegionShape::Box, RegionPurpose::Hide);
     h.run_steps(2);
     let ends = [pos2(500.0, 300.0), pos2(700.0, 500.0)];
@@ -136,10 +134,10 @@ fn a_box_hides_ctrl_turns_it_round_and_a_polyline_makes_a_face_set() {
     h.run_steps(1);
     h.hover_at(ends[1]);
     h.run_steps(1);
-    h.input_mut().modifiers = Modifiers::CTRL;
+    h.event(Event::ModifiersChanged(Modifiers::CTRL));
     h.drop_at(ends[1]);
     h.run_steps(1);
-    h.input_mut().modifiers = Modifiers::NONE;
+    h.event(Event::ModifiersChanged(Modifiers::NONE));
     h.run_steps(1);
     assert_eq!(sets(&mut h).edit, PartEdit::Isolate);
 
@@ -175,7 +173,7 @@ fn regions_are_found_by_the_search_and_have_keys() {
     let mut h = harness(Tab::Look);
     h.key_press_modifiers(Modifiers::COMMAND, Key::K);
     h.run_steps(3);
-    h.get_by_role(egui::Role::TextInput).type_text("hide a region");
+    h.get_by_role(Role::TextInput).type_text("hide a region");
     h.run_steps(3);
     h.key_press(Key::Enter);
     h.run_steps(3);
