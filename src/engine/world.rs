@@ -10,6 +10,7 @@
 mod face_sets;
 mod hands;
 mod held;
+mod images;
 mod in_hand;
 mod layers;
 mod local_camera;

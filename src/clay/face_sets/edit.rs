@@ -59,7 +59,8 @@ pub enum PartEdit {
 pub enum SetsError {
     /// There was nothing to do.
     #[error(
-        "it would change nothing: nothing is masked by half or more, nothing lies there, or it is so already"
+        "it would change nothing: nothing is masked by half or more, nothing lies there, or it is \
+         so already"
     )]
     Nothing,
     /// A set that no vertex is in.
