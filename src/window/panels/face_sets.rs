@@ -6,7 +6,7 @@ use super::rows;
 use super::state::region::RegionPurpose;
 use super::state::{UiRequest, UiState, View};
 use crate::language::tr;
-use crate::look::with_set;
+use crate::look::{Material, with_set};
 use sculptd_clay::brush::{BrushKind, BrushSettings, draw_face_sets};
 use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit};
 use sculptd_engine::command::Command;
@@ -14,8 +14,6 @@ use sculptd_engine::scene::SceneCommand;
 
 /// Sets that the list shows; of an object with more of them the first.
 const ROWS: usize = 64;
-/// The surface that the colours of sets are shown on in the list.
-const PALE: [u8; 4] = [235, 220, 210, 255];
 
 fn ask(out: &mut Vec<UiRequest>, edit: SetsEdit) {
     out.push(UiRequest::World(Command::Scene(SceneCommand::Sets(edit))));
@@ -46,20 +44,13 @@ fn choice(ui: &mut egui::Ui, on: bool, name: &str) -> bool {
     button.on_hover_text(tr!(&format!("{name}.tip"))).clicked()
 }
 
-/// The colour in which a set is shown.
-fn swatch(ui: &mut egui::Ui, set: u16) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
-    let [r, g, b, _] = with_set(PALE, set);
+/// The colour in which a set is shown on this material.
+fn swatch(ui: &mut egui::Ui, material: &Material, set: u16) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
+    let tint = with_set([u8::MAX; 4], set);
+    let [r, g, b] =
+        std::array::from_fn(|i| (material.base[i].powf(1.0 / 2.2) * f32::from(tint[i])) as u8);
     ui.painter().rect_filled(rect, 3.0, egui::Color32::from_rgb(r, g, b));
-}
-
-/// A number of vertices with three digits or a few more.
-fn short(count: u64) -> String {
-    match count {
-        0..10_000 => count.to_string(),
-        10_000..1_000_000 => format!("{} k", count / 1000),
-        _ => format!("{:.1} M", count as f64 / 1e6),
-    }
 }
 
 /// The brush that draws a set; where it is `drawn` already, new ones.
@@ -101,13 +92,13 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
                     let name = match set {
                         0 => tr!("sets-none", count = vertices),
                         _ => {
-                            swatch(ui, set);
+                            swatch(ui, ui_state.look.material(), set);
                             tr!("sets-row", number = set, count = vertices)
                         }
                     };
                     let short = match set {
                         0 => name.clone(),
-                        _ => format!("{set}: {}", short(vertices)),
+                        _ => set.to_string(),
                     };
                     ui.add(egui::Label::new(short).truncate()).on_hover_text(name);
                 });
